@@ -1,0 +1,93 @@
+//! A surface moved to another frame.
+
+use crate::domain::Domain;
+use crate::jet::Jet2;
+use crate::point::{Axis, Point3, Unit3, Uv, Vec3, any_perpendicular};
+use crate::surface::Surface;
+
+/// A right-handed orthonormal frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Origin, mm.
+    pub origin: Point3,
+    /// First axis.
+    pub x: Unit3,
+    /// Second axis, `z x x`.
+    pub y: Unit3,
+    /// Third axis.
+    pub z: Unit3,
+}
+
+impl Placement {
+    /// The world frame.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self { origin: Point3::origin(), x: Vec3::x_axis(), y: Vec3::y_axis(), z: Vec3::z_axis() }
+    }
+
+    /// The frame with the given `z`, and `x` as near to `x_hint` as being perpendicular allows.
+    #[must_use]
+    pub fn new(origin: Point3, z: Unit3, x_hint: Option<Vec3>) -> Self {
+        let x = x_hint
+            .and_then(|h| Unit3::try_new(h - z.into_inner() * h.dot(&z), 1e-9 * h.norm()))
+            .unwrap_or_else(|| any_perpendicular(&z));
+        Self { origin, x, y: Unit3::new_unchecked(z.cross(&x)), z }
+    }
+
+    /// A local vector in world coordinates.
+    #[must_use]
+    pub fn vector(&self, a: &Vec3) -> Vec3 {
+        self.x.into_inner() * a.x + self.y.into_inner() * a.y + self.z.into_inner() * a.z
+    }
+
+    /// A local point in world coordinates.
+    #[must_use]
+    pub fn point(&self, p: &Point3) -> Point3 {
+        self.origin + self.vector(&p.coords)
+    }
+
+    /// A world point in local coordinates.
+    #[must_use]
+    pub fn local(&self, p: &Point3) -> Point3 {
+        let w = p - self.origin;
+        Point3::new(w.dot(&self.x), w.dot(&self.y), w.dot(&self.z))
+    }
+}
+
+/// A surface in another frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed<S> {
+    /// The surface in its own frame.
+    pub surface: S,
+    /// Where that frame is.
+    pub placement: Placement,
+}
+
+impl<S: Surface> Surface for Placed<S> {
+    fn domain(&self) -> Domain {
+        self.surface.domain()
+    }
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        let j = self.surface.jet2(uv);
+        let f = &self.placement;
+        Jet2 {
+            uv: j.uv,
+            point: f.point(&j.point),
+            du: f.vector(&j.du),
+            dv: f.vector(&j.dv),
+            duu: f.vector(&j.duu),
+            duv: f.vector(&j.duv),
+            dvv: f.vector(&j.dvv),
+            side: j.side,
+        }
+    }
+    fn point(&self, uv: Uv) -> Point3 {
+        self.placement.point(&self.surface.point(uv))
+    }
+    fn contains(&self, uv: Uv) -> bool {
+        self.surface.contains(uv)
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        self.surface.breaks(axis)
+    }
+}

@@ -1,0 +1,96 @@
+//! Ellipsoid and paraboloid.
+
+use super::{BadSize, positive};
+use crate::domain::{Domain, Interval};
+use crate::jet::{Jet2, Side};
+use crate::point::{Axis, Point3, Uv, Vec3};
+use crate::surface::Surface;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Ellipsoid: u = longitude angle, v = latitude angle of the unit sphere that is stretched to the semi-axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Ellipsoid {
+    axes: Vec3,
+}
+
+impl Ellipsoid {
+    /// The ellipsoid with the given semi-axes along x, y, z, mm.
+    ///
+    /// # Errors
+    /// [`BadSize`] for a semi-axis that is not positive.
+    pub fn new(semi_axes_mm: [f64; 3]) -> Result<Self, BadSize> {
+        for a in semi_axes_mm {
+            positive("semi_axes_mm", a)?;
+        }
+        Ok(Self { axes: Vec3::from(semi_axes_mm) })
+    }
+}
+
+impl Surface for Ellipsoid {
+    fn domain(&self) -> Domain {
+        Domain { u: Interval::periodic(0.0, TAU), v: Interval::new(-FRAC_PI_2, FRAC_PI_2) }
+    }
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        let ((su, cu), (sv, cv)) = (uv.u.sin_cos(), uv.v.sin_cos());
+        let scale = |x: f64, y: f64, z: f64| Vec3::new(x, y, z).component_mul(&self.axes);
+        Jet2 {
+            uv,
+            point: Point3::from(scale(cv * cu, cv * su, sv)),
+            du: scale(-cv * su, cv * cu, 0.0),
+            dv: scale(-sv * cu, -sv * su, cv),
+            duu: scale(-cv * cu, -cv * su, 0.0),
+            duv: scale(sv * su, -sv * cu, 0.0),
+            dvv: scale(-cv * cu, -cv * su, -sv),
+            side: Side::Along,
+        }
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        let i = self.domain().get(axis);
+        let n = (i.length() / (TAU / 8.0)).round() as usize;
+        (0..=n).map(|k| i.at(k as f64 / n as f64)).collect()
+    }
+}
+
+/// `z = a x^2 + b y^2` over a square, u = x and v = y; the natural normal points to +z (material below).
+#[derive(Clone, Copy, Debug)]
+pub struct Paraboloid {
+    a: f64,
+    b: f64,
+    half: f64,
+}
+
+impl Paraboloid {
+    /// The paraboloid with coefficients `ab_per_mm` over `|x|, |y| <= half_size_mm`.
+    ///
+    /// # Errors
+    /// [`BadSize`] for coefficients that are not finite or a size that is not positive.
+    pub fn new(ab_per_mm: [f64; 2], half_size_mm: f64) -> Result<Self, BadSize> {
+        for c in ab_per_mm {
+            if !c.is_finite() {
+                return Err(BadSize { what: "a_per_mm and b_per_mm", need: "finite", got: c });
+            }
+        }
+        let half = positive("half_size_mm", half_size_mm)?;
+        Ok(Self { a: ab_per_mm[0], b: ab_per_mm[1], half })
+    }
+}
+
+impl Surface for Paraboloid {
+    fn domain(&self) -> Domain {
+        let i = Interval::new(-self.half, self.half);
+        Domain { u: i, v: i }
+    }
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        let (a, b, x, y) = (self.a, self.b, uv.u, uv.v);
+        Jet2 {
+            uv,
+            point: Point3::new(x, y, a * x * x + b * y * y),
+            du: Vec3::new(1.0, 0.0, 2.0 * a * x),
+            dv: Vec3::new(0.0, 1.0, 2.0 * b * y),
+            duu: Vec3::new(0.0, 0.0, 2.0 * a),
+            duv: Vec3::zeros(),
+            dvv: Vec3::new(0.0, 0.0, 2.0 * b),
+            side: Side::Along,
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! First and second fundamental form, principal and normal curvature.
+//!
+//! Sign: **positive curvature is a convex body**, `k(d) = -II(d, d) / I(d, d)` with the outward normal, so a ball of
+//! radius R has k = 1/R and a hole has k < 0 (Radzevich's convention; Marciniak's kappa is -k).
+
+use crate::jet::Jet2;
+use crate::point::{Unit3, Uv, Vec3, any_perpendicular, uv};
+use nalgebra::Matrix2;
+
+/// No tangent plane: the partial derivatives are parallel or vanish.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the surface has no tangent plane at u = {}, v = {}: |S_u x S_v| is {sin_uv:.3e} of |S_u| |S_v|", at.u, at.v
+)]
+pub struct Degenerate {
+    /// Where.
+    pub at: Uv,
+    /// Sine of the angle between S_u and S_v; zero where one of them vanishes.
+    pub sin_uv: f64,
+}
+
+/// Smallest sine of the angle between S_u and S_v that still counts as a tangent plane. Below it the normal keeps
+/// fewer than five of double precision's sixteen digits.
+const MIN_SIN_UV: f64 = 1e-11;
+
+/// Both fundamental forms at a point, in the parameter basis and in an orthonormal tangent frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forms {
+    /// `[E, F, G]`.
+    pub first: [f64; 3],
+    /// `[L, M, N]` with the outward normal: negative along a convex direction.
+    pub second: [f64; 3],
+    /// The outward unit normal.
+    pub normal: Unit3,
+    /// Orthonormal tangent frame: `e1` along S_u, `e2 = n x e1`.
+    pub frame: [Unit3; 2],
+    /// The curvature matrix W in `frame`, convex positive: `k(d) = d^T W d`.
+    pub curvature: Matrix2<f64>,
+}
+
+impl Forms {
+    pub(crate) fn of(jet: &Jet2) -> Result<Self, Degenerate> {
+        let (su, sv) = (jet.du, jet.dv);
+        let cross = su.cross(&sv);
+        let (a, b) = (su.norm(), sv.norm());
+        let sin_uv = if a > 0.0 && b > 0.0 { cross.norm() / (a * b) } else { 0.0 };
+        // The negated comparison also catches NaN.
+        if !(sin_uv > MIN_SIN_UV && sin_uv.is_finite()) {
+            return Err(Degenerate { at: jet.uv, sin_uv });
+        }
+        let normal = Unit3::new_normalize(cross * jet.side.sign());
+        let e1 = Unit3::new_normalize(su);
+        let e2 = Unit3::new_unchecked(normal.cross(&e1));
+        // S_u = a e1, S_v = p e1 + q e2. The second derivatives' normal parts, carried over to the frame, give W
+        // without the cancellation of H^2 - K.
+        let (p, q) = (sv.dot(&e1), sv.dot(&e2));
+        let (l, m, n) = (jet.duu.dot(&normal), jet.duv.dot(&normal), jet.dvv.dot(&normal));
+        let w11 = l / (a * a);
+        let w12 = (m / a - p * w11) / q;
+        let w22 = (n - 2.0 * p * q * w12 - p * p * w11) / (q * q);
+        Ok(Self {
+            first: [su.dot(&su), su.dot(&sv), sv.dot(&sv)],
+            second: [l, m, n],
+            normal,
+            frame: [e1, e2],
+            curvature: -Matrix2::new(w11, w12, w12, w22),
+        })
+    }
+
+    /// Principal curvatures and directions.
+    #[must_use]
+    pub fn principal(&self) -> Principal {
+        let eig = SymEigen::of(&self.curvature);
+        let dir = |c: [f64; 2]| {
+            Unit3::new_normalize(self.frame[0].into_inner() * c[0] + self.frame[1].into_inner() * c[1])
+        };
+        Principal { k_max: eig.max, k_min: eig.min, d_max: dir(eig.d_max), d_min: dir(eig.d_min) }
+    }
+
+    /// Normal curvature in the direction of a tangent vector, 1/mm, convex positive (Euler).
+    #[must_use]
+    pub fn normal_curvature(&self, direction: &Vec3) -> f64 {
+        let c = self.components(direction);
+        let w = &self.curvature;
+        w[(0, 0)] * c[0] * c[0] + 2.0 * w[(0, 1)] * c[0] * c[1] + w[(1, 1)] * c[1] * c[1]
+    }
+
+    /// Geodesic torsion in the direction of a tangent vector d, 1/mm: the component of W between d and `n x d`.
+    #[must_use]
+    pub fn geodesic_torsion(&self, direction: &Vec3) -> f64 {
+        let c = self.components(direction);
+        let w = &self.curvature;
+        (w[(1, 1)] - w[(0, 0)]) * c[0] * c[1] + w[(0, 1)] * (c[0] * c[0] - c[1] * c[1])
+    }
+
+    /// Mean curvature H, 1/mm: 1/R on a sphere's outside.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        0.5 * self.curvature.trace()
+    }
+
+    /// Gaussian curvature K, 1/mm2.
+    #[must_use]
+    pub fn gauss(&self) -> f64 {
+        self.curvature.determinant()
+    }
+
+    /// Area of the parameter unit square, `sqrt(EG - F^2)`.
+    #[must_use]
+    pub fn area_density(&self) -> f64 {
+        let [e, f, g] = self.first;
+        (e * g - f * f).max(0.0).sqrt()
+    }
+
+    /// The parameter rate whose tangent vector is `direction`.
+    #[must_use]
+    pub fn rate(&self, jet: &Jet2, direction: &Vec3) -> Uv {
+        let a = jet.du.norm();
+        let (p, q) = (jet.dv.dot(&self.frame[0]), jet.dv.dot(&self.frame[1]));
+        let rv = direction.dot(&self.frame[1]) / q;
+        uv((direction.dot(&self.frame[0]) - p * rv) / a, rv)
+    }
+
+    /// Components of the unit vector along `direction` in the tangent frame.
+    fn components(&self, direction: &Vec3) -> [f64; 2] {
+        let (x, y) = (direction.dot(&self.frame[0]), direction.dot(&self.frame[1]));
+        let r = x.hypot(y);
+        [x / r, y / r]
+    }
+}
+
+/// Principal curvatures, convex positive, with `k_max >= k_min`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Principal {
+    /// The most convex normal curvature, 1/mm.
+    pub k_max: f64,
+    /// The least convex (most concave) normal curvature, 1/mm.
+    pub k_min: f64,
+    /// Direction of `k_max`; arbitrary at an umbilic.
+    pub d_max: Unit3,
+    /// Direction of `k_min`, `n x d_max` up to sign.
+    pub d_min: Unit3,
+}
+
+/// Eigenvalues and unit eigenvectors of a symmetric 2x2 matrix, by `hypot`: no cancellation near equal eigenvalues.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymEigen {
+    /// Larger eigenvalue.
+    pub max: f64,
+    /// Smaller eigenvalue.
+    pub min: f64,
+    /// Unit eigenvector of `max`.
+    pub d_max: [f64; 2],
+    /// Unit eigenvector of `min`, `d_max` turned by +90 degrees.
+    pub d_min: [f64; 2],
+}
+
+impl SymEigen {
+    /// The eigen-decomposition of the symmetric part that `m` stores in its upper triangle.
+    #[must_use]
+    pub fn of(m: &Matrix2<f64>) -> Self {
+        let (a, b, c) = (m[(0, 0)], m[(0, 1)], m[(1, 1)]);
+        let mean = 0.5 * (a + c);
+        let half = 0.5 * (a - c);
+        let radius = half.hypot(b);
+        // Twice the angle of d_max has cosine half/radius and sine b/radius.
+        let angle = if radius > 0.0 { 0.5 * b.atan2(half) } else { 0.0 };
+        let (s, co) = angle.sin_cos();
+        Self { max: mean + radius, min: mean - radius, d_max: [co, s], d_min: [-s, co] }
+    }
+}
+
+/// The unit tangent nearest to `wanted`, or any tangent where `wanted` is along the normal.
+#[must_use]
+pub fn project_to_tangent(normal: &Unit3, wanted: &Vec3) -> Unit3 {
+    let t = wanted - normal.into_inner() * wanted.dot(normal);
+    Unit3::try_new(t, 1e-12 * wanted.norm()).unwrap_or_else(|| any_perpendicular(normal))
+}

@@ -1,0 +1,66 @@
+//! The Darboux frame along a line on a surface and how it turns.
+//!
+//! Frame at a point: `t` along the line, `n` the outward normal, `b = n x t` (left of the line seen from outside).
+//! Per unit arc length the frame turns with the angular velocity (Darboux vector)
+//! `omega = tau_g t - k_n' b + k_g n`; signs below.
+
+use crate::forms::{Degenerate, Forms};
+use crate::jet::Jet2;
+use crate::point::{Point3, Unit3, Uv, Vec3};
+
+/// Position, frame and angular velocity of the frame per unit arc length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Darboux {
+    /// The point, mm.
+    pub point: Point3,
+    /// Unit tangent of the line.
+    pub tangent: Unit3,
+    /// `normal x tangent`.
+    pub left: Unit3,
+    /// Outward normal of the surface.
+    pub normal: Unit3,
+    /// Angular velocity of the frame per mm of line, rad/mm, in world coordinates.
+    pub turn: Vec3,
+}
+
+impl Darboux {
+    /// The frame of a line through the jet's point in `direction` (made tangent), with geodesic curvature
+    /// `geodesic_per_mm` (positive: the line bends to the left, towards `b`).
+    ///
+    /// # Errors
+    /// [`Degenerate`] without a tangent plane.
+    pub fn new(jet: &Jet2, direction: &Vec3, geodesic_per_mm: f64) -> Result<Self, Degenerate> {
+        let forms = jet.forms()?;
+        Ok(Self::with_forms(jet, &forms, direction, geodesic_per_mm))
+    }
+
+    /// As [`Darboux::new`] with the forms at hand.
+    #[must_use]
+    pub fn with_forms(jet: &Jet2, forms: &Forms, direction: &Vec3, geodesic_per_mm: f64) -> Self {
+        let normal = forms.normal;
+        let tangent = crate::forms::project_to_tangent(&normal, direction);
+        let left = Unit3::new_unchecked(normal.cross(&tangent));
+        // Weingarten with k = -II: dn/ds = k_n t + w_tb b (moving over a convex body the normal leans forward).
+        let k_n = forms.normal_curvature(&tangent);
+        let w_tb = forms.geodesic_torsion(&tangent);
+        // dn/ds = omega x n with omega = x t + y b + z n: t x n = -b, b x n = t, so y = k_n and x = -w_tb.
+        // dt/ds = omega x t: z b - y n, the geodesic curvature is z.
+        let turn = tangent.into_inner() * -w_tb
+            + left.into_inner() * k_n
+            + normal.into_inner() * geodesic_per_mm;
+        Self { point: jet.point, tangent, left, normal, turn }
+    }
+}
+
+/// Geodesic curvature, 1/mm, of the curve with parameter rate `rate` and parameter acceleration `acceleration`,
+/// positive when it bends to the left (`b = n x t`).
+///
+/// # Errors
+/// [`Degenerate`] without a tangent plane.
+pub fn geodesic_curvature(jet: &Jet2, rate: Uv, acceleration: Uv) -> Result<f64, Degenerate> {
+    let n = jet.normal()?;
+    let d1 = jet.tangent(rate);
+    let d2 = jet.second(rate) + jet.tangent(acceleration);
+    let speed = d1.norm();
+    Ok(n.cross(&d1).dot(&d2) / (speed * speed * speed))
+}

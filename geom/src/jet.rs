@@ -1,0 +1,87 @@
+//! Second-order Taylor data of a surface at a point, and what follows from it alone.
+
+use crate::forms::{Degenerate, Forms};
+use crate::point::{Point3, Unit3, Uv, Vec3};
+
+/// Which side of a surface the material is on.
+///
+/// The outward normal `n` points out of the material, towards the tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Side {
+    /// `n` is along `S_u x S_v`.
+    #[default]
+    Along,
+    /// `n` is against `S_u x S_v`.
+    Against,
+}
+
+impl Side {
+    /// `+1` for [`Side::Along`], `-1` for [`Side::Against`].
+    #[must_use]
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Along => 1.0,
+            Self::Against => -1.0,
+        }
+    }
+
+    /// The other side.
+    #[must_use]
+    pub const fn flipped(self) -> Self {
+        match self {
+            Self::Along => Self::Against,
+            Self::Against => Self::Along,
+        }
+    }
+}
+
+/// A point of a surface with its partial derivatives to second order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet2 {
+    /// Where the jet was taken.
+    pub uv: Uv,
+    /// S, mm.
+    pub point: Point3,
+    /// S_u.
+    pub du: Vec3,
+    /// S_v.
+    pub dv: Vec3,
+    /// S_uu.
+    pub duu: Vec3,
+    /// S_uv.
+    pub duv: Vec3,
+    /// S_vv.
+    pub dvv: Vec3,
+    /// Which way the outward normal points.
+    pub side: Side,
+}
+
+impl Jet2 {
+    /// The outward unit normal.
+    ///
+    /// # Errors
+    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
+    pub fn normal(&self) -> Result<Unit3, Degenerate> {
+        Ok(self.forms()?.normal)
+    }
+
+    /// First and second fundamental form with the outward normal.
+    ///
+    /// # Errors
+    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
+    pub fn forms(&self) -> Result<Forms, Degenerate> {
+        Forms::of(self)
+    }
+
+    /// The tangent vector `a S_u + b S_v`.
+    #[must_use]
+    pub fn tangent(&self, rate: Uv) -> Vec3 {
+        self.du * rate.u + self.dv * rate.v
+    }
+
+    /// The second derivative of S along a curve with parameter rate `rate` and no parameter acceleration.
+    #[must_use]
+    pub fn second(&self, rate: Uv) -> Vec3 {
+        self.duu * (rate.u * rate.u) + self.duv * (2.0 * rate.u * rate.v) + self.dvv * (rate.v * rate.v)
+    }
+}

@@ -1,0 +1,42 @@
+//! Differential geometry for multi-axis machining: no input or output, no file formats, no NURBS.
+//!
+//! - [`Surface`] is the one view that machining code has of a part: a domain and a second-order jet.
+//! - [`Jet2::forms`] gives both fundamental forms and the curvature matrix; [`Forms::principal`] the principal
+//!   curvatures. **Curvature is positive where the body is convex**, with the normal out of the material.
+//! - [`Darboux`] is the moving frame along a line on the surface, [`line`] the lines themselves.
+//! - [`Relative`] is the form `Q = W_P + W_T` on which strip width and local gouging depend.
+//! - [`analytic`] has the surfaces with closed forms, [`laws`] the suite that every surface must pass.
+//!
+//! Lengths are millimetres, angles radians.
+//!
+//! ```
+//! use osculate_geom::{analytic::Sphere, uv, Surface};
+//! let ball = Sphere::new(10.0)?;
+//! let k = ball.jet2(uv(0.3, 0.5)).forms()?.principal();
+//! assert!((k.k_max - 0.1).abs() < 1e-12 && (k.k_min - 0.1).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod analytic;
+pub mod diagnostic;
+mod domain;
+mod forms;
+mod frame;
+pub mod geodesic;
+mod jet;
+pub mod laws;
+pub mod line;
+mod point;
+pub mod quadrature;
+mod relative;
+pub mod roots;
+mod surface;
+
+pub use diagnostic::{Diagnostic, Severity};
+pub use domain::{Domain, Interval};
+pub use forms::{Degenerate, Forms, Principal, SymEigen, project_to_tangent};
+pub use frame::{Darboux, geodesic_curvature};
+pub use jet::{Jet2, Side};
+pub use point::{Axis, Box3, Point3, Unit3, Uv, Vec3, any_perpendicular, uv};
+pub use relative::{Relative, ToolCurvature};
+pub use surface::{Flipped, Patch, Surface};

@@ -1,0 +1,98 @@
+//! Lines on a surface that a tool can be driven along: isoparametric lines and geodesics.
+
+use crate::forms::Degenerate;
+use crate::frame::{Darboux, geodesic_curvature};
+use crate::geodesic::GeodesicState;
+use crate::point::{Axis, Uv, Vec3, uv};
+use crate::surface::Surface;
+
+/// A line on a surface, with the Darboux frame at every parameter.
+pub trait SurfaceLine: Sync {
+    /// Frame at line parameter `t`, and the speed `ds/dt`, mm per unit of `t`.
+    ///
+    /// # Errors
+    /// [`Degenerate`] where the surface has no tangent plane or the line stands still.
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), Degenerate>;
+}
+
+/// The line of constant parameter: `along` varies, the other parameter is `fixed`.
+#[derive(Clone, Copy)]
+pub struct IsoLine<'a> {
+    /// The surface.
+    pub surface: &'a dyn Surface,
+    /// The parameter that varies.
+    pub along: Axis,
+    /// The value of the other one.
+    pub fixed: f64,
+    /// False: the line runs from low to high parameter; true: from high to low. `t` stays the parameter.
+    pub reversed: bool,
+}
+
+impl IsoLine<'_> {
+    /// Surface parameters at line parameter `t`.
+    #[must_use]
+    pub fn uv(&self, t: f64) -> Uv {
+        Uv::from_axis(self.along, t, self.fixed)
+    }
+}
+
+impl SurfaceLine for IsoLine<'_> {
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), Degenerate> {
+        let at = self.uv(t);
+        let jet = self.surface.jet2(at);
+        let sign = if self.reversed { -1.0 } else { 1.0 };
+        let rate = Uv::from_axis(self.along, sign, 0.0);
+        let forms = jet.forms()?;
+        let direction = jet.tangent(rate);
+        let k_g = geodesic_curvature(&jet, rate, uv(0.0, 0.0))?;
+        // The speed carries the sign of t against the arc length of the (possibly reversed) feed.
+        Ok((Darboux::with_forms(&jet, &forms, &direction, k_g), sign * direction.norm()))
+    }
+}
+
+/// The geodesic through a point in a direction; `t` is arc length from there, mm.
+#[derive(Clone, Copy)]
+pub struct GeodesicLine<'a> {
+    /// The surface.
+    pub surface: &'a dyn Surface,
+    start: GeodesicState,
+    max_step_mm: f64,
+}
+
+impl<'a> GeodesicLine<'a> {
+    /// The geodesic through `at` along `direction`, integrated in steps of at most `max_step_mm`.
+    ///
+    /// # Errors
+    /// [`Degenerate`] without a tangent plane at the start.
+    pub fn new(
+        surface: &'a dyn Surface,
+        at: Uv,
+        direction: &Vec3,
+        max_step_mm: f64,
+    ) -> Result<Self, Degenerate> {
+        Ok(Self { surface, start: GeodesicState::start(surface, at, direction)?, max_step_mm })
+    }
+
+    /// Parameters and rate after arc length `t`, mm.
+    ///
+    /// # Errors
+    /// [`Degenerate`] without a tangent plane on the way.
+    pub fn state(&self, t: f64) -> Result<GeodesicState, Degenerate> {
+        let steps = (t.abs() / self.max_step_mm).ceil().max(1.0);
+        let h = t / steps;
+        let mut s = self.start;
+        for _ in 0..steps as usize {
+            s = s.step(self.surface, h)?;
+        }
+        Ok(s)
+    }
+}
+
+impl SurfaceLine for GeodesicLine<'_> {
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), Degenerate> {
+        let s = self.state(t)?;
+        let jet = self.surface.jet2(s.at);
+        let direction = jet.tangent(s.rate);
+        Ok((Darboux::new(&jet, &direction, 0.0)?, direction.norm()))
+    }
+}

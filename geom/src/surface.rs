@@ -1,0 +1,118 @@
+//! The one view of a surface that machining code has.
+
+use crate::domain::Domain;
+use crate::jet::{Jet2, Side};
+use crate::point::{Axis, Point3, Uv};
+
+/// A parametric surface, possibly trimmed, with a material side.
+///
+/// `tools`, `productivity` and `postproc` see surfaces only through this trait. Two methods are required.
+pub trait Surface: Send + Sync {
+    /// The parameter rectangle. A trimmed surface gives the rectangle of its untrimmed carrier.
+    fn domain(&self) -> Domain;
+
+    /// Point and partial derivatives to second order. Parameters outside the domain are brought in
+    /// ([`Domain::bring`]) or, where the carrier extends naturally (analytic surfaces), evaluated as they are.
+    fn jet2(&self, uv: Uv) -> Jet2;
+
+    /// The point alone.
+    fn point(&self, uv: Uv) -> Point3 {
+        self.jet2(uv).point
+    }
+
+    /// Whether the parameters lie on the surface: inside the domain and, where the surface is trimmed, inside the
+    /// outer loop and outside the holes.
+    fn contains(&self, uv: Uv) -> bool {
+        self.domain().contains(uv)
+    }
+
+    /// Parameters at which the surface is less smooth than inside (knots), ascending, both ends included.
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        let i = self.domain().get(axis);
+        vec![i.lo, i.hi]
+    }
+}
+
+/// A surface with its material side turned over: the same points, the opposite outward normal.
+#[derive(Clone, Copy, Debug)]
+pub struct Flipped<S>(pub S);
+
+impl<S: Surface> Surface for Flipped<S> {
+    fn domain(&self) -> Domain {
+        self.0.domain()
+    }
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        let mut jet = self.0.jet2(uv);
+        jet.side = jet.side.flipped();
+        jet
+    }
+    fn point(&self, uv: Uv) -> Point3 {
+        self.0.point(uv)
+    }
+    fn contains(&self, uv: Uv) -> bool {
+        self.0.contains(uv)
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        self.0.breaks(axis)
+    }
+}
+
+macro_rules! forward_surface {
+    ($($t:ty),*) => {$(
+        impl<S: Surface + ?Sized> Surface for $t {
+            fn domain(&self) -> Domain {
+                (**self).domain()
+            }
+            fn jet2(&self, uv: Uv) -> Jet2 {
+                (**self).jet2(uv)
+            }
+            fn point(&self, uv: Uv) -> Point3 {
+                (**self).point(uv)
+            }
+            fn contains(&self, uv: Uv) -> bool {
+                (**self).contains(uv)
+            }
+            fn breaks(&self, axis: Axis) -> Vec<f64> {
+                (**self).breaks(axis)
+            }
+        }
+    )*};
+}
+forward_surface!(&S, Box<S>, std::sync::Arc<S>);
+
+/// A surface restricted to a parameter rectangle and given a material side.
+#[derive(Clone, Debug)]
+pub struct Patch<S> {
+    /// The whole surface.
+    pub surface: S,
+    /// The rectangle kept.
+    pub domain: Domain,
+    /// The material side, relative to the carrier's own.
+    pub side: Side,
+}
+
+impl<S: Surface> Surface for Patch<S> {
+    fn domain(&self) -> Domain {
+        self.domain
+    }
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        let mut jet = self.surface.jet2(uv);
+        if self.side == Side::Against {
+            jet.side = jet.side.flipped();
+        }
+        jet
+    }
+    fn point(&self, uv: Uv) -> Point3 {
+        self.surface.point(uv)
+    }
+    fn contains(&self, uv: Uv) -> bool {
+        self.domain.contains(uv) && self.surface.contains(uv)
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        let i = self.domain.get(axis);
+        let mut kept = vec![i.lo];
+        kept.extend(self.surface.breaks(axis).into_iter().filter(|t| *t > i.lo && *t < i.hi));
+        kept.push(i.hi);
+        kept
+    }
+}
