@@ -6,13 +6,27 @@ use crate::geodesic::GeodesicState;
 use crate::point::{Axis, Uv, Vec3, uv};
 use crate::surface::Surface;
 
+/// Why a line has no frame at a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum LineError {
+    /// The surface has no tangent plane there, or the line stands still.
+    #[error(transparent)]
+    Degenerate(#[from] Degenerate),
+    /// The line has left the surface's parameter rectangle.
+    #[error("the line leaves the surface at u = {}, v = {}", at.u, at.v)]
+    Outside {
+        /// The parameters reached.
+        at: Uv,
+    },
+}
+
 /// A line on a surface, with the Darboux frame at every parameter.
 pub trait SurfaceLine: Sync {
-    /// Frame at line parameter `t`, and the speed `ds/dt`, mm per unit of `t`.
+    /// Frame at line parameter `t`, and the speed `ds/dt` along the frame's tangent, mm per unit of `t`.
     ///
     /// # Errors
-    /// [`Degenerate`] where the surface has no tangent plane or the line stands still.
-    fn frame(&self, t: f64) -> Result<(Darboux, f64), Degenerate>;
+    /// [`LineError`] where there is no frame.
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError>;
 }
 
 /// The line of constant parameter: `along` varies, the other parameter is `fixed`.
@@ -24,7 +38,7 @@ pub struct IsoLine<'a> {
     pub along: Axis,
     /// The value of the other one.
     pub fixed: f64,
-    /// False: the line runs from low to high parameter; true: from high to low. `t` stays the parameter.
+    /// False: the feed runs from low to high parameter; true: from high to low. `t` stays the parameter.
     pub reversed: bool,
 }
 
@@ -37,15 +51,18 @@ impl IsoLine<'_> {
 }
 
 impl SurfaceLine for IsoLine<'_> {
-    fn frame(&self, t: f64) -> Result<(Darboux, f64), Degenerate> {
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError> {
         let at = self.uv(t);
+        if !self.surface.domain().contains(at) {
+            return Err(LineError::Outside { at });
+        }
         let jet = self.surface.jet2(at);
         let sign = if self.reversed { -1.0 } else { 1.0 };
         let rate = Uv::from_axis(self.along, sign, 0.0);
         let forms = jet.forms()?;
         let direction = jet.tangent(rate);
         let k_g = geodesic_curvature(&jet, rate, uv(0.0, 0.0))?;
-        // The speed carries the sign of t against the arc length of the (possibly reversed) feed.
+        // The tangent follows the feed; the speed carries the sign of t against it.
         Ok((Darboux::with_forms(&jet, &forms, &direction, k_g), sign * direction.norm()))
     }
 }
@@ -53,8 +70,7 @@ impl SurfaceLine for IsoLine<'_> {
 /// The geodesic through a point in a direction; `t` is arc length from there, mm.
 #[derive(Clone, Copy)]
 pub struct GeodesicLine<'a> {
-    /// The surface.
-    pub surface: &'a dyn Surface,
+    surface: &'a dyn Surface,
     start: GeodesicState,
     max_step_mm: f64,
 }
@@ -76,20 +92,20 @@ impl<'a> GeodesicLine<'a> {
     /// Parameters and rate after arc length `t`, mm.
     ///
     /// # Errors
-    /// [`Degenerate`] without a tangent plane on the way.
-    pub fn state(&self, t: f64) -> Result<GeodesicState, Degenerate> {
+    /// [`LineError`] where the geodesic leaves the surface or meets a place without a tangent plane.
+    pub fn state(&self, t: f64) -> Result<GeodesicState, LineError> {
         let steps = (t.abs() / self.max_step_mm).ceil().max(1.0);
         let h = t / steps;
         let mut s = self.start;
         for _ in 0..steps as usize {
             s = s.step(self.surface, h)?;
         }
-        Ok(s)
+        if self.surface.domain().contains(s.at) { Ok(s) } else { Err(LineError::Outside { at: s.at }) }
     }
 }
 
 impl SurfaceLine for GeodesicLine<'_> {
-    fn frame(&self, t: f64) -> Result<(Darboux, f64), Degenerate> {
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError> {
         let s = self.state(t)?;
         let jet = self.surface.jet2(s.at);
         let direction = jet.tangent(s.rate);

@@ -69,7 +69,8 @@ pub fn bracketed(a: End, b: End, x_tol: f64, mut f: impl FnMut(f64) -> f64) -> R
     if !(a.f.signum() * b.f.signum() < 0.0) {
         return Err(RootError::NoSignChange { lo: a.x, hi: b.x, f_lo: a.f, f_hi: b.f });
     }
-    let (mut a, mut b, mut c) = (b, a, b);
+    let (mut a, mut b) = (b, a);
+    let mut c;
     let mut t = 0.5;
     for evaluations in 1..=MAX_EVALUATIONS {
         let x = a.x + t * (b.x - a.x);

@@ -1,0 +1,300 @@
+//! Contact of a cutter with a surface: lead and tilt to a pose, and the curvature of both there.
+//!
+//! At the CC point the tool's outward normal is `-n`. The axis starts along n, leans by `lead` towards the feed
+//! (positive lifts the heel), then turns about n by `tilt`, right-handed:
+//! `a = cos(lead) n + sin(lead) (cos(tilt) t + sin(tilt) b)`, `b = n x t`.
+
+use crate::cutter::Cutter;
+use crate::pose::Pose;
+use crate::sweep::{Moving, SweptMotion};
+use osculate_geom::line::{GeodesicLine, IsoLine, LineError, SurfaceLine};
+use osculate_geom::{Axis, Darboux, Degenerate, Forms, Relative, Surface, ToolCurvature, Unit3, Uv};
+use std::f64::consts::FRAC_PI_2;
+
+/// Lead and tilt of the tool axis against the surface normal and the feed.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Lean {
+    /// From n towards the feed, rad.
+    pub lead_rad: f64,
+    /// About n, right-handed, after the lead, rad.
+    pub tilt_rad: f64,
+}
+
+/// The direction of feed at a CC point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FeedLine {
+    /// Along the isoparametric line on which this parameter grows.
+    Iso(Axis),
+    /// Along the geodesic at this angle from S_u towards S_v, rad.
+    Angle(f64),
+}
+
+/// Why a contact cannot be.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ContactError {
+    /// No tangent plane, or the line leaves the surface.
+    #[error(transparent)]
+    Line(#[from] LineError),
+    /// A lead of 90 degrees or more, or a tilt that is not finite.
+    #[error("lead must lie strictly between -90 and 90 degrees and tilt be finite, got lead {lead_deg} and tilt {tilt_deg} degrees")]
+    Lean {
+        /// Lead, degrees.
+        lead_deg: f64,
+        /// Tilt, degrees.
+        tilt_deg: f64,
+    },
+    /// The tool is less curved than the part is hollow.
+    #[error(
+        "the tool does not fit at u = {}, v = {}: the part is hollow with curvature {part_per_mm:.6} 1/mm where the \
+         tool has only {tool_per_mm:.6} 1/mm; use {}", at.u, at.v, advice(*part_per_mm, *largest_radius_mm)
+    )]
+    DoesNotFit {
+        /// Where.
+        at: Uv,
+        /// Normal curvature of the part in the worst direction, negative.
+        part_per_mm: f64,
+        /// Normal curvature of the tool in the same direction.
+        tool_per_mm: f64,
+        /// Outer radius of the largest tool of this kind that fits at this lead, mm; zero where none does.
+        largest_radius_mm: f64,
+    },
+}
+
+fn advice(part_per_mm: f64, largest: f64) -> String {
+    if largest > 0.0 {
+        format!("a larger lead or a tool of radius {largest:.3} mm or less")
+    } else {
+        format!("a larger lead or a ball of radius {:.3} mm or less", -1.0 / part_per_mm)
+    }
+}
+
+impl From<Degenerate> for ContactError {
+    fn from(e: Degenerate) -> Self {
+        Self::Line(e.into())
+    }
+}
+
+impl Lean {
+    /// The lean when it is usable.
+    ///
+    /// # Errors
+    /// [`ContactError::Lean`].
+    pub fn checked(self) -> Result<Self, ContactError> {
+        if self.lead_rad.abs() < FRAC_PI_2 && self.tilt_rad.is_finite() {
+            Ok(self)
+        } else {
+            Err(ContactError::Lean {
+                lead_deg: self.lead_rad.to_degrees(),
+                tilt_deg: self.tilt_rad.to_degrees(),
+            })
+        }
+    }
+
+    /// The direction in the tangent plane towards which the axis leans at positive lead.
+    fn heading(self, frame: &Darboux) -> Unit3 {
+        let (s, c) = self.tilt_rad.sin_cos();
+        Unit3::new_normalize(frame.tangent.into_inner() * c + frame.left.into_inner() * s)
+    }
+
+    /// The pose that touches at the frame's point, raised by `lift_mm` along the normal.
+    ///
+    /// Without lead a flat or toroidal cutter touches with its whole bottom; the CC point is then taken where it
+    /// is for a vanishing positive lead, on the corner's side towards the feed.
+    #[must_use]
+    pub fn pose(self, cutter: &Cutter, frame: &Darboux, lift_mm: f64) -> Pose {
+        let heading = self.heading(frame).into_inner();
+        let n = frame.normal.into_inner();
+        let (s, c) = self.lead_rad.sin_cos();
+        let axis = Unit3::new_normalize(n * c + heading * s);
+        // From the axis to the corner's centre above the contact: the side of the bottom that has come down.
+        let low = (heading * c - n * s) * if s < 0.0 { -1.0 } else { 1.0 };
+        let r = cutter.corner_mm();
+        let tip = frame.point + n * (r + lift_mm) - low * cutter.core_mm() - axis.into_inner() * r;
+        Pose { tip, axis }
+    }
+
+    /// Principal curvatures of the tool at the contact.
+    #[must_use]
+    pub fn tool_curvature(self, cutter: &Cutter, frame: &Darboux) -> ToolCurvature {
+        let s = self.lead_rad.sin().abs();
+        let r = cutter.corner_mm();
+        let along = if r > 0.0 { 1.0 / r } else { f64::INFINITY };
+        // Meusnier on the parallel circle of radius core + r sin(lead).
+        let across = if cutter.is_ball() { along } else { s / (cutter.core_mm() + r * s) };
+        ToolCurvature { along, across, direction: self.heading(frame) }
+    }
+}
+
+/// A cutter driven along a line on a surface at constant lead, tilt and lift: the exact motion, pose by pose.
+#[derive(Clone, Copy)]
+pub struct ContactMotion<'a> {
+    /// The line of CC points.
+    pub line: &'a dyn SurfaceLine,
+    /// The cutter.
+    pub cutter: &'a Cutter,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// Height above the contact along n, mm.
+    pub lift_mm: f64,
+}
+
+impl SweptMotion for ContactMotion<'_> {
+    fn at(&self, t: f64) -> Option<Moving> {
+        let (frame, speed) = self.line.frame(t).ok()?;
+        let pose = self.lean.pose(self.cutter, &frame, self.lift_mm);
+        // The tool is rigid in the Darboux frame.
+        let turn = frame.turn * speed;
+        let tip_rate = frame.tangent.into_inner() * speed + turn.cross(&(pose.tip - frame.point));
+        Some(Moving { pose, tip_rate, turn })
+    }
+}
+
+/// A cutter touching a surface at one CC point, with the line along which it is fed.
+#[derive(Clone, Copy)]
+pub struct Contact<'a> {
+    /// The surface.
+    pub surface: &'a dyn Surface,
+    /// The CC point's parameters.
+    pub at: Uv,
+    /// The cutter.
+    pub cutter: &'a Cutter,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// Height above the contact along n, mm.
+    pub lift_mm: f64,
+    /// Darboux frame of the feed line at the CC point.
+    pub frame: Darboux,
+    /// Fundamental forms of the part there.
+    pub forms: Forms,
+    feed: FeedLine,
+}
+
+/// The feed line of a contact.
+pub enum ContactLine<'a> {
+    /// An isoparametric line.
+    Iso(IsoLine<'a>),
+    /// A geodesic; `t` is arc length from the contact.
+    Geodesic(GeodesicLine<'a>),
+}
+
+impl SurfaceLine for ContactLine<'_> {
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError> {
+        match self {
+            Self::Iso(l) => l.frame(t),
+            Self::Geodesic(l) => l.frame(t),
+        }
+    }
+}
+
+impl<'a> Contact<'a> {
+    /// The contact at `at` with the feed along `feed`.
+    ///
+    /// # Errors
+    /// [`ContactError::Lean`] and [`ContactError::Line`]. Whether the tool fits is a separate question:
+    /// [`Contact::fits`].
+    pub fn new(
+        surface: &'a dyn Surface,
+        at: Uv,
+        cutter: &'a Cutter,
+        feed: FeedLine,
+        lean: Lean,
+    ) -> Result<Self, ContactError> {
+        let lean = lean.checked()?;
+        let jet = surface.jet2(at);
+        let forms = jet.forms()?;
+        let mut contact = Self {
+            surface,
+            at,
+            cutter,
+            lean,
+            lift_mm: 0.0,
+            // Replaced below by the line's own frame, which needs the line.
+            frame: Darboux::with_forms(&jet, &forms, &jet.du, 0.0),
+            forms,
+            feed,
+        };
+        let (line, t0) = contact.line()?;
+        contact.frame = line.frame(t0)?.0;
+        Ok(contact)
+    }
+
+    /// The same contact with the tool raised along the normal.
+    #[must_use]
+    pub const fn lifted(mut self, lift_mm: f64) -> Self {
+        self.lift_mm = lift_mm;
+        self
+    }
+
+    /// The feed line and the line parameter of the contact.
+    ///
+    /// # Errors
+    /// [`ContactError::Line`] without a tangent plane.
+    pub fn line(&self) -> Result<(ContactLine<'a>, f64), ContactError> {
+        match self.feed {
+            FeedLine::Iso(along) => {
+                let fixed = self.at.get(along.other());
+                let line = IsoLine { surface: self.surface, along, fixed, reversed: false };
+                Ok((ContactLine::Iso(line), self.at.get(along)))
+            }
+            FeedLine::Angle(angle) => {
+                let jet = self.surface.jet2(self.at);
+                // From S_u towards S_v: the right-handed turn about S_u x S_v, whatever the outward side.
+                let e1 = self.forms.frame[0].into_inner();
+                let e2 = self.forms.frame[1].into_inner() * jet.side.sign();
+                let (s, c) = angle.sin_cos();
+                let step = self.step_mm();
+                let line = GeodesicLine::new(self.surface, self.at, &(e1 * c + e2 * s), step)?;
+                Ok((ContactLine::Geodesic(line), 0.0))
+            }
+        }
+    }
+
+    /// Relative curvature form Q.
+    #[must_use]
+    pub fn relative(&self) -> Relative {
+        Relative::new(&self.forms, &self.lean.tool_curvature(self.cutter, &self.frame))
+    }
+
+    /// The pose of the tool.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.lean.pose(self.cutter, &self.frame, self.lift_mm)
+    }
+
+    /// Errors unless Q is positive semidefinite: the tool does not dig in next to the contact.
+    ///
+    /// # Errors
+    /// [`ContactError::DoesNotFit`] with both curvatures and the largest radius that would fit.
+    pub fn fits(&self) -> Result<(), ContactError> {
+        let q = self.relative();
+        if q.min >= 0.0 {
+            return Ok(());
+        }
+        let part = self.forms.normal_curvature(&q.d_min);
+        let s = self.lean.lead_rad.sin().abs();
+        let r = self.cutter.corner_mm();
+        // Across the lean the tool's curvature is s / (core + r s); along it 1/r.
+        let hollow = -self.forms.principal().k_min;
+        let largest = if self.cutter.is_ball() {
+            1.0 / hollow
+        } else if r * hollow > 1.0 {
+            0.0
+        } else {
+            (s / hollow - r * s).max(0.0) + r
+        };
+        Err(ContactError::DoesNotFit {
+            at: self.at,
+            part_per_mm: part,
+            tool_per_mm: q.min - part,
+            largest_radius_mm: if largest > r || self.cutter.is_ball() { largest } else { 0.0 },
+        })
+    }
+
+    /// Length over which lines on the surface are integrated in one Runge-Kutta step, mm: a fiftieth of the
+    /// smallest radius around, so that the fifth-order local error stays near 1e-11 of that radius.
+    pub(crate) fn step_mm(&self) -> f64 {
+        let p = self.forms.principal();
+        let k = p.k_max.abs().max(p.k_min.abs()).max(1.0 / (10.0 * self.cutter.radius_mm()));
+        0.02 / k
+    }
+}

@@ -1,0 +1,317 @@
+//! Exact strip width at one contact.
+
+use super::ContactMotion;
+use crate::contact::{Contact, ContactError};
+use crate::cutter::{Cutter, Line};
+use crate::sweep::{Reach, SweptMotion, reach_from};
+use osculate_geom::geodesic::GeodesicState;
+use osculate_geom::roots::{End, RootError, bracketed};
+use osculate_geom::{Degenerate, Surface, Uv};
+
+/// The strip left at a contact. Lengths are arc lengths on the part across the feed, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strip {
+    /// `left_mm + right_mm`.
+    pub width_mm: f64,
+    /// From the contact to the edge on the left of the feed (towards `n x t`).
+    pub left_mm: f64,
+    /// From the contact to the edge on the right of the feed.
+    pub right_mm: f64,
+    /// How deep the swept tool goes below the part inside the strip; zero where it does not.
+    pub undercut_mm: f64,
+    /// Bound on the numerical error of `width_mm`: root brackets and integration of the cross line.
+    pub error_mm: f64,
+    /// Whether the strip ends at an edge of the surface rather than at the tolerance: `[left, right]`.
+    pub at_edge: [bool; 2],
+}
+
+/// Why there is no strip.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum StripError {
+    /// The contact itself is not possible.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// A tolerance that is not positive and finite.
+    #[error("scallop_mm must be positive and finite, got {got}")]
+    Tolerance {
+        /// The value, mm.
+        got: f64,
+    },
+    /// The tool stands off by more than the tolerance at the contact itself.
+    #[error("at the contact the tool stands {standoff_mm} mm above the part, more than the tolerance {scallop_mm} mm: lower lift_mm")]
+    AboveTolerance {
+        /// Standoff at the contact, mm; infinite where the tool does not pass over it.
+        standoff_mm: f64,
+        /// The tolerance, mm.
+        scallop_mm: f64,
+    },
+    /// The cross line could not be followed.
+    #[error(transparent)]
+    Degenerate(#[from] Degenerate),
+    /// The edge of the strip did not converge.
+    #[error("the edge of the strip did not converge: {0}")]
+    Edge(#[from] RootError),
+}
+
+/// Height of the swept tool above a surface point along its outward normal, mm (negative: below), and the motion
+/// parameter at which the tool is deepest there, searched from `guess` outward in steps of `step`.
+///
+/// None where the tool does not pass over the point.
+///
+/// # Errors
+/// [`Degenerate`] where the point has no normal.
+pub fn standoff(
+    cutter: &Cutter,
+    surface: &dyn Surface,
+    at: Uv,
+    motion: &impl SweptMotion,
+    guess: f64,
+    step: f64,
+) -> Result<Option<Reach>, Degenerate> {
+    let jet = surface.jet2(at);
+    let line = Line { origin: jet.point, direction: jet.normal()? };
+    Ok(reach_from(cutter, &line, motion, guess, step))
+}
+
+/// Steps in which a side of the strip is walked before its edge is bracketed; the profile between the contact and
+/// the edge is watched for undercut at these places.
+const STEPS_PER_SIDE: f64 = 12.0;
+/// Most steps of the walk: strips that conform far better than the leading order says are still found.
+const MAX_STEPS: u32 = 4000;
+/// Accuracy of the strip's edge relative to the half width.
+const EDGE_TOLERANCE: f64 = 1e-13;
+
+/// The exact strip at a contact for the tolerance `scallop_mm`.
+///
+/// The tool may undercut (Q need not be definite): then `undercut_mm` says how deep.
+///
+/// # Errors
+/// [`StripError`].
+pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError> {
+    if !(scallop_mm > 0.0 && scallop_mm.is_finite()) {
+        return Err(StripError::Tolerance { got: scallop_mm });
+    }
+    let (feed_line, t0) = contact.line()?;
+    let motion = ContactMotion {
+        line: &feed_line,
+        cutter: contact.cutter,
+        lean: contact.lean,
+        lift_mm: contact.lift_mm,
+    };
+    let radius = contact.cutter.radius_mm();
+    let speed = motion.at(t0).map_or(1.0, |m| m.tip_rate.norm().max(1e-12));
+    let across = contact.relative().along(&contact.frame.left);
+    let h = scallop_mm;
+    // Leading-order half width where Q allows it, a fraction of the tool elsewhere.
+    let half = if across.is_finite() && across > 0.0 { (2.0 * h / across).sqrt() } else { 0.1 * radius };
+    let side = Side {
+        contact,
+        motion: &motion,
+        t0,
+        t_step: 0.05 * radius / speed_of_contact(&motion, t0, speed),
+        h,
+        step: (half.min(radius) / STEPS_PER_SIDE).min(4.0 * contact.step_mm()),
+    };
+    let left = side.walk(1.0)?;
+    let right = side.walk(-1.0)?;
+    Ok(Strip {
+        width_mm: left.edge + right.edge,
+        left_mm: left.edge,
+        right_mm: right.edge,
+        undercut_mm: left.undercut.max(right.undercut),
+        error_mm: left.error + right.error,
+        at_edge: [left.at_edge, right.at_edge],
+    })
+}
+
+/// Millimetres per unit of the motion parameter, from a finite step: the tip itself may stand still.
+fn speed_of_contact(motion: &ContactMotion<'_>, t0: f64, fallback: f64) -> f64 {
+    motion.line.frame(t0).map_or(fallback, |(_, speed)| speed.abs().max(1e-12))
+}
+
+struct Side<'a, M> {
+    contact: &'a Contact<'a>,
+    motion: &'a M,
+    t0: f64,
+    t_step: f64,
+    h: f64,
+    step: f64,
+}
+
+struct HalfStrip {
+    edge: f64,
+    undercut: f64,
+    error: f64,
+    at_edge: bool,
+}
+
+impl<M: SweptMotion> Side<'_, M> {
+    fn standoff(&self, at: Uv, guess: f64) -> Result<Option<Reach>, Degenerate> {
+        standoff(self.contact.cutter, self.contact.surface, at, self.motion, guess, self.t_step)
+    }
+
+    /// Walks from the contact to the left (`sign = 1`) or right until the standoff exceeds the tolerance.
+    fn walk(&self, sign: f64) -> Result<HalfStrip, StripError> {
+        let surface = self.contact.surface;
+        let domain = surface.domain();
+        let direction = self.contact.frame.left.into_inner() * sign;
+        let mut here = GeodesicState::start(surface, self.contact.at, &direction)?;
+        let mut t = self.t0;
+        let mut q = 0.0;
+        let first = self.standoff(here.at, t)?;
+        let height = first.map_or(f64::INFINITY, |r| r.at_mm);
+        if height > self.h {
+            return Err(StripError::AboveTolerance { standoff_mm: height, scallop_mm: self.h });
+        }
+        let mut undercut = Undercut::new(here, t, height);
+        for _ in 0..MAX_STEPS {
+            let next = here.step(surface, self.step)?;
+            if !domain.contains(next.at) {
+                return self.to_domain_edge(here, q, t, undercut);
+            }
+            let reach = self.standoff(next.at, t)?;
+            match reach {
+                Some(r) if r.at_mm <= self.h => {
+                    (t, here, q) = (r.t, next, q + self.step);
+                    undercut.see(here, t, r.at_mm);
+                }
+                outside => {
+                    let f_out = outside.map_or(self.contact.cutter.radius_mm(), |r| r.at_mm - self.h);
+                    return self.edge(here, q, t, f_out, undercut);
+                }
+            }
+        }
+        Err(StripError::Edge(RootError::NotConverged { evaluations: MAX_STEPS, residual: q }))
+    }
+
+    /// The edge of the strip between `here` (inside, at arc length `q`) and one step further (outside).
+    fn edge(
+        &self,
+        here: GeodesicState,
+        q: f64,
+        t: f64,
+        f_out: f64,
+        undercut: Undercut,
+    ) -> Result<HalfStrip, StripError> {
+        let surface = self.contact.surface;
+        let excess = |x: f64| -> f64 {
+            let Ok(s) = here.step(surface, x) else { return f64::NAN };
+            match self.standoff(s.at, t) {
+                Ok(Some(r)) => r.at_mm - self.h,
+                Ok(None) => self.contact.cutter.radius_mm(),
+                Err(_) => f64::NAN,
+            }
+        };
+        let root = bracketed(
+            End { x: 0.0, f: excess(0.0).min(0.0) },
+            End { x: self.step, f: f_out },
+            EDGE_TOLERANCE * (q + self.step),
+            excess,
+        )?;
+        Ok(HalfStrip {
+            edge: q + root.x,
+            undercut: undercut.deepest(self)?,
+            error: root.error + self.integration_error(here, root.x)?,
+            at_edge: false,
+        })
+    }
+
+    /// The strip goes on to the edge of the surface's rectangle.
+    fn to_domain_edge(
+        &self,
+        here: GeodesicState,
+        q: f64,
+        t: f64,
+        undercut: Undercut,
+    ) -> Result<HalfStrip, StripError> {
+        let surface = self.contact.surface;
+        let domain = surface.domain();
+        let (mut lo, mut hi) = (0.0, self.step);
+        // Bisection of a yes-or-no question to the last bits of the step.
+        for _ in 0..50 {
+            let mid = 0.5 * (lo + hi);
+            if domain.contains(here.step(surface, mid)?.at) { lo = mid } else { hi = mid }
+        }
+        let end = here.step(surface, lo)?;
+        match self.standoff(end.at, t)? {
+            Some(r) if r.at_mm <= self.h => {
+                let mut undercut = undercut;
+                undercut.lowest = undercut.lowest.min(r.at_mm);
+                let error = hi - lo + self.integration_error(here, lo)?;
+                Ok(HalfStrip { edge: q + lo, undercut: undercut.deepest(self)?, error, at_edge: true })
+            }
+            outside => {
+                let f_out = outside.map_or(self.contact.cutter.radius_mm(), |r| r.at_mm - self.h);
+                let shorter = Side { step: lo, contact: self.contact, motion: self.motion, ..*self };
+                shorter.edge(here, q, t, f_out, undercut)
+            }
+        }
+    }
+
+    /// Integration error of the cross line: one step against two halves, for every step walked.
+    fn integration_error(&self, here: GeodesicState, last: f64) -> Result<f64, Degenerate> {
+        let surface = self.contact.surface;
+        let one = here.step(surface, self.step)?;
+        let two = here.step(surface, 0.5 * self.step)?.step(surface, 0.5 * self.step)?;
+        let jet = surface.jet2(one.at);
+        let off = (jet.tangent(Uv { u: one.at.u - two.at.u, v: one.at.v - two.at.v })).norm();
+        Ok(off * (1.0 + last / self.step))
+    }
+}
+
+/// The lowest standoff seen on a walk, with the stretch in which the true minimum lies.
+#[derive(Clone, Copy)]
+struct Undercut {
+    /// The last two places, oldest first.
+    last: [Option<Place>; 2],
+    lowest: f64,
+    /// The place before the lowest one, where a minimum stands between three places.
+    before_lowest: Option<Place>,
+}
+
+/// One place of the walk.
+#[derive(Clone, Copy)]
+struct Place {
+    state: GeodesicState,
+    t: f64,
+    height: f64,
+}
+
+impl Undercut {
+    fn new(state: GeodesicState, t: f64, height: f64) -> Self {
+        Self { last: [None, Some(Place { state, t, height })], lowest: height, before_lowest: None }
+    }
+
+    fn see(&mut self, state: GeodesicState, t: f64, height: f64) {
+        let new = Place { state, t, height };
+        if let [Some(a), Some(b)] = self.last
+            && b.height <= a.height
+            && b.height <= height
+            && b.height <= self.lowest
+        {
+            self.before_lowest = Some(a);
+        }
+        self.lowest = self.lowest.min(height);
+        self.last = [self.last[1], Some(new)];
+    }
+
+    /// Depth below the part, the minimum between places found by golden section over the two steps around it.
+    fn deepest<M: SweptMotion>(&self, side: &Side<'_, M>) -> Result<f64, Degenerate> {
+        const RATIO: f64 = 0.618_033_988_749_894_9;
+        let Some(a) = self.before_lowest else { return Ok((-self.lowest).max(0.0)) };
+        let height = |x: f64| -> Result<f64, Degenerate> {
+            let at = a.state.step(side.contact.surface, x)?.at;
+            Ok(side.standoff(at, a.t)?.map_or(f64::INFINITY, |r| r.at_mm))
+        };
+        let (mut lo, mut hi) = (0.0, 2.0 * side.step);
+        let mut lowest = self.lowest;
+        // A minimum's height is settled once its place is known to half of double precision's digits.
+        for _ in 0..40 {
+            let (x, y) = (hi - RATIO * (hi - lo), lo + RATIO * (hi - lo));
+            let (fx, fy) = (height(x)?, height(y)?);
+            lowest = lowest.min(fx).min(fy);
+            if fx < fy { hi = y } else { lo = x }
+        }
+        Ok((-lowest).max(0.0))
+    }
+}
