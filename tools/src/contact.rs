@@ -25,6 +25,8 @@ pub struct Lean {
 pub enum FeedLine {
     /// Along the isoparametric line on which this parameter grows.
     Iso(Axis),
+    /// The same line the other way.
+    IsoReversed(Axis),
     /// Along the geodesic at this angle from S_u towards S_v, rad.
     Angle(f64),
 }
@@ -231,9 +233,10 @@ impl<'a> Contact<'a> {
     /// [`ContactError::Line`] without a tangent plane.
     pub fn line(&self) -> Result<(ContactLine<'a>, f64), ContactError> {
         match self.feed {
-            FeedLine::Iso(along) => {
+            FeedLine::Iso(along) | FeedLine::IsoReversed(along) => {
                 let fixed = self.at.get(along.other());
-                let line = IsoLine { surface: self.surface, along, fixed, reversed: false };
+                let reversed = matches!(self.feed, FeedLine::IsoReversed(_));
+                let line = IsoLine { surface: self.surface, along, fixed, reversed };
                 Ok((ContactLine::Iso(line), self.at.get(along)))
             }
             FeedLine::Angle(angle) => {

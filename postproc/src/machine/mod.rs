@@ -1,0 +1,352 @@
+//! Machine tools: joints as data, checked; forward and inverse kinematics of single poses.
+
+mod built_in;
+mod chain;
+mod pose;
+pub mod spec;
+mod two_axis;
+
+use osculate_geom::{Point3, Unit3, Vec3};
+use osculate_tools::Pose;
+
+pub use built_in::built_in_names;
+pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
+pub(crate) use pose::NearWish;
+pub use pose::{Candidate, Orientations};
+use spec::{ControlSpec, FeedReading, JointSpec, MachineSpec, Sense};
+pub use two_axis::{Angles, AxisUnreachable, Solutions, TwoAxis, TwoAxisError};
+
+use crate::setup::Setup;
+
+/// The format number that this version reads.
+const FORMAT: u32 = 1;
+
+/// Volume of the box spanned by the linear directions below which they do not span space; a machine's are orthogonal
+/// (volume 1), slant beds reach 0.5.
+const SMALLEST_VOLUME: f64 = 1e-3;
+
+/// Why a machine file is no machine.
+#[derive(Debug, thiserror::Error)]
+pub enum MachineError {
+    /// Not TOML, an unknown key or a missing one.
+    #[error("the machine file cannot be read: {0}")]
+    Toml(#[from] toml::de::Error),
+    /// Another version of the format.
+    #[error("the machine file has format = {got}, this version reads format = {FORMAT}")]
+    Format {
+        /// What stands there.
+        got: u32,
+    },
+    /// No built-in machine of this name.
+    #[error("no built-in machine is called '{name}'; there are {known}")]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// Wrong number of joints.
+    #[error("{linear} linear and {rotary} rotary joints: a machine needs 3 linear and 0 to 2 rotary ones")]
+    JointCount {
+        /// Linear joints.
+        linear: usize,
+        /// Rotary joints.
+        rotary: usize,
+    },
+    /// The joints are not in the order part to tool.
+    #[error("joint {letter} carries the part but stands after one that carries the tool: order them from part to tool")]
+    Order {
+        /// The joint.
+        letter: String,
+    },
+    /// A letter is missing, malformed or used twice.
+    #[error("joint letter '{letter}' must be one capital letter with optional digits (CA1), once per machine")]
+    Letter {
+        /// What stands there.
+        letter: String,
+    },
+    /// A number that makes no sense.
+    #[error("{what} of {whose} is {value}: {wanted}")]
+    Value {
+        /// The joint, or "the machine".
+        whose: String,
+        /// The key.
+        what: &'static str,
+        /// What stands there.
+        value: f64,
+        /// What would do.
+        wanted: &'static str,
+    },
+    /// The linear joints do not span space.
+    #[error("the three linear directions span a volume of only {volume:.2e}: they must be independent")]
+    LinearDependent {
+        /// Volume of the box of unit directions.
+        volume: f64,
+    },
+    /// The rotary joints cannot orient a tool.
+    #[error(transparent)]
+    Orientation(#[from] TwoAxisError),
+}
+
+/// A checked machine tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Machine {
+    name: String,
+    description: String,
+    joints: Vec<Joint>,
+    tool_axis: Unit3,
+    control: ControlSpec,
+    linear: [usize; 3],
+    rotary: Vec<usize>,
+    pair: Option<TwoAxis>,
+}
+
+impl Machine {
+    /// A machine from the text of a TOML file.
+    ///
+    /// # Errors
+    /// Where the file is malformed or describes no machine.
+    pub fn from_toml(text: &str) -> Result<Self, MachineError> {
+        Self::from_spec(&toml::from_str::<MachineSpec>(text)?)
+    }
+
+    /// A machine by the name of a file that comes with the library; see [`built_in_names`].
+    ///
+    /// # Errors
+    /// [`MachineError::Unknown`] with the names there are.
+    pub fn built_in(name: &str) -> Result<Self, MachineError> {
+        match built_in::text(name) {
+            Some(text) => Self::from_toml(text),
+            None => Err(MachineError::Unknown { name: name.into(), known: built_in_names().join(", ") }),
+        }
+    }
+
+    /// A machine from its plain description.
+    ///
+    /// # Errors
+    /// Where the description is of no machine.
+    pub fn from_spec(spec: &MachineSpec) -> Result<Self, MachineError> {
+        if spec.format != FORMAT {
+            return Err(MachineError::Format { got: spec.format });
+        }
+        let tool_axis = direction("the machine", "tool_axis", spec.tool_axis)?;
+        let joints = spec.joint.iter().map(joint).collect::<Result<Vec<_>, _>>()?;
+        check_control(&spec.control)?;
+        check_names_and_order(&joints)?;
+        let of_kind = |kind| (0..joints.len()).filter(|&i| joints[i].kind == kind).collect::<Vec<_>>();
+        let (linear, rotary) = (of_kind(JointKind::Linear), of_kind(JointKind::Rotary));
+        let count = MachineError::JointCount { linear: linear.len(), rotary: rotary.len() };
+        if rotary.len() > 2 {
+            return Err(count);
+        }
+        let Ok(linear) = <[usize; 3]>::try_from(linear) else { return Err(count) };
+        let [x, y, z] = linear.map(|i| joints[i].direction);
+        let volume = x.cross(&y).dot(&z).abs();
+        if volume < SMALLEST_VOLUME {
+            return Err(MachineError::LinearDependent { volume });
+        }
+        let pair = match rotary[..] {
+            [outer, inner] => Some(TwoAxis::new(joints[outer].direction, joints[inner].direction, tool_axis)?),
+            [only] => {
+                // One axis is checked as the inner one of a pair with any second axis across it.
+                let b = joints[only].direction;
+                TwoAxis::new(osculate_geom::any_perpendicular(&b), b, tool_axis)?;
+                None
+            }
+            _ => None,
+        };
+        Ok(Self {
+            name: spec.name.clone(),
+            description: spec.description.clone(),
+            joints,
+            tool_axis,
+            control: spec.control.clone(),
+            linear,
+            rotary,
+            pair,
+        })
+    }
+
+    /// Short name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// One line for people.
+    #[must_use]
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// The joints, from the part to the tool.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Places of the linear joints in [`Self::joints`].
+    #[must_use]
+    pub const fn linear(&self) -> [usize; 3] {
+        self.linear
+    }
+
+    /// Places of the rotary joints in [`Self::joints`], outer (nearest the part) first.
+    #[must_use]
+    pub fn rotary(&self) -> &[usize] {
+        &self.rotary
+    }
+
+    /// What is known of the control.
+    #[must_use]
+    pub const fn control(&self) -> &ControlSpec {
+        &self.control
+    }
+
+    /// Tool axis at zero.
+    #[must_use]
+    pub const fn tool_axis(&self) -> Unit3 {
+        self.tool_axis
+    }
+
+    /// The orientation problem of a machine with two rotary axes.
+    #[must_use]
+    pub const fn pair(&self) -> Option<&TwoAxis> {
+        self.pair.as_ref()
+    }
+
+    /// The joint of this letter.
+    #[must_use]
+    pub fn joint_named(&self, letter: &str) -> Option<usize> {
+        self.joints.iter().position(|j| j.letter == letter)
+    }
+
+    /// Forward kinematics: the pose of the tool in the **part's** frame.
+    #[must_use]
+    pub fn forward(&self, values: &JointValues, setup: &Setup) -> Pose {
+        let pose = chain::forward(&self.joints, &self.tool_axis, setup.gauge_length_mm, values);
+        setup.to_part(&pose)
+    }
+}
+
+fn direction(whose: &str, what: &'static str, d: [f64; 3]) -> Result<Unit3, MachineError> {
+    let v = Vec3::from(d);
+    // The square must not underflow; anything a person writes is far above.
+    Unit3::try_new(v, 1e-9).filter(|u| u.iter().all(|c| c.is_finite())).ok_or_else(|| MachineError::Value {
+        whose: whose.into(),
+        what,
+        value: v.norm(),
+        wanted: "a finite direction that is not zero",
+    })
+}
+
+fn positive(whose: &str, what: &'static str, value: f64) -> Result<f64, MachineError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(MachineError::Value { whose: whose.into(), what, value, wanted: "a finite number above zero" })
+    }
+}
+
+fn limits(whose: &str, min: Option<f64>, max: Option<f64>) -> Result<(), MachineError> {
+    let value = match (min, max) {
+        (Some(a), Some(b)) if !(a < b) => a,
+        (Some(a), _) if !a.is_finite() => a,
+        (_, Some(b)) if !b.is_finite() => b,
+        _ => return Ok(()),
+    };
+    Err(MachineError::Value {
+        whose: whose.into(),
+        what: "a limit",
+        value,
+        wanted: "limits must be finite, the smaller one first",
+    })
+}
+
+fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
+    let (letter, side, dir, sense, kind) = match spec {
+        JointSpec::Linear { letter, side, direction, sense, .. } => {
+            (letter, *side, *direction, *sense, JointKind::Linear)
+        }
+        JointSpec::Rotary { letter, side, direction, sense, .. } => {
+            (letter, *side, *direction, *sense, JointKind::Rotary)
+        }
+    };
+    let whose = format!("joint {letter}");
+    let dir = direction(&whose, "direction", dir)?;
+    let direction = if sense == Sense::Iso { dir } else { -dir };
+    let (point, min, max, v, a, j, to) = match *spec {
+        JointSpec::Linear {
+            min_mm, max_mm, max_velocity_mm_s, max_acceleration_mm_s2, max_jerk_mm_s3, ..
+        } => ([0.0; 3], min_mm, max_mm, max_velocity_mm_s, max_acceleration_mm_s2, max_jerk_mm_s3, 1.0),
+        JointSpec::Rotary {
+            point_mm,
+            min_deg,
+            max_deg,
+            max_velocity_deg_s,
+            max_acceleration_deg_s2,
+            max_jerk_deg_s3,
+            ..
+        } => (
+            point_mm,
+            min_deg,
+            max_deg,
+            max_velocity_deg_s,
+            max_acceleration_deg_s2,
+            max_jerk_deg_s3,
+            1f64.to_radians(),
+        ),
+    };
+    limits(&whose, min, max)?;
+    if let Some(bad) = point.into_iter().find(|c| !c.is_finite()) {
+        return Err(MachineError::Value { whose, what: "point_mm", value: bad, wanted: "finite coordinates" });
+    }
+    Ok(Joint {
+        letter: letter.clone(),
+        kind,
+        side,
+        direction,
+        point: Point3::from(point),
+        min: min.map(|m| m * to),
+        max: max.map(|m| m * to),
+        drive: Drive {
+            velocity_per_s: positive(&whose, "max_velocity", v)? * to,
+            acceleration_per_s2: positive(&whose, "max_acceleration", a)? * to,
+            jerk_per_s3: j.map(|j| positive(&whose, "max_jerk", j)).transpose()?.map(|j| j * to),
+        },
+    })
+}
+
+fn check_control(control: &ControlSpec) -> Result<(), MachineError> {
+    positive("the control", "largest_feed", control.largest_feed)?;
+    if let FeedReading::Arc { radius_mm } = control.feed_reading {
+        positive("the control", "feed_reading.radius_mm", radius_mm)?;
+    }
+    Ok(())
+}
+
+/// Letters that mean something else in every dialect.
+const RESERVED: &str = "GMNFSTDHOPLRIJKE";
+
+fn check_names_and_order(joints: &[Joint]) -> Result<(), MachineError> {
+    let mut head_seen = false;
+    for (i, joint) in joints.iter().enumerate() {
+        let letter = &joint.letter;
+        let mut chars = letter.chars();
+        let first = chars.next().is_some_and(|c| c.is_ascii_uppercase() && !RESERVED.contains(c));
+        let rest = letter.len() <= 4 && letter.chars().skip(1).all(|c| c.is_ascii_uppercase() || c.is_ascii_digit());
+        let ends = letter.len() < 2 || letter.ends_with(|c: char| c.is_ascii_digit());
+        if !(first && rest && ends) || joints[..i].iter().any(|j| &j.letter == letter) {
+            return Err(MachineError::Letter { letter: letter.clone() });
+        }
+        if joint.side == spec::CarriedSide::Head {
+            head_seen = true;
+        } else if head_seen {
+            return Err(MachineError::Order { letter: letter.clone() });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

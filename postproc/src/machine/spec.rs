@@ -1,0 +1,156 @@
+//! Machine files: what a user writes down about a machine tool.
+//!
+//! Joints stand in the order in which one meets them on the way **from the part to the tool**: first those that carry
+//! the part (`side = "table"`, the one nearest the part first), then those that carry the tool (`side = "head"`, the
+//! one nearest the bed first). Every joint has a direction in the machine's axes with all joints at zero.
+//!
+//! Sense: `"iso"` is ISO 841, where the sign of a joint speaks of the **tool relative to the part**. A table joint
+//! with a positive value therefore turns the part left-handed about its direction. `"opposite"` is the other way
+//! round, as LinuxCNC's table kinematics count. Linear joints are nearly always `"iso"`.
+//!
+//! Places: a table joint's `point_mm` is measured from the table's reference point, a head joint's from the gauge
+//! point (the spindle nose on the tool axis), both with all joints at zero. Limits of linear joints are measured
+//! from where the tip of the tool, with its length taken into account, touches the table's reference point.
+
+use serde::{Deserialize, Serialize};
+
+/// Which body a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CarriedSide {
+    /// The joint moves the part.
+    Table,
+    /// The joint moves the tool.
+    Head,
+}
+
+/// How the sign of a joint is to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sense {
+    /// Positive moves the tool, relative to the part, along or right-handed about the direction.
+    #[default]
+    Iso,
+    /// The opposite of ISO.
+    Opposite,
+}
+
+/// One joint of a machine file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+pub enum JointSpec {
+    /// A slide.
+    Linear {
+        /// Name of the axis in NC programs.
+        letter: String,
+        /// What it carries.
+        side: CarriedSide,
+        /// Direction in the machine's axes.
+        direction: [f64; 3],
+        /// How its sign is read.
+        #[serde(default)]
+        sense: Sense,
+        /// Smallest value; absent: no limit.
+        min_mm: Option<f64>,
+        /// Largest value; absent: no limit.
+        max_mm: Option<f64>,
+        /// Greatest speed.
+        max_velocity_mm_s: f64,
+        /// Greatest acceleration.
+        max_acceleration_mm_s2: f64,
+        /// Greatest jerk; absent: acceleration may step.
+        max_jerk_mm_s3: Option<f64>,
+    },
+    /// A rotary axis.
+    Rotary {
+        /// Name of the axis in NC programs.
+        letter: String,
+        /// What it carries.
+        side: CarriedSide,
+        /// Direction of the axis of rotation.
+        direction: [f64; 3],
+        /// A point on the axis of rotation.
+        #[serde(default)]
+        point_mm: [f64; 3],
+        /// How its sign is read.
+        #[serde(default)]
+        sense: Sense,
+        /// Smallest value; absent: it turns without end.
+        min_deg: Option<f64>,
+        /// Largest value; absent: it turns without end.
+        max_deg: Option<f64>,
+        /// Greatest speed.
+        max_velocity_deg_s: f64,
+        /// Greatest acceleration.
+        max_acceleration_deg_s2: f64,
+        /// Greatest jerk; absent: acceleration may step.
+        max_jerk_deg_s3: Option<f64>,
+    },
+}
+
+/// How the control reads F in G94 where linear and rotary axes move together and the program does not say.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum FeedReading {
+    /// Over the linear axes; a move of rotary axes alone is read in degrees.
+    Linear,
+    /// Over all axes, a rotary axis counting as an arc of this radius. `180 / pi` makes a degree count as 1 mm.
+    Arc {
+        /// The radius.
+        radius_mm: f64,
+    },
+    /// Over the rotary axes in degrees; a move of linear axes alone is read in mm.
+    RotaryOnly,
+}
+
+/// The words by which a program turns the control's tool-centre-point kinematics on and off.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TcpWords {
+    /// On, for example `M428`.
+    pub on: String,
+    /// Off, for example `M429`.
+    pub off: String,
+}
+
+/// What the machine's control does that no dialect fixes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ControlSpec {
+    /// How F is read.
+    pub feed_reading: FeedReading,
+    /// Largest F that the control's format takes, in mm/min or 1/min.
+    #[serde(default = "default_largest_feed")]
+    pub largest_feed: f64,
+    /// LinuxCNC's kinematics switch, where this machine has one.
+    pub linuxcnc_tcp: Option<TcpWords>,
+}
+
+/// Five digits before the point, which every control of the last decades takes.
+const fn default_largest_feed() -> f64 {
+    99_999.0
+}
+
+/// A machine file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MachineSpec {
+    /// Version of the format: 1.
+    pub format: u32,
+    /// Short name.
+    pub name: String,
+    /// One line for people.
+    #[serde(default)]
+    pub description: String,
+    /// From the tip to the spindle with all joints at zero.
+    #[serde(default = "default_tool_axis")]
+    pub tool_axis: [f64; 3],
+    /// The control.
+    pub control: ControlSpec,
+    /// The joints, from the part to the tool.
+    pub joint: Vec<JointSpec>,
+}
+
+const fn default_tool_axis() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}

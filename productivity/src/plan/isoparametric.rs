@@ -1,0 +1,429 @@
+//! Isoparametric passes whose spacing the exact strip decides (5C).
+//!
+//! The face is covered from one side to the other. At a set of columns along the passes a frontier is kept: the
+//! parameter up to which the strips so far leave no more than the design height. The next pass lies as far on as
+//! every column allows: the swept tool of that pass must still come down to the design height at the frontier. Both
+//! questions are asked of the true motion of the tool, so that the cusp between two passes is what they really leave,
+//! whatever the surface does between them.
+
+use super::cover::{across_range, spans, union};
+use super::resample::{contact_points, resample};
+use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
+use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
+use osculate_geom::roots::{End, bracketed};
+use osculate_geom::{Axis, Diagnostic, Interval, Uv};
+use osculate_tools::strip::{self, StripError, standoff};
+use osculate_tools::{Contact, ContactError, ContactMotion, FeedLine};
+use rayon::prelude::*;
+
+/// Fewest and most columns at which spacing is computed.
+const COLUMNS: [usize; 2] = [32, 320];
+/// Strip width and undercut are computed at every so many columns of a pass.
+const WIDTH_STRIDE: usize = 4;
+
+/// One pass to be: the fixed parameter, its direction, and what is known along it.
+struct Level {
+    fixed: f64,
+    reversed: bool,
+    /// (parameter along the pass, strip width), ascending.
+    widths: Vec<(f64, f64)>,
+}
+
+/// A covering of the face by levels.
+struct Layout {
+    along: Axis,
+    levels: Vec<Level>,
+    length_mm: f64,
+}
+
+/// Plans isoparametric passes over a face.
+///
+/// Passes run one way around where the face closes on itself, to and fro elsewhere; lead leans towards the feed on
+/// every pass.
+///
+/// # Errors
+/// [`PlanError`]; in particular [`PlanError::Contact`] with the largest fitting radius where the tool would cut
+/// deeper than `gouge_mm` beside its contact.
+pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
+    task.check()?;
+    let layout = match along {
+        Along::Fixed(axis) => lay_out(task, axis)?,
+        Along::Auto => {
+            let (u, v) = (lay_out(task, Axis::U), lay_out(task, Axis::V));
+            match (u, v) {
+                (Ok(u), Ok(v)) => {
+                    if v.length_mm < u.length_mm {
+                        v
+                    } else {
+                        u
+                    }
+                }
+                (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
+                (Err(e), Err(_)) => return Err(e),
+            }
+        }
+    };
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let total = layout.levels.len();
+    let breaks = task.surface.breaks(layout.along);
+    let built: Vec<Result<Vec<Pass>, LineError>> = layout
+        .levels
+        .par_iter()
+        .enumerate()
+        .map(|(k, level)| {
+            let passes = build(task, &layout, k, level, &breaks);
+            let n = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+            (task.progress)(0.5 + 0.5 * n as f64 / total as f64);
+            passes
+        })
+        .collect();
+    let mut out = Passes::default();
+    for b in built {
+        out.passes.extend(b.map_err(|e| task.contact(e.into()))?);
+    }
+    if out.passes.is_empty() {
+        return Err(PlanError::Nothing {
+            face: task.face.to_owned(),
+            why: "no isoparametric line crosses its inside; check the trim loops with inspect".to_owned(),
+        });
+    }
+    let axis = if layout.along == Axis::U { "u" } else { "v" };
+    out.diagnostics.push(Diagnostic::note(
+        task.face,
+        format!("{} isoparametric passes along {axis}, {:.0} mm", out.passes.len(), out.length_mm()),
+    ));
+    Ok(out)
+}
+
+/// One column: a parameter along the passes, the inside stretches across it, and the frontier.
+struct Column {
+    t: f64,
+    inside: Vec<[f64; 2]>,
+    /// None once the column is covered.
+    frontier: Option<f64>,
+}
+
+impl Column {
+    /// Moves the frontier to `f`, or to the next inside stretch, or to none.
+    fn advance(&mut self, f: f64, slack: f64) {
+        self.frontier =
+            self.inside.iter().find(|s| s[1] > f + slack).map(|s| s[0].max(f));
+    }
+}
+
+fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
+    let surface = task.surface;
+    let nothing = || PlanError::Nothing {
+        face: task.face.to_owned(),
+        why: "its trim loops leave no inside; check them with inspect".to_owned(),
+    };
+    let [lo, hi] = across_range(surface, along).ok_or_else(nothing)?;
+    let across = Interval::new(lo, hi);
+    let slack = 1e-7 * (hi - lo);
+    let mut columns: Vec<Column> = column_parameters(task, along, across)?
+        .into_par_iter()
+        .map(|t| Column { t, inside: spans(surface, along.other(), t, 400), frontier: None })
+        .collect();
+    for c in &mut columns {
+        c.advance(lo, slack);
+    }
+    let closed = surface.domain().get(along).periodic;
+    let mut levels: Vec<Level> = Vec::new();
+    let mut length_mm = 0.0;
+    let mut guess = first_step(task, along, across);
+    while columns.iter().any(|c| c.frontier.is_some()) {
+        if levels.len() >= MAX_PASSES {
+            return Err(PlanError::TooManyPasses {
+                face: task.face.to_owned(),
+                limit: MAX_PASSES,
+                scallop_mm: task.tolerance.scallop_mm,
+            });
+        }
+        let reversed = !closed && levels.len() % 2 == 1;
+        let cover = Cover { task, along, reversed, hi, guess };
+        let next = columns
+            .par_iter()
+            .filter_map(|c| c.frontier.map(|f| cover.furthest_pass(c.t, f)))
+            .collect::<Result<Vec<f64>, LineError>>()
+            .map_err(|e| task.contact(e.into()))?
+            .into_iter()
+            .fold(hi, f64::min);
+        let reached = columns
+            .par_iter()
+            .map(|c| match c.frontier {
+                Some(f) if f <= next + cover.guess * 50.0 => cover.reached(c.t, next).map(Some),
+                _ => Ok(None),
+            })
+            .collect::<Result<Vec<_>, LineError>>()
+            .map_err(|e| task.contact(e.into()))?;
+        let before: f64 = columns.iter().filter_map(|c| c.frontier).sum();
+        let open = columns.iter().filter(|c| c.frontier.is_some()).count();
+        for (c, r) in columns.iter_mut().zip(reached) {
+            if let (Some(f), Some(r)) = (c.frontier, r) {
+                c.advance(r.max(f), slack);
+            }
+        }
+        let after: f64 = columns.iter().filter_map(|c| c.frontier).sum();
+        if open == columns.iter().filter(|c| c.frontier.is_some()).count()
+            && after - before <= slack * 1e-3
+        {
+            // A pass that covers nothing: the surface does not let the tool down to the design height.
+            return Err(PlanError::Nothing {
+                face: task.face.to_owned(),
+                why: format!(
+                    "the tool leaves more than scallop_mm = {} mm beside its own contact near the parameter {next:.6}; \
+                     use a smaller tool or a larger lead",
+                    task.tolerance.scallop_mm
+                ),
+            });
+        }
+        let (level, mean_speed) = measure(task, along, next, reversed, &columns)?;
+        length_mm += mean_speed;
+        if let Some(last) = levels.last() {
+            guess = (next - last.fixed).max(slack);
+        }
+        levels.push(level);
+        let open = columns.iter().filter_map(|c| c.frontier).fold(hi, f64::min);
+        (task.progress)(0.5 * (open - lo) / (hi - lo));
+    }
+    Ok(Layout { along, levels, length_mm })
+}
+
+/// Parameters of the columns: where a path along three lines of the face would put its points, thinned.
+fn column_parameters(task: &Task<'_>, along: Axis, across: Interval) -> Result<Vec<f64>, PlanError> {
+    let surface = task.surface;
+    let i = surface.domain().get(along);
+    let breaks = surface.breaks(along);
+    let mut all: Vec<f64> = (0..=COLUMNS[0]).map(|k| i.at(k as f64 / COLUMNS[0] as f64)).collect();
+    for f in [0.02, 0.5, 0.98] {
+        let line = IsoLine { surface, along, fixed: across.at(f), reversed: false };
+        for s in spans(surface, along, across.at(f), 200) {
+            if s[1] - s[0] > 1e-9 * i.length()
+                && let Ok(knots) = resample(task, &line, s, &breaks)
+            {
+                all.extend(knots.iter().map(|k| k.t));
+            }
+        }
+    }
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * i.length());
+    let most = COLUMNS[1];
+    if all.len() > most {
+        let n = all.len();
+        all = (0..most).map(|k| all[k * (n - 1) / (most - 1)]).collect();
+    }
+    if i.periodic {
+        // The last column would be the first again.
+        all.pop();
+    }
+    if all.is_empty() {
+        return Err(PlanError::Nothing { face: task.face.to_owned(), why: "its parameter range is empty".to_owned() });
+    }
+    Ok(all)
+}
+
+/// A first guess of the parameter step between passes.
+fn first_step(task: &Task<'_>, along: Axis, across: Interval) -> f64 {
+    let i = task.surface.domain().get(along);
+    let at = Uv::from_axis(along, i.at(0.5), across.at(0.5));
+    let jet = task.surface.jet2(at);
+    let speed = if along == Axis::U { jet.dv.norm() } else { jet.du.norm() };
+    let half = (2.0 * task.tolerance.scallop_mm * task.cutter.radius_mm()).sqrt();
+    (half / speed.max(1e-12)).clamp(1e-6 * across.length(), 0.2 * across.length())
+}
+
+/// The two questions of the frontier, for one pass direction.
+struct Cover<'a> {
+    task: &'a Task<'a>,
+    along: Axis,
+    reversed: bool,
+    hi: f64,
+    guess: f64,
+}
+
+impl Cover<'_> {
+    /// Standoff above the design height at column `t`, parameter `point`, of the pass at `pass`.
+    fn excess(&self, t: f64, point: f64, pass: f64) -> Result<f64, LineError> {
+        let task = self.task;
+        let line =
+            IsoLine { surface: task.surface, along: self.along, fixed: pass, reversed: self.reversed };
+        let (frame, speed) = line.frame(t)?;
+        // The frame turns forward about b at the normal curvature along the feed.
+        let h = task.design_scallop_mm(frame.turn.dot(&frame.left));
+        let motion = ContactMotion { line: &line, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
+        let step = 0.05 * task.cutter.radius_mm() / speed.abs().max(1e-12);
+        let at = Uv::from_axis(self.along, t, point);
+        let reach = standoff(task.cutter, task.surface, at, &motion, t, step)?;
+        Ok(reach.map_or(task.cutter.radius_mm(), |r| r.at_mm - h))
+    }
+
+    /// The largest argument in `[from, hi]` up to which `f` stays at or below zero, walking in growing steps.
+    fn last_below(
+        &self,
+        from: f64,
+        mut f: impl FnMut(f64) -> Result<f64, LineError>,
+    ) -> Result<f64, LineError> {
+        let mut a = End { x: from, f: f(from)? };
+        if a.f > 0.0 {
+            return Ok(from);
+        }
+        let mut step = 0.5 * self.guess;
+        loop {
+            let x = (a.x + step).min(self.hi);
+            let b = End { x, f: f(x)? };
+            if b.f > 0.0 {
+                let mut failed = None;
+                let root = bracketed(a, b, 1e-4 * self.guess, |x| match f(x) {
+                    Ok(y) => y,
+                    Err(e) => {
+                        failed = Some(e);
+                        f64::NAN
+                    }
+                });
+                return match (root, failed) {
+                    // The lower end of the last bracket is certainly below.
+                    (Ok(r), _) => Ok((r.x - r.error).max(a.x)),
+                    (Err(_), Some(e)) => Err(e),
+                    (Err(_), None) => Ok(a.x),
+                };
+            }
+            if x >= self.hi {
+                return Ok(self.hi);
+            }
+            a = b;
+            step *= 1.3;
+        }
+    }
+
+    /// How far on a pass may lie that still covers the frontier of a column.
+    fn furthest_pass(&self, t: f64, frontier: f64) -> Result<f64, LineError> {
+        self.last_below(frontier, |pass| self.excess(t, frontier, pass))
+    }
+
+    /// How far the strip of a pass reaches at a column.
+    fn reached(&self, t: f64, pass: f64) -> Result<f64, LineError> {
+        self.last_below(pass, |point| self.excess(t, point, pass))
+    }
+}
+
+/// Exact strip widths along a level, the check that the tool fits, and the level's length.
+fn measure(
+    task: &Task<'_>,
+    along: Axis,
+    fixed: f64,
+    reversed: bool,
+    columns: &[Column],
+) -> Result<(Level, f64), PlanError> {
+    let found: Vec<Result<Option<(f64, f64)>, PlanError>> = columns
+        .par_iter()
+        .step_by(WIDTH_STRIDE)
+        .map(|c| {
+            let at = Uv::from_axis(along, c.t, fixed);
+            if !task.surface.contains(at) {
+                return Ok(None);
+            }
+            let feed = if reversed { FeedLine::IsoReversed(along) } else { FeedLine::Iso(along) };
+            let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean)
+                .map_err(|e| task.contact(e))?;
+            match strip::exact(&contact, task.tolerance.scallop_mm) {
+                Ok(s) if s.undercut_mm > task.tolerance.gouge_mm => {
+                    contact.fits().map_err(|e| task.contact(e))?;
+                    Ok(Some((c.t, s.width_mm)))
+                }
+                Ok(s) => Ok(Some((c.t, s.width_mm))),
+                // A line that runs into a pole leaves no width there; the pass itself is still good.
+                Err(StripError::Degenerate(_)) => Ok(None),
+                Err(e) => {
+                    contact.fits().map_err(|e| task.contact(e))?;
+                    Err(task.strip(e))
+                }
+            }
+        })
+        .collect();
+    let mut widths = Vec::with_capacity(found.len());
+    let mut worst: Option<PlanError> = None;
+    for f in found {
+        match f {
+            Ok(Some(w)) => widths.push(w),
+            Ok(None) => {}
+            Err(e) => worst = Some(hollower(worst, e)),
+        }
+    }
+    if let Some(e) = worst {
+        return Err(e);
+    }
+    let mut length = 0.0;
+    let mut last = None;
+    for c in columns {
+        let at = Uv::from_axis(along, c.t, fixed);
+        let here = task.surface.contains(at).then(|| task.surface.point(at));
+        if let (Some(a), Some(b)) = (last, here) {
+            length += (b - a as osculate_geom::Point3).norm();
+        }
+        last = here;
+    }
+    Ok((Level { fixed, reversed, widths }, length))
+}
+
+/// Of two reasons, the one that asks for the smaller tool.
+fn hollower(a: Option<PlanError>, b: PlanError) -> PlanError {
+    let radius = |e: &PlanError| match e {
+        PlanError::Contact { source: ContactError::DoesNotFit { largest_radius_mm, .. }, .. } => *largest_radius_mm,
+        _ => f64::INFINITY,
+    };
+    match a {
+        Some(a) if radius(&a) <= radius(&b) => a,
+        _ => b,
+    }
+}
+
+/// The passes of one level: stretches of inside, widened by what their strip reaches to both sides, resampled.
+fn build(
+    task: &Task<'_>,
+    layout: &Layout,
+    k: usize,
+    level: &Level,
+    breaks: &[f64],
+) -> Result<Vec<Pass>, LineError> {
+    let surface = task.surface;
+    let (along, domain) = (layout.along, surface.domain().get(layout.along));
+    let neighbour = |j: Option<usize>| j.and_then(|j| layout.levels.get(j)).map(|l| l.fixed);
+    let below = neighbour(k.checked_sub(1)).unwrap_or(level.fixed);
+    let above = neighbour(Some(k + 1)).unwrap_or(level.fixed);
+    let mut stretches = Vec::new();
+    for f in [-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75] {
+        let reach = if f < 0.0 { level.fixed - below } else { above - level.fixed };
+        let fixed = level.fixed + f * reach;
+        stretches.extend(spans(surface, along, fixed, 400));
+    }
+    let mut stretches = union(stretches, 1e-3 * domain.length());
+    if level.reversed {
+        stretches.reverse();
+    }
+    let line = IsoLine { surface, along, fixed: level.fixed, reversed: level.reversed };
+    let mut out = Vec::new();
+    for s in stretches {
+        if s[1] - s[0] <= 1e-9 * domain.length() {
+            continue;
+        }
+        let range = if level.reversed { [s[1], s[0]] } else { s };
+        let knots = resample(task, &line, range, breaks)?;
+        let mut points = contact_points(&knots, |t| line.uv(t));
+        for p in &mut points {
+            p.width_mm = interpolate(&level.widths, p.uv.get(along));
+        }
+        let closed = domain.periodic && s[1] - s[0] >= domain.length() * (1.0 - 1e-9);
+        out.push(Pass { points, closed });
+    }
+    Ok(out)
+}
+
+/// Linear interpolation in ascending pairs, constant beyond the ends.
+fn interpolate(pairs: &[(f64, f64)], t: f64) -> f64 {
+    let k = pairs.partition_point(|p| p.0 < t);
+    match (k.checked_sub(1).and_then(|j| pairs.get(j)), pairs.get(k)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0),
+        (Some(one), None) | (None, Some(one)) => one.1,
+        (None, None) => f64::NAN,
+    }
+}

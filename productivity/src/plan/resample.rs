@@ -1,0 +1,151 @@
+//! Points along a pass: as few as hold the chord tolerance at the contact.
+
+use super::{CcPoint, Task};
+use osculate_geom::line::{LineError, SurfaceLine};
+use osculate_geom::{Point3, Unit3};
+use osculate_tools::Pose;
+use osculate_tools::sweep::{LinearMotion, SweptMotion};
+
+/// Axis turns between two points are kept below this, so that machines see smooth orientation, rad.
+const MAX_TURN: f64 = 0.06;
+/// The contact may stray sideways from the chord by this part of the tool's radius: it only moves the strip.
+const SIDEWAYS: f64 = 0.01;
+/// Halvings of one initial piece; past it the surface is not smooth.
+const MAX_DEPTH: u32 = 16;
+
+/// A contact pose at a line parameter.
+#[derive(Clone, Copy)]
+pub(super) struct Knot {
+    pub t: f64,
+    pub point: Point3,
+    pub normal: Unit3,
+    pub pose: Pose,
+}
+
+pub(super) fn knot(task: &Task<'_>, line: &dyn SurfaceLine, t: f64) -> Result<Knot, LineError> {
+    let (frame, _) = line.frame(t)?;
+    let pose = task.lean.pose(task.cutter, &frame, 0.0);
+    Ok(Knot { t, point: frame.point, normal: frame.normal, pose })
+}
+
+/// Parameters and poses along `line` from `from` to `to`, starting from the pieces between `breaks` and halving each
+/// until the straight motion between neighbours stays within the chord tolerance at the contact.
+pub(super) fn resample(
+    task: &Task<'_>,
+    line: &dyn SurfaceLine,
+    [from, to]: [f64; 2],
+    breaks: &[f64],
+) -> Result<Vec<Knot>, LineError> {
+    let (lo, hi) = (from.min(to), from.max(to));
+    let mut stops = vec![lo];
+    let slack = 1e-9 * (hi - lo);
+    stops.extend(breaks.iter().copied().filter(|b| *b > lo + slack && *b < hi - slack));
+    stops.push(hi);
+    if from > to {
+        stops.reverse();
+    }
+    let mut out = vec![knot(task, line, from)?];
+    for w in stops.windows(2) {
+        let mut last = out[out.len() - 1];
+        // Two pieces at least between breaks: the mid-point of a symmetric piece can look straight.
+        for k in 1..=2 {
+            let t = w[0] + (w[1] - w[0]) * 0.5 * f64::from(k);
+            let end = knot(task, line, t)?;
+            halve(task, line, last, end, 0, &mut out)?;
+            last = end;
+        }
+    }
+    Ok(thin(task, line, &out))
+}
+
+fn halve(
+    task: &Task<'_>,
+    line: &dyn SurfaceLine,
+    a: Knot,
+    b: Knot,
+    depth: u32,
+    out: &mut Vec<Knot>,
+) -> Result<(), LineError> {
+    let mid = knot(task, line, 0.5 * (a.t + b.t))?;
+    if depth < MAX_DEPTH && !straight(task, line, &a, &b, Some(&mid))? {
+        halve(task, line, a, mid, depth + 1, out)?;
+        halve(task, line, mid, b, depth + 1, out)?;
+    } else {
+        out.push(b);
+    }
+    Ok(())
+}
+
+/// Whether the straight motion from `a` to `b` holds the tolerance at three contacts between.
+fn straight(
+    task: &Task<'_>,
+    line: &dyn SurfaceLine,
+    a: &Knot,
+    b: &Knot,
+    mid: Option<&Knot>,
+) -> Result<bool, LineError> {
+    if a.pose.axis.angle(&b.pose.axis) > MAX_TURN {
+        return Ok(false);
+    }
+    let motion = LinearMotion { from: a.pose, to: b.pose };
+    let chord = b.point - a.point;
+    let length = chord.norm();
+    for fraction in [0.5, 0.25, 0.75] {
+        let k = match mid {
+            Some(m) if fraction == 0.5 => *m,
+            _ => knot(task, line, a.t + (b.t - a.t) * fraction)?,
+        };
+        // The instant at which the straight motion is abreast of the contact.
+        let along = if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
+        let Some(now) = motion.at(along.clamp(0.0, 1.0)) else { return Ok(false) };
+        if task.cutter.distance(&now.pose, &k.point).abs() > task.tolerance.chord_mm {
+            return Ok(false);
+        }
+        let off = (k.point - a.point) - chord * along;
+        let sideways = off - k.normal.into_inner() * off.dot(&k.normal);
+        if sideways.norm() > SIDEWAYS * task.cutter.radius_mm() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Drops knots whose neighbours can be joined directly: the halving leaves up to twice as many as needed.
+fn thin(task: &Task<'_>, line: &dyn SurfaceLine, knots: &[Knot]) -> Vec<Knot> {
+    let mut out = vec![knots[0]];
+    let mut at = 0;
+    while at + 1 < knots.len() {
+        // Join as long as every knot passed over, and the contacts between, stay within the tolerance.
+        let mut next = at + 1;
+        while next + 1 < knots.len() && next - at < 8 && joins(task, line, &knots[at..=next + 1]) {
+            next += 1;
+        }
+        out.push(knots[next]);
+        at = next;
+    }
+    out
+}
+
+fn joins(task: &Task<'_>, line: &dyn SurfaceLine, knots: &[Knot]) -> bool {
+    let (a, b) = (&knots[0], &knots[knots.len() - 1]);
+    if !straight(task, line, a, b, None).unwrap_or(false) {
+        return false;
+    }
+    let motion = LinearMotion { from: a.pose, to: b.pose };
+    let chord = b.point - a.point;
+    let l2 = chord.norm_squared();
+    knots[1..knots.len() - 1].iter().all(|k| {
+        let along = if l2 > 0.0 { (k.point - a.point).dot(&chord) / l2 } else { 0.5 };
+        motion
+            .at(along.clamp(0.0, 1.0))
+            .is_some_and(|m| task.cutter.distance(&m.pose, &k.point).abs() <= task.tolerance.chord_mm)
+    })
+}
+
+/// Contact points from knots; the strip width is filled in by the caller.
+pub(super) fn contact_points(knots: &[Knot], uv: impl Fn(f64) -> osculate_geom::Uv) -> Vec<CcPoint> {
+    knots
+        .iter()
+        .map(|k| CcPoint { uv: uv(k.t), point: k.point, normal: k.normal, pose: k.pose, width_mm: f64::NAN })
+        .collect()
+}

@@ -1,0 +1,161 @@
+//! What isoparametric plans leave on a part, judged by closed forms rather than by the planner's own reach.
+
+use osculate_geom::analytic::{Paraboloid, Torus};
+use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};
+use osculate_productivity::plan::{Along, Links, Task, Tolerance, isoparametric, link};
+use osculate_tools::cl::{ClMove, Motion};
+use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean, Pose, strip};
+
+/// Material left at a point along its normal by a ball that moves linearly between CL points: the first meeting of the
+/// line with a sphere or with the cylinder around each segment of ball centres, in closed form. The cutter's
+/// body above the ball is left out, so that only the ball's own work counts.
+fn left_by_ball(point: &Point3, normal: &Unit3, centres: &[Point3], radius: f64) -> f64 {
+    let sphere = |c: &Point3| -> f64 {
+        let w = c - point;
+        let along = w.dot(normal);
+        let off2 = w.norm_squared() - along * along;
+        if off2 <= radius * radius { along - (radius * radius - off2).sqrt() } else { f64::INFINITY }
+    };
+    let mut best = f64::INFINITY;
+    for w in centres.windows(2) {
+        let (a, b) = (&w[0], &w[1]);
+        if (a - point).norm() > radius + 3.0 {
+            continue;
+        }
+        best = best.min(sphere(a)).min(sphere(b));
+        // The cylinder: perpendicular parts to the segment.
+        let axis = b - a;
+        let l2 = axis.norm_squared();
+        if l2 == 0.0 {
+            continue;
+        }
+        let perp = |v: osculate_geom::Vec3| v - axis * (v.dot(&axis) / l2);
+        let (o, d) = (perp(point - a), perp(normal.into_inner()));
+        let (qa, qb, qc) = (d.norm_squared(), o.dot(&d), o.norm_squared() - radius * radius);
+        let disc = qb * qb - qa * qc;
+        if qa > 1e-12 && disc >= 0.0 {
+            let s = (-qb - disc.sqrt()) / qa;
+            let t = (point + normal.into_inner() * s - a).dot(&axis) / l2;
+            if (0.0..=1.0).contains(&t) {
+                best = best.min(s);
+            }
+        }
+    }
+    best
+}
+
+fn centres(moves: &[ClMove], radius: f64) -> Vec<Point3> {
+    // The axis turns little between points, so that the centre's path is straight to within rounding of what is
+    // asserted; four pieces a segment make that certain.
+    let at = |p: &Pose| p.tip + p.axis.into_inner() * radius;
+    let mut out = vec![at(&moves[0].pose)];
+    for w in moves.windows(2) {
+        if matches!(w[1].motion, Motion::Rapid) {
+            out.push(at(&w[1].pose));
+            continue;
+        }
+        for k in 1..=4 {
+            let f = f64::from(k) / 4.0;
+            let axis = Unit3::new_normalize(w[0].pose.axis.lerp(&w[1].pose.axis, f));
+            out.push(at(&Pose { tip: w[0].pose.tip + (w[1].pose.tip - w[0].pose.tip) * f, axis }));
+        }
+    }
+    out
+}
+
+fn plan(surface: &dyn Surface, cutter: &Cutter, lean: Lean, tolerance: Tolerance) -> Vec<ClMove> {
+    let task = Task { surface, face: "F1", cutter, lean, tolerance, progress: &|_| {} };
+    let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap();
+    let d = surface.domain();
+    let mut obstacles = Box3::empty();
+    for i in 0..=20 {
+        for j in 0..=20 {
+            obstacles.add(&surface.point(d.at(f64::from(i) / 20.0, f64::from(j) / 20.0)));
+        }
+    }
+    let links = Links {
+        obstacles,
+        clearance_mm: 5.0,
+        approach_mm: 2.0,
+        cutter_radius_mm: cutter.radius_mm(),
+        feed_mm_min: 1000.0,
+        plunge_mm_min: 500.0,
+    };
+    link(&passes.passes, &links).path.moves
+}
+
+#[test]
+fn saddle_with_a_ball_holds_the_tolerance_everywhere_inside() {
+    let surface = Paraboloid::new([0.005, -0.003], 10.0).unwrap();
+    let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 }).unwrap();
+    let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.003, chord_mm: 0.002 };
+    for lead in [0.0, 0.2] {
+        let moves = plan(&surface, &cutter, Lean { lead_rad: lead, tilt_rad: 0.0 }, tolerance);
+        let centres = centres(&moves, 5.0);
+        let (mut highest, mut deepest) = (0.0f64, 0.0f64);
+        let mut above_60 = 0;
+        let n = 150;
+        for i in 0..=n {
+            // Columns of samples across the passes, so dense that they meet the cusps.
+            let x = -9.0 + 18.0 * f64::from(i) / f64::from(n);
+            let mut column_high = 0.0f64;
+            for j in 0..=n * 2 {
+                let y = -9.0 + 18.0 * f64::from(j) / f64::from(2 * n);
+                let jet = surface.jet2(uv(x, y));
+                let left = left_by_ball(&jet.point, &jet.normal().unwrap(), &centres, 5.0);
+                highest = highest.max(left);
+                deepest = deepest.min(left);
+                column_high = column_high.max(left);
+            }
+            above_60 += i32::from(column_high > 0.006);
+        }
+        println!("lead {lead}: {} points, left {highest:.5}, cut {deepest:.5}", moves.len());
+        assert!(highest <= 0.0100, "{highest}");
+        assert!(deepest >= -0.003, "{deepest}");
+        // The spacing is used: nearly everywhere the cusps reach at least 60 % of the tolerance.
+        assert!(above_60 > n * 9 / 10, "{above_60}");
+    }
+}
+
+#[test]
+fn groove_passes_are_evenly_spaced_by_the_exact_strip() {
+    let torus = Torus::new(200.0, 60.0).unwrap();
+    let domain = Domain { u: Interval::new(0.0, 0.3), v: Interval::new(2.6, 3.7) };
+    let groove = Flipped(Patch { surface: torus, domain, side: Side::Along });
+    let spec = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 2.0, length_mm: 60.0 };
+    let cutter = Cutter::try_from(spec).unwrap();
+    let lean = Lean { lead_rad: 12f64.to_radians(), tilt_rad: 0.0 };
+    let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
+    let task = Task { surface: &groove, face: "F1", cutter: &cutter, lean, tolerance, progress: &|_| {} };
+    let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
+    assert!(passes.len() > 10);
+    // Two neighbouring passes leave the design height, 98 % of the tolerance, where their exact strips meet: the
+    // spacing is the strip's width there, up to the change of width from one pass to the next.
+    for w in passes[1..passes.len() - 1].windows(2) {
+        let (a, b) = (&w[0].points[0], &w[1].points[0]);
+        let spacing = 60.0 * (b.uv.v - a.uv.v);
+        let width = |at| {
+            let contact = Contact::new(&groove, at, &cutter, FeedLine::Iso(Axis::U), lean).unwrap();
+            strip::exact(&contact, 0.0098).unwrap().width_mm
+        };
+        let want = 0.5 * (width(a.uv) + width(b.uv));
+        assert!((spacing / want - 1.0).abs() < 0.02, "{spacing} against {want}");
+    }
+    for p in &passes {
+        assert!(p.points.iter().all(|c| c.width_mm > 1.0 && c.width_mm < 5.0));
+    }
+}
+
+#[test]
+fn a_tool_too_large_for_the_hollow_is_refused_with_the_largest_that_fits() {
+    let torus = Torus::new(200.0, 60.0).unwrap();
+    let domain = Domain { u: Interval::new(0.0, 0.3), v: Interval::new(2.6, 3.7) };
+    let groove = Flipped(Patch { surface: torus, domain, side: Side::Along });
+    let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 130.0, length_mm: 200.0 }).unwrap();
+    let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
+    let task =
+        Task { surface: &groove, face: "F7", cutter: &cutter, lean: Lean::default(), tolerance, progress: &|_| {} };
+    let error = isoparametric(&task, Along::Auto).unwrap_err().to_string();
+    assert!(error.contains("F7") && error.contains("does not fit"), "{error}");
+    assert!(error.contains("60.000 mm or less") || error.contains("59.999"), "{error}");
+}
