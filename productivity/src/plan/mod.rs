@@ -4,12 +4,14 @@
 //! [`link`] joins passes to a [`ClPath`](osculate_tools::cl::ClPath). What a plan promises is checked elsewhere, from the NC text.
 
 
+mod contour;
 mod cover;
 mod isoparametric;
 mod link;
 mod resample;
 
 
+pub use contour::contour_2cl;
 pub use isoparametric::isoparametric;
 pub use link::{Linked, Links, link};
 

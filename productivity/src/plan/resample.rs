@@ -16,7 +16,10 @@ const MAX_DEPTH: u32 = 16;
 /// A contact pose at a line parameter.
 #[derive(Clone, Copy)]
 pub(super) struct Knot {
+    /// Line parameter; for contours the first surface parameter.
     pub t: f64,
+    /// For contours the second surface parameter, else unused.
+    pub v: f64,
     pub point: Point3,
     pub normal: Unit3,
     pub pose: Pose,
@@ -25,7 +28,7 @@ pub(super) struct Knot {
 pub(super) fn knot(task: &Task<'_>, line: &dyn SurfaceLine, t: f64) -> Result<Knot, LineError> {
     let (frame, _) = line.frame(t)?;
     let pose = task.lean.pose(task.cutter, &frame, 0.0);
-    Ok(Knot { t, point: frame.point, normal: frame.normal, pose })
+    Ok(Knot { t, v: 0.0, point: frame.point, normal: frame.normal, pose })
 }
 
 /// Parameters and poses along `line` from `from` to `to`, starting from the pieces between `breaks` and halving each
