@@ -1,3 +1,20 @@
-//! Strip-width formulas, productivity and tool-path planning.
+//! How fast a free-form surface can be machined, and along which path.
+//!
+//! - [`closed_form`]: the strip-width formulas of Radzevich (R97) and Marciniak (M86), corrected, each beside the exact
+//!   strip of [`osculate_tools::strip`] that it approximates.
+//! - [`plan`]: passes over a face whose spacing the exact strip decides, and the moves between them.
+//! - [`levels`]: productivity at an instant, along a pass and over the whole face.
+//!
+//! ```
+//! use osculate_productivity::closed_form::{Section, leading_order, width_37};
+//! // A ball of radius 10 on the outside of a cylinder of radius 100, scallop 0.01 mm.
+//! let section = Section { part_per_mm: 0.01, tool_per_mm: 0.1, scallop_mm: 0.01 };
+//! let exact_for_arcs = width_37(section)?;
+//! assert!((exact_for_arcs - 0.852547657).abs() < 1e-9);
+//! assert!((leading_order(section)? / exact_for_arcs - 1.0).abs() < 1e-3);
+//! # Ok::<(), osculate_productivity::closed_form::DomainError>(())
+//! ```
+
 pub mod closed_form;
+pub mod levels;
 pub mod plan;

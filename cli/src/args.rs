@@ -1,0 +1,122 @@
+//! The command line as typed.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Plan, verify and post multi-axis NC machining of free-form surfaces.
+#[derive(Debug, Parser)]
+#[command(name = "osculate", version, about, long_about = None)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub verb: Verb,
+    /// One JSON object on stdout and nothing else there.
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// What is in a CAD file: faces with kind, degrees, poles, area, curvature range, what was not understood.
+    Inspect(PartArgs),
+    /// Point, normal, fundamental forms, principal curvatures and directions at parameters.
+    Probe {
+        /// The part.
+        #[command(flatten)]
+        part: PartArgs,
+        /// The face, by its id in `inspect`; may be left out where there is only one.
+        #[arg(long)]
+        face: Option<String>,
+        /// Surface parameters; may be given more than once.
+        #[arg(long, value_name = "U,V", required = true, value_parser = pair, allow_hyphen_values = true)]
+        at: Vec<[f64; 2]>,
+    },
+    /// Strip width at one contact: exact and every closed form that applies, side by side.
+    Strip {
+        /// The job file, with a [contact] table.
+        job: PathBuf,
+    },
+    /// The main job: path, CL file, NC program, verification, report.
+    Plan {
+        /// The job file.
+        job: PathBuf,
+        /// Folder for the results.
+        #[arg(long)]
+        out: PathBuf,
+    },
+    /// CL data to NC code.
+    Post {
+        /// The CL file.
+        clfile: PathBuf,
+        /// A built-in machine or the path of a machine file.
+        #[arg(long)]
+        machine: String,
+        /// sinumerik or linuxcnc.
+        #[arg(long)]
+        dialect: String,
+        /// tcp, none, kv, kf, kz or inverse_time.
+        #[arg(long, default_value = "tcp")]
+        feed: String,
+        /// The largest growth of the feed correction between blocks, for --feed kz.
+        #[arg(long)]
+        kz_step: Option<f64>,
+        /// Where the part's origin sits from the table's reference point, mm.
+        #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+        part_zero: Option<[f64; 3]>,
+        /// The program to write.
+        #[arg(long)]
+        out: PathBuf,
+    },
+    /// Material removal against the part: scallop, gouge, uncut area.
+    Verify {
+        /// A CL file or an NC program.
+        file: PathBuf,
+        /// The job file: part, tool, tolerance and machine.
+        #[arg(long)]
+        job: PathBuf,
+        /// Skip words of the NC program that are not understood, with a finding each, instead of stopping.
+        #[arg(long)]
+        lenient: bool,
+    },
+    /// The built-in machines.
+    Machines,
+    /// The built-in dialects.
+    Dialects,
+    /// The cutter kinds that a job can ask for.
+    Tools,
+}
+
+/// A part: a file or a built-in surface.
+#[derive(Debug, Args)]
+pub struct PartArgs {
+    /// A STEP or IGES file.
+    #[arg(required_unless_present = "builtin", conflicts_with = "builtin")]
+    pub part: Option<PathBuf>,
+    /// A built-in surface as a TOML table's keys, for example 'kind = "torus", major_radius_mm = 200, ...'.
+    #[arg(long, value_name = "KEYS")]
+    pub builtin: Option<String>,
+}
+
+fn numbers<const N: usize>(s: &str) -> Result<[f64; N], String> {
+    let parts: Vec<&str> = s.split(',').collect();
+    if parts.len() != N {
+        return Err(format!("expected {N} numbers separated by commas, got {}", parts.len()));
+    }
+    let mut out = [0.0; N];
+    for (o, p) in out.iter_mut().zip(parts) {
+        *o = p.trim().parse().map_err(|_| format!("'{p}' is not a number"))?;
+        if !o.is_finite() {
+            return Err(format!("'{p}' is not a finite number"));
+        }
+    }
+    Ok(out)
+}
+
+fn pair(s: &str) -> Result<[f64; 2], String> {
+    numbers(s)
+}
+
+fn triple(s: &str) -> Result<[f64; 3], String> {
+    numbers(s)
+}

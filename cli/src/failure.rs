@@ -1,0 +1,67 @@
+//! What ends a command early, and with which exit code.
+
+use std::path::{Path, PathBuf};
+
+/// A command that cannot be done, with the message for the user.
+#[derive(Debug)]
+pub enum Failure {
+    /// Exit code 1: the job cannot be done as asked.
+    Job(String),
+    /// Exit code 2: wrong usage.
+    Usage(String),
+}
+
+impl Failure {
+    /// The job cannot be done; the message says what, where and what to change.
+    pub fn job(message: impl std::fmt::Display) -> Self {
+        Self::Job(message.to_string())
+    }
+
+    /// Something in a file.
+    pub fn file(path: &Path, message: impl std::fmt::Display) -> Self {
+        Self::Job(format!("{}: {message}", path.display()))
+    }
+
+    /// The exit code.
+    pub const fn code(&self) -> u8 {
+        match self {
+            Self::Job(_) => 1,
+            Self::Usage(_) => 2,
+        }
+    }
+
+    /// The message.
+    pub fn message(&self) -> &str {
+        match self {
+            Self::Job(m) | Self::Usage(m) => m,
+        }
+    }
+}
+
+/// What commands return: the exit code of a finished command is 0 unless the result itself says no.
+pub type Outcome = Result<Done, Failure>;
+
+/// A finished command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Done {
+    /// Exit code 0.
+    Yes,
+    /// Exit code 1 after everything was written: the tolerance is not met.
+    NotWithinTolerance,
+}
+
+/// The bytes of a file.
+pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(path).map_err(|e| Failure::file(path, format!("cannot be read: {e}")))
+}
+
+/// The text of a file.
+pub fn read_text(path: &Path) -> Result<String, Failure> {
+    String::from_utf8(read(path)?)
+        .map_err(|e| Failure::file(path, format!("is not UTF-8 text (byte {})", e.utf8_error().valid_up_to())))
+}
+
+/// A path in a file, relative to the folder of that file.
+pub fn beside(file: &Path, relative: &str) -> PathBuf {
+    file.parent().unwrap_or_else(|| Path::new("")).join(relative)
+}

@@ -1,0 +1,380 @@
+//! The job file: TOML with units in its keys, checked as a whole before any work begins.
+
+use crate::failure::{Failure, read_text};
+use osculate_geom::{Unit3, Vec3};
+use osculate_tools::{Cutter, CutterSpec, HolderSpec, Lean};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// The format that this version reads.
+const FORMAT: u32 = 1;
+/// Length of a cutter that gives none, in diameters.
+const DEFAULT_LENGTH: f64 = 5.0;
+
+/// A job file as written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Job {
+    format: u32,
+    /// The part and which of its faces.
+    pub part: PartTable,
+    /// The cutter.
+    pub tool: ToolTable,
+    /// What must hold.
+    pub tolerance: ToleranceTable,
+    /// How to cut.
+    #[serde(default)]
+    pub strategy: StrategyTable,
+    /// Spindle and feed.
+    #[serde(default)]
+    pub cutting: CuttingTable,
+    /// Machine and control.
+    pub machine: Option<MachineTable>,
+    /// Where the part sits on the machine.
+    #[serde(default)]
+    pub setup: SetupTable,
+    /// One contact, for `strip`.
+    pub contact: Option<ContactTable>,
+    /// How densely to verify.
+    #[serde(default)]
+    pub verification: VerificationTable,
+    /// The file it came from.
+    #[serde(skip)]
+    pub path: PathBuf,
+}
+
+/// `[part]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartTable {
+    /// STEP or IGES file, relative to the job file.
+    pub file: Option<String>,
+    /// Faces to machine.
+    pub faces: Option<FaceChoice>,
+    /// Faces that the tool must not touch.
+    pub check_faces: Option<FaceChoice>,
+    /// Which side the material is on, for faces whose file does not say.
+    #[serde(default)]
+    pub normals: Normals,
+    /// A built-in surface instead of a file.
+    pub builtin: Option<toml::Table>,
+}
+
+/// Which side of a face the outward normal is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Normals {
+    /// As the file says; where it does not, by looking which side is enclosed.
+    #[default]
+    Auto,
+    /// Along S_u x S_v as the file has it.
+    File,
+    /// Against it.
+    Reversed,
+}
+
+/// A choice of faces.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub enum FaceChoice {
+    /// `"all"` or one id.
+    Word(String),
+    /// Ids as `inspect` prints them.
+    Ids(Vec<String>),
+    /// `{ largest = n }`
+    Largest(LargestTable),
+}
+
+/// `{ largest = n }`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LargestTable {
+    /// How many of the largest faces.
+    pub largest: usize,
+}
+
+/// `[tool]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ToolTable {
+    kind: String,
+    diameter_mm: f64,
+    corner_radius_mm: Option<f64>,
+    length_mm: Option<f64>,
+    /// Number of teeth.
+    pub teeth: Option<u32>,
+    /// Holder above the cutter.
+    pub holder: Option<HolderSpec>,
+}
+
+/// `[tolerance]`
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ToleranceTable {
+    /// Highest material left.
+    pub scallop_mm: f64,
+    /// Deepest undercut accepted; half the scallop where not given.
+    pub gouge_mm: Option<f64>,
+    /// Chord tolerance of the path; a fifth of the scallop where not given.
+    pub chord_mm: Option<f64>,
+}
+
+/// A number or the word "auto".
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum AutoOr {
+    /// The program chooses.
+    #[default]
+    Auto,
+    /// As given.
+    Given(f64),
+}
+
+impl<'de> Deserialize<'de> for AutoOr {
+    fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Raw {
+            Number(f64),
+            Word(String),
+        }
+        match Raw::deserialize(d)? {
+            Raw::Number(x) => Ok(Self::Given(x)),
+            Raw::Word(w) if w == "auto" => Ok(Self::Auto),
+            Raw::Word(w) => Err(serde::de::Error::custom(format!("expected a number or \"auto\", got \"{w}\""))),
+        }
+    }
+}
+
+/// `[strategy]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StrategyTable {
+    /// `auto`, `isoparametric` or `contour_2cl`.
+    #[serde(default = "auto")]
+    pub kind: String,
+    /// Lead.
+    #[serde(default)]
+    pub lead_deg: AutoOr,
+    /// Tilt.
+    #[serde(default)]
+    pub tilt_deg: f64,
+    /// `u`, `v` or `auto`: the parameter that isoparametric passes run along.
+    #[serde(default = "auto")]
+    pub along: String,
+    /// The tool axis of contour passes.
+    pub axis: Option<[f64; 3]>,
+}
+
+fn auto() -> String {
+    "auto".to_owned()
+}
+
+impl Default for StrategyTable {
+    fn default() -> Self {
+        Self { kind: auto(), lead_deg: AutoOr::Auto, tilt_deg: 0.0, along: auto(), axis: None }
+    }
+}
+
+/// `[cutting]`
+#[derive(Debug, Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub struct CuttingTable {
+    /// Spindle speed.
+    pub spindle_rpm: Option<f64>,
+    /// Feed of the tool tip on the part.
+    pub feed_mm_min: Option<f64>,
+    /// Cap on the feed per tooth.
+    pub feed_per_tooth_mm: Option<f64>,
+}
+
+/// `[machine]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MachineTable {
+    /// A built-in machine.
+    pub name: Option<String>,
+    /// A machine file, relative to the job file.
+    pub file: Option<String>,
+    /// The control's language.
+    pub dialect: Option<String>,
+    /// How the feed is programmed.
+    pub feed: Option<String>,
+    /// Largest growth of the feed correction between blocks, for `kz`.
+    pub kz_step: Option<f64>,
+}
+
+/// `[setup]`
+#[derive(Debug, Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub struct SetupTable {
+    /// Where the part's origin sits from the table's reference point; chosen from the part's box where not given.
+    pub part_zero_mm: Option<[f64; 3]>,
+    /// The part's axes turned on the table, about x, then y, then z.
+    #[serde(default)]
+    pub rotate_deg: [f64; 3],
+    /// Clearance of rapid moves over the sphere around the part.
+    pub clearance_mm: Option<f64>,
+    /// Distance from the surface at which rapid moves end.
+    pub approach_mm: Option<f64>,
+}
+
+/// `[contact]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactTable {
+    /// Surface parameters.
+    pub at: [f64; 2],
+    /// Height above the contact.
+    #[serde(default)]
+    pub lift_mm: f64,
+    /// `u` or `v`: feed along the isoparametric line.
+    pub along: Option<String>,
+    /// Or the geodesic at this angle from S_u towards S_v.
+    pub angle_deg: Option<f64>,
+}
+
+/// `[verification]`
+#[derive(Debug, Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub struct VerificationTable {
+    /// Distance between samples; from the strip width where not given.
+    pub spacing_mm: Option<f64>,
+    /// Most samples.
+    pub max_samples: Option<usize>,
+}
+
+/// A length that must be positive.
+fn positive(path: &Path, key: &str, value: f64) -> Result<f64, Failure> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(Failure::file(path, format!("{key} = {value} must be a positive number")))
+    }
+}
+
+impl Job {
+    /// Reads and checks a job file.
+    pub fn load(path: &Path) -> Result<Self, Failure> {
+        let text = read_text(path)?;
+        let mut job: Self = toml::from_str(&text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
+        job.path = path.to_path_buf();
+        if job.format != FORMAT {
+            return Err(Failure::file(path, format!("format = {}: this version reads format = {FORMAT}", job.format)));
+        }
+        match (&job.part.file, &job.part.builtin) {
+            (None, None) => return Err(Failure::file(path, "[part] needs file = \"...\" or builtin = { ... }")),
+            (Some(_), Some(_)) => {
+                return Err(Failure::file(path, "[part] has both file and builtin; keep one of them"));
+            }
+            _ => {}
+        }
+        job.tolerance()?;
+        job.cutter()?;
+        job.lean(0.0)?;
+        job.feed_mm_min()?;
+        job.spindle_rpm()?;
+        job.holder()?;
+        Ok(job)
+    }
+
+    /// The tolerances, checked and completed.
+    pub fn tolerance(&self) -> Result<osculate_productivity::plan::Tolerance, Failure> {
+        let t = &self.tolerance;
+        let check = |key: &str, v: f64| positive(&self.path, &format!("[tolerance] {key}"), v);
+        let scallop_mm = check("scallop_mm", t.scallop_mm)?;
+        Ok(osculate_productivity::plan::Tolerance {
+            scallop_mm,
+            gouge_mm: check("gouge_mm", t.gouge_mm.unwrap_or(0.5 * scallop_mm))?,
+            chord_mm: check("chord_mm", t.chord_mm.unwrap_or(0.2 * scallop_mm))?,
+        })
+    }
+
+    /// The cutter's description.
+    pub fn cutter_spec(&self) -> Result<CutterSpec, Failure> {
+        let t = &self.tool;
+        let length_mm = t.length_mm.unwrap_or(DEFAULT_LENGTH * t.diameter_mm);
+        let diameter_mm = t.diameter_mm;
+        let corner = |want: f64, kind: &str| match t.corner_radius_mm {
+            Some(c) if (c - want).abs() > 1e-9 * diameter_mm => Err(Failure::file(
+                &self.path,
+                format!(
+                    "[tool] corner_radius_mm = {c} does not go with kind = \"{kind}\" of diameter {diameter_mm} mm: \
+                     leave it out, make it {want}, or use kind = \"toroidal\""
+                ),
+            )),
+            _ => Ok(()),
+        };
+        match t.kind.as_str() {
+            "ball" => {
+                corner(0.5 * diameter_mm, "ball")?;
+                Ok(CutterSpec::Ball { diameter_mm, length_mm })
+            }
+            "flat" => {
+                corner(0.0, "flat")?;
+                Ok(CutterSpec::Flat { diameter_mm, length_mm })
+            }
+            "toroidal" => match t.corner_radius_mm {
+                Some(corner_radius_mm) => Ok(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm }),
+                None => Err(Failure::file(&self.path, "[tool] kind = \"toroidal\" needs corner_radius_mm")),
+            },
+            other => Err(Failure::file(
+                &self.path,
+                format!("[tool] kind = \"{other}\" is not available: use \"ball\", \"flat\" or \"toroidal\""),
+            )),
+        }
+    }
+
+    /// The cutter.
+    pub fn cutter(&self) -> Result<Cutter, Failure> {
+        Cutter::try_from(self.cutter_spec()?).map_err(|e| Failure::file(&self.path, format!("[tool] {e}")))
+    }
+
+    /// The holder as a cylinder.
+    pub fn holder(&self) -> Result<Option<Cutter>, Failure> {
+        let Some(h) = &self.tool.holder else { return Ok(None) };
+        Cutter::cylinder(h.diameter_mm, h.length_mm)
+            .map(Some)
+            .map_err(|e| Failure::file(&self.path, format!("[tool.holder] {}", e.to_string().replace("cutter", "holder"))))
+    }
+
+    /// Lead and tilt, with this lead where the job leaves it to the program.
+    pub fn lean(&self, auto_lead_rad: f64) -> Result<Lean, Failure> {
+        let lead_rad = match self.strategy.lead_deg {
+            AutoOr::Auto => auto_lead_rad,
+            AutoOr::Given(deg) => deg.to_radians(),
+        };
+        Lean { lead_rad, tilt_rad: self.strategy.tilt_deg.to_radians() }
+            .checked()
+            .map_err(|e| Failure::file(&self.path, format!("[strategy] {e}")))
+    }
+
+    /// The feed, capped by the feed per tooth where the job gives both.
+    pub fn feed_mm_min(&self) -> Result<f64, Failure> {
+        let c = &self.cutting;
+        let feed = positive(&self.path, "[cutting] feed_mm_min", c.feed_mm_min.unwrap_or(1000.0))?;
+        match (c.feed_per_tooth_mm, c.spindle_rpm, self.tool.teeth) {
+            (Some(f), Some(n), Some(z)) => {
+                let f = positive(&self.path, "[cutting] feed_per_tooth_mm", f)?;
+                Ok(feed.min(f * n * f64::from(z)))
+            }
+            (Some(_), _, _) => Err(Failure::file(
+                &self.path,
+                "[cutting] feed_per_tooth_mm needs spindle_rpm and [tool] teeth to become a feed",
+            )),
+            _ => Ok(feed),
+        }
+    }
+
+    /// The spindle speed.
+    pub fn spindle_rpm(&self) -> Result<Option<f64>, Failure> {
+        self.cutting.spindle_rpm.map(|n| positive(&self.path, "[cutting] spindle_rpm", n)).transpose()
+    }
+
+    /// The tool axis of contour passes.
+    pub fn contour_axis(&self) -> Result<Unit3, Failure> {
+        let a = self.strategy.axis.unwrap_or([0.0, 0.0, 1.0]);
+        Unit3::try_new(Vec3::from(a), 1e-9)
+            .filter(|u| u.iter().all(|c| c.is_finite()))
+            .ok_or_else(|| Failure::file(&self.path, format!("[strategy] axis = {a:?} has no direction")))
+    }
+}
