@@ -1,0 +1,669 @@
+// The 3D view of an osculate report. Reads the JSON head and the base64 block that stand in the page, draws with the
+// bundled three.js (global THREE), and falls back to the still picture where WebGL is missing.
+// Frame: the part's, mm, z up. Deviation: positive is material left, negative is gouge.
+(function () {
+  "use strict";
+
+  const $ = (id) => document.getElementById(id);
+  const head = JSON.parse($("report-head").textContent);
+  const box = $("canvas-box");
+
+  // ---- data -------------------------------------------------------------------------------------------------------
+
+  function decodeBase64(text) {
+    const binary = atob(text.trim());
+    const bytes = new Uint8Array(binary.length);
+    for (let i = 0; i < binary.length; i++) bytes[i] = binary.charCodeAt(i);
+    return bytes.buffer;
+  }
+
+  const block = decodeBase64($("report-data").textContent);
+  $("report-data").textContent = "";
+
+  function points(at, count) {
+    const steps = new Uint16Array(block, at, 3 * count);
+    const out = new Float32Array(3 * count);
+    for (let i = 0; i < out.length; i++) out[i] = head.lo[i % 3] + head.step[i % 3] * steps[i];
+    return out;
+  }
+
+  // Unfolds the octahedron.
+  function normals(at, count) {
+    const steps = new Int16Array(block, at, 2 * count);
+    const out = new Float32Array(3 * count);
+    for (let i = 0; i < count; i++) {
+      let x = steps[2 * i] / 32767;
+      let y = steps[2 * i + 1] / 32767;
+      const z = 1 - Math.abs(x) - Math.abs(y);
+      const fold = Math.max(-z, 0);
+      x += x < 0 ? fold : -fold;
+      y += y < 0 ? fold : -fold;
+      const length = Math.hypot(x, y, z);
+      out.set([x / length, y / length, z / length], 3 * i);
+    }
+    return out;
+  }
+
+  // ---- colours ----------------------------------------------------------------------------------------------------
+
+  const UNKNOWN = head.unknown;
+
+  // Stops as [value, r, g, b]; at a step the value belongs to the side nearer to zero.
+  function colourOf(stops, value) {
+    if (!Number.isFinite(value)) return UNKNOWN;
+    const first = stops[0];
+    const last = stops[stops.length - 1];
+    if (value < first[0]) return first.slice(1);
+    if (value > last[0]) return last.slice(1);
+    let pair = null;
+    for (let i = 0; i + 1 < stops.length; i++) {
+      const [a, b] = [stops[i], stops[i + 1]];
+      if (a[0] >= b[0]) continue;
+      if (value > 0 ? value <= b[0] : a[0] <= value) {
+        pair = [a, b];
+        if (value > 0) break;
+      }
+    }
+    if (!pair) return last.slice(1);
+    const t = (value - pair[0][0]) / (pair[1][0] - pair[0][0]);
+    return [1, 2, 3].map((k) => Math.round(pair[0][k] + (pair[1][k] - pair[0][k]) * t));
+  }
+
+  const TEXELS = 4096;
+
+  function rangeOf(scale) {
+    const lo = scale.stops[0][0];
+    const hi = scale.stops[scale.stops.length - 1][0];
+    return hi > lo ? [lo, hi] : [lo - 0.5, lo + 0.5];
+  }
+
+  function textureOf(scale) {
+    const [lo, hi] = rangeOf(scale);
+    const data = new Uint8Array(4 * TEXELS);
+    for (let i = 0; i < TEXELS; i++) {
+      data.set([...colourOf(scale.stops, lo + ((hi - lo) * (i + 0.5)) / TEXELS), 255], 4 * i);
+    }
+    const texture = new THREE.DataTexture(data, TEXELS, 1);
+    texture.colorSpace = THREE.SRGBColorSpace;
+    texture.magFilter = texture.minFilter = THREE.NearestFilter;
+    texture.needsUpdate = true;
+    return texture;
+  }
+
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+  // ---- numbers ----------------------------------------------------------------------------------------------------
+
+  const MINUS = "\u2212";
+  const fixed = (value, digits) =>
+    Number.isFinite(value) ? value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", MINUS) : "\u2013";
+  const signed = (value, digits) => (value > 0 ? "+" : "") + fixed(value, digits);
+
+  // ---- scene ------------------------------------------------------------------------------------------------------
+
+  function start() {
+    const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    box.appendChild(renderer.domElement);
+    renderer.domElement.setAttribute("aria-label", "3D view of the part; drag to turn, wheel to zoom, right button to shift");
+
+    const scene = new THREE.Scene();
+    const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10);
+    camera.up.set(0, 0, 1);
+    const controls = new THREE.OrbitControls(camera, renderer.domElement);
+    controls.zoomToCursor = true;
+    controls.rotateSpeed = 0.9;
+
+    const lo = new THREE.Vector3(...head.lo);
+    const hi = lo.clone().add(new THREE.Vector3(...head.step).multiplyScalar(65535));
+    const centre = lo.clone().add(hi).multiplyScalar(0.5);
+    const radius = Math.max(0.5 * hi.distanceTo(lo), 1e-3);
+
+    const ambient = new THREE.AmbientLight(0xffffff, 1);
+    const lamp = new THREE.DirectionalLight(0xffffff, 1);
+    scene.add(ambient, lamp, lamp.target);
+
+    // ---- part -----------------------------------------------------------------------------------------------------
+
+    // One material for all faces: the colour comes from a value at each vertex, looked up at each pixel, so that the
+    // step at a tolerance is a sharp line and not smeared over a triangle.
+    const uniforms = {
+      lookup: { value: null },
+      range: { value: new THREE.Vector2(0, 1) },
+      unknown: { value: new THREE.Color().setRGB(...UNKNOWN.map((c) => c / 255), THREE.SRGBColorSpace) },
+      mapped: { value: 1 },
+    };
+    const partMaterial = new THREE.MeshLambertMaterial({
+      side: THREE.DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    partMaterial.onBeforeCompile = (shader) => {
+      Object.assign(shader.uniforms, uniforms);
+      shader.vertexShader = shader.vertexShader
+        .replace("#include <common>", "#include <common>\nattribute vec2 quantity;\nvarying vec2 vQuantity;")
+        .replace("#include <begin_vertex>", "#include <begin_vertex>\nvQuantity = quantity;");
+      shader.fragmentShader = shader.fragmentShader
+        .replace(
+          "#include <common>",
+          "#include <common>\nvarying vec2 vQuantity;\nuniform sampler2D lookup;\nuniform vec2 range;\n" +
+            "uniform vec3 unknown;\nuniform float mapped;"
+        )
+        .replace(
+          "#include <color_fragment>",
+          `#include <color_fragment>
+          if (mapped > 0.5) {
+            float share = (vQuantity.x - range.x) / (range.y - range.x);
+            diffuseColor.rgb = vQuantity.y > 0.999 ? texture2D(lookup, vec2(share, 0.5)).rgb : unknown;
+          }`
+        );
+    };
+
+    const part = new THREE.Group();
+    const borders = new THREE.Group();
+    const borderMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.75 });
+    for (const face of head.faces) {
+      const position = new THREE.BufferAttribute(points(face.position, face.vertices), 3);
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", position);
+      geometry.setAttribute("normal", new THREE.BufferAttribute(normals(face.normal, face.vertices), 3));
+      geometry.setAttribute("quantity", new THREE.BufferAttribute(new Float32Array(2 * face.vertices), 2));
+      const Index = face.wide ? Uint32Array : Uint16Array;
+      geometry.setIndex(new THREE.BufferAttribute(new Index(block, face.index, 3 * face.triangles), 1));
+      const mesh = new THREE.Mesh(geometry, partMaterial);
+      mesh.userData = {
+        id: face.id,
+        deviation: new Float32Array(block, face.deviation, face.vertices),
+        scalars: face.scalars.map((at) => new Float32Array(block, at, face.vertices)),
+      };
+      part.add(mesh);
+      if (face.borders > 0) {
+        const edges = new THREE.BufferGeometry();
+        edges.setAttribute("position", position);
+        edges.setIndex(new THREE.BufferAttribute(new Uint32Array(block, face.border, 2 * face.borders), 1));
+        borders.add(new THREE.LineSegments(edges, borderMaterial));
+      }
+    }
+    scene.add(part);
+
+    const textures = new Map();
+    let shownScale = null;
+    function colourPart(mode) {
+      shownScale = mode === "deviation" ? head.deviation : mode === "plain" ? null : head.scalars[Number(mode)];
+      uniforms.mapped.value = shownScale ? 1 : 0;
+      // Seen face-on the light adds up to one: the colour is then exactly the legend's.
+      ambient.intensity = Math.PI * (shownScale ? 0.6 : 0.32);
+      lamp.intensity = Math.PI * (shownScale ? 0.42 : 0.74);
+      for (const legend of document.querySelectorAll("[data-part-legend]")) {
+        legend.hidden = legend.dataset.partLegend !== mode;
+      }
+      if (shownScale) {
+        if (!textures.has(mode)) textures.set(mode, textureOf(shownScale));
+        uniforms.lookup.value = textures.get(mode);
+        uniforms.range.value.set(...rangeOf(shownScale));
+        for (const mesh of part.children) {
+          const values = mode === "deviation" ? mesh.userData.deviation : mesh.userData.scalars[Number(mode)];
+          const attribute = mesh.geometry.getAttribute("quantity");
+          for (let i = 0; i < values.length; i++) {
+            const known = !Number.isNaN(values[i]);
+            // What exceeds the scale is clamped, or an infinite value would spoil its whole triangle.
+            const inside = Math.min(Math.max(values[i], -1e6), 1e6);
+            attribute.setXY(i, known ? inside : 0, known ? 1 : 0);
+          }
+          attribute.needsUpdate = true;
+        }
+      }
+      needle(null);
+      redraw();
+    }
+
+    // ---- path -----------------------------------------------------------------------------------------------------
+
+    // Lines on the surface are shifted towards the viewer by this much, or the part would swallow them in places; in an
+    // orthographic view that moves nothing sideways.
+    const lift = 0.006 * radius;
+    const overlay = new THREE.Group();
+    scene.add(overlay);
+    overlay.add(borders);
+
+    const path = head.path;
+    const segmentsUpTo = [0];
+    let lines = null;
+    let lineMaterial = null;
+    let widthColours = null;
+    if (path.points > 1) {
+      const at = points(path.position, path.points);
+      const widths = new Float32Array(block, path.width, path.points);
+      const segments = path.counts.reduce((sum, n) => sum + Math.max(n - 1, 0), 0);
+      const ends = new Float32Array(6 * segments);
+      widthColours = new Float32Array(6 * segments);
+      const colour = new THREE.Color();
+      let from = 0;
+      let k = 0;
+      for (const count of path.counts) {
+        for (let i = from; i + 1 < from + count; i++, k++) {
+          ends.set(at.subarray(3 * i, 3 * i + 6), 6 * k);
+          if (!head.width) continue;
+          [i, i + 1].forEach((j, end) => {
+            const rgb = colourOf(head.width.stops, widths[j]);
+            colour.setRGB(rgb[0] / 255, rgb[1] / 255, rgb[2] / 255, THREE.SRGBColorSpace);
+            widthColours.set([colour.r, colour.g, colour.b], 6 * k + 3 * end);
+          });
+        }
+        from += count;
+        segmentsUpTo.push(k);
+      }
+      if (segments > 0) {
+        const geometry = new THREE.LineSegmentsGeometry();
+        geometry.setPositions(ends);
+        geometry.setColors(widthColours);
+        lineMaterial = new THREE.LineMaterial({ linewidth: 1.4 });
+        lines = new THREE.LineSegments2(geometry, lineMaterial);
+        lines.frustumCulled = false;
+        overlay.add(lines);
+      }
+    }
+
+    function colourPath(mode) {
+      if (!lines) return;
+      lines.visible = mode !== "off";
+      const byWidth = mode === "width";
+      lineMaterial.vertexColors = byWidth;
+      lineMaterial.linewidth = byWidth ? 2.6 : 1.3;
+      lineMaterial.color.set(byWidth ? "#ffffff" : css("--path"));
+      lineMaterial.needsUpdate = true;
+      for (const legend of document.querySelectorAll("[data-path-legend]")) legend.hidden = !byWidth;
+      redraw();
+    }
+
+    const links = new THREE.Group();
+    const linkMaterials = [false, true].map((rapid) => {
+      const material = new THREE.LineMaterial({ linewidth: 1.4, dashed: rapid });
+      material.dashSize = 0.012 * radius;
+      material.gapSize = 0.008 * radius;
+      material.color.set(rapid ? "#d9480f" : "#0b7fc4");
+      return material;
+    });
+    for (const rapid of [false, true]) {
+      const ends = [];
+      for (const link of head.links.filter((l) => l.rapid === rapid)) {
+        const p = new Float32Array(block, link.at, 3 * link.count);
+        for (let i = 0; i + 1 < link.count; i++) ends.push(...p.subarray(3 * i, 3 * i + 6));
+      }
+      if (ends.length === 0) continue;
+      const geometry = new THREE.LineSegmentsGeometry();
+      geometry.setPositions(new Float32Array(ends));
+      const object = new THREE.LineSegments2(geometry, linkMaterials[Number(rapid)]);
+      object.computeLineDistances();
+      object.frustumCulled = false;
+      links.add(object);
+    }
+    links.visible = false;
+    scene.add(links);
+
+    // ---- tool -----------------------------------------------------------------------------------------------------
+
+    const tool = new THREE.Group();
+    const pieceColours = { cutter: "#d6ab45", shank: "#b3bbc5", holder: "#69747f" };
+    for (const piece of head.tool) {
+      const material = new THREE.MeshLambertMaterial({ color: pieceColours[piece.kind], side: THREE.DoubleSide });
+      if (piece.kind !== "cutter") {
+        material.transparent = true;
+        material.opacity = piece.kind === "holder" ? 0.55 : 0.85;
+      }
+      // The lathe smooths its normals along the outline: it gets one run at a time, cut at the sharp edges.
+      let run = [piece.outline[0]];
+      for (let i = 1; i < piece.outline.length; i++) {
+        run.push(piece.outline[i]);
+        const [a, b, c] = [piece.outline[i - 1], piece.outline[i], piece.outline[i + 1]];
+        const turn = c && Math.abs(Math.atan2(
+          (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]),
+          (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
+        ));
+        if (!c || turn > 0.5) {
+          tool.add(new THREE.Mesh(new THREE.LatheGeometry(run.map(([r, z]) => new THREE.Vector2(r, z)), 64), material));
+          run = [b];
+        }
+      }
+    }
+    scene.add(tool);
+
+    const poses = new Float32Array(block, head.poses.at, 8 * head.poses.count);
+    const slider = $("pose");
+    const upright = new THREE.Vector3(0, 1, 0);
+    let passNow = -1;
+
+    function showPose(index) {
+      if (head.poses.count === 0) return;
+      const [x, y, z, i, j, k, time, pass] = poses.subarray(8 * index, 8 * index + 8);
+      tool.position.set(x, y, z);
+      const axis = new THREE.Vector3(i, j, k).normalize();
+      tool.quaternion.setFromUnitVectors(upright, axis);
+      passNow = pass;
+      const tilt = (Math.acos(Math.min(Math.max(axis.z, -1), 1)) * 180) / Math.PI;
+      const words = [
+        pass >= 0 ? `pass ${pass + 1} of ${path.counts.length}` : "between passes",
+        `tip ${fixed(x, 2)}, ${fixed(y, 2)}, ${fixed(z, 2)} mm`,
+        `axis ${fixed(tilt, 1)}\u00b0 from z`,
+      ];
+      if (Number.isFinite(time)) words.unshift(`${fixed(time, 2)} min`);
+      $("pose-words").textContent = words.join("  \u00b7  ");
+      limitPath();
+      redraw();
+    }
+
+    // The last pass begun up to a pose: between passes that is the one before.
+    const begun = new Int32Array(head.poses.count);
+    for (let i = 0, last = -1; i < begun.length; i++) {
+      last = Math.max(last, poses[8 * i + 7]);
+      begun[i] = last;
+    }
+
+    function limitPath() {
+      if (!lines) return;
+      const all = segmentsUpTo[segmentsUpTo.length - 1];
+      const upTo = $("so-far").checked && begun.length > 0 ? begun[Number(slider.value)] + 1 : segmentsUpTo.length - 1;
+      lines.geometry.instanceCount = Math.min(segmentsUpTo[Math.min(upTo, segmentsUpTo.length - 1)], all);
+    }
+
+    let playing = false;
+    let playedAt = 0;
+    let exact = 0;
+    const PLAY_S = 40;
+    function play(on) {
+      playing = on;
+      $("play").textContent = on ? "Pause" : "Play";
+      if (!on) return;
+      exact = Number(slider.value) >= begun.length - 1 ? 0 : Number(slider.value);
+      playedAt = performance.now();
+      requestAnimationFrame(advance);
+    }
+    function advance(now) {
+      if (!playing) return;
+      exact += (Math.max(now - playedAt, 0) / 1000) * (begun.length / PLAY_S);
+      playedAt = now;
+      slider.value = Math.floor(exact);
+      showPose(Number(slider.value));
+      if (exact >= begun.length - 1) play(false);
+      else requestAnimationFrame(advance);
+    }
+
+    // ---- pointing -------------------------------------------------------------------------------------------------
+
+    const tip = $("hover");
+    const raycaster = new THREE.Raycaster();
+    const marker = new THREE.Mesh(
+      new THREE.SphereGeometry(1, 16, 12),
+      new THREE.MeshBasicMaterial({ color: "#ffffff", depthTest: false, transparent: true })
+    );
+    marker.renderOrder = 10;
+    const markerRim = new THREE.Mesh(
+      marker.geometry,
+      new THREE.MeshBasicMaterial({ color: "#111820", depthTest: false, transparent: true })
+    );
+    markerRim.renderOrder = 9;
+    marker.visible = markerRim.visible = false;
+    scene.add(markerRim, marker);
+
+    function verdictWords(deviation) {
+      const { scallop, gouge } = head.limits;
+      if (!Number.isFinite(deviation)) return ["not verified here", ""];
+      if (deviation < 0) {
+        if (!(gouge > 0)) return ["gouge, no limit given", ""];
+        return deviation < -gouge ? ["gouge, out of tolerance", "bad"] : ["undercut, within tolerance", "good"];
+      }
+      if (!(scallop > 0)) return ["material left, no limit given", ""];
+      return deviation > scallop ? ["too much material left", "bad"] : ["within tolerance", "good"];
+    }
+
+    function needle(value) {
+      for (const legend of document.querySelectorAll("[data-part-legend]")) {
+        const mark = legend.querySelector(".needle");
+        if (!mark || !shownScale || legend.hidden || !Number.isFinite(value)) {
+          if (mark) mark.style.display = "none";
+          continue;
+        }
+        const [a, b] = rangeOf(shownScale);
+        const share = Math.min(Math.max((value - a) / (b - a), 0), 1);
+        mark.style.display = "";
+        mark.setAttribute("transform", `translate(0 ${head.legend_length * (1 - share)})`);
+      }
+    }
+
+    let pointer = null;
+    function pick() {
+      if (!pointer || playing) return hideTip();
+      const area = renderer.domElement.getBoundingClientRect();
+      const x = ((pointer.clientX - area.left) / area.width) * 2 - 1;
+      const y = 1 - ((pointer.clientY - area.top) / area.height) * 2;
+      raycaster.setFromCamera(new THREE.Vector2(x, y), camera);
+      const hit = raycaster.intersectObjects(part.children, false)[0];
+      if (!hit) return hideTip();
+      const { deviation, scalars, id } = hit.object.userData;
+      const corners = [hit.face.a, hit.face.b, hit.face.c];
+      const weights = [hit.barycoord.x, hit.barycoord.y, hit.barycoord.z];
+      const value = (list) => corners.reduce((sum, c, i) => sum + list[c] * weights[i], 0);
+      const d = value(deviation);
+      const [words, kind] = verdictWords(d);
+      const rows = [["strong " + kind, Number.isFinite(d) ? `${signed(d, 4)} mm` : "\u2013"], [kind, words]];
+      head.scalars.forEach((scale, i) => {
+        rows.push(["", `${scale.name} ${fixed(value(scalars[i]), 5)} ${scale.unit}`]);
+      });
+      rows.push(["faint", `${id}  x ${fixed(hit.point.x, 2)}  y ${fixed(hit.point.y, 2)}  z ${fixed(hit.point.z, 2)} mm`]);
+      tip.replaceChildren(...rows.map(([cls, text]) => {
+        const row = document.createElement("div");
+        row.className = cls;
+        row.textContent = text;
+        return row;
+      }));
+      tip.hidden = false;
+      const frame = box.getBoundingClientRect();
+      const left = pointer.clientX - frame.left;
+      const top = pointer.clientY - frame.top;
+      const flip = left + tip.offsetWidth + 24 > frame.width;
+      tip.style.left = `${flip ? Math.max(left - tip.offsetWidth - 14, 4) : left + 16}px`;
+      tip.style.top = `${Math.min(top + 14, frame.height - tip.offsetHeight - 6)}px`;
+      mark(hit.point);
+      needle(shownScale === head.deviation ? d : shownScale ? value(scalars[head.scalars.indexOf(shownScale)]) : NaN);
+    }
+    function hideTip() {
+      if (tip.hidden && !marker.visible) return;
+      tip.hidden = true;
+      marker.visible = markerRim.visible = false;
+      needle(null);
+      redraw();
+    }
+    function mark(point) {
+      marker.visible = markerRim.visible = true;
+      marker.position.copy(point);
+      markerRim.position.copy(point);
+      redraw();
+    }
+
+    let picking = false;
+    renderer.domElement.addEventListener("pointermove", (event) => {
+      pointer = event.buttons === 0 || event.pointerType === "touch" ? event : null;
+      if (picking) return;
+      picking = true;
+      requestAnimationFrame(() => {
+        picking = false;
+        pick();
+      });
+    });
+    renderer.domElement.addEventListener("pointerdown", (event) => {
+      if (event.pointerType === "touch") return;
+      pointer = null;
+      hideTip();
+    });
+    renderer.domElement.addEventListener("pointerleave", () => {
+      pointer = null;
+      hideTip();
+    });
+
+    // ---- views ----------------------------------------------------------------------------------------------------
+
+    // The direction is from the part to the viewer; from above a trace of -y keeps x to the right.
+    const directions = {
+      iso: [Math.cos(-0.9) * 0.83, Math.sin(-0.9) * 0.83, 0.56],
+      top: [0, -1e-5, 1],
+      front: [0, -1, 0],
+      right: [1, 0, 0],
+    };
+
+    function corners() {
+      const out = [];
+      for (const x of [lo.x, hi.x]) for (const y of [lo.y, hi.y]) for (const z of [lo.z, hi.z]) out.push(new THREE.Vector3(x, y, z));
+      return out;
+    }
+
+    function fit(direction) {
+      const from = (direction ? new THREE.Vector3(...direction) : camera.position.clone().sub(controls.target)).normalize();
+      controls.target.copy(centre);
+      camera.position.copy(centre).addScaledVector(from, 20 * radius);
+      camera.lookAt(centre);
+      camera.updateMatrixWorld();
+      const inView = corners().map((c) => c.applyMatrix4(camera.matrixWorldInverse));
+      const across = Math.max(...inView.map((c) => Math.abs(c.x)), 1e-6);
+      const upward = Math.max(...inView.map((c) => Math.abs(c.y)), 1e-6);
+      // The legend at the right and the tool rows below take room from the picture.
+      camera.zoom = 0.86 * Math.min(camera.right / across, camera.top / upward);
+      camera.updateProjectionMatrix();
+      controls.update();
+      redraw();
+    }
+
+    function goTo(at) {
+      const target = new THREE.Vector3(...at);
+      const shift = target.clone().sub(controls.target);
+      controls.target.add(shift);
+      camera.position.add(shift);
+      camera.zoom = Math.max(camera.zoom, (6 * camera.top) / radius);
+      camera.updateProjectionMatrix();
+      controls.update();
+      mark(target);
+    }
+
+    function resize() {
+      const width = Math.max(box.clientWidth, 1);
+      const height = Math.max(box.clientHeight, 1);
+      renderer.setSize(width, height, false);
+      const aspect = width / height;
+      camera.top = radius;
+      camera.bottom = -radius;
+      camera.right = radius * aspect;
+      camera.left = -camera.right;
+      camera.near = 0.01 * radius;
+      camera.far = 40 * radius;
+      camera.updateProjectionMatrix();
+      for (const material of [lineMaterial, ...linkMaterials]) if (material) material.resolution.set(width, height);
+      redraw();
+    }
+
+    // ---- furniture ------------------------------------------------------------------------------------------------
+
+    function scaleBar() {
+      const mmPerPixel = (camera.top - camera.bottom) / camera.zoom / Math.max(box.clientHeight, 1);
+      const wish = 90 * mmPerPixel;
+      const decade = Math.pow(10, Math.floor(Math.log10(wish)));
+      const length = [5, 2, 1].map((m) => m * decade).find((l) => l <= wish) || decade;
+      $("scale-bar").style.width = `${length / mmPerPixel}px`;
+      $("scale-bar").textContent = `${Number(length.toPrecision(1))} mm`;
+    }
+
+    function triad() {
+      for (const [name, v] of [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]]) {
+        const p = new THREE.Vector3(...v).applyQuaternion(camera.quaternion.clone().invert());
+        const line = $(`axis-${name}`);
+        line.setAttribute("d", `M0 0L${(24 * p.x).toFixed(1)} ${(-24 * p.y).toFixed(1)}`);
+        const label = $(`axis-${name}-label`);
+        label.setAttribute("x", (31 * p.x).toFixed(1));
+        label.setAttribute("y", (-31 * p.y + 3.5).toFixed(1));
+      }
+    }
+
+    let wanted = false;
+    function redraw() {
+      if (wanted) return;
+      wanted = true;
+      requestAnimationFrame(draw);
+    }
+    function draw() {
+      wanted = false;
+      const toward = camera.position.clone().sub(controls.target).normalize();
+      overlay.position.copy(toward).multiplyScalar(lift);
+      const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
+      const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
+      lamp.position.copy(controls.target).addScaledVector(toward, 10).addScaledVector(up, 4).addScaledVector(right, -3);
+      lamp.target.position.copy(controls.target);
+      const pixel = (camera.top - camera.bottom) / camera.zoom / Math.max(box.clientHeight, 1);
+      marker.scale.setScalar(3 * pixel);
+      markerRim.scale.setScalar(4.5 * pixel);
+      renderer.render(scene, camera);
+      scaleBar();
+      triad();
+    }
+
+    function theme() {
+      scene.background = new THREE.Color(css("--view"));
+      partMaterial.color.set(css("--metal"));
+      borderMaterial.color.set(css("--border-line"));
+      colourPath(document.querySelector("[name=path]:checked").value);
+      redraw();
+    }
+
+    // ---- wiring ---------------------------------------------------------------------------------------------------
+
+    for (const input of document.querySelectorAll("[name=part]")) input.addEventListener("change", () => colourPart(input.value));
+    for (const input of document.querySelectorAll("[name=path]")) input.addEventListener("change", () => colourPath(input.value));
+    $("show-links").addEventListener("change", (e) => { links.visible = e.target.checked; redraw(); });
+    $("show-tool").addEventListener("change", (e) => { tool.visible = e.target.checked; redraw(); });
+    $("show-borders").addEventListener("change", (e) => { borders.visible = e.target.checked; redraw(); });
+    $("so-far").addEventListener("change", () => { limitPath(); redraw(); });
+    slider.addEventListener("input", () => { play(false); showPose(Number(slider.value)); });
+    $("play").addEventListener("click", () => play(!playing));
+    for (const button of document.querySelectorAll("[data-view]")) {
+      button.addEventListener("click", () => fit(directions[button.dataset.view]));
+    }
+    for (const button of document.querySelectorAll("[data-at]")) {
+      button.addEventListener("click", () => {
+        goTo(button.dataset.at.split(" ").map(Number));
+        box.scrollIntoView({ block: "nearest", behavior: "smooth" });
+      });
+    }
+    controls.addEventListener("change", redraw);
+    new ResizeObserver(resize).observe(box);
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", theme);
+    document.addEventListener("osculate-theme", theme);
+
+    resize();
+    theme();
+    colourPart(document.querySelector("[name=part]:checked").value);
+    tool.visible = $("show-tool").checked;
+    slider.max = Math.max(head.poses.count - 1, 0);
+    slider.value = Math.round(0.62 * Number(slider.max));
+    showPose(Number(slider.value));
+    fit(directions.iso);
+    document.body.classList.add("live");
+  }
+
+  // ---- page -------------------------------------------------------------------------------------------------------
+
+  $("theme").addEventListener("click", () => {
+    const root = document.documentElement;
+    const dark = root.dataset.theme ? root.dataset.theme === "dark" : window.matchMedia("(prefers-color-scheme: dark)").matches;
+    root.dataset.theme = dark ? "light" : "dark";
+    document.dispatchEvent(new Event("osculate-theme"));
+  });
+
+  if (head.empty) {
+    $("still-words").textContent = "The report has no part and no path to show.";
+    return;
+  }
+  try {
+    start();
+  } catch (error) {
+    box.querySelector("canvas")?.remove();
+    $("still-words").textContent = `This browser cannot show the part in 3D (${error.message}); here is a still picture.`;
+  }
+})();

@@ -1,0 +1,313 @@
+//! Parts as commands see them: faces with names, from a file or built in.
+
+use crate::args::PartArgs;
+use crate::builtin::{self, Builtin};
+use crate::failure::{Failure, beside, read};
+use crate::job::{FaceChoice, Job, Normals};
+use osculate_geom::{Axis, Box3, Diagnostic, Flipped, Point3, Side, Surface, Unit3};
+use osculate_surfaces::{Face, mesh, orient};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Certainty below which a vote on the material side does not count.
+const CLEAR_VOTE: f64 = 0.5;
+/// Rays are cast from a grid of this many points a side.
+const VOTE_GRID: usize = 12;
+/// Chord tolerance of the triangles that the vote counts, as a part of the box's diagonal.
+const VOTE_CHORD: f64 = 1e-3;
+
+/// A face ready for work.
+#[derive(Clone)]
+pub struct LoadedFace {
+    /// `F1`, `F2`, ...
+    pub id: String,
+    /// Name in the file.
+    pub name: String,
+    /// Kind as `inspect` prints it.
+    pub kind: String,
+    /// The face with trims and material side.
+    pub surface: Arc<dyn Surface>,
+    /// The imported face, where it comes from a file.
+    pub source: Option<Arc<Face>>,
+}
+
+/// A part ready for work.
+pub struct Loaded {
+    /// `step`, `iges` or `builtin`.
+    pub format: &'static str,
+    /// The file's unit.
+    pub unit: String,
+    /// The file's schema.
+    pub schema: String,
+    /// Faces.
+    pub faces: Vec<LoadedFace>,
+    /// What the file has that is not used: kind, count, why.
+    pub not_used: Vec<(String, usize, String)>,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Loaded {
+    /// The face of this id.
+    pub fn face(&self, id: &str) -> Result<&LoadedFace, Failure> {
+        self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
+            let ids: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).take(12).collect();
+            let more = if self.faces.len() > ids.len() { ", ..." } else { "" };
+            Failure::job(format!("there is no face {id}; the part has {}{more} (see inspect)", ids.join(", ")))
+        })
+    }
+}
+
+fn from_builtin(b: Builtin) -> Loaded {
+    let face = LoadedFace {
+        id: "F1".to_owned(),
+        name: String::new(),
+        kind: b.kind.to_owned(),
+        surface: b.surface,
+        source: None,
+    };
+    Loaded {
+        format: "builtin",
+        unit: "mm".to_owned(),
+        schema: String::new(),
+        faces: vec![face],
+        not_used: Vec::new(),
+        diagnostics: Vec::new(),
+    }
+}
+
+fn from_file(path: &Path) -> Result<Loaded, Failure> {
+    let bytes = read(path)?;
+    let part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
+    let format = match part.format {
+        osculate_surfaces::Format::Step => "step",
+        osculate_surfaces::Format::Iges => "iges",
+    };
+    let faces = part
+        .faces
+        .into_iter()
+        .map(|f| {
+            let source = Arc::new(f);
+            LoadedFace {
+                id: source.id.clone(),
+                name: source.name.clone(),
+                kind: source.kind.to_string(),
+                surface: source.surface.clone(),
+                source: Some(source),
+            }
+        })
+        .collect();
+    Ok(Loaded {
+        format,
+        unit: part.unit,
+        schema: part.schema,
+        faces,
+        not_used: part.not_used.into_iter().map(|n| (n.kind, n.count, n.why)).collect(),
+        diagnostics: part.diagnostics,
+    })
+}
+
+/// The part of a command line.
+pub fn load(args: &PartArgs) -> Result<Loaded, Failure> {
+    match (&args.part, &args.builtin) {
+        (Some(path), None) => from_file(path),
+        (None, Some(keys)) => Ok(from_builtin(builtin::parse(keys).map_err(Failure::Usage)?)),
+        _ => Err(Failure::Usage("give either a part file or --builtin".to_owned())),
+    }
+}
+
+/// The faces that a job works on.
+pub struct JobFaces {
+    /// The whole part.
+    pub part: Loaded,
+    /// Faces to machine.
+    pub faces: Vec<LoadedFace>,
+    /// Faces that the tool must not touch.
+    pub check: Vec<LoadedFace>,
+}
+
+/// The faces of a job, with their material sides settled.
+pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
+    let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
+    let mut part = match (&job.part.file, &job.part.builtin) {
+        (Some(file), _) => from_file(&beside(&job.path, file))?,
+        (None, Some(table)) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?),
+        (None, None) => return Err(Failure::file(&job.path, "[part] needs file or builtin")),
+    };
+    let mut faces = choose(&part, job.part.faces.as_ref(), "faces").map_err(here)?;
+    if faces.is_empty() {
+        return Err(Failure::file(&job.path, "[part] faces chooses no face"));
+    }
+    settle_sides(job, &mut part, &mut faces)?;
+    let check = match &job.part.check_faces {
+        None => Vec::new(),
+        some => {
+            let chosen: Vec<String> = faces.iter().map(|f| f.id.clone()).collect();
+            let mut check = choose(&part, some.as_ref(), "check_faces").map_err(here)?;
+            check.retain(|f| !chosen.contains(&f.id));
+            settle_sides(job, &mut part, &mut check)?;
+            check
+        }
+    };
+    if check.is_empty() && part.faces.len() > faces.len() {
+        part.diagnostics.push(Diagnostic::note(
+            "check_faces",
+            format!(
+                "{} other faces of the part are not checked against the tool; check_faces = \"all\" would do so",
+                part.faces.len() - faces.len()
+            ),
+        ));
+    }
+    Ok(JobFaces { part, faces, check })
+}
+
+/// The single face of a job.
+pub fn one_face(job: &Job) -> Result<LoadedFace, Failure> {
+    let mut all = of_job(job)?.faces;
+    match (all.pop(), all.len()) {
+        (Some(one), 0) => Ok(one),
+        (_, more) => Err(Failure::file(
+            &job.path,
+            format!("[part] faces chooses {} faces where one is needed", more + 1),
+        )),
+    }
+}
+
+fn choose(part: &Loaded, choice: Option<&FaceChoice>, key: &str) -> Result<Vec<LoadedFace>, Failure> {
+    match choice {
+        None => Ok(part.faces.clone()),
+        Some(FaceChoice::Word(w)) if w == "all" => Ok(part.faces.clone()),
+        Some(FaceChoice::Word(id)) => Ok(vec![part.face(id)?.clone()]),
+        Some(FaceChoice::Ids(ids)) => ids.iter().map(|id| part.face(id).cloned()).collect(),
+        Some(FaceChoice::Largest(l)) => {
+            if l.largest == 0 || l.largest > part.faces.len() {
+                return Err(Failure::job(format!(
+                    "{key} = {{ largest = {} }}: the part has {} faces",
+                    l.largest,
+                    part.faces.len()
+                )));
+            }
+            let mut sized: Vec<(f64, &LoadedFace)> = part.faces.iter().map(|f| (area(f), f)).collect();
+            // Equal areas keep the order of the file.
+            sized.sort_by(|a, b| b.0.total_cmp(&a.0));
+            Ok(sized.into_iter().take(l.largest).map(|s| s.1.clone()).collect())
+        }
+    }
+}
+
+/// Area of a face, mm2.
+pub fn area(face: &LoadedFace) -> f64 {
+    match &face.source {
+        Some(f) => f.area_mm2(),
+        None => osculate_geom::quadrature::area(&*face.surface, 1e-9).value,
+    }
+}
+
+/// Box around a face, from a grid of its points.
+pub fn bounds(face: &LoadedFace) -> Box3 {
+    match &face.source {
+        Some(f) => f.bbox(),
+        None => {
+            let mut b = Box3::empty();
+            for (_, p, _) in grid(&*face.surface, 40) {
+                b.add(&p);
+            }
+            b
+        }
+    }
+}
+
+/// Points with normals on a grid over a face's parameters, those inside its trims.
+fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, Unit3)> {
+    let d = surface.domain();
+    let mut out = Vec::new();
+    for i in 0..=n {
+        for j in 0..=n {
+            let at = d.at(i as f64 / n as f64, j as f64 / n as f64);
+            let jet = surface.jet2(at);
+            if let Ok(normal) = jet.normal()
+                && surface.contains(at)
+            {
+                out.push((at, jet.point, normal));
+            }
+        }
+    }
+    out
+}
+
+/// Turns faces over whose file does not say where the material is.
+fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<(), Failure> {
+    let open: Vec<usize> = (0..faces.len())
+        .filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented))
+        .collect();
+    let flip = |f: &mut LoadedFace| f.surface = Arc::new(Flipped(f.surface.clone()));
+    match job.part.normals {
+        Normals::File => return Ok(()),
+        Normals::Reversed => {
+            faces.iter_mut().for_each(flip);
+            return Ok(());
+        }
+        Normals::Auto if open.is_empty() => return Ok(()),
+        Normals::Auto => {}
+    }
+    let mut whole = Box3::empty();
+    for f in &part.faces {
+        whole = whole.union(&bounds(f));
+    }
+    let chord = VOTE_CHORD * whole.diagonal_mm();
+    let mut triangles: Vec<[Point3; 3]> = Vec::new();
+    for f in part.faces.iter().filter_map(|f| f.source.as_ref()) {
+        let m = mesh::tessellate(f, chord, None);
+        let at = |k: u32| Point3::from(m.positions[k as usize]);
+        triangles.extend(m.triangles.iter().map(|t| t.map(at)));
+    }
+    for k in open {
+        let face = &mut faces[k];
+        let points: Vec<(Point3, Unit3)> =
+            grid(&*face.surface, VOTE_GRID).into_iter().map(|(_, p, n)| (p, n)).collect();
+        match orient::enclosed_side(&points, &triangles) {
+            Some(e) if e.certainty >= CLEAR_VOTE => {
+                if e.side == Side::Against {
+                    flip(face);
+                }
+                part.diagnostics.push(Diagnostic::note(
+                    face.id.clone(),
+                    format!(
+                        "the file does not say where the material is; it is on the side that the part encloses \
+                         (certainty {:.0} %)",
+                        100.0 * e.certainty
+                    ),
+                ));
+            }
+            _ => {
+                return Err(Failure::file(
+                    &job.path,
+                    format!(
+                        "[part] {}: neither the file nor the shape of the part says on which side of the face the \
+                         material is; say normals = \"file\" or normals = \"reversed\" (probe shows the normal)",
+                        face.id
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Range of the principal curvatures over a face, 1/mm, from a grid of its inside.
+pub fn curvature_range(surface: &dyn Surface) -> Option<[f64; 2]> {
+    let mut range: Option<[f64; 2]> = None;
+    for (at, ..) in grid(surface, 24) {
+        if let Ok(forms) = surface.jet2(at).forms() {
+            let p = forms.principal();
+            let r = range.get_or_insert([p.k_min, p.k_max]);
+            *r = [r[0].min(p.k_min), r[1].max(p.k_max)];
+        }
+    }
+    range
+}
+
+/// Breaks of a face along an axis, for callers that lay out a grid.
+pub fn spans(surface: &dyn Surface, axis: Axis) -> usize {
+    surface.breaks(axis).len().saturating_sub(1)
+}

@@ -1,0 +1,243 @@
+//! Charts as inline SVG: how the deviation is spread, how wide the strips are, where the time went.
+//!
+//! Colours of text and axes come from the page (`currentColor` and its CSS variables), so that the charts follow its
+//! light and dark theme. A chart without data is `None`: the page then says so instead of showing an empty frame.
+
+use super::data::{Histogram, Pass, Stage};
+use super::legend::{Rgb, Scale, nice_step};
+use super::text::{coordinate, count, escape, figure, fixed};
+use std::fmt::Write;
+
+/// The frame that all charts share, in SVG user units.
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 210.0;
+const LEFT: f64 = 58.0;
+const RIGHT: f64 = 10.0;
+const TOP: f64 = 14.0;
+const BOTTOM: f64 = 40.0;
+
+/// A linear axis from values to user units.
+#[derive(Clone, Copy)]
+struct Axis {
+    lo: f64,
+    hi: f64,
+    from: f64,
+    to: f64,
+}
+
+impl Axis {
+    fn at(&self, value: f64) -> f64 {
+        let span = if self.hi > self.lo { self.hi - self.lo } else { 1.0 };
+        self.from + (self.to - self.from) * ((value - self.lo) / span).clamp(0.0, 1.0)
+    }
+
+    /// Round values on the axis, about `wanted` of them.
+    fn ticks(&self, wanted: f64) -> Vec<f64> {
+        let span = self.hi - self.lo;
+        if !(span > 0.0 && span.is_finite()) {
+            return vec![self.lo];
+        }
+        let step = nice_step(span / wanted);
+        let first = (self.lo / step).ceil();
+        // The slack keeps a tick that rounding pushed past the end; the sum next to zero is written as zero.
+        (0..)
+            .map(|i| (first + f64::from(i)) * step)
+            .take(60)
+            .take_while(|v| *v <= self.hi + 1e-9 * span)
+            .map(|v| if v.abs() < 1e-9 * span { 0.0 } else { v })
+            .collect()
+    }
+}
+
+fn hex([r, g, b]: Rgb) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// `figure` without digits that say nothing: 0.0200 becomes 0.02.
+fn tick(value: f64) -> String {
+    let text = figure(value, 4);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
+fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title: &str) -> String {
+    let mut out = format!(
+        "<svg class=\"chart\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">",
+        escape(label)
+    );
+    for value in y.ticks(4.0) {
+        let at = coordinate(y.at(value));
+        let _ = write!(
+            out,
+            "<path class=\"grid\" d=\"M{LEFT} {at}H{}\"/><text x=\"{}\" y=\"{at}\" dy=\".35em\" text-anchor=\"end\">{}</text>",
+            WIDTH - RIGHT,
+            LEFT - 6.0,
+            tick(value)
+        );
+    }
+    for &value in x_ticks {
+        let at = coordinate(x.at(value));
+        let _ = write!(
+            out,
+            "<path class=\"axis\" d=\"M{at} {}v4\"/><text x=\"{at}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+            HEIGHT - BOTTOM,
+            HEIGHT - BOTTOM + 17.0,
+            tick(value)
+        );
+    }
+    let _ = write!(
+        out,
+        "<text class=\"title\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\
+         <text class=\"title\" x=\"0\" y=\"9\">{}</text>",
+        WIDTH - RIGHT,
+        HEIGHT - 4.0,
+        escape(x_title),
+        escape(y_title)
+    );
+    out
+}
+
+fn base_line() -> String {
+    format!("<path class=\"axis\" d=\"M{LEFT} {}H{}\"/>", HEIGHT - BOTTOM, WIDTH - RIGHT)
+}
+
+/// The spread of the deviation, each bin in its colour of `scale`, the tolerances marked. Heights are shares of the
+/// whole.
+pub fn histogram(data: &Histogram, scale: &Scale) -> Option<String> {
+    let total: f64 = data.weights.iter().filter(|w| w.is_finite()).sum();
+    let bins: Vec<(f64, f64, f64)> = data
+        .edges_mm
+        .windows(2)
+        .zip(&data.weights)
+        .map(|(e, w)| (e[0], e[1], *w))
+        .filter(|(a, b, w)| a.is_finite() && b > a && b.is_finite() && w.is_finite() && *w >= 0.0)
+        .collect();
+    let (first, last) = (bins.first()?, bins.last()?);
+    if total <= 0.0 {
+        return None;
+    }
+    let tallest = bins.iter().map(|b| b.2).fold(0.0, f64::max);
+    let x = Axis { lo: first.0, hi: last.1, from: LEFT, to: WIDTH - RIGHT };
+    let y = Axis { lo: 0.0, hi: 100.0 * tallest / total, from: HEIGHT - BOTTOM, to: TOP + 6.0 };
+    let mut out = frame("Histogram of the deviation", x, y, &x.ticks(8.0), "deviation, mm", "share, %");
+    for (lo, hi, weight) in &bins {
+        let (x0, x1) = (x.at(*lo), x.at(*hi));
+        let top = y.at(100.0 * weight / total);
+        let _ = write!(
+            out,
+            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"><title>{} to {} mm: {} {} ({} %)</title></rect>",
+            coordinate(x0),
+            coordinate(top),
+            coordinate((x1 - x0 - 0.6).max(0.4)),
+            coordinate(HEIGHT - BOTTOM - top),
+            hex(scale.colour(0.5 * (lo + hi))),
+            figure(*lo, 3),
+            figure(*hi, 3),
+            figure(*weight, 4),
+            escape(&data.unit),
+            figure(100.0 * weight / total, 3)
+        );
+    }
+    for &mark in scale.marks.iter().filter(|m| (x.lo..=x.hi).contains(*m)) {
+        let at = coordinate(x.at(mark));
+        let (anchor, dx) = if x.at(mark) > 0.8 * WIDTH { ("end", -4.0) } else { ("start", 4.0) };
+        let _ = write!(
+            out,
+            "<path class=\"mark\" d=\"M{at} {TOP}V{}\"/><text class=\"strong\" x=\"{at}\" dx=\"{dx}\" y=\"{}\" \
+             text-anchor=\"{anchor}\">limit {} mm</text>",
+            HEIGHT - BOTTOM,
+            TOP + 5.0,
+            tick(mark)
+        );
+    }
+    Some(out + &base_line() + "</svg>")
+}
+
+/// Strip widths of one pass: least, mean and greatest of the known ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Widths {
+    /// Least, mm.
+    pub min_mm: f64,
+    /// Mean over the points, mm.
+    pub mean_mm: f64,
+    /// Greatest, mm.
+    pub max_mm: f64,
+}
+
+impl Widths {
+    /// `None` where no width is known.
+    pub fn of(pass: &Pass) -> Option<Self> {
+        let known = || pass.widths_mm.iter().map(|w| f64::from(*w)).filter(|w| w.is_finite());
+        let n = known().count();
+        (n > 0).then(|| Self {
+            min_mm: known().fold(f64::INFINITY, f64::min),
+            mean_mm: known().sum::<f64>() / n as f64,
+            max_mm: known().fold(f64::NEG_INFINITY, f64::max),
+        })
+    }
+}
+
+/// Mean strip width per pass as a line, from least to greatest as a band.
+pub fn strip_widths(passes: &[Pass], scale: Option<&Scale>) -> Option<String> {
+    let known: Vec<(usize, Widths)> =
+        passes.iter().enumerate().filter_map(|(i, p)| Some((i + 1, Widths::of(p)?))).collect();
+    let (first, last) = (known.first()?.0, known.last()?.0);
+    let top = known.iter().map(|k| k.1.max_mm).fold(0.0, f64::max);
+    let x = Axis { lo: first as f64 - 0.5, hi: last as f64 + 0.5, from: LEFT, to: WIDTH - RIGHT };
+    let y = Axis { lo: 0.0, hi: 1.05 * top, from: HEIGHT - BOTTOM, to: TOP + 4.0 };
+    let mut x_ticks: Vec<f64> = x.ticks(8.0).into_iter().filter(|t| t.fract() == 0.0).collect();
+    if x_ticks.is_empty() {
+        x_ticks.push(first as f64);
+    }
+    let mut out = frame("Strip width of each pass", x, y, &x_ticks, "pass", "strip width, mm");
+    let slot = (x.to - x.from) / (x.hi - x.lo);
+    let bar = (0.62 * slot).clamp(0.5, 18.0);
+    for (number, w) in &known {
+        let at = x.at(*number as f64);
+        let (high, low, mean) = (y.at(w.max_mm), y.at(w.min_mm), y.at(w.mean_mm));
+        let colour = scale.map_or_else(|| "currentColor".into(), |s| hex(s.colour(w.mean_mm)));
+        let _ = write!(
+            out,
+            "<g><title>pass {number}: {} to {} mm, mean {} mm</title><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
+             fill=\"{colour}\" opacity=\".45\"/><rect x=\"{0}\" y=\"{}\" width=\"{5}\" height=\"2.4\" fill=\"{colour}\"/></g>",
+            figure(w.min_mm, 3),
+            figure(w.max_mm, 3),
+            figure(w.mean_mm, 3),
+            coordinate(at - 0.5 * bar),
+            coordinate(high),
+            coordinate(bar),
+            coordinate((low - high).max(1.0)),
+            coordinate(mean - 1.2)
+        );
+    }
+    Some(out + &base_line() + "</svg>")
+}
+
+/// Wall seconds of each stage as bars.
+pub fn stages(stages: &[Stage]) -> Option<String> {
+    let known: Vec<&Stage> = stages.iter().filter(|s| s.wall_s.is_finite() && s.wall_s >= 0.0).collect();
+    let longest = known.iter().map(|s| s.wall_s).fold(0.0, f64::max);
+    known.first()?;
+    let (row, left) = (24.0, 110.0);
+    let height = row * known.len() as f64 + 4.0;
+    let mut out = format!(
+        "<svg class=\"chart\" viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"Wall time of each stage\">"
+    );
+    let axis = Axis { lo: 0.0, hi: longest, from: 0.0, to: WIDTH - left - 90.0 };
+    for (i, stage) in known.iter().enumerate() {
+        let y = row * i as f64;
+        let length = if longest > 0.0 { axis.at(stage.wall_s) } else { 0.0 };
+        let _ = write!(
+            out,
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text><rect class=\"bar\" x=\"{left}\" y=\"{}\" width=\"{}\" \
+             height=\"15\" rx=\"2\"/><text x=\"{}\" y=\"{1}\">{} s</text>",
+            left - 8.0,
+            coordinate(y + 15.0),
+            escape(&stage.name),
+            coordinate(y + 3.0),
+            coordinate(length.max(1.0)),
+            coordinate(left + length + 8.0),
+            if stage.wall_s >= 1000.0 { count(stage.wall_s as usize) } else { fixed(stage.wall_s, 2) }
+        );
+    }
+    Some(out + "</svg>")
+}

@@ -1,0 +1,26 @@
+//! What a person looks at before cutting metal: one offline HTML page, and a picture of it as SVG.
+//!
+//! [`html`] makes the page of a [`Report`]: verdict, part in 3D coloured by what the verification measured, path, moving
+//! tool, tables, charts and findings. Scripts and data stand in the file itself; nothing is loaded from anywhere. [`svg`] makes a static
+//! picture of at most about 300 kB, which the page also shows where the browser has no WebGL. Same report, same
+//! bytes.
+
+mod chart;
+mod data;
+mod legend;
+mod mesh;
+mod pack;
+mod page;
+mod picture;
+mod project;
+mod simplify;
+mod text;
+mod tool_body;
+
+pub use data::{
+    Column, FaceMesh, Histogram, Holder, Link, Outcome, Pass, PathPoints, Report, Scalar, Stage, Table, Tool,
+    ToolPose, Verdict, Worst,
+};
+pub use page::html;
+pub use picture::{PartColours, PathColours, View, svg};
+pub use project::Direction;

@@ -1,0 +1,158 @@
+//! Verification of poses against the faces of a job, shared by `plan` and `verify`.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part::JobFaces;
+use osculate_geom::Diagnostic;
+use osculate_tools::removal::{self, Cut, Limits, Sample, Swept, Verdict};
+use serde::Serialize;
+
+/// Most samples where the job does not say.
+const MAX_SAMPLES: usize = 400_000;
+/// Samples across the narrowest usual strip.
+const SAMPLES_ACROSS: f64 = 10.0;
+
+/// The `verification` object of `summary.json` and of `verify --json`.
+#[derive(Debug, Serialize, Clone)]
+pub struct Verification {
+    /// `nc` or `cl`.
+    pub source: &'static str,
+    /// Number of samples.
+    pub samples: usize,
+    /// Distance between samples, mm.
+    pub spacing_mm: f64,
+    /// What may hide between samples, mm.
+    pub sampling_bound_mm: f64,
+    /// Highest material left where the tool passed.
+    pub scallop_max_mm: f64,
+    /// Of 99 % of the area.
+    pub scallop_p99_mm: f64,
+    /// Median over the area.
+    pub scallop_median_mm: f64,
+    /// Deepest undercut.
+    pub gouge_max_mm: f64,
+    /// Area that no pass brought near the tolerance.
+    pub uncut_area_mm2: f64,
+    /// Whether everything holds.
+    pub within_tolerance: bool,
+}
+
+/// A worst place.
+#[derive(Debug, Serialize, Clone)]
+pub struct WorstPlace {
+    /// `scallop`, `gouge`, `uncut`, `holder` or `rapid`.
+    pub kind: String,
+    /// How bad.
+    pub value_mm: f64,
+    /// Where, part coordinates.
+    pub at_mm: [f64; 3],
+    /// The face.
+    pub face: String,
+    /// Its parameters.
+    pub uv: [f64; 2],
+    /// NC line or CL move, from 1; 0 where no motion did it.
+    pub block: u32,
+}
+
+/// A verification with what the report needs.
+pub struct Verified {
+    /// The figures.
+    pub summary: Verification,
+    /// Worst places.
+    pub worst: Vec<WorstPlace>,
+    /// Where it was measured.
+    pub samples: Vec<Sample>,
+    /// What was measured there.
+    pub cuts: Vec<Cut>,
+    /// The library's own verdict.
+    pub verdict: Verdict,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Runs the material removal of `motions` against the faces of the job.
+pub fn run(
+    job: &Job,
+    faces: &JobFaces,
+    motions: &[Swept],
+    source: &'static str,
+    strip_mm: Option<f64>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Verified, Failure> {
+    let cutter = job.cutter()?;
+    let holder = job.holder()?;
+    let tolerance = job.tolerance()?;
+    let max = job.verification.max_samples.unwrap_or(MAX_SAMPLES);
+    if max < 100 {
+        return Err(Failure::file(&job.path, "[verification] max_samples must be 100 or more"));
+    }
+    let strip = strip_mm
+        .filter(|s| s.is_finite() && *s > 0.0)
+        .unwrap_or_else(|| 2.0 * (2.0 * tolerance.scallop_mm * cutter.radius_mm()).sqrt());
+    let wanted = match job.verification.spacing_mm {
+        Some(s) if s.is_finite() && s > 0.0 => s,
+        Some(s) => {
+            return Err(Failure::file(&job.path, format!("[verification] spacing_mm = {s} must be positive")));
+        }
+        None => strip / SAMPLES_ACROSS,
+    };
+    let all: Vec<_> =
+        faces.faces.iter().map(|f| (f, false)).chain(faces.check.iter().map(|f| (f, true))).collect();
+    let area: f64 = faces.faces.iter().map(crate::part::area).sum();
+    let check_area: f64 = faces.check.iter().map(crate::part::area).sum();
+    let mut diagnostics = Vec::new();
+    // Check faces are sampled four times as coarsely: there only deep contact matters.
+    let coarsest = ((area + check_area / 16.0) / max as f64).sqrt();
+    let spacing = wanted.max(coarsest);
+    if spacing > 1.01 * wanted {
+        diagnostics.push(Diagnostic::warning(
+            "verification",
+            format!("samples are {spacing:.4} mm apart instead of {wanted:.4} mm to stay within {max} of them"),
+        ));
+    }
+    let mut samples = Vec::new();
+    for (k, (face, check_only)) in all.iter().enumerate() {
+        let step = if *check_only { 4.0 * spacing } else { spacing };
+        let found = removal::sample_surface(&*face.surface, k as u32, step, max)
+            .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
+        samples.extend(found.into_iter().map(|s| Sample { check_only: *check_only, ..s }));
+    }
+    let stock_mm = (20.0 * tolerance.scallop_mm).max(1.0).min(0.5 * cutter.radius_mm());
+    let limits = Limits { scallop_mm: tolerance.scallop_mm, gouge_mm: tolerance.gouge_mm };
+    let work = removal::Job {
+        cutter: &cutter,
+        holder: holder.as_ref(),
+        motions,
+        samples: &samples,
+        stock_mm,
+        depth_mm: cutter.radius_mm(),
+    };
+    let cuts = removal::cut(&work, progress);
+    let verdict = removal::judge(&samples, &cuts, &limits);
+    let sampling_bound_mm = spacing * spacing / (8.0 * cutter.radius_mm());
+    let worst = verdict
+        .worst
+        .iter()
+        .map(|w| WorstPlace {
+            kind: w.kind.to_string(),
+            value_mm: w.value_mm,
+            at_mm: [w.at.x, w.at.y, w.at.z],
+            face: all.get(w.face as usize).map_or_else(String::new, |f| f.0.id.clone()),
+            uv: [w.uv.u, w.uv.v],
+            block: w.block,
+        })
+        .collect();
+    let summary = Verification {
+        source,
+        samples: samples.len(),
+        spacing_mm: spacing,
+        sampling_bound_mm,
+        scallop_max_mm: verdict.scallop_max_mm,
+        scallop_p99_mm: verdict.scallop_p99_mm,
+        scallop_median_mm: verdict.scallop_median_mm,
+        gouge_max_mm: verdict.gouge_max_mm,
+        uncut_area_mm2: verdict.uncut_area_mm2,
+        within_tolerance: verdict.within_tolerance,
+    };
+    Ok(Verified { summary, worst, samples, cuts, verdict, diagnostics })
+}
