@@ -2,7 +2,8 @@
 //!
 //! Frame at a point: `t` along the line, `n` the outward normal, `b = n x t` (left of the line seen from outside).
 //! Per unit arc length the frame turns with the angular velocity (Darboux vector)
-//! `omega = tau_g t - k_n' b + k_g n`; signs below.
+//! `omega = -w_tb t + k_n b + k_g n`: k_n is the normal curvature along t (convex positive: over a convex body the normal
+//! leans forward), w_tb the component of the curvature matrix W between t and b, k_g the geodesic curvature.
 
 use crate::forms::{Degenerate, Forms};
 use crate::jet::Jet2;

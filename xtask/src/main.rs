@@ -1,2 +1,52 @@
-//! placeholder
-fn main() {}
+//! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy` and `cargo xtask ci`.
+//!
+//! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
+
+// A command of developers talks to its terminal; the ban on printing is for the libraries.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod ci;
+mod cmd;
+mod test;
+mod tidy;
+
+use std::process::ExitCode;
+
+/// What is printed for a missing or unknown command.
+const USAGE: &str = "\
+usage: cargo xtask COMMAND
+
+  test [ARGS]   every test of the workspace, doctests included; ARGS go to `cargo test`
+  tidy          the rules of the workspace that neither the compiler nor clippy checks
+  ci            formatting, tidy, clippy, documentation and tests; stops at the first failure";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match words.as_slice() {
+        ["test", rest @ ..] => test::run(rest),
+        ["tidy"] => tidy::run(),
+        ["ci"] => ci::run(),
+        ["help" | "--help" | "-h"] => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        [] => return wrong_usage("no command given"),
+        [command @ ("tidy" | "ci"), extra, ..] => {
+            return wrong_usage(&format!("{command} takes no arguments, got {extra}"));
+        }
+        [unknown, ..] => return wrong_usage(&format!("unknown command {unknown}")),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("xtask: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn wrong_usage(why: &str) -> ExitCode {
+    eprintln!("xtask: {why}\n{USAGE}");
+    ExitCode::from(2)
+}
