@@ -1,1 +1,44 @@
-//! placeholder
+//! From cutter location data to NC programs and back.
+//!
+//! - [`cldata`] reads and writes APT cutter location files.
+//! - [`machine`] describes machine tools as chains of joints; [`machine::Machine::solve`] finds the joints of a path:
+//!   branch and turn over the whole path, poles, limits, linearisation.
+//! - [`feed`] writes F so that every block takes the time it should, [`motion`] says how long the axes need.
+//! - [`nc`] words programs in the dialects of controls and reads them back to the tool's way; [`post`] does it all.
+//!
+//! ```
+//! use osculate_postproc::{cldata, post, readback, Dialect, FeedMode, Machine, PostOptions, Setup};
+//!
+//! let text = "RAPID\nGOTO/0,0,5,0,0.2,1\nFEDRAT/800,MMPM\nGOTO/10,0,5,0,0.3,1\nFINI\n";
+//! let path = cldata::read(text)?.path;
+//! let machine = Machine::built_in("trunnion-ac")?;
+//! let setup = Setup::default();
+//! let posted = post(&path, &machine, &setup, &PostOptions::new(Dialect::Sinumerik, FeedMode::InverseTime))?;
+//! assert!(posted.summary.tip_error_mm <= 0.002);
+//! let options = readback::ReadOptions::default();
+//! let back = readback::read(&posted.text, Dialect::Sinumerik, &machine, &setup, &options)?;
+//! let end = back.moves[back.moves.len() - 1].pose;
+//! assert!((end.tip - path.moves[1].pose.tip).norm() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod cldata;
+pub mod feed;
+pub mod joint_path;
+mod linearize;
+pub mod machine;
+pub mod motion;
+pub mod nc;
+mod post;
+mod sequence;
+mod setup;
+mod solve;
+
+pub use feed::{FeedMode, PathMetric};
+pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
+pub use machine::{Machine, MachineError, built_in_names};
+pub use nc::Dialect;
+pub use nc::readback;
+pub use post::{PostError, PostOptions, PostSummary, Posted, post};
+pub use setup::{Setup, SetupError};
+pub use solve::{SolveError, SolveOptions};

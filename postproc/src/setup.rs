@@ -23,7 +23,9 @@ pub struct Setup {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SetupError {
     /// NaN or infinite.
-    #[error("the setup has a number that is not finite (part zero {x_mm}, {y_mm}, {z_mm}; gauge length {gauge_length_mm})")]
+    #[error(
+        "the setup has a number that is not finite (part zero {x_mm}, {y_mm}, {z_mm}; gauge length {gauge_length_mm})"
+    )]
     NotFinite {
         /// Part zero.
         x_mm: f64,
@@ -35,7 +37,9 @@ pub enum SetupError {
         gauge_length_mm: f64,
     },
     /// A tool cannot reach into the spindle.
-    #[error("the gauge length is {gauge_length_mm} mm: give the length from the tip to the spindle nose, zero or more")]
+    #[error(
+        "the gauge length is {gauge_length_mm} mm: give the length from the tip to the spindle nose, zero or more"
+    )]
     GaugeLength {
         /// What was given.
         gauge_length_mm: f64,
@@ -75,7 +79,10 @@ impl Setup {
     #[must_use]
     pub fn to_part(&self, pose: &Pose) -> Pose {
         let back = self.part_zero.rotation.inverse();
-        Pose { tip: self.part_zero.inverse_transform_point(&pose.tip), axis: Unit3::new_normalize(back * pose.axis.into_inner()) }
+        Pose {
+            tip: self.part_zero.inverse_transform_point(&pose.tip),
+            axis: Unit3::new_normalize(back * pose.axis.into_inner()),
+        }
     }
 
     /// Programmed X Y Z with tool-centre-point control, for a tip in the part's frame.

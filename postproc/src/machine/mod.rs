@@ -11,8 +11,8 @@ use osculate_tools::Pose;
 
 pub use built_in::built_in_names;
 pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
-pub(crate) use pose::NearWish;
 pub use pose::{Candidate, Orientations};
+pub(crate) use pose::{LIMIT_SLACK, NearWish, angle_between, nearest_turn};
 use spec::{ControlSpec, FeedReading, JointSpec, MachineSpec, Sense};
 pub use two_axis::{Angles, AxisUnreachable, Solutions, TwoAxis, TwoAxisError};
 
@@ -54,13 +54,17 @@ pub enum MachineError {
         rotary: usize,
     },
     /// The joints are not in the order part to tool.
-    #[error("joint {letter} carries the part but stands after one that carries the tool: order them from part to tool")]
+    #[error(
+        "joint {letter} carries the part but stands after one that carries the tool: order them from part to tool"
+    )]
     Order {
         /// The joint.
         letter: String,
     },
     /// A letter is missing, malformed or used twice.
-    #[error("joint letter '{letter}' must be one capital letter with optional digits (CA1), once per machine")]
+    #[error(
+        "joint letter '{letter}' must be one capital letter with optional digits (CA1), once per machine"
+    )]
     Letter {
         /// What stands there.
         letter: String,
@@ -146,7 +150,9 @@ impl Machine {
             return Err(MachineError::LinearDependent { volume });
         }
         let pair = match rotary[..] {
-            [outer, inner] => Some(TwoAxis::new(joints[outer].direction, joints[inner].direction, tool_axis)?),
+            [outer, inner] => {
+                Some(TwoAxis::new(joints[outer].direction, joints[inner].direction, tool_axis)?)
+            }
             [only] => {
                 // One axis is checked as the inner one of a pair with any second axis across it.
                 let b = joints[only].direction;
@@ -250,7 +256,7 @@ fn positive(whose: &str, what: &'static str, value: f64) -> Result<f64, MachineE
 
 fn limits(whose: &str, min: Option<f64>, max: Option<f64>) -> Result<(), MachineError> {
     let value = match (min, max) {
-        (Some(a), Some(b)) if !(a < b) => a,
+        (Some(a), Some(b)) if a >= b => a,
         (Some(a), _) if !a.is_finite() => a,
         (_, Some(b)) if !b.is_finite() => b,
         _ => return Ok(()),
@@ -277,7 +283,12 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
     let direction = if sense == Sense::Iso { dir } else { -dir };
     let (point, min, max, v, a, j, to) = match *spec {
         JointSpec::Linear {
-            min_mm, max_mm, max_velocity_mm_s, max_acceleration_mm_s2, max_jerk_mm_s3, ..
+            min_mm,
+            max_mm,
+            max_velocity_mm_s,
+            max_acceleration_mm_s2,
+            max_jerk_mm_s3,
+            ..
         } => ([0.0; 3], min_mm, max_mm, max_velocity_mm_s, max_acceleration_mm_s2, max_jerk_mm_s3, 1.0),
         JointSpec::Rotary {
             point_mm,
@@ -299,7 +310,12 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
     };
     limits(&whose, min, max)?;
     if let Some(bad) = point.into_iter().find(|c| !c.is_finite()) {
-        return Err(MachineError::Value { whose, what: "point_mm", value: bad, wanted: "finite coordinates" });
+        return Err(MachineError::Value {
+            whose,
+            what: "point_mm",
+            value: bad,
+            wanted: "finite coordinates",
+        });
     }
     Ok(Joint {
         letter: letter.clone(),
@@ -334,7 +350,8 @@ fn check_names_and_order(joints: &[Joint]) -> Result<(), MachineError> {
         let letter = &joint.letter;
         let mut chars = letter.chars();
         let first = chars.next().is_some_and(|c| c.is_ascii_uppercase() && !RESERVED.contains(c));
-        let rest = letter.len() <= 4 && letter.chars().skip(1).all(|c| c.is_ascii_uppercase() || c.is_ascii_digit());
+        let rest =
+            letter.len() <= 4 && letter.chars().skip(1).all(|c| c.is_ascii_uppercase() || c.is_ascii_digit());
         let ends = letter.len() < 2 || letter.ends_with(|c: char| c.is_ascii_digit());
         if !(first && rest && ends) || joints[..i].iter().any(|j| &j.letter == letter) {
             return Err(MachineError::Letter { letter: letter.clone() });

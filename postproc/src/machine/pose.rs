@@ -3,7 +3,7 @@
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::Pose;
 
-use super::chain::{self, JointKind, JointValues};
+use super::chain::{self, JointValues};
 use super::two_axis::{Angles, AxisUnreachable, REACH_TOLERANCE_RAD, angle_about, rotate};
 use super::{Joint, Machine};
 use crate::setup::Setup;
@@ -89,14 +89,23 @@ impl Machine {
                     let Angles { outer_rad, inner_rad } = found.branches[branch];
                     Candidate { rotary_rad: [outer_rad, inner_rad], branch }
                 };
-                Ok(Orientations { candidates: [candidate(0), candidate(1)], count: 2, pole_rad: found.pole_rad })
+                Ok(Orientations {
+                    candidates: [candidate(0), candidate(1)],
+                    count: 2,
+                    pole_rad: found.pole_rad,
+                })
             }
         }
     }
 
     /// The joints at which the tip is at `tip` (table's frame) with the rotary joints given; `None` where the linear
     /// joints are caught in a plane.
-    pub(crate) fn with_tip(&self, rotary_rad: &[f64; 2], tip: &Point3, gauge_length_mm: f64) -> Option<JointValues> {
+    pub(crate) fn with_tip(
+        &self,
+        rotary_rad: &[f64; 2],
+        tip: &Point3,
+        gauge_length_mm: f64,
+    ) -> Option<JointValues> {
         let mut values = [0.0; chain::MAX_JOINTS];
         for (place, angle) in self.rotary().iter().zip(rotary_rad) {
             values[*place] = *angle;
@@ -166,7 +175,9 @@ impl Machine {
 
     /// The first joint out of its range, with its place.
     pub(crate) fn out_of_limits(&self, values: &JointValues) -> Option<(usize, f64)> {
-        (0..self.joints().len()).map(|i| (i, self.joints()[i].excess(values[i]))).find(|(_, e)| *e > LIMIT_SLACK)
+        (0..self.joints().len())
+            .map(|i| (i, self.joints()[i].excess(values[i])))
+            .find(|(_, e)| *e > LIMIT_SLACK)
     }
 
     /// Values of the rotary joints, outer first.
@@ -190,11 +201,6 @@ impl Machine {
     /// A range check that names the joint: used where a value is reported.
     pub(crate) fn joint_at(&self, place: usize) -> &Joint {
         &self.joints()[place]
-    }
-
-    /// Whether the joint at this place is a slide.
-    pub(crate) fn is_linear(&self, place: usize) -> bool {
-        self.joints()[place].kind == JointKind::Linear
     }
 }
 

@@ -53,7 +53,9 @@ pub struct AxisUnreachable {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TwoAxisError {
     /// The rotary axes are parallel.
-    #[error("the two rotary axes are parallel (sine of the angle between them {sine:.2e}): give one another direction")]
+    #[error(
+        "the two rotary axes are parallel (sine of the angle between them {sine:.2e}): give one another direction"
+    )]
     ParallelAxes {
         /// Sine of the angle between them.
         sine: f64,
@@ -140,7 +142,8 @@ impl TwoAxis {
     /// The reachable axes make an angle with `b` between `|ab - ua|` and `pi - |pi - ab - ua|`.
     fn off_rad(&self, w: &Unit3) -> f64 {
         let angle = |p: &Vec3, q: &Vec3| p.cross(q).norm().atan2(p.dot(q));
-        let (ab, ua, wb) = (angle(&self.inner, &self.outer), angle(&self.tool, &self.inner), angle(w, &self.outer));
+        let (ab, ua, wb) =
+            (angle(&self.inner, &self.outer), angle(&self.tool, &self.inner), angle(w, &self.outer));
         let least = (ab - ua).abs();
         let most = std::f64::consts::PI - (std::f64::consts::PI - ab - ua).abs();
         (least - wb).max(wb - most).max(0.0)

@@ -19,7 +19,8 @@ pub struct Strip {
     pub right_mm: f64,
     /// How deep the swept tool goes below the part inside the strip; zero where it does not.
     pub undercut_mm: f64,
-    /// Bound on the numerical error of `width_mm`: root brackets and integration of the cross line.
+    /// Estimate of the numerical error of `width_mm`: root brackets, integration of the cross line, rounding of
+    /// coordinates.
     pub error_mm: f64,
     /// Whether the strip ends at an edge of the surface rather than at the tolerance: `[left, right]`.
     pub at_edge: [bool; 2],
@@ -78,6 +79,8 @@ pub fn standoff(
 const STEPS_PER_SIDE: f64 = 12.0;
 /// Most steps of the walk: strips that conform far better than the leading order says are still found.
 const MAX_STEPS: u32 = 4000;
+/// Rounding in the standoff at the contact itself, relative to the tolerance.
+const CLOSED_BAND: f64 = 1e-6;
 /// Accuracy of the strip's edge relative to the half width.
 const EDGE_TOLERANCE: f64 = 1e-13;
 
@@ -114,12 +117,15 @@ pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError
     };
     let left = side.walk(1.0)?;
     let right = side.walk(-1.0)?;
+    // Heights carry the rounding of coordinates; near its edge the profile rises by 2 h over the half width.
+    let size = contact.frame.point.coords.amax() + radius;
+    let rounding = 4.0 * f64::EPSILON * size * (left.edge + right.edge) / (2.0 * h);
     Ok(Strip {
         width_mm: left.edge + right.edge,
         left_mm: left.edge,
         right_mm: right.edge,
         undercut_mm: left.undercut.max(right.undercut),
-        error_mm: left.error + right.error,
+        error_mm: left.error + right.error + rounding,
         at_edge: [left.at_edge, right.at_edge],
     })
 }
@@ -160,7 +166,8 @@ impl<M: SweptMotion> Side<'_, M> {
         let mut q = 0.0;
         let first = self.standoff(here.at, t)?;
         let height = first.map_or(f64::INFINITY, |r| r.at_mm);
-        if height > self.h {
+        // A tool lifted by just the tolerance still counts: the band is closed.
+        if height > self.h * (1.0 + CLOSED_BAND) {
             return Err(StripError::AboveTolerance { standoff_mm: height, scallop_mm: self.h });
         }
         let mut undercut = Undercut::new(here, t, height);

@@ -1,0 +1,152 @@
+//! The main job on a small built-in part: files, figures, and the verdict from the NC text.
+
+mod common;
+use common::{Scratch, job, osculate};
+use serde_json::Value;
+
+fn number(v: &Value, path: &[&str]) -> f64 {
+    path.iter().fold(v, |v, k| &v[*k]).as_f64().unwrap_or_else(|| panic!("{path:?} in {v}"))
+}
+
+#[test]
+fn a_plan_is_written_posted_verified_and_reported() {
+    let scratch = Scratch::new();
+    for (dialect, extension, feed) in
+        [("linuxcnc", "ngc", "tcp"), ("linuxcnc", "ngc", "inverse_time"), ("sinumerik", "mpf", "tcp")]
+    {
+        let text = job(|j| {
+            j.replace("\"linuxcnc\"", &format!("\"{dialect}\"")).replace("\"tcp\"", &format!("\"{feed}\""))
+        });
+        let path = scratch.write("job.toml", &text);
+        let out = scratch.path(&format!("{dialect}-{feed}"));
+        let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+        assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+        let program = out.join(format!("program.{extension}"));
+        let mut names: Vec<String> = std::fs::read_dir(&out)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        let mut want =
+            vec!["path.cl".to_owned(), "picture.svg".into(), format!("program.{extension}"), "report.html".into(), "summary.json".into()];
+        want.sort();
+        assert_eq!(names, want);
+
+        let summary: Value =
+            serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+        assert_eq!(summary["verification"], run.json()["verification"]);
+        let v = &summary["verification"];
+        assert_eq!((v["source"].as_str(), v["within_tolerance"].as_bool()), (Some("nc"), Some(true)), "{v}");
+        let scallop = number(v, &["scallop_max_mm"]);
+        assert!(scallop > 0.012 && scallop <= 0.02, "{v}");
+        assert!(number(v, &["gouge_max_mm"]) <= 0.005 && number(v, &["uncut_area_mm2"]) == 0.0, "{v}");
+        assert!(number(&summary, &["time_min"]) >= number(&summary, &["cutting_time_min"]));
+        let global = number(&summary, &["area_mm2"]) / number(&summary, &["time_min"]);
+        assert!((number(&summary, &["productivity_mm2_min", "global"]) / global - 1.0).abs() < 1e-12);
+        assert_eq!(summary["productivity_mm2_min"]["regional"].as_array().unwrap().len() as f64, number(&summary, &["passes"]));
+
+        // The CL file verifies too, and so does the program on its own.
+        for (file, source) in [(out.join("path.cl"), "cl"), (program.clone(), "nc")] {
+            let run = osculate(&["verify", file.to_str().unwrap(), "--job", path.to_str().unwrap(), "--json"]);
+            assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+            let v = run.json();
+            assert_eq!((v["source"].as_str(), v["within_tolerance"].as_bool()), (Some(source), Some(true)));
+            assert!((number(&v, &["scallop_max_mm"]) / scallop - 1.0).abs() < 0.05, "{v}");
+            assert!(v["worst"].as_array().is_some_and(|w| !w.is_empty()));
+        }
+
+        // A tool that plunges by 30 um in one block of the program is found, at that block, and the exit code says so.
+        let text = std::fs::read_to_string(out.join("path.cl")).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let goto: Vec<usize> = (0..lines.len()).filter(|k| lines[*k].starts_with("GOTO/")).collect();
+        let middle = goto[goto.len() / 2];
+        let mut numbers: Vec<f64> = lines[middle][5..].split(',').map(|x| x.parse().unwrap()).collect();
+        for k in 0..3 {
+            numbers[k] -= 0.03 * numbers[k + 3];
+        }
+        let spoiled = format!("GOTO/{}", numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(","));
+        let mut changed: Vec<&str> = lines.clone();
+        changed[middle] = &spoiled;
+        let file = scratch.write("spoiled.cl", &changed.join("\n"));
+        let run = osculate(&["verify", file.to_str().unwrap(), "--job", path.to_str().unwrap(), "--json"]);
+        assert_eq!(run.code, 1, "{}{}", run.out, run.err);
+        let v = run.json();
+        assert_eq!(v["within_tolerance"].as_bool(), Some(false));
+        let gouge = number(&v, &["gouge_max_mm"]);
+        assert!(gouge > 0.025 && gouge < 0.033, "{gouge}");
+        let worst = v["worst"].as_array().unwrap().iter().find(|w| w["kind"] == "gouge").unwrap();
+        let index = goto.iter().position(|g| *g == middle).unwrap() as f64;
+        assert!((number(worst, &["block"]) - index).abs() <= 1.0, "{worst} against {index}");
+    }
+}
+
+#[test]
+fn same_job_same_bytes_whatever_the_number_of_threads() {
+    let scratch = Scratch::new();
+    let path = scratch.write("job.toml", &job(|j| j));
+    let run = |threads: &str| {
+        let out = scratch.path(threads);
+        let done = std::process::Command::new(env!("CARGO_BIN_EXE_osculate"))
+            .args(["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap()])
+            .env("RAYON_NUM_THREADS", threads)
+            .output()
+            .unwrap();
+        assert!(done.status.success());
+        let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
+        let mut summary: Value = serde_json::from_str(&summary).unwrap();
+        // Wall times are the only thing that may differ.
+        summary.as_object_mut().unwrap().remove("wall_s");
+        let file = |n: &str| std::fs::read(out.join(n)).unwrap();
+        (file("path.cl"), file("program.ngc"), file("picture.svg"), summary)
+    };
+    assert!(run("1") == run("3"));
+}
+
+#[test]
+fn contour_passes_with_a_ball() {
+    let scratch = Scratch::new();
+    let text = job(|j| {
+        j.replace(
+            "kind = \"paraboloid\", a_per_mm = 0.005, b_per_mm = -0.003, half_size_mm = 6",
+            "kind = \"sphere\", radius_mm = 25, u_range = [0, 0.6], v_range = [0.4, 0.9]",
+        )
+        .replace("kind = \"isoparametric\"\nlead_deg = 15", "kind = \"contour_2cl\"")
+    });
+    let path = scratch.write("job.toml", &text);
+    let out = scratch.path("out");
+    let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    let v = run.json();
+    assert_eq!(v["strategy"], "contour_2cl");
+    assert_eq!(v["verification"]["within_tolerance"].as_bool(), Some(true));
+}
+
+#[test]
+fn cl_data_is_posted_for_other_machines() {
+    let scratch = Scratch::new();
+    let path = scratch.write("job.toml", &job(|j| j));
+    let out = scratch.path("out");
+    let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let cl = out.join("path.cl");
+    for (machine, dialect, feed) in
+        [("trunnion-ac", "sinumerik", "inverse_time"), ("trunnion-ac", "sinumerik", "kv"), ("trunnion-bc", "linuxcnc", "inverse_time")]
+    {
+        let program = scratch.path("program.txt");
+        let args = [
+            "post", cl.to_str().unwrap(), "--machine", machine, "--dialect", dialect, "--feed", feed, "--out",
+            program.to_str().unwrap(), "--json",
+        ];
+        let run = osculate(&args);
+        assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+        let v = run.json();
+        assert!(number(&v, &["blocks"]) > 50.0 && number(&v, &["time_min"]) > 0.0, "{v}");
+        assert!(number(&v, &["tip_error_mm"]) <= 0.0021, "{v}");
+        assert!(program.exists());
+    }
+    osculate(&["post", cl.to_str().unwrap(), "--machine", "nope", "--dialect", "sinumerik", "--out", "x"])
+        .refused(&["nope", "trunnion-ac"]);
+    let bad = scratch.write("bad.cl", "GOTO/1,2,zebra\n");
+    osculate(&["post", bad.to_str().unwrap(), "--machine", "trunnion-ac", "--dialect", "sinumerik", "--out", "x"])
+        .refused(&["bad.cl", "line 1"]);
+}

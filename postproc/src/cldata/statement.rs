@@ -1,0 +1,82 @@
+//! Lines of APT text put together to statements: comments off, continuations joined, upper case.
+
+/// One statement.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Statement {
+    /// The line on which it starts, from 1.
+    pub line: usize,
+    /// The word before the slash, without blanks.
+    pub word: String,
+    /// What stands behind the slash, separated by commas, trimmed; upper case.
+    pub fields: Vec<String>,
+}
+
+/// Words whose text is free: they are never split, continued or put into upper case by rule.
+const FREE_TEXT: [&str; 6] = ["PARTNO", "PPRINT", "INSERT", "TPRINT", "OPNAME", "REMARK"];
+
+/// All statements of the text.
+pub(super) fn statements(text: &str) -> Vec<Statement> {
+    let mut found = Vec::new();
+    let mut pending: Option<(usize, String)> = None;
+    for (number, raw) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        let free = pending.is_none() && is_free(raw);
+        let line = if free { raw } else { raw.find("$$").map_or(raw, |at| &raw[..at]) };
+        let line = line.trim();
+        let (start, mut joined) = pending.take().unwrap_or((number + 1, String::new()));
+        if let (Some(head), false) = (line.strip_suffix('$'), free) {
+            joined.push_str(head);
+            pending = Some((start, joined));
+            continue;
+        }
+        joined.push_str(line);
+        push(&mut found, start, &joined);
+    }
+    if let Some((start, joined)) = pending {
+        push(&mut found, start, &joined);
+    }
+    found
+}
+
+fn is_free(line: &str) -> bool {
+    let word: String = line.trim_start().chars().take_while(char::is_ascii_alphabetic).collect();
+    FREE_TEXT.contains(&word.to_ascii_uppercase().as_str())
+}
+
+fn push(found: &mut Vec<Statement>, line: usize, text: &str) {
+    let text = text.trim();
+    if text.is_empty() {
+        return;
+    }
+    let (word, rest) = match text.split_once('/') {
+        Some((word, rest)) if !is_free(text) => (word, Some(rest)),
+        _ => (text.split_whitespace().next().unwrap_or(text), None),
+    };
+    let word = word.split_whitespace().collect::<String>().to_ascii_uppercase();
+    let word = if rest.is_none() { word.split('/').next().unwrap_or_default().to_string() } else { word };
+    let fields = rest.filter(|r| !r.trim().is_empty());
+    let fields =
+        fields.map_or_else(Vec::new, |r| r.split(',').map(|f| f.trim().to_ascii_uppercase()).collect());
+    found.push(Statement { line, word, fields });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_continuations_case_and_blanks() {
+        let text =
+            "$$ nothing\npartno a / b $$ stays\nGoto  / 1., 2 $\n  ,3 $$ end\n\nFEDRAT/ 10,mmpm\nRAPID\n";
+        let all = statements(text);
+        let words: Vec<_> = all.iter().map(|s| (s.line, s.word.as_str(), s.fields.join(";"))).collect();
+        assert_eq!(
+            words,
+            [
+                (2, "PARTNO", String::new()),
+                (3, "GOTO", "1.;2;3".into()),
+                (6, "FEDRAT", "10;MMPM".into()),
+                (7, "RAPID", String::new())
+            ]
+        );
+    }
+}

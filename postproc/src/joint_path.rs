@@ -1,0 +1,60 @@
+//! A path in joints: what a machine is told, before a dialect words it.
+
+use osculate_geom::{Diagnostic, Point3};
+use osculate_tools::cl::Motion;
+
+use crate::machine::JointValues;
+
+/// Why a block is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockKind {
+    /// It ends at a CL point.
+    Point,
+    /// It was put between two CL points to keep the tool on its line.
+    Inserted,
+    /// Part of a rewind: away from the part, rotary joints into another turn or branch, back.
+    Rewind,
+}
+
+/// One move, from where the block before ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointBlock {
+    /// Where the joints end, mm and rad in chain order. Endless rotary joints count on through whole turns.
+    pub joints: JointValues,
+    /// Where the tip ends, in the part's frame, mm.
+    pub tip: Point3,
+    /// Rapid, or at a feed of the tip relative to the part.
+    pub motion: Motion,
+    /// Which CL move it belongs to.
+    pub source: usize,
+    /// Length of the tip's way relative to the part, mm.
+    pub tip_length_mm: f64,
+    /// Why it is there.
+    pub kind: BlockKind,
+}
+
+/// What solving a path took.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct SolveSummary {
+    /// Blocks of kind [`BlockKind::Inserted`].
+    pub inserted_points: usize,
+    /// Rewinds.
+    pub rewinds: usize,
+    /// Length of the tip's way during which the outer rotary joint was held near a pole, mm.
+    pub singular_mm: f64,
+    /// Greatest distance of the tip from the CL line in feed moves, mm.
+    pub tip_error_mm: f64,
+    /// Greatest angle of the tool axis from the CL's in feed moves, rad.
+    pub axis_error_rad: f64,
+}
+
+/// A whole path in joints. The first block leads from an unknown place.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct JointPath {
+    /// The blocks.
+    pub blocks: Vec<JointBlock>,
+    /// What it took.
+    pub summary: SolveSummary,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}

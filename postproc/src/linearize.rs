@@ -1,0 +1,201 @@
+//! Keeping the tool on its line: blocks are halved until the control's own interpolation is near enough.
+//!
+//! Between two CL points the tip moves on a straight line and the axis on a great circle. A control interpolates the
+//! joints linearly instead; with tool-centre-point control it keeps the tip on the line and only the axis strays.
+//! A block is accepted where neither the tip nor the axis strays by more than its tolerance at seven inner points and
+//! the end. The deviation of one block is close to a parabola, so the inner points see at least 98 % of its height.
+
+use osculate_geom::{Unit3, any_perpendicular};
+use osculate_tools::{Pose, cl::Motion};
+
+use crate::joint_path::{BlockKind, JointBlock, JointPath};
+use crate::machine::{JointValues, Machine, NearWish, angle_between};
+use crate::setup::Setup;
+use crate::solve::{SolveError, SolveOptions};
+
+/// Rotary joints never move further in one block, rad. Controls that take the shortest way need less than half a turn.
+const LARGEST_ROTARY_STEP_RAD: f64 = 0.5 * std::f64::consts::PI;
+
+/// Parts per block at which the deviation is looked at.
+const PARTS: u32 = 8;
+
+/// Halvings after which a block counts as a jump: 2^-24 of a CL move is far below any resolution.
+const MOST_HALVINGS: u32 = 24;
+
+/// The pose at parameter `t` of a CL move: straight tip, great circle of the axis.
+pub(crate) fn pose_between(a: &Pose, b: &Pose, t: f64) -> Pose {
+    Pose { tip: a.tip + (b.tip - a.tip) * t, axis: slerp(&a.axis, &b.axis, t) }
+}
+
+/// On the great circle from `a` to `b`; opposite axes go round by an arbitrary but fixed way.
+pub(crate) fn slerp(a: &Unit3, b: &Unit3, t: f64) -> Unit3 {
+    let angle = angle_between(a, b);
+    // Below this the arc and its chord are the same number.
+    if angle < 1e-9 {
+        return Unit3::new_normalize(a.into_inner() * (1.0 - t) + b.into_inner() * t);
+    }
+    let across = Unit3::try_new(b.into_inner() - a.into_inner() * a.dot(b), 1e-9)
+        .unwrap_or_else(|| any_perpendicular(a));
+    let (s, c) = (angle * t).sin_cos();
+    Unit3::new_normalize(a.into_inner() * c + across.into_inner() * s)
+}
+
+/// How far a block strays.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct Stray {
+    pub tip_mm: f64,
+    pub axis_rad: f64,
+}
+
+/// A pose with the joints chosen for it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    pub pose: Pose,
+    pub joints: JointValues,
+}
+
+/// What all blocks of a path have in common.
+pub(crate) struct Liner<'a> {
+    pub machine: &'a Machine,
+    pub setup: &'a Setup,
+    pub options: &'a SolveOptions,
+    pub path: JointPath,
+}
+
+/// What all blocks of one line have in common.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Label {
+    pub motion: Motion,
+    pub source: usize,
+    pub kind: BlockKind,
+}
+
+impl Liner<'_> {
+    /// Appends the blocks from `from` (where the path ends) to `to`.
+    pub(crate) fn line(&mut self, from: &Placed, to: &Placed, label: &Label) -> Result<(), SolveError> {
+        self.part(&Line { from, to, label }, (0.0, from.joints), (1.0, to.joints), MOST_HALVINGS)
+    }
+
+    fn part(
+        &mut self,
+        line: &Line,
+        a: (f64, JointValues),
+        b: (f64, JointValues),
+        left: u32,
+    ) -> Result<(), SolveError> {
+        let rapid = line.label.motion == Motion::Rapid;
+        let stray = self.stray(line, a, b);
+        let o = self.options;
+        let near = if rapid {
+            stray.tip_mm <= o.rapid_tol_mm
+        } else {
+            stray.tip_mm <= o.tip_tol_mm && stray.axis_rad <= o.axis_tol_rad
+        };
+        let (qa, qb) = (self.machine.rotary_of(&a.1), self.machine.rotary_of(&b.1));
+        let turns = (0..2).map(|k| (qb[k] - qa[k]).abs()).fold(0.0, f64::max);
+        if near && turns <= LARGEST_ROTARY_STEP_RAD {
+            self.push(line, a.0, b, &stray);
+            return Ok(());
+        }
+        if left == 0 {
+            return Err(SolveError::Jump {
+                index: line.label.source,
+                tip_mm: stray.tip_mm,
+                axis_deg: stray.axis_rad.to_degrees(),
+                rotary_deg: turns.to_degrees(),
+            });
+        }
+        let t = 0.5 * (a.0 + b.0);
+        let wish = [0.5 * (qa[0] + qb[0]), 0.5 * (qa[1] + qb[1])];
+        let pose = pose_between(&line.from.pose, &line.to.pose, t);
+        let middle = self.place(&pose, wish, rapid, line.label.source)?;
+        self.part(line, a, (t, middle), left - 1)?;
+        self.part(line, (t, middle), b, left - 1)
+    }
+
+    /// Joints for a pose in between. A rapid move keeps the tip only; its axis may go the joints' own way.
+    fn place(
+        &self,
+        pose: &Pose,
+        wish: [f64; 2],
+        rapid: bool,
+        index: usize,
+    ) -> Result<JointValues, SolveError> {
+        let table = self.setup.to_table(pose);
+        let rotary = if rapid {
+            wish
+        } else {
+            let wish = NearWish { rotary_rad: wish, cone_rad: self.options.singular_cone_rad };
+            let found = self.machine.rotary_near(&table.axis, &wish);
+            found.map_err(|e| SolveError::unreachable(index, pose, e))?
+        };
+        self.checked(&rotary, pose, index)
+    }
+
+    /// Joints for rotary joints and a pose whose tip they must hold, inside all limits.
+    pub(crate) fn checked(
+        &self,
+        rotary: &[f64; 2],
+        pose: &Pose,
+        index: usize,
+    ) -> Result<JointValues, SolveError> {
+        let table = self.setup.to_table(pose);
+        let joints = self.machine.with_tip(rotary, &table.tip, self.setup.gauge_length_mm);
+        let joints = joints.ok_or_else(|| SolveError::flat(index, pose))?;
+        match self.machine.out_of_limits(&joints) {
+            None => Ok(joints),
+            Some((place, _)) => Err(SolveError::limit(self.machine, index, pose, place, joints[place])),
+        }
+    }
+
+    fn stray(&self, line: &Line, a: (f64, JointValues), b: (f64, JointValues)) -> Stray {
+        let mut worst = Stray::default();
+        for k in 1..=PARTS {
+            let s = f64::from(k) / f64::from(PARTS);
+            let want = pose_between(&line.from.pose, &line.to.pose, a.0 + (b.0 - a.0) * s);
+            let mut q = a.1;
+            for (i, v) in q.iter_mut().enumerate() {
+                *v += (b.1[i] - a.1[i]) * s;
+            }
+            let pose = self.machine.forward(&q, self.setup);
+            if !self.options.tcp {
+                worst.tip_mm = worst.tip_mm.max((pose.tip - want.tip).norm());
+            }
+            worst.axis_rad = worst.axis_rad.max(angle_between(&pose.axis, &want.axis));
+        }
+        worst
+    }
+
+    fn push(&mut self, line: &Line, t: f64, end: (f64, JointValues), stray: &Stray) {
+        let whole = line.to.pose.tip - line.from.pose.tip;
+        let kind = match line.label.kind {
+            BlockKind::Point if end.0 < 1.0 => BlockKind::Inserted,
+            kind => kind,
+        };
+        let summary = &mut self.path.summary;
+        summary.inserted_points += usize::from(kind == BlockKind::Inserted);
+        if line.label.motion != Motion::Rapid {
+            summary.tip_error_mm = summary.tip_error_mm.max(stray.tip_mm);
+            summary.axis_error_rad = summary.axis_error_rad.max(stray.axis_rad);
+        }
+        self.path.blocks.push(JointBlock {
+            joints: end.1,
+            tip: line.from.pose.tip + whole * end.0,
+            motion: line.label.motion,
+            source: line.label.source,
+            tip_length_mm: whole.norm() * (end.0 - t),
+            kind,
+        });
+    }
+}
+
+/// One CL move with the joints at its ends.
+struct Line<'a> {
+    from: &'a Placed,
+    to: &'a Placed,
+    label: &'a Label,
+}
+
+#[cfg(test)]
+#[path = "linearize_tests.rs"]
+mod tests;

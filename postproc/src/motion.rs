@@ -1,0 +1,140 @@
+//! Time of moves with limited speed, acceleration and jerk, from rest to rest.
+//!
+//! With speed v, acceleration a and no jerk limit, over a distance s:
+//!
+//! ```text
+//! t = s / v + v / a                where s >= v^2 / a (trapezoid), else t = 2 sqrt(s / a)
+//! ```
+//!
+//! With jerk j (seven phases): reaching speed w from rest takes `w / a + a / j` where `w >= a^2 / j`, else
+//! `2 sqrt(w / j)`; speeding up and slowing down cover `w` times that time; the rest runs at w = v. Where the distance
+//! is too short for v, the peak speed follows from a quadratic or a cube root.
+
+use std::collections::BTreeMap;
+
+use crate::feed::capped_duration;
+use crate::machine::{Drive, JointValues, Machine};
+
+/// Time to cover `distance` (mm or rad, the sign does not matter) from rest to rest, s.
+#[must_use]
+pub fn move_time_s(distance: f64, drive: &Drive) -> f64 {
+    let s = distance.abs();
+    if s == 0.0 {
+        return 0.0;
+    }
+    let (v, a) = (drive.velocity_per_s, drive.acceleration_per_s2);
+    let Some(j) = drive.jerk_per_s3 else {
+        return if s >= v * v / a { s / v + v / a } else { 2.0 * (s / a).sqrt() };
+    };
+    let ramp = |w: f64| if w * j >= a * a { w / a + a / j } else { 2.0 * (w / j).sqrt() };
+    if s >= v * ramp(v) {
+        return s / v + ramp(v);
+    }
+    // Peak w with w (w / a + a / j) = s, if it reaches full acceleration; else 2 w sqrt(w / j) = s.
+    let shift = 0.5 * a * a / j;
+    let peak = (shift * shift + s * a).sqrt() - shift;
+    let peak = if peak * j >= a * a { peak } else { (0.25 * s * s * j).cbrt() };
+    2.0 * ramp(peak)
+}
+
+/// Time of a rapid move from rest to rest, min, with the joint that needs longest.
+#[must_use]
+pub fn rapid_time_min(machine: &Machine, from: &JointValues, to: &JointValues) -> (f64, Option<usize>) {
+    let mut longest = (0.0, None);
+    for (place, joint) in machine.joints().iter().enumerate() {
+        let t = move_time_s(to[place] - from[place], &joint.drive) / 60.0;
+        if t > longest.0 {
+            longest = (t, Some(place));
+        }
+    }
+    longest
+}
+
+/// A move whose time is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedMove {
+    /// Joints before.
+    pub from: JointValues,
+    /// Joints after.
+    pub to: JointValues,
+    /// A rapid move: its time follows from the drives alone.
+    pub rapid: bool,
+    /// Time that F asks for, min; not read in rapid moves.
+    pub time_min: f64,
+}
+
+/// How long a program takes.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct ProgramTime {
+    /// Feed moves, min.
+    pub cutting_min: f64,
+    /// Rapid moves, min.
+    pub rapid_min: f64,
+    /// Per joint letter, how many moves it made longer than F asks (or, rapid, how many it bounds).
+    pub limited_by: BTreeMap<String, usize>,
+}
+
+impl ProgramTime {
+    /// All of it, min.
+    #[must_use]
+    pub fn time_min(&self) -> f64 {
+        self.cutting_min + self.rapid_min
+    }
+}
+
+/// Time of a program: feed moves at their F or at the slowest joint's greatest speed, without ramps between them;
+/// rapid moves from rest to rest.
+#[must_use]
+pub fn program_time(machine: &Machine, moves: impl IntoIterator<Item = TimedMove>) -> ProgramTime {
+    let mut total = ProgramTime::default();
+    for m in moves {
+        let place = if m.rapid {
+            let (t, place) = rapid_time_min(machine, &m.from, &m.to);
+            total.rapid_min += t;
+            place
+        } else {
+            let capped = capped_duration(machine, &m.from, &m.to, m.time_min);
+            total.cutting_min += capped.duration_min;
+            capped.joint
+        };
+        if let Some(joint) = place.map(|p| &machine.joints()[p]) {
+            *total.limited_by.entry(joint.letter.clone()).or_default() += 1;
+        }
+    }
+    total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drive(jerk: Option<f64>) -> Drive {
+        Drive { velocity_per_s: 500.0 / 3.0, acceleration_per_s2: 1000.0, jerk_per_s3: jerk }
+    }
+
+    #[test]
+    fn known_profiles() {
+        // Six decimals are printed; the first is 0.6 + 1/6.
+        let near = |got: f64, want: f64| assert!((got - want).abs() < 6e-7, "{got} is not {want}");
+        near(move_time_s(100.0, &drive(None)), 0.766_667);
+        near(move_time_s(-100.0, &drive(Some(50_000.0))), 0.786_667);
+        near(move_time_s(10.0, &drive(Some(50_000.0))), 0.220_998);
+        near(move_time_s(0.1, &drive(Some(50_000.0))), 0.040_000);
+        near(move_time_s(10.0, &drive(None)), 0.2);
+        assert_eq!(move_time_s(0.0, &drive(None)), 0.0);
+    }
+
+    /// Monotone in the distance across all regimes, continuous at their borders, and never below the jerk-free time.
+    #[test]
+    fn regimes_join() {
+        let mut before = 0.0;
+        for i in 1..4000 {
+            let s = 0.01 * f64::from(i);
+            let t = move_time_s(s, &drive(Some(50_000.0)));
+            // The steepest slope is at the first step, where t grows with the cube root of s.
+            assert!(t > before && (i == 1 || t - before < 0.006), "at {s} mm: {before} then {t}");
+            assert!(t >= move_time_s(s, &drive(None)));
+            before = t;
+        }
+    }
+}

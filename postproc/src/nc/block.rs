@@ -1,0 +1,123 @@
+//! A program before any dialect: moves in counts of the output resolution, and what stands around them.
+
+use crate::feed::PathMetric;
+use crate::machine::spec::TcpWords;
+
+/// How F is written in a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FeedWord {
+    /// G94: mm/min (or deg/min) over a metric that the program declares where its dialect can; `None`: the control's own.
+    PerMinute(Option<PathMetric>),
+    /// G93: 1/min.
+    Inverse,
+}
+
+/// One move, from where the one before ended. Positions in counts of [`super::number`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NcMove {
+    /// G0.
+    pub rapid: bool,
+    /// Linear words: X Y Z of the tip with tool-centre-point control, else the linear joints in chain order.
+    pub linear: [i64; 3],
+    /// Rotary words, outer first.
+    pub rotary: [i64; 2],
+    /// F; not read in rapid moves.
+    pub feed: f64,
+}
+
+/// A rotary axis as a program names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RotaryName {
+    /// The axis letter.
+    pub letter: String,
+    /// It turns without end.
+    pub endless: bool,
+}
+
+/// A whole program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// Its name; letters, digits and underscores survive.
+    pub name: String,
+    /// Lines for people at its head.
+    pub comments: Vec<String>,
+    /// Tool-centre-point control is on.
+    pub tcp: bool,
+    /// LinuxCNC's kinematics switch of this machine.
+    pub linuxcnc_tcp: Option<TcpWords>,
+    /// Tool in the spindle.
+    pub tool_number: u32,
+    /// Spindle speed, clockwise; `None` leaves the spindle alone.
+    pub spindle_rpm: Option<f64>,
+    /// How F is written.
+    pub feed_word: FeedWord,
+    /// How far the control may round corners, mm.
+    pub blend_mm: f64,
+    /// Names of the linear words.
+    pub linear_names: [String; 3],
+    /// Names of the rotary words, outer first.
+    pub rotary_names: Vec<RotaryName>,
+    /// The moves; the first one leads from an unknown place.
+    pub moves: Vec<NcMove>,
+}
+
+/// Why a dialect cannot say a program.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WriteError {
+    /// A feed word that the control does not have.
+    #[error("{dialect} has no {what}: choose another feed mode")]
+    Feed {
+        /// The dialect.
+        dialect: &'static str,
+        /// What it lacks.
+        what: &'static str,
+    },
+    /// An axis name that the control does not take.
+    #[error("{dialect} takes no axis called {letter}: use one letter in the machine file")]
+    Axis {
+        /// The dialect.
+        dialect: &'static str,
+        /// The name.
+        letter: String,
+    },
+    /// No switch for tool-centre-point control.
+    #[error(
+        "the machine file has no control.linuxcnc_tcp (the words that switch its kinematics): add it or choose a feed \
+         mode without tool-centre-point control"
+    )]
+    NoTcpSwitch,
+}
+
+impl Program {
+    /// The name with only letters, digits and underscores, never empty.
+    #[must_use]
+    pub fn safe_name(&self) -> String {
+        let name: String = self
+            .name
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' })
+            .collect();
+        if name.is_empty() { "PROGRAM".into() } else { name }
+    }
+
+    /// The name of the linear word along the spindle for the retracts at start and end, if there is one called Z.
+    pub(crate) fn has_z(&self) -> bool {
+        self.linear_names.iter().any(|n| n == "Z")
+    }
+
+    /// Refuses axis names of more than one letter.
+    pub(crate) fn single_letters(&self, dialect: &'static str) -> Result<(), WriteError> {
+        let names = self.linear_names.iter().chain(self.rotary_names.iter().map(|r| &r.letter));
+        match names.clone().find(|n| n.len() != 1) {
+            Some(letter) => Err(WriteError::Axis { dialect, letter: letter.clone() }),
+            None => Ok(()),
+        }
+    }
+
+    /// Comment lines without what would end a comment or a line.
+    pub(crate) fn safe_comments(&self) -> Vec<String> {
+        let clean =
+            |c: char| if c.is_ascii() && !c.is_ascii_control() && !"();%\"".contains(c) { c } else { ' ' };
+        self.comments.iter().map(|line| line.chars().map(clean).collect()).collect()
+    }
+}

@@ -1,0 +1,75 @@
+//! LinuxCNC 2.9.
+//!
+//! - Machines with switchable kinematics take M-words for it; they are data of the machine file (the sample machines
+//!   with a tilting rotary table have M428 for the tip in the part's frame and M429 for plain joints).
+//! - F in G94 is read over X Y Z; a move of rotary axes alone is read in deg/min. G93 wants F in every block.
+//! - Rotary axes count on through whole turns; nothing is wrapped.
+//! - `G64 P` bounds how far blending may leave the programmed corner. `G53` moves in machine coordinates.
+
+use super::block::{FeedWord, Program, RotaryName, WriteError};
+use super::modal::{Modal, Which, Wording, plain};
+use super::number;
+
+const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
+
+fn rotary(name: &RotaryName, counts: i64) -> String {
+    plain(&name.letter, counts)
+}
+
+pub(super) fn write(program: &Program) -> Result<String, WriteError> {
+    program.single_letters("linuxcnc")?;
+    let switch = program.linuxcnc_tcp.as_ref();
+    if program.tcp && switch.is_none() {
+        return Err(WriteError::NoTcpSwitch);
+    }
+    let mut text = String::new();
+    let mut line = |words: &str| {
+        text.push_str(words);
+        text.push('\n');
+    };
+    line(&format!("({})", program.safe_name()));
+    for comment in program.safe_comments() {
+        line(&format!("({comment})"));
+    }
+    line("G17 G21 G40 G49 G80 G90 G94");
+    line(&format!("G64 P{:.4}", program.blend_mm));
+    if let Some(words) = switch {
+        line(&words.off);
+    }
+    if program.has_z() {
+        line("G53 G0 Z0");
+    }
+    line(&format!("T{} M6", program.tool_number));
+    line(&format!("G43 H{}", program.tool_number));
+    line("G54");
+    if let Some(rpm) = program.spindle_rpm {
+        line(&format!("S{} M3", number::feed(rpm)));
+    }
+    let mut modal = Modal::default();
+    if let Some((first, rest)) = program.moves.split_first() {
+        modal.approach(program, &WORDING, first, &[Which::Rotary]).iter().for_each(|l| line(l));
+        if let (true, Some(words)) = (program.tcp, switch) {
+            line(&words.on);
+        }
+        modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]).iter().for_each(|l| line(l));
+        if program.feed_word == FeedWord::Inverse {
+            line("G93");
+        }
+        for m in rest {
+            let words = modal.block(program, &WORDING, m);
+            if !words.is_empty() {
+                line(&words);
+            }
+        }
+    }
+    line("G94");
+    line("M5");
+    if let Some(words) = switch {
+        line(&words.off);
+    }
+    if program.has_z() {
+        line("G53 G0 Z0");
+    }
+    line("M30");
+    Ok(text)
+}

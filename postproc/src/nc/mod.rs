@@ -1,0 +1,94 @@
+//! NC programs: dialect-free moves, their wording in each dialect, and the way back.
+
+pub mod block;
+mod fanuc;
+mod heidenhain;
+mod interpret;
+mod linuxcnc;
+mod modal;
+pub mod number;
+pub mod readback;
+mod sinumerik;
+mod state;
+mod token;
+mod way;
+
+use std::fmt;
+use std::str::FromStr;
+
+pub use block::{FeedWord, NcMove, Program, WriteError};
+
+/// The language of a control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dialect {
+    /// Siemens Sinumerik 840D.
+    Sinumerik,
+    /// Heidenhain Klartext (TNC 640 and its like).
+    Heidenhain,
+    /// Fanuc 30i and its like.
+    Fanuc,
+    /// LinuxCNC 2.9.
+    LinuxCnc,
+}
+
+/// No dialect of this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no dialect is called '{name}'; there are sinumerik, heidenhain, fanuc, linuxcnc")]
+pub struct UnknownDialect {
+    /// The name asked for.
+    pub name: String,
+}
+
+impl Dialect {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Sinumerik, Self::Heidenhain, Self::Fanuc, Self::LinuxCnc];
+
+    /// The name in job files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sinumerik => "sinumerik",
+            Self::Heidenhain => "heidenhain",
+            Self::Fanuc => "fanuc",
+            Self::LinuxCnc => "linuxcnc",
+        }
+    }
+
+    /// The usual extension of a program file.
+    #[must_use]
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Sinumerik => "mpf",
+            Self::Heidenhain => "h",
+            Self::Fanuc => "nc",
+            Self::LinuxCnc => "ngc",
+        }
+    }
+
+    /// The program in words.
+    ///
+    /// # Errors
+    /// Where the dialect cannot say it.
+    pub fn write(self, program: &Program) -> Result<String, WriteError> {
+        match self {
+            Self::Sinumerik => Ok(sinumerik::write(program)),
+            Self::Heidenhain => heidenhain::write(program),
+            Self::Fanuc => fanuc::write(program),
+            Self::LinuxCnc => linuxcnc::write(program),
+        }
+    }
+}
+
+impl fmt::Display for Dialect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Dialect {
+    type Err = UnknownDialect;
+
+    fn from_str(name: &str) -> Result<Self, UnknownDialect> {
+        Self::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| UnknownDialect { name: name.into() })
+    }
+}

@@ -1,0 +1,195 @@
+//! Reading NC text back: what the machine will really do, as a path of the tool in the part's frame.
+//!
+//! The text goes through a model of the control (modal words, units, tool-centre-point switch, how F is read) and the
+//! machine's forward kinematics. Between two places the control moves all programmed axes linearly; the tool's way is
+//! therefore a curve, which comes back as short straight moves that stray from it by at most the asked tolerances.
+//! A move is known once every axis has been named; what comes before leads from an unknown place.
+
+use osculate_geom::Diagnostic;
+use osculate_tools::Pose;
+use osculate_tools::cl::{ClMove, ClPath, Motion};
+
+use super::Dialect;
+use super::interpret::Interpreter;
+use crate::machine::{JointValues, Machine};
+use crate::motion::TimedMove;
+use crate::setup::{Setup, SetupError};
+
+/// How a text is to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReadOptions {
+    /// How far the straight moves may stray from the tip's true way, mm.
+    pub tip_tol_mm: f64,
+    /// How far they may stray from the axis, rad.
+    pub axis_tol_rad: f64,
+    /// Refuse words that are not understood; otherwise they are reported as losses and left out.
+    pub strict: bool,
+}
+
+impl Default for ReadOptions {
+    /// 0.1 um, 0.05 deg, strict.
+    fn default() -> Self {
+        Self { tip_tol_mm: 1e-4, axis_tol_rad: 0.05f64.to_radians(), strict: true }
+    }
+}
+
+/// A straight piece of the tool's way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReadMove {
+    /// Where it ends, in the part's frame.
+    pub pose: Pose,
+    /// Rapid, or at this mean feed of the tip relative to the part.
+    pub motion: Motion,
+    /// Line of the text, from 1.
+    pub line: usize,
+    /// How long it takes, min.
+    pub time_min: f64,
+}
+
+/// One block of the text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReadBlock {
+    /// Line of the text, from 1.
+    pub line: usize,
+    /// Joints before.
+    pub from: JointValues,
+    /// Joints after.
+    pub to: JointValues,
+    /// G0.
+    pub rapid: bool,
+    /// How long it takes by its F, or by the joints' drives for a rapid move, min.
+    pub time_min: f64,
+    /// Length of the tip's way relative to the part, mm.
+    pub tip_length_mm: f64,
+}
+
+/// What a text makes the machine do.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct ReadBack {
+    /// The tool's way in short straight moves. The first one leads from an unknown place.
+    pub moves: Vec<ReadMove>,
+    /// The blocks.
+    pub blocks: Vec<ReadBlock>,
+    /// Spindle speed, where the text says one.
+    pub spindle_rpm: Option<f64>,
+    /// Findings, with line numbers.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl ReadBack {
+    /// The tool's way as a CL path; cutter and holder are not in an NC text.
+    #[must_use]
+    pub fn cl_path(&self) -> ClPath {
+        let moves = self.moves.iter().map(|m| ClMove { pose: m.pose, motion: m.motion }).collect();
+        ClPath { cutter: None, holder: None, spindle_rpm: self.spindle_rpm, moves }
+    }
+
+    /// The blocks as [`crate::motion::program_time`] takes them.
+    pub fn timed_moves(&self) -> impl Iterator<Item = TimedMove> + '_ {
+        self.blocks.iter().map(|b| TimedMove { from: b.from, to: b.to, rapid: b.rapid, time_min: b.time_min })
+    }
+
+    /// Total time, min.
+    #[must_use]
+    pub fn time_min(&self) -> f64 {
+        self.blocks.iter().map(|b| b.time_min).fold(0.0, |sum, t| sum + t)
+    }
+}
+
+/// Why a text cannot be read. Lines count from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReadError {
+    /// Text that is no word of the dialect.
+    #[error("line {line}: '{text}' is no word that can be read")]
+    Syntax {
+        /// Line.
+        line: usize,
+        /// Where it stops making sense.
+        text: String,
+    },
+    /// A word that may change the tool's way and is not understood.
+    #[error(
+        "line {line}: {word} is not interpreted and may change the tool's way; read without `strict` to leave it out"
+    )]
+    Word {
+        /// Line.
+        line: usize,
+        /// The word.
+        word: String,
+    },
+    /// A feed move without F.
+    #[error("line {line}: a feed move without {what}")]
+    NoFeed {
+        /// Line.
+        line: usize,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// An arc whose ends lie on no common circle.
+    #[error("line {line}: the ends of the arc miss one circle about its centre by {off_mm:.4} mm")]
+    Arc {
+        /// Line.
+        line: usize,
+        /// Difference of the radii, mm.
+        off_mm: f64,
+    },
+    /// An incremental position from an unknown place.
+    #[error("line {line}: {axis} moves by an increment, but where it stands is not known")]
+    Increment {
+        /// Line.
+        line: usize,
+        /// The axis.
+        axis: String,
+    },
+    /// The linear joints cannot hold the tip.
+    #[error("line {line}: the machine's linear joints lie in one plane here")]
+    Flat {
+        /// Line.
+        line: usize,
+    },
+    /// The setup is none.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A tolerance that is none.
+    #[error("read option {what} is {value}: it must be finite and above zero")]
+    Tolerance {
+        /// The option.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// Nothing moves.
+    #[error(
+        "no complete position in {lines} lines: does the text name all axes of {machine}, and is the dialect right?"
+    )]
+    NoMoves {
+        /// Lines read.
+        lines: usize,
+        /// The machine.
+        machine: String,
+    },
+}
+
+/// Reads a whole text.
+///
+/// # Errors
+/// Where the text cannot be read, or (with `strict`) says something that is not understood.
+pub fn read(
+    text: &str,
+    dialect: Dialect,
+    machine: &Machine,
+    setup: &Setup,
+    options: &ReadOptions,
+) -> Result<ReadBack, ReadError> {
+    setup.check()?;
+    for (what, value) in [("tip_tol_mm", options.tip_tol_mm), ("axis_tol_rad", options.axis_tol_rad)] {
+        if !(value.is_finite() && value > 0.0) {
+            return Err(ReadError::Tolerance { what, value });
+        }
+    }
+    let out = Interpreter::new(dialect, machine, setup, options).run(text)?;
+    if out.moves.is_empty() {
+        return Err(ReadError::NoMoves { lines: text.lines().count(), machine: machine.name().into() });
+    }
+    Ok(out)
+}

@@ -1,0 +1,124 @@
+//! Siemens Sinumerik 840D.
+//!
+//! - Tool-centre-point control is `TRAORI`; `ORIMKS` and `ORIAXES` make the rotary axes interpolate linearly.
+//! - Endless axes are modulo axes: `C=DC(...)` takes the shortest way, so no block turns one by half a turn or more.
+//! - F is read over the axes of `FGROUP`, a rotary one as an arc of radius `FGREF`: the program says both, so that it
+//!   does not depend on machine data. Rotary axes alone, outside of `FGROUP`, are read in deg/min.
+//! - `G93` wants F in every block; switching between G93 and G94 deletes F.
+//! - `SUPA` with `D0` moves in machine coordinates without tool length: Z0 is the top of the Z axis.
+
+use super::block::{FeedWord, NcMove, Program, RotaryName};
+use super::modal::{Modal, Which, Wording, in_turn, plain};
+use super::number;
+use crate::feed::PathMetric;
+
+const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
+
+fn rotary(name: &RotaryName, counts: i64) -> String {
+    if name.endless {
+        format!("{}=DC({})", name.letter, number::fixed(in_turn(counts)))
+    } else {
+        plain(&name.letter, counts)
+    }
+}
+
+pub(super) fn write(program: &Program) -> String {
+    let mut text = Numbered { text: String::new(), next: 10 };
+    text.text.push_str(&format!("; {}\n", program.safe_name()));
+    for line in program.safe_comments() {
+        text.text.push_str(&format!("; {line}\n"));
+    }
+    text.line("G17 G40 G64 G90 G94 G710");
+    text.line("TRAFOOF");
+    retract(&mut text, program);
+    text.line(&format!("T{}", program.tool_number));
+    text.line("M6");
+    text.line("D1");
+    text.line("G54");
+    if let Some(rpm) = program.spindle_rpm {
+        text.line(&format!("S{} M3", number::feed(rpm)));
+    }
+    let mut modal = Modal::default();
+    if let Some((first, rest)) = program.moves.split_first() {
+        for line in modal.approach(program, &WORDING, first, &[Which::Rotary]) {
+            text.line(&line);
+        }
+        if program.tcp {
+            text.line("TRAORI");
+            text.line("ORIMKS ORIAXES");
+            text.line("G54");
+        }
+        for line in modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]) {
+            text.line(&line);
+        }
+        feed_head(&mut text, program);
+        moves(&mut text, &mut modal, program, rest);
+    }
+    if program.feed_word == FeedWord::Inverse {
+        text.line("G94");
+    }
+    text.line("M5");
+    text.line("TRAFOOF");
+    retract(&mut text, program);
+    text.line("M30");
+    text.text
+}
+
+fn retract(text: &mut Numbered, program: &Program) {
+    if program.has_z() {
+        text.line("G0 SUPA Z0 D0");
+    }
+}
+
+fn feed_head(text: &mut Numbered, program: &Program) {
+    let names = |linear: bool, rotary: bool| {
+        let linear = program.linear_names.iter().filter(|_| linear);
+        let rotary = program.rotary_names.iter().map(|r| &r.letter).filter(|_| rotary);
+        let mut all: Vec<&str> = linear.chain(rotary).map(String::as_str).collect();
+        all.sort_unstable_by_key(|n| (!["X", "Y", "Z"].contains(n), *n));
+        all.join(",")
+    };
+    match program.feed_word {
+        FeedWord::Inverse => text.line("G93"),
+        FeedWord::PerMinute(None) => {}
+        FeedWord::PerMinute(Some(metric)) => {
+            let (group, radius_mm) = match metric {
+                PathMetric::Linear => (names(true, false), None),
+                PathMetric::Arc { radius_mm } => (names(true, true), Some(radius_mm)),
+                PathMetric::RotaryOnly => (names(false, true), Some(crate::feed::DEGREE_AS_MM)),
+            };
+            text.line(&format!("FGROUP({group})"));
+            if let Some(radius_mm) = radius_mm {
+                let mut letters: Vec<&str> = program.rotary_names.iter().map(|r| r.letter.as_str()).collect();
+                letters.sort_unstable();
+                let words: Vec<String> =
+                    letters.iter().map(|l| format!("FGREF[{l}]={radius_mm:.6}")).collect();
+                if !words.is_empty() {
+                    text.line(&words.join(" "));
+                }
+            }
+        }
+    }
+}
+
+fn moves(text: &mut Numbered, modal: &mut Modal, program: &Program, rest: &[NcMove]) {
+    modal.forget_feed();
+    for m in rest {
+        let line = modal.block(program, &WORDING, m);
+        if !line.is_empty() {
+            text.line(&line);
+        }
+    }
+}
+
+struct Numbered {
+    text: String,
+    next: u64,
+}
+
+impl Numbered {
+    fn line(&mut self, words: &str) {
+        self.text.push_str(&format!("N{} {words}\n", self.next));
+        self.next += 10;
+    }
+}

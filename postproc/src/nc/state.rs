@@ -1,0 +1,169 @@
+//! What a control remembers between blocks, as far as the way of the tool depends on it.
+
+use std::collections::BTreeSet;
+
+use osculate_geom::Vec3;
+
+use crate::feed::{DEGREE_AS_MM, PathMetric, Step};
+use crate::machine::{JointValues, MAX_JOINTS, Machine};
+use crate::setup::Setup;
+
+/// How F is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FeedReading {
+    PerMinute,
+    PerTurn,
+    Inverse,
+}
+
+/// Sinumerik's declaration of what F is read over.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub(super) struct Group {
+    pub letters: BTreeSet<String>,
+    pub radius_mm: Option<f64>,
+}
+
+/// The state of the control.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    /// mm per unit of programmed length.
+    pub unit_mm: f64,
+    pub absolute: bool,
+    /// Rapid, feed, or not yet said.
+    pub rapid: Option<bool>,
+    /// On an arc, and which way.
+    pub clockwise: Option<bool>,
+    /// Axes of the plane of arcs.
+    pub plane: [&'static str; 2],
+    pub reading: FeedReading,
+    pub feed: Option<f64>,
+    pub speed: Option<f64>,
+    pub tcp: bool,
+    /// Programmed positions: linear in mm (in chain order, or X Y Z with tool-centre-point control), rotary in rad.
+    pub linear: [Option<f64>; 3],
+    pub rotary: [Option<f64>; 2],
+    pub group: Option<Group>,
+}
+
+/// A place of which every axis is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    pub linear: [f64; 3],
+    pub rotary: [f64; 2],
+    pub tcp: bool,
+}
+
+impl State {
+    pub fn new() -> Self {
+        Self {
+            unit_mm: 1.0,
+            absolute: true,
+            rapid: None,
+            clockwise: None,
+            plane: ["X", "Y"],
+            reading: FeedReading::PerMinute,
+            feed: None,
+            speed: None,
+            tcp: false,
+            linear: [None; 3],
+            rotary: [None; 2],
+            group: None,
+        }
+    }
+
+    /// The place, once every axis of the machine has been named.
+    pub fn known(&self, machine: &Machine) -> Option<Known> {
+        let mut known = Known { linear: [0.0; 3], rotary: [0.0; 2], tcp: self.tcp };
+        for (to, from) in known.linear.iter_mut().zip(self.linear) {
+            *to = from?;
+        }
+        for slot in 0..machine.rotary().len() {
+            known.rotary[slot] = self.rotary[slot]?;
+        }
+        Some(known)
+    }
+
+    /// Turns tool-centre-point control on or off. The machine stands still; what X Y Z mean changes.
+    pub fn switch_tcp(&mut self, on: bool, machine: &Machine, setup: &Setup) {
+        if self.tcp == on {
+            return;
+        }
+        let joints = self.known(machine).and_then(|k| k.joints(machine, setup));
+        self.tcp = on;
+        self.linear = match joints {
+            None => [None; 3],
+            Some(q) if on => {
+                let xyz = setup.to_program(&machine.forward(&q, setup).tip);
+                [Some(xyz.x), Some(xyz.y), Some(xyz.z)]
+            }
+            Some(q) => machine.linear().map(|place| Some(q[place])),
+        };
+    }
+
+    /// The metric over which F is read now.
+    pub fn metric(&self, machine: &Machine) -> PathMetric {
+        match &self.group {
+            Some(group) => {
+                let names = |place: &usize| group.letters.contains(&machine.joints()[*place].letter);
+                let rotary = machine.rotary().iter().any(names);
+                let linear = machine.linear().iter().any(names);
+                match (linear, rotary) {
+                    (true, true) => PathMetric::Arc { radius_mm: group.radius_mm.unwrap_or(DEGREE_AS_MM) },
+                    (false, true) => PathMetric::RotaryOnly,
+                    _ => PathMetric::Linear,
+                }
+            }
+            None if self.tcp => PathMetric::Linear,
+            None => machine.control().feed_reading.into(),
+        }
+    }
+
+    /// Duration of a feed move, min; `None` where F or S is not known.
+    pub fn duration_min(&self, machine: &Machine, step: &Step) -> Option<f64> {
+        let feed = self.feed.filter(|f| *f > 0.0)?;
+        match self.reading {
+            FeedReading::Inverse => Some(1.0 / feed),
+            FeedReading::PerMinute => Some(self.metric(machine).length(step) / feed),
+            FeedReading::PerTurn => {
+                Some(self.metric(machine).length(step) / (feed * self.speed.filter(|s| *s > 0.0)?))
+            }
+        }
+    }
+}
+
+impl Known {
+    /// The place between two of one kind.
+    pub fn between(&self, to: &Self, t: f64) -> Self {
+        let mut at = *self;
+        for k in 0..3 {
+            at.linear[k] += (to.linear[k] - self.linear[k]) * t;
+        }
+        for k in 0..2 {
+            at.rotary[k] += (to.rotary[k] - self.rotary[k]) * t;
+        }
+        at
+    }
+
+    /// By how much F's axes move.
+    pub fn step_to(&self, to: &Self) -> Step {
+        let d = Vec3::from(to.linear) - Vec3::from(self.linear);
+        let rotary_rad = [to.rotary[0] - self.rotary[0], to.rotary[1] - self.rotary[1]];
+        Step { linear_mm: d.norm(), rotary_rad }
+    }
+
+    /// The joints at this place.
+    pub fn joints(&self, machine: &Machine, setup: &Setup) -> Option<JointValues> {
+        if self.tcp {
+            let tip = setup.part_zero * setup.from_program(&Vec3::from(self.linear));
+            return machine.with_tip(&self.rotary, &tip, setup.gauge_length_mm);
+        }
+        let mut joints = [0.0; MAX_JOINTS];
+        for (place, value) in machine.linear().into_iter().zip(self.linear) {
+            joints[place] = value;
+        }
+        for (place, value) in machine.rotary().iter().zip(self.rotary) {
+            joints[*place] = value;
+        }
+        Some(joints)
+    }
+}
