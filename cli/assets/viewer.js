@@ -104,7 +104,8 @@
   function start() {
     const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });
     renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
-    box.appendChild(renderer.domElement);
+    // Under the legends and buttons, which stand after it in the box.
+    box.prepend(renderer.domElement);
     renderer.domElement.setAttribute("aria-label", "3D view of the part; drag to turn, wheel to zoom, right button to shift");
 
     const scene = new THREE.Scene();
@@ -258,7 +259,7 @@
         const geometry = new THREE.LineSegmentsGeometry();
         geometry.setPositions(ends);
         geometry.setColors(widthColours);
-        lineMaterial = new THREE.LineMaterial({ linewidth: 1.4 });
+        lineMaterial = new THREE.LineMaterial({ linewidth: 1.4, transparent: true });
         lines = new THREE.LineSegments2(geometry, lineMaterial);
         lines.frustumCulled = false;
         overlay.add(lines);
@@ -270,7 +271,8 @@
       lines.visible = mode !== "off";
       const byWidth = mode === "width";
       lineMaterial.vertexColors = byWidth;
-      lineMaterial.linewidth = byWidth ? 2.6 : 1.3;
+      lineMaterial.linewidth = byWidth ? 2.6 : 1.1;
+      lineMaterial.opacity = byWidth ? 1 : 0.5;
       lineMaterial.color.set(byWidth ? "#ffffff" : css("--path"));
       lineMaterial.needsUpdate = true;
       for (const legend of document.querySelectorAll("[data-path-legend]")) legend.hidden = !byWidth;
@@ -306,17 +308,19 @@
 
     const tool = new THREE.Group();
     const pieceColours = { cutter: "#d6ab45", shank: "#b3bbc5", holder: "#69747f" };
-    for (const piece of head.tool) {
+    head.tool.forEach((piece, number) => {
       const material = new THREE.MeshLambertMaterial({ color: pieceColours[piece.kind], side: THREE.DoubleSide });
       if (piece.kind !== "cutter") {
         material.transparent = true;
         material.opacity = piece.kind === "holder" ? 0.55 : 0.85;
       }
+      // Where the next piece stands on this one, the lid would flicker through its floor.
+      const outline = number + 1 < head.tool.length ? piece.outline.slice(0, -1) : piece.outline;
       // The lathe smooths its normals along the outline: it gets one run at a time, cut at the sharp edges.
-      let run = [piece.outline[0]];
-      for (let i = 1; i < piece.outline.length; i++) {
-        run.push(piece.outline[i]);
-        const [a, b, c] = [piece.outline[i - 1], piece.outline[i], piece.outline[i + 1]];
+      let run = [outline[0]];
+      for (let i = 1; i < outline.length; i++) {
+        run.push(outline[i]);
+        const [a, b, c] = [outline[i - 1], outline[i], outline[i + 1]];
         const turn = c && Math.abs(Math.atan2(
           (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]),
           (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
@@ -326,7 +330,7 @@
           run = [b];
         }
       }
-    }
+    });
     scene.add(tool);
 
     const poses = new Float32Array(block, head.poses.at, 8 * head.poses.count);
@@ -517,7 +521,11 @@
       return out;
     }
 
+    let fitted = false;
+
     function fit(direction) {
+      fitted = true;
+      makeRoom();
       const from = (direction ? new THREE.Vector3(...direction) : camera.position.clone().sub(controls.target)).normalize();
       controls.target.copy(centre);
       camera.position.copy(centre).addScaledVector(from, 20 * radius);
@@ -526,14 +534,24 @@
       const inView = corners().map((c) => c.applyMatrix4(camera.matrixWorldInverse));
       const across = Math.max(...inView.map((c) => Math.abs(c.x)), 1e-6);
       const upward = Math.max(...inView.map((c) => Math.abs(c.y)), 1e-6);
-      // The legend at the right and the tool rows below take room from the picture.
-      camera.zoom = 0.86 * Math.min(camera.right / across, camera.top / upward);
+      // The legends at the right take room from the picture.
+      const free = (camera.right - camera.left) * (1 - legendRoom() / Math.max(box.clientWidth, 1));
+      camera.zoom = 0.88 * Math.min(free / (2 * across), camera.top / upward);
       camera.updateProjectionMatrix();
       controls.update();
       redraw();
     }
 
+    // The middle of the picture is the middle of what the legends leave free.
+    function makeRoom() {
+      const [width, height] = [Math.max(box.clientWidth, 1), Math.max(box.clientHeight, 1)];
+      camera.setViewOffset(width, height, 0.5 * legendRoom(), 0, width, height);
+    }
+
+    const legendRoom = () => document.querySelector(".legends").offsetWidth + 8;
+
     function goTo(at) {
+      fitted = false;
       const target = new THREE.Vector3(...at);
       const shift = target.clone().sub(controls.target);
       controls.target.add(shift);
@@ -555,9 +573,13 @@
       camera.left = -camera.right;
       camera.near = 0.01 * radius;
       camera.far = 40 * radius;
+      makeRoom();
       camera.updateProjectionMatrix();
       for (const material of [lineMaterial, ...linkMaterials]) if (material) material.resolution.set(width, height);
-      redraw();
+      // What filled the old size fills the new one, until somebody has chosen a detail.
+      if (fitted) fit();
+      // At once: a new size empties the picture, and waiting a frame would show that.
+      draw();
     }
 
     // ---- furniture ------------------------------------------------------------------------------------------------
@@ -632,10 +654,12 @@
       });
     }
     controls.addEventListener("change", redraw);
+    controls.addEventListener("start", () => { fitted = false; });
     new ResizeObserver(resize).observe(box);
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", theme);
     document.addEventListener("osculate-theme", theme);
 
+    document.body.classList.add("live");
     resize();
     theme();
     colourPart(document.querySelector("[name=part]:checked").value);
@@ -644,7 +668,6 @@
     slider.value = Math.round(0.62 * Number(slider.max));
     showPose(Number(slider.value));
     fit(directions.iso);
-    document.body.classList.add("live");
   }
 
   // ---- page -------------------------------------------------------------------------------------------------------
@@ -663,6 +686,7 @@
   try {
     start();
   } catch (error) {
+    document.body.classList.remove("live");
     box.querySelector("canvas")?.remove();
     $("still-words").textContent = `This browser cannot show the part in 3D (${error.message}); here is a still picture.`;
   }

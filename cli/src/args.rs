@@ -46,28 +46,7 @@ pub enum Verb {
         out: PathBuf,
     },
     /// CL data to NC code.
-    Post {
-        /// The CL file.
-        clfile: PathBuf,
-        /// A built-in machine or the path of a machine file.
-        #[arg(long)]
-        machine: String,
-        /// sinumerik or linuxcnc.
-        #[arg(long)]
-        dialect: String,
-        /// tcp, none, kv, kf, kz or inverse_time.
-        #[arg(long, default_value = "tcp")]
-        feed: String,
-        /// The largest growth of the feed correction between blocks, for --feed kz.
-        #[arg(long)]
-        kz_step: Option<f64>,
-        /// Where the part's origin sits from the table's reference point, mm.
-        #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
-        part_zero: Option<[f64; 3]>,
-        /// The program to write.
-        #[arg(long)]
-        out: PathBuf,
-    },
+    Post(PostArgs),
     /// Material removal against the part: scallop, gouge, uncut area.
     Verify {
         /// A CL file or an NC program.
@@ -98,6 +77,34 @@ pub struct PartArgs {
     pub builtin: Option<String>,
 }
 
+/// What `post` takes.
+#[derive(Debug, Args)]
+pub struct PostArgs {
+    /// The CL file.
+    pub clfile: PathBuf,
+    /// A built-in machine or the path of a machine file.
+    #[arg(long)]
+    pub machine: String,
+    /// sinumerik, heidenhain, fanuc or linuxcnc.
+    #[arg(long)]
+    pub dialect: String,
+    /// tcp, none, kv, kf, kz or inverse_time.
+    #[arg(long, default_value = "tcp")]
+    pub feed: String,
+    /// The largest rise of F from block to block, for --feed kz, mm/min.
+    #[arg(long)]
+    pub kz_step: Option<f64>,
+    /// Where the part's origin sits from the table's reference point, mm.
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub part_zero: Option<[f64; 3]>,
+    /// From the tip to the spindle nose, mm; cutter and holder of the CL data where not given.
+    #[arg(long)]
+    pub gauge_length_mm: Option<f64>,
+    /// The program to write.
+    #[arg(long)]
+    pub out: PathBuf,
+}
+
 fn numbers<const N: usize>(s: &str) -> Result<[f64; N], String> {
     let parts: Vec<&str> = s.split(',').collect();
     if parts.len() != N {
@@ -105,7 +112,7 @@ fn numbers<const N: usize>(s: &str) -> Result<[f64; N], String> {
     }
     let mut out = [0.0; N];
     for (o, p) in out.iter_mut().zip(parts) {
-        *o = p.trim().parse().map_err(|_| format!("'{p}' is not a number"))?;
+        *o = p.trim().parse::<f64>().map_err(|_| format!("'{p}' is not a number"))?;
         if !o.is_finite() {
             return Err(format!("'{p}' is not a finite number"));
         }

@@ -1,2 +1,54 @@
-//! placeholder
-fn main() {}
+//! `osculate`: plan, verify and post multi-axis NC machining of free-form surfaces.
+//!
+//! Exit codes: 0 done, 1 the job cannot be done as asked, 2 wrong usage. Results go to stdout (`--json`: one object
+//! and nothing else), messages and progress to stderr.
+
+mod args;
+mod builtin;
+mod cmd;
+mod failure;
+mod job;
+mod nc;
+mod output;
+mod part;
+mod progress;
+mod render;
+mod report;
+mod report_fill;
+mod verify;
+
+use args::{Cli, Verb};
+use clap::Parser;
+use failure::{Done, Outcome};
+use std::process::ExitCode;
+
+/// Exit code of a finished command whose result is not within tolerance.
+const NOT_WITHIN: u8 = 1;
+
+fn run(cli: &Cli) -> Outcome {
+    match &cli.verb {
+        Verb::Inspect(part) => cmd::inspect::run(part, cli.json),
+        Verb::Probe { part, face, at } => cmd::probe::run(part, face.as_deref(), at, cli.json),
+        Verb::Strip { job } => cmd::strip::run(job, cli.json),
+        Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
+        Verb::Post(options) => cmd::post::run(options, cli.json),
+        Verb::Verify { file, job, lenient } => cmd::verify::run(file, job, *lenient, cli.json),
+        Verb::Machines => cmd::list::machines(cli.json),
+        Verb::Dialects => cmd::list::dialects(cli.json),
+        Verb::Tools => cmd::list::tools(cli.json),
+    }
+}
+
+#[allow(clippy::print_stderr)]
+fn main() -> ExitCode {
+    // Wrong usage ends here with clap's own message and exit code 2; --help and --version with 0.
+    let cli = Cli::parse();
+    match run(&cli) {
+        Ok(Done::Yes) => ExitCode::SUCCESS,
+        Ok(Done::NotWithinTolerance) => ExitCode::from(NOT_WITHIN),
+        Err(f) => {
+            eprintln!("osculate: {}", f.message());
+            ExitCode::from(f.code())
+        }
+    }
+}

@@ -4,8 +4,8 @@ use crate::args::PartArgs;
 use crate::builtin::{self, Builtin};
 use crate::failure::{Failure, beside, read};
 use crate::job::{FaceChoice, Job, Normals};
-use osculate_geom::{Axis, Box3, Diagnostic, Flipped, Point3, Side, Surface, Unit3};
-use osculate_surfaces::{Face, mesh, orient};
+use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
+use osculate_surfaces::{Face, TrimmedSurface, orient, tessellate};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub struct LoadedFace {
     /// Kind as `inspect` prints it.
     pub kind: String,
     /// The face with trims and material side.
-    pub surface: Arc<dyn Surface>,
+    pub surface: Arc<TrimmedSurface>,
     /// The imported face, where it comes from a file.
     pub source: Option<Arc<Face>>,
 }
@@ -58,22 +58,23 @@ impl Loaded {
     }
 }
 
-fn from_builtin(b: Builtin) -> Loaded {
+fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
+    let surface = TrimmedSurface::new(b.surface, &[], Side::Along).map_err(Failure::job)?;
     let face = LoadedFace {
         id: "F1".to_owned(),
         name: String::new(),
         kind: b.kind.to_owned(),
-        surface: b.surface,
+        surface: Arc::new(surface),
         source: None,
     };
-    Loaded {
+    Ok(Loaded {
         format: "builtin",
         unit: "mm".to_owned(),
         schema: String::new(),
         faces: vec![face],
         not_used: Vec::new(),
         diagnostics: Vec::new(),
-    }
+    })
 }
 
 fn from_file(path: &Path) -> Result<Loaded, Failure> {
@@ -111,7 +112,7 @@ fn from_file(path: &Path) -> Result<Loaded, Failure> {
 pub fn load(args: &PartArgs) -> Result<Loaded, Failure> {
     match (&args.part, &args.builtin) {
         (Some(path), None) => from_file(path),
-        (None, Some(keys)) => Ok(from_builtin(builtin::parse(keys).map_err(Failure::Usage)?)),
+        (None, Some(keys)) => from_builtin(builtin::parse(keys).map_err(Failure::Usage)?),
         _ => Err(Failure::Usage("give either a part file or --builtin".to_owned())),
     }
 }
@@ -131,7 +132,7 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
     let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
     let mut part = match (&job.part.file, &job.part.builtin) {
         (Some(file), _) => from_file(&beside(&job.path, file))?,
-        (None, Some(table)) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?),
+        (None, Some(table)) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?)?,
         (None, None) => return Err(Failure::file(&job.path, "[part] needs file or builtin")),
     };
     let mut faces = choose(&part, job.part.faces.as_ref(), "faces").map_err(here)?;
@@ -197,24 +198,12 @@ fn choose(part: &Loaded, choice: Option<&FaceChoice>, key: &str) -> Result<Vec<L
 
 /// Area of a face, mm2.
 pub fn area(face: &LoadedFace) -> f64 {
-    match &face.source {
-        Some(f) => f.area_mm2(),
-        None => osculate_geom::quadrature::area(&*face.surface, 1e-9).value,
-    }
+    face.surface.area_mm2()
 }
 
-/// Box around a face, from a grid of its points.
+/// Box around a face.
 pub fn bounds(face: &LoadedFace) -> Box3 {
-    match &face.source {
-        Some(f) => f.bbox(),
-        None => {
-            let mut b = Box3::empty();
-            for (_, p, _) in grid(&*face.surface, 40) {
-                b.add(&p);
-            }
-            b
-        }
-    }
+    face.surface.bbox(4)
 }
 
 /// Points with normals on a grid over a face's parameters, those inside its trims.
@@ -240,7 +229,7 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
     let open: Vec<usize> = (0..faces.len())
         .filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented))
         .collect();
-    let flip = |f: &mut LoadedFace| f.surface = Arc::new(Flipped(f.surface.clone()));
+    let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
     match job.part.normals {
         Normals::File => return Ok(()),
         Normals::Reversed => {
@@ -256,8 +245,8 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
     }
     let chord = VOTE_CHORD * whole.diagonal_mm();
     let mut triangles: Vec<[Point3; 3]> = Vec::new();
-    for f in part.faces.iter().filter_map(|f| f.source.as_ref()) {
-        let m = mesh::tessellate(f, chord, None);
+    for f in &part.faces {
+        let m = tessellate(&f.surface, chord, None);
         let at = |k: u32| Point3::from(m.positions[k as usize]);
         triangles.extend(m.triangles.iter().map(|t| t.map(at)));
     }
@@ -305,9 +294,4 @@ pub fn curvature_range(surface: &dyn Surface) -> Option<[f64; 2]> {
         }
     }
     range
-}
-
-/// Breaks of a face along an axis, for callers that lay out a grid.
-pub fn spans(surface: &dyn Surface, axis: Axis) -> usize {
-    surface.breaks(axis).len().saturating_sub(1)
 }

@@ -4,11 +4,13 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
 use osculate_geom::Diagnostic;
-use osculate_tools::removal::{self, Cut, Limits, Sample, Swept, Verdict};
+use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Sample, Swept, Verdict};
 use serde::Serialize;
 
 /// Most samples where the job does not say.
 const MAX_SAMPLES: usize = 400_000;
+/// Check faces are sampled this many times as coarsely: there only deep contact matters.
+const CHECK_COARSER: f64 = 4.0;
 /// Samples across the narrowest usual strip.
 const SAMPLES_ACROSS: f64 = 10.0;
 
@@ -21,8 +23,10 @@ pub struct Verification {
     pub samples: usize,
     /// Distance between samples, mm.
     pub spacing_mm: f64,
-    /// What may hide between samples, mm.
-    pub sampling_bound_mm: f64,
+    /// Scallop that may hide between samples above the highest one seen, mm.
+    pub hidden_scallop_mm: f64,
+    /// Gouge that may hide between samples below the deepest one seen, mm.
+    pub hidden_gouge_mm: f64,
     /// Highest material left where the tool passed.
     pub scallop_max_mm: f64,
     /// Of 99 % of the area.
@@ -31,8 +35,12 @@ pub struct Verification {
     pub scallop_median_mm: f64,
     /// Deepest undercut.
     pub gouge_max_mm: f64,
-    /// Area that no pass brought near the tolerance.
+    /// Area left standing at more than five times the scallop tolerance, or never touched.
     pub uncut_area_mm2: f64,
+    /// The most that a rapid move of the cutter took.
+    pub rapid_max_mm: f64,
+    /// The most that the holder took.
+    pub holder_max_mm: f64,
     /// Whether everything holds.
     pub within_tolerance: bool,
 }
@@ -101,8 +109,7 @@ pub fn run(
     let area: f64 = faces.faces.iter().map(crate::part::area).sum();
     let check_area: f64 = faces.check.iter().map(crate::part::area).sum();
     let mut diagnostics = Vec::new();
-    // Check faces are sampled four times as coarsely: there only deep contact matters.
-    let coarsest = ((area + check_area / 16.0) / max as f64).sqrt();
+    let coarsest = ((area + check_area / (CHECK_COARSER * CHECK_COARSER)) / max as f64).sqrt();
     let spacing = wanted.max(coarsest);
     if spacing > 1.01 * wanted {
         diagnostics.push(Diagnostic::warning(
@@ -111,14 +118,24 @@ pub fn run(
         ));
     }
     let mut samples = Vec::new();
+    let mut density: Option<Density> = None;
     for (k, (face, check_only)) in all.iter().enumerate() {
-        let step = if *check_only { 4.0 * spacing } else { spacing };
+        let step = if *check_only { CHECK_COARSER * spacing } else { spacing };
         let found = removal::sample_surface(&*face.surface, k as u32, step, max)
             .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
-        samples.extend(found.into_iter().map(|s| Sample { check_only: *check_only, ..s }));
+        if found.lost_area_mm2 > 0.0 {
+            diagnostics.push(Diagnostic::warning(
+                &face.id,
+                format!("{:.4} mm2 of it have no tangent plane and are not verified", found.lost_area_mm2),
+            ));
+        }
+        if !check_only {
+            density = Some(density.map_or(found.density, |d| d.union(&found.density)));
+        }
+        samples.extend(found.samples.into_iter().map(|s| Sample { check_only: *check_only, ..s }));
     }
-    let stock_mm = (20.0 * tolerance.scallop_mm).max(1.0).min(0.5 * cutter.radius_mm());
-    let limits = Limits { scallop_mm: tolerance.scallop_mm, gouge_mm: tolerance.gouge_mm };
+    let density = density.ok_or_else(|| Failure::job("there is no face to verify"))?;
+    let stock_mm = (20.0 * tolerance.scallop_mm).max(0.5).min(0.5 * cutter.radius_mm());
     let work = removal::Job {
         cutter: &cutter,
         holder: holder.as_ref(),
@@ -127,32 +144,44 @@ pub fn run(
         stock_mm,
         depth_mm: cutter.radius_mm(),
     };
-    let cuts = removal::cut(&work, progress);
-    let verdict = removal::judge(&samples, &cuts, &limits);
-    let sampling_bound_mm = spacing * spacing / (8.0 * cutter.radius_mm());
+    let cuts = removal::cut(&work, progress).map_err(Failure::job)?;
+    // The tool's effective radius across the feed, from the strip that it leaves.
+    let effective = strip * strip / (8.0 * tolerance.scallop_mm);
+    let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
+    let verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
     let worst = verdict
         .worst
         .iter()
         .map(|w| WorstPlace {
-            kind: w.kind.to_string(),
+            kind: match w.kind {
+                Kind::Scallop => "scallop",
+                Kind::Gouge => "gouge",
+                Kind::Uncut => "uncut",
+                Kind::Holder => "holder",
+                Kind::Rapid => "rapid",
+            }
+            .to_owned(),
             value_mm: w.value_mm,
             at_mm: [w.at.x, w.at.y, w.at.z],
             face: all.get(w.face as usize).map_or_else(String::new, |f| f.0.id.clone()),
             uv: [w.uv.u, w.uv.v],
-            block: w.block,
+            block: w.block.unwrap_or(0),
         })
         .collect();
     let summary = Verification {
         source,
         samples: samples.len(),
-        spacing_mm: spacing,
-        sampling_bound_mm,
+        spacing_mm: density.spacing_mm,
+        hidden_scallop_mm: verdict.hidden.scallop_mm,
+        hidden_gouge_mm: verdict.hidden.gouge_mm,
         scallop_max_mm: verdict.scallop_max_mm,
         scallop_p99_mm: verdict.scallop_p99_mm,
-        scallop_median_mm: verdict.scallop_median_mm,
+        scallop_median_mm: verdict.median_mm,
         gouge_max_mm: verdict.gouge_max_mm,
         uncut_area_mm2: verdict.uncut_area_mm2,
-        within_tolerance: verdict.within_tolerance,
+        rapid_max_mm: verdict.rapid_max_mm,
+        holder_max_mm: verdict.holder_max_mm,
+        within_tolerance: verdict.within,
     };
     Ok(Verified { summary, worst, samples, cuts, verdict, diagnostics })
 }

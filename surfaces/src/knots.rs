@@ -1,33 +1,36 @@
-//! Knot vectors and the polynomial pieces of B-spline basis functions.
+//! Knot vectors of B-spline curves and surfaces.
 //!
-//! A basis of degree p over n poles has n + p + 1 knots and lives on `[t_p, t_n]`. Ends need not be clamped.
+//! A basis of degree p over n poles has n + p + 1 knots `t_0 <= t_1 <= ...` and lives on `[t_p, t_n]`. The ends may
+//! be clamped (p + 1 equal knots) or not, so that periodic splines written out in full are knot vectors too.
+//!
+//! Source: [Piegl & Tiller, The NURBS Book, chapter 2].
 
-/// Largest degree: beyond it double precision has no digits left for the basis.
+/// Largest degree: above it a basis function's value keeps too few digits, and no CAD system writes one.
 pub const MAX_DEGREE: usize = 25;
 
 /// Why numbers are no knot vector.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum KnotError {
     /// Degree zero, above [`MAX_DEGREE`], or not below the number of poles.
-    #[error("degree {degree} with {poles} poles: the degree must be at least 1, at most {MAX_DEGREE} and below the number of poles")]
+    #[error("degree {degree} over {poles} poles: it must be 1 to {MAX_DEGREE} and below the number of poles")]
     Degree {
         /// The degree.
         degree: usize,
         /// The number of poles.
         poles: usize,
     },
-    /// Wrong number of knots.
-    #[error("{got} knots where poles + degree + 1 = {need} are needed")]
+    /// Wrong number of knots, multiple knots written out.
+    #[error("{got} knots, but poles + degree + 1 = {need} are needed (write multiple knots out)")]
     Count {
         /// How many there are.
         got: usize,
         /// How many are needed.
         need: usize,
     },
-    /// A knot that is not finite.
+    /// A knot that is not a finite number.
     #[error("knot {index} is {got}, not a finite number")]
     NotFinite {
-        /// Which.
+        /// Which, from 0.
         index: usize,
         /// Its value.
         got: f64,
@@ -35,24 +38,32 @@ pub enum KnotError {
     /// A knot below the one before.
     #[error("knot {index} is {got}, below the {before} before it")]
     Decreasing {
-        /// Which.
+        /// Which, from 0.
         index: usize,
         /// Its value.
         got: f64,
         /// The one before.
         before: f64,
     },
-    /// An inner knot repeated so often that the curve falls apart, or an empty domain.
-    #[error("knot {at} stands {multiplicity} times, more than the {most} that degree {degree} allows")]
+    /// A knot repeated so often that the curve falls apart there.
+    #[error("knot {at} stands {multiplicity} times, but only {most} are possible there with degree {degree}")]
     Multiplicity {
         /// The knot.
         at: f64,
         /// How often it stands there.
         multiplicity: usize,
-        /// How often it may.
+        /// How often it may: the degree inside the domain, one more at its ends and beyond.
         most: usize,
         /// The degree.
         degree: usize,
+    },
+    /// The domain `[t_p, t_n]` has no length, or one that double precision cannot hold.
+    #[error("the domain is [{lo}, {hi}]: its length must be positive and finite")]
+    Empty {
+        /// `t_p`.
+        lo: f64,
+        /// `t_n`.
+        hi: f64,
     },
 }
 
@@ -61,12 +72,14 @@ pub enum KnotError {
 pub struct Knots {
     degree: usize,
     knots: Vec<f64>,
-    /// Indices k of the non-empty spans `[t_k, t_(k+1)]` inside the domain.
+    /// Indices k of the spans `[t_k, t_(k+1)]` of the domain that are not empty.
     spans: Vec<usize>,
+    /// Distinct knots of the domain: `spans` is where they stand.
+    breaks: Vec<f64>,
 }
 
 impl Knots {
-    /// The basis of `degree` for `poles` poles.
+    /// The knot vector of `degree` for `poles` poles.
     ///
     /// # Errors
     /// [`KnotError`].
@@ -74,40 +87,38 @@ impl Knots {
         if degree == 0 || degree > MAX_DEGREE || degree >= poles {
             return Err(KnotError::Degree { degree, poles });
         }
-        // Counts may come from a damaged file: no overflow here.
+        // The count may come from a damaged file, hence no plain sum.
         let need = poles.saturating_add(degree + 1);
         if knots.len() != need {
             return Err(KnotError::Count { got: knots.len(), need });
         }
-        for (index, k) in knots.iter().enumerate() {
-            if !k.is_finite() {
-                return Err(KnotError::NotFinite { index, got: *k });
-            }
-            if index > 0 && *k < knots[index - 1] {
-                return Err(KnotError::Decreasing { index, got: *k, before: knots[index - 1] });
+        if let Some((index, got)) = knots.iter().enumerate().find(|(_, k)| !k.is_finite()) {
+            return Err(KnotError::NotFinite { index, got: *got });
+        }
+        if let Some(i) = (1..need).find(|i| knots[*i] < knots[*i - 1]) {
+            return Err(KnotError::Decreasing { index: i, got: knots[i], before: knots[i - 1] });
+        }
+        let (lo, hi) = (knots[degree], knots[poles]);
+        if !(hi > lo && (hi - lo).is_finite()) {
+            return Err(KnotError::Empty { lo, hi });
+        }
+        for run in knots.chunk_by(|a, b| a == b) {
+            let (at, multiplicity) = (run[0], run.len());
+            let most = if at > lo && at < hi { degree } else { degree + 1 };
+            if multiplicity > most {
+                return Err(KnotError::Multiplicity { at, multiplicity, most, degree });
             }
         }
-        let spans: Vec<usize> = (degree..poles).filter(|k| knots[*k] < knots[*k + 1]).collect();
-        let mut start = 0;
-        while start < knots.len() {
-            let run = knots[start..].iter().take_while(|k| **k == knots[start]).count();
-            let inner = knots[start] > knots[degree] && knots[start] < knots[poles];
-            let most = if inner { degree } else { degree + 1 };
-            if run > most || spans.is_empty() {
-                return Err(KnotError::Multiplicity { at: knots[start], multiplicity: run, most, degree });
-            }
-            start += run;
-        }
-        Ok(Self { degree, knots, spans })
+        Ok(Self::with_spans(degree, knots, poles))
     }
 
-    /// The degree.
+    /// The degree p.
     #[must_use]
     pub const fn degree(&self) -> usize {
         self.degree
     }
 
-    /// All knots.
+    /// All knots, multiple ones written out.
     #[must_use]
     pub fn as_slice(&self) -> &[f64] {
         &self.knots
@@ -119,65 +130,121 @@ impl Knots {
         self.knots.len() - self.degree - 1
     }
 
-    /// Both ends of the domain.
+    /// Both ends of the domain, `[t_p, t_n]`.
     #[must_use]
     pub fn domain(&self) -> [f64; 2] {
         [self.knots[self.degree], self.knots[self.poles()]]
     }
 
-    /// Distinct knots of the domain, ascending, ends included.
+    /// The distinct knots of the domain, ascending, both ends included.
     #[must_use]
-    pub fn breaks(&self) -> Vec<f64> {
-        let mut out: Vec<f64> = self.spans.iter().map(|k| self.knots[*k]).collect();
-        out.push(self.domain()[1]);
-        out
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
     }
 
-    /// Number of non-empty spans.
+    /// Number of spans between the breaks.
     #[must_use]
     pub fn span_count(&self) -> usize {
         self.spans.len()
     }
 
-    /// The ends of a non-empty span and the index of the first pole that acts on it.
+    /// How often a value stands in the knot vector.
     #[must_use]
-    pub fn span(&self, index: usize) -> ([f64; 2], usize) {
-        let k = self.spans[index];
-        ([self.knots[k], self.knots[k + 1]], k - self.degree)
+    pub fn multiplicity(&self, t: f64) -> usize {
+        self.knots.iter().filter(|k| **k == t).count()
     }
 
-    /// The non-empty span that holds `t`; the first or last one outside the domain. At an inner knot the span to
-    /// the right.
+    /// The span that holds `t`, counted between [`Knots::breaks`]: at a break the one to its right, outside the
+    /// domain the first or last.
     #[must_use]
     pub fn find(&self, t: f64) -> usize {
-        self.spans.partition_point(|k| self.knots[*k] <= t).saturating_sub(1)
+        let inner = &self.breaks[1..self.spans.len()];
+        inner.partition_point(|b| *b <= t)
     }
 
-    /// Polynomial coefficients of the `degree + 1` basis functions on a span, in powers of the local parameter
-    /// `(t - lo) / (hi - lo)`: row r belongs to pole `first + r`.
-    pub(crate) fn span_polynomials(&self, index: usize) -> Vec<Vec<f64>> {
-        let k = self.spans[index];
-        let (lo, h) = (self.knots[k], self.knots[k + 1] - self.knots[k]);
-        // Cox-de Boor on polynomials: of degree d, the functions of poles k-d ..= k are not zero here.
-        let mut rows: Vec<Vec<f64>> = vec![vec![1.0]];
-        for d in 1..=self.degree {
-            let mut next = vec![vec![0.0; d + 1]; d + 1];
-            for (r, row) in rows.iter().enumerate() {
-                // This row is pole i = k - d + 1 + r of degree d - 1, with support [t_i, t_(i+d)].
-                let i = k + 1 + r - d;
-                let (a, width) = (self.knots[i], self.knots[i + d] - self.knots[i]);
-                // Rising factor into the same pole, falling factor into the pole before: local forms c0 + c1 s.
-                let rise = [(lo - a) / width, h / width];
-                let fall = [(self.knots[i + d] - lo) / width, -h / width];
-                for (p, c) in row.iter().enumerate() {
-                    next[r + 1][p] += c * rise[0];
-                    next[r + 1][p + 1] += c * rise[1];
-                    next[r][p] += c * fall[0];
-                    next[r][p + 1] += c * fall[1];
-                }
+    /// Index of the first of the `degree + 1` poles that act on a span.
+    #[must_use]
+    pub fn first_pole(&self, span: usize) -> usize {
+        self.spans[span] - self.degree
+    }
+
+    /// Index k of the knot at which a span begins.
+    pub(crate) fn knot_index(&self, span: usize) -> usize {
+        self.spans[span]
+    }
+
+    /// The same basis run backwards over the same domain: `t` becomes `lo + hi - t`.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let [lo, hi] = self.domain();
+        // The ends must stay the same bits.
+        let turn = |t: f64| {
+            if t == lo {
+                hi
+            } else if t == hi {
+                lo
+            } else {
+                lo + (hi - t)
             }
-            rows = next;
-        }
-        rows
+        };
+        let knots: Vec<f64> = self.knots.iter().rev().map(|t| turn(*t)).collect();
+        let poles = self.poles();
+        Self::with_spans(self.degree, knots, poles)
+    }
+
+    /// A knot vector that is known to be in order.
+    pub(crate) fn with_spans(degree: usize, knots: Vec<f64>, poles: usize) -> Self {
+        let spans: Vec<usize> = (degree..poles).filter(|k| knots[*k] < knots[*k + 1]).collect();
+        let breaks = spans.iter().map(|k| knots[*k]).chain([knots[poles]]).collect();
+        Self { degree, knots, spans, breaks }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clamped_and_unclamped_domains() {
+        let k = Knots::new(2, 5, vec![0.0, 0.0, 0.0, 1.0, 1.0, 3.0, 3.0, 3.0]).unwrap();
+        assert_eq!(k.domain(), [0.0, 3.0]);
+        assert_eq!(k.breaks(), [0.0, 1.0, 3.0]);
+        assert_eq!((k.find(-1.0), k.find(0.5), k.find(1.0), k.find(3.0), k.find(9.0)), (0, 0, 1, 1, 1));
+        assert_eq!((k.first_pole(0), k.first_pole(1)), (0, 2));
+        assert_eq!(k.multiplicity(1.0), 2);
+        let open = Knots::new(3, 6, (0..10).map(f64::from).collect()).unwrap();
+        assert_eq!(open.domain(), [3.0, 6.0]);
+        assert_eq!(open.breaks(), [3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(open.first_pole(0), 0);
+    }
+
+    #[test]
+    fn reversing_twice_is_the_identity() {
+        let k = Knots::new(2, 5, vec![0.0, 0.0, 0.0, 1.0, 2.5, 3.0, 3.0, 3.0]).unwrap();
+        assert_eq!(k.reversed().as_slice(), [0.0, 0.0, 0.0, 0.5, 2.0, 3.0, 3.0, 3.0]);
+        assert_eq!(k.reversed().reversed(), k);
+        assert_eq!(k.reversed(), Knots::new(2, 5, k.reversed().as_slice().to_vec()).unwrap());
+    }
+
+    #[test]
+    fn every_refusal() {
+        let new = |p: usize, n: usize, k: &[f64]| Knots::new(p, n, k.to_vec()).unwrap_err();
+        assert_eq!(new(0, 2, &[0.0; 3]), KnotError::Degree { degree: 0, poles: 2 });
+        assert_eq!(new(2, 2, &[0.0; 5]), KnotError::Degree { degree: 2, poles: 2 });
+        assert_eq!(new(26, 40, &[0.0; 67]), KnotError::Degree { degree: 26, poles: 40 });
+        assert_eq!(new(1, 2, &[0.0, 1.0]), KnotError::Count { got: 2, need: 4 });
+        assert_eq!(new(1, usize::MAX, &[0.0]), KnotError::Count { got: 1, need: usize::MAX });
+        let nan = new(1, 2, &[0.0, 0.0, f64::NAN, 1.0]);
+        assert!(matches!(nan, KnotError::NotFinite { index: 2, got } if got.is_nan()));
+        let down = new(1, 3, &[0.0, 0.0, 2.0, 1.0, 3.0]);
+        assert_eq!(down, KnotError::Decreasing { index: 3, got: 1.0, before: 2.0 });
+        assert_eq!(new(1, 2, &[0.0, 1.0, 1.0, 2.0]), KnotError::Empty { lo: 1.0, hi: 1.0 });
+        let wide = new(1, 2, &[-1e308, -1e308, 1e308, 1e308]);
+        assert_eq!(wide, KnotError::Empty { lo: -1e308, hi: 1e308 });
+        let inner = new(1, 4, &[0.0, 0.0, 1.0, 1.0, 2.0, 2.0]);
+        assert_eq!(inner, KnotError::Multiplicity { at: 1.0, multiplicity: 2, most: 1, degree: 1 });
+        let end = new(1, 4, &[0.0, 0.0, 0.0, 1.0, 2.0, 2.0]);
+        // The third zero leaves the domain starting at the second: pole 0 acts nowhere.
+        assert_eq!(end, KnotError::Multiplicity { at: 0.0, multiplicity: 3, most: 2, degree: 1 });
     }
 }

@@ -1,8 +1,53 @@
-//! Concrete surfaces: NURBS, trimmed faces, and their import from STEP and IGES.
+//! Concrete surfaces: NURBS with their evaluation, refinement and closest points, and what is imported from CAD files.
+//!
+//! - [`NurbsSurface`] is a checked tensor-product NURBS; it implements [`osculate_geom::Surface`].
+//! - [`NurbsCurve`] is a NURBS curve in the plane ([`NurbsCurve2`]) or in space ([`NurbsCurve3`]).
+//! - [`closest`] finds the nearest point of a NURBS surface with a certificate, [`closest_near`] the one near a hint.
+//! - [`ruled`] joins two curves by straight rulings.
+//!
+//! Lengths are millimetres, parameters have no unit.
+//!
+//! ```
+//! use osculate_geom::{Point3, Surface, uv};
+//! use osculate_surfaces::{Net, NurbsSurface, closest};
+//! // z = x y over the unit square.
+//! let corner = |x: f64, y: f64| Point3::new(x, y, x * y);
+//! let points = vec![corner(0.0, 0.0), corner(0.0, 1.0), corner(1.0, 0.0), corner(1.0, 1.0)];
+//! let flat = vec![0.0, 0.0, 1.0, 1.0];
+//! let net = Net { count: [2, 2], points, weights: None };
+//! let saddle = NurbsSurface::new([1, 1], [flat.clone(), flat], net)?;
+//! assert_eq!(saddle.point(uv(0.5, 0.5)).z, 0.25);
+//! let foot = closest(&saddle, &Point3::new(2.0, 2.0, 1.0), None)?;
+//! assert!((foot.distance_mm - 2f64.sqrt()).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+pub mod iges;
+mod mesh;
+mod part;
+pub mod step;
+mod trim;
+mod trimmed;
+
+mod basis;
+mod closest;
 mod knots;
 mod nurbs;
+mod nurbs_curve;
+mod nurbs_edit;
+mod nurbs_eval;
 pub mod orient;
+mod refine;
+mod ruled;
 
+pub use closest::{ClosestError, Foot, FootKind, closest, closest_near, closest_sampled};
 pub use knots::{KnotError, Knots, MAX_DEGREE};
 pub use nurbs::{Net, NurbsError, NurbsSurface};
+pub use nurbs_curve::{CurveError, CurveJet, NurbsCurve, NurbsCurve2, NurbsCurve3};
+pub use nurbs_edit::{BezierPatch, EditError};
+pub use ruled::{RuledError, ruled};
+pub use mesh::{Mesh, tessellate};
+pub use part::{CurvatureRange, Face, FaceKind, Format, ImportError, NotUsed, Part, detect, read};
+pub use trim::analytic::{Analytic, Shape};
+pub use trim::carrier::FaceSurface;
+pub use trimmed::{Loop, TrimError, TrimmedSurface};

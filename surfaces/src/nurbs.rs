@@ -1,136 +1,270 @@
-//! NURBS surfaces: data, invariants and evaluation.
+//! Tensor-product NURBS surfaces: the data, its checks, and the view as [`Surface`].
 //!
-//! The net is stored with v fastest: pole (i, j) is `points[i * count[1] + j]`. Evaluation works on the polynomial
-//! pieces between knots, whose coefficients are computed once: a jet costs two nested Horner schemes and, where the
-//! surface is rational, the quotient rule.
+//! `S(u, v) = sum N_i(u) N_j(v) w_ij P_ij / sum N_i(u) N_j(v) w_ij` over `[u_p, u_n] x [v_q, v_m]`. Poles are stored
+//! with v running fastest. Parameters outside are clamped to the domain, or wrapped where the surface closes smoothly.
+//!
+//! Source: [Piegl & Tiller, The NURBS Book, chapters 3 and 4].
 
-use crate::knots::{KnotError, Knots};
-use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Uv, Vec3};
+use crate::closest::Index;
+use crate::knots::{KnotError, Knots, MAX_DEGREE};
+use crate::nurbs_eval::Evaluator;
+use nalgebra::Vector4;
+use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Uv};
+use std::fmt;
+use std::sync::OnceLock;
 
-/// Control net of a surface.
+/// The control net of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Net {
-    /// Number of poles in u and v.
+    /// Number of poles along u and along v.
     pub count: [usize; 2],
-    /// Poles, v fastest, mm.
+    /// The poles, mm, v fastest: pole (i, j) is at `i * count[1] + j`.
     pub points: Vec<Point3>,
-    /// Weights in the same order; None for a polynomial surface.
+    /// A positive weight for each pole; `None` for a polynomial surface.
     pub weights: Option<Vec<f64>>,
 }
 
-/// Why numbers are no NURBS surface.
+/// Why data are no NURBS surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NurbsError {
-    /// A knot vector is none.
-    #[error("knots in {axis:?}: {source}")]
-    Knots {
-        /// Which parameter.
+    /// Degree zero, above [`MAX_DEGREE`], or not below the number of poles.
+    #[error(
+        "degree {degree} over {poles} poles along {axis:?}: it must be 1 to {MAX_DEGREE} and below the number of poles"
+    )]
+    Degree {
+        /// Along which parameter.
         axis: Axis,
-        /// What is wrong.
-        source: KnotError,
+        /// The degree.
+        degree: usize,
+        /// The number of poles.
+        poles: usize,
     },
-    /// Wrong number of poles or weights.
-    #[error("{got} {what} where a net of {u} x {v} needs {need}", u = count[0], v = count[1])]
-    NetCount {
-        /// Poles or weights.
-        what: &'static str,
+    /// Wrong number of knots.
+    #[error("{got} knots along {axis:?}, but poles + degree + 1 = {need} are needed (write multiple knots out)")]
+    KnotCount {
+        /// Along which parameter.
+        axis: Axis,
         /// How many there are.
         got: usize,
         /// How many are needed.
         need: usize,
-        /// The net.
-        count: [usize; 2],
     },
-    /// A pole with a coordinate that is not finite.
-    #[error("pole {index} has a coordinate that is not finite")]
-    NotFinite {
-        /// Which.
+    /// A knot that is not a finite number.
+    #[error("knot {index} along {axis:?} is {got}, not a finite number")]
+    KnotNotFinite {
+        /// Along which parameter.
+        axis: Axis,
+        /// Which, from 0.
         index: usize,
+        /// Its value.
+        got: f64,
     },
-    /// A weight that is not positive and finite.
-    #[error("weight {index} is {got}; weights must be positive and finite")]
+    /// A knot below the one before.
+    #[error("knot {index} along {axis:?} is {got}, below the {before} before it")]
+    KnotDecreasing {
+        /// Along which parameter.
+        axis: Axis,
+        /// Which, from 0.
+        index: usize,
+        /// Its value.
+        got: f64,
+        /// The one before.
+        before: f64,
+    },
+    /// A knot repeated so often that the surface falls apart there.
+    #[error("knot {at} along {axis:?} stands {multiplicity} times, but only {most} are possible there")]
+    KnotMultiplicity {
+        /// Along which parameter.
+        axis: Axis,
+        /// The knot.
+        at: f64,
+        /// How often it stands there.
+        multiplicity: usize,
+        /// How often it may.
+        most: usize,
+    },
+    /// The domain along one parameter has no length, or one that double precision cannot hold.
+    #[error("the domain along {axis:?} is [{lo}, {hi}]: its length must be positive and finite")]
+    EmptyDomain {
+        /// Along which parameter.
+        axis: Axis,
+        /// Lower end.
+        lo: f64,
+        /// Upper end.
+        hi: f64,
+    },
+    /// The poles are not as many as the net's counts say.
+    #[error("{got} poles where the counts of the net ask for {need}")]
+    PoleCount {
+        /// How many there are.
+        got: usize,
+        /// How many are needed.
+        need: usize,
+    },
+    /// There is not one weight for each pole.
+    #[error("{got} weights for {need} poles")]
+    WeightCount {
+        /// How many there are.
+        got: usize,
+        /// How many are needed.
+        need: usize,
+    },
+    /// A pole with a coordinate that is not a finite number.
+    #[error("pole {index} is ({}, {}, {}): all coordinates must be finite", got[0], got[1], got[2])]
+    NonFinite {
+        /// Its place in the net, v fastest.
+        index: usize,
+        /// Its coordinates.
+        got: [f64; 3],
+    },
+    /// A weight that is zero, negative or not finite.
+    #[error("weight {index} is {got}: weights must be positive and finite")]
     Weight {
-        /// Which.
+        /// Its place in the net, v fastest.
         index: usize,
         /// Its value.
         got: f64,
     },
 }
 
-/// A NURBS surface of any degree.
-#[derive(Clone, Debug)]
+impl NurbsError {
+    /// The error of the knots along one axis.
+    const fn on(axis: Axis, error: KnotError) -> Self {
+        match error {
+            KnotError::Degree { degree, poles } => Self::Degree { axis, degree, poles },
+            KnotError::Count { got, need } => Self::KnotCount { axis, got, need },
+            KnotError::NotFinite { index, got } => Self::KnotNotFinite { axis, index, got },
+            KnotError::Decreasing { index, got, before } => Self::KnotDecreasing { axis, index, got, before },
+            KnotError::Multiplicity { at, multiplicity, most, .. } => {
+                Self::KnotMultiplicity { axis, at, multiplicity, most }
+            }
+            KnotError::Empty { lo, hi } => Self::EmptyDomain { axis, lo, hi },
+        }
+    }
+}
+
+/// Two opposite sides closer than this fraction of the control box are one line in space: files that keep ten digits
+/// write a seam twice within it, and no wanted gap is as narrow (1e-6 mm on a part of a metre).
+const SAME_LINE: f64 = 1e-9;
+
+/// Cross derivatives of the two sides that differ by less than this fraction are one: a crease of a millionth of a
+/// radian is below what any machine shows.
+const SAME_DERIVATIVE: f64 = 1e-6;
+
+/// A checked NURBS surface with precomputed polynomial pieces.
+#[derive(Clone)]
 pub struct NurbsSurface {
     knots: [Knots; 2],
     net: Net,
+    side: Side,
     domain: Domain,
     closed: [bool; 2],
-    patches: Patches,
+    evaluator: Evaluator,
+    /// Built when the first closest point is asked for.
+    index: OnceLock<Index>,
 }
-
-/// Coefficients of all polynomial pieces in local parameters, homogeneous where rational.
-#[derive(Clone, Debug)]
-struct Patches {
-    /// Breaks in u and v.
-    breaks: [Vec<f64>; 2],
-    /// For each piece (v fastest) `(p + 1)(q + 1)` coefficients `[x, y, z, w]`, powers of v fastest.
-    coefficients: Vec<[f64; 4]>,
-}
-
-/// Two ends are the same point within this part of the net's size: importers write nine digits or more.
-const SAME_POINT: f64 = 1e-7;
-/// Two first derivatives are the same within this part of their length.
-const SAME_SLOPE: f64 = 1e-4;
 
 impl NurbsSurface {
-    /// The surface of `degree`, `knots` and `net`.
+    /// The surface of the given degrees, knots (multiple ones written out) and control net; `[u, v]` throughout. The
+    /// outward normal is along `S_u x S_v`.
     ///
     /// # Errors
-    /// [`NurbsError`].
+    /// [`NurbsError`] says which number is wrong and where.
     pub fn new(degree: [usize; 2], knots: [Vec<f64>; 2], net: Net) -> Result<Self, NurbsError> {
+        let [ku, kv] = knots;
+        let ku = Knots::new(degree[0], net.count[0], ku).map_err(|e| NurbsError::on(Axis::U, e))?;
+        let kv = Knots::new(degree[1], net.count[1], kv).map_err(|e| NurbsError::on(Axis::V, e))?;
         let need = net.count[0].saturating_mul(net.count[1]);
         if net.points.len() != need {
-            return Err(NurbsError::NetCount { what: "poles", got: net.points.len(), need, count: net.count });
+            return Err(NurbsError::PoleCount { got: net.points.len(), need });
         }
-        if let Some(index) = net.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
-            return Err(NurbsError::NotFinite { index });
+        let bad = net.points.iter().enumerate().find(|(_, p)| !p.iter().all(|c| c.is_finite()));
+        if let Some((index, p)) = bad {
+            return Err(NurbsError::NonFinite { index, got: [p.x, p.y, p.z] });
         }
-        if let Some(w) = &net.weights {
-            if w.len() != need {
-                return Err(NurbsError::NetCount { what: "weights", got: w.len(), need, count: net.count });
+        if let Some(weights) = &net.weights {
+            if weights.len() != need {
+                return Err(NurbsError::WeightCount { got: weights.len(), need });
             }
-            if let Some(index) = w.iter().position(|w| !(w.is_finite() && *w > 0.0)) {
-                return Err(NurbsError::Weight { index, got: w[index] });
-            }
-        }
-        let [ku, kv] = knots;
-        let check = |axis, degree, poles, k| {
-            Knots::new(degree, poles, k).map_err(|source| NurbsError::Knots { axis, source })
-        };
-        let knots = [check(Axis::U, degree[0], net.count[0], ku)?, check(Axis::V, degree[1], net.count[1], kv)?];
-        let patches = Patches::new(&knots, &net);
-        let end = |k: &Knots| Interval::new(k.domain()[0], k.domain()[1]);
-        let domain = Domain { u: end(&knots[0]), v: end(&knots[1]) };
-        let mut surface = Self { knots, net, domain, closed: [false; 2], patches };
-        for axis in [Axis::U, Axis::V] {
-            let [closed, smooth] = surface.closes(axis);
-            match axis {
-                Axis::U => (surface.closed[0], surface.domain.u.periodic) = (closed, smooth),
-                Axis::V => (surface.closed[1], surface.domain.v.periodic) = (closed, smooth),
+            let bad = weights.iter().enumerate().find(|(_, w)| !(**w > 0.0 && w.is_finite()));
+            if let Some((index, got)) = bad {
+                return Err(NurbsError::Weight { index, got: *got });
             }
         }
-        Ok(surface)
+        Ok(Self::checked([ku, kv], net, Side::Along))
     }
 
-    /// Degrees in u and v.
+    /// The surface of data that are known to be in order.
+    pub(crate) fn checked(knots: [Knots; 2], net: Net, side: Side) -> Self {
+        let interval = |k: &Knots| Interval::new(k.domain()[0], k.domain()[1]);
+        let domain = Domain { u: interval(&knots[0]), v: interval(&knots[1]) };
+        let evaluator = Evaluator::new(&knots, &net);
+        let mut surface =
+            Self { knots, net, side, domain, closed: [false; 2], evaluator, index: OnceLock::new() };
+        let seams = [Axis::U, Axis::V].map(|axis| surface.seam(axis));
+        surface.closed = seams.map(|s| s != Seam::Open);
+        surface.domain.u.periodic = seams[0] == Seam::Smooth;
+        surface.domain.v.periodic = seams[1] == Seam::Smooth;
+        surface
+    }
+
+    /// How the two sides that `axis` runs between meet.
+    ///
+    /// They are compared at enough places to tell two rational curves of the net's degree apart.
+    fn seam(&self, axis: Axis) -> Seam {
+        let (along, across) = (self.domain.get(axis), &self.knots[1 - axis as usize]);
+        let size = self.control_box().diagonal_mm();
+        let places = 2 * across.degree() + 2;
+        let (mut speed, mut crease) = (0.0_f64, 0.0_f64);
+        for w in across.breaks().windows(2) {
+            for k in 0..places {
+                let t = w[0] + (w[1] - w[0]) * k as f64 / (places - 1) as f64;
+                let [lo, hi] = [along.lo, along.hi].map(|end| self.jet2(Uv::from_axis(axis, end, t)));
+                // Negated, so that a NaN from coordinates near the end of the number range is no seam.
+                if !((lo.point - hi.point).norm() <= SAME_LINE * size) {
+                    return Seam::Open;
+                }
+                let [a, b] = if axis == Axis::U { [lo.du, hi.du] } else { [lo.dv, hi.dv] };
+                speed = speed.max(a.norm()).max(b.norm());
+                crease = crease.max((a - b).norm());
+            }
+        }
+        // A surface without extent along the axis has no loop to go round.
+        if speed * along.length() <= SAME_LINE * size {
+            Seam::Open
+        } else if crease <= SAME_DERIVATIVE * speed {
+            Seam::Smooth
+        } else {
+            Seam::Creased
+        }
+    }
+
+    /// The same surface with the material on the given side of `S_u x S_v`.
     #[must_use]
-    pub fn degree(&self) -> [usize; 2] {
+    pub fn with_side(mut self, side: Side) -> Self {
+        self.side = side;
+        self
+    }
+
+    /// The material side.
+    #[must_use]
+    pub const fn side(&self) -> Side {
+        self.side
+    }
+
+    /// Degrees along u and v.
+    #[must_use]
+    pub const fn degree(&self) -> [usize; 2] {
         [self.knots[0].degree(), self.knots[1].degree()]
     }
 
-    /// Knot vectors in u and v.
+    /// The knots along one parameter.
     #[must_use]
-    pub const fn knots(&self) -> &[Knots; 2] {
-        &self.knots
+    pub const fn knots(&self, axis: Axis) -> &Knots {
+        match axis {
+            Axis::U => &self.knots[0],
+            Axis::V => &self.knots[1],
+        }
     }
 
     /// The control net.
@@ -139,78 +273,80 @@ impl NurbsSurface {
         &self.net
     }
 
-    /// Whether the weights differ.
+    /// Whether the weights differ from each other: equal ones make a polynomial surface.
     #[must_use]
     pub fn is_rational(&self) -> bool {
         self.net.weights.as_ref().is_some_and(|w| w.iter().any(|x| *x != w[0]))
     }
 
-    /// Whether the surface meets itself at the two ends of a parameter, smoothly or not.
+    /// The box around the control net, which holds the surface.
     #[must_use]
-    pub const fn is_closed(&self, axis: Axis) -> bool {
+    pub fn control_box(&self) -> Box3 {
+        Box3::around(&self.net.points)
+    }
+
+    /// Whether the two sides that the parameter runs between are one line in space, smooth across it or not.
+    #[must_use]
+    pub const fn closed(&self, axis: Axis) -> bool {
         match axis {
             Axis::U => self.closed[0],
             Axis::V => self.closed[1],
         }
     }
 
-    /// Box around the poles, which contains the surface.
-    #[must_use]
-    pub fn control_box(&self) -> Box3 {
-        Box3::around(&self.net.points)
+    /// Jets at many parameters, appended to `out` in their order; each is [`Surface::jet2`] to the bit.
+    pub fn jet2_batch(&self, at: &[Uv], out: &mut Vec<Jet2>) {
+        out.extend(at.iter().map(|uv| self.jet2(*uv)));
     }
 
-    /// Whether both ends along `axis` meet, and whether they do so with one slope.
-    fn closes(&self, axis: Axis) -> [bool; 2] {
-        let size = self.control_box().diagonal_mm();
-        let (i, across) = (self.domain.get(axis), self.domain.get(axis.other()));
-        let n = 4 * self.knots[usize::from(axis == Axis::U)].span_count().min(64) + 1;
-        let (mut closed, mut smooth, mut extent) = (true, true, 0.0f64);
-        for k in 0..=n {
-            let c = across.at(k as f64 / n as f64);
-            let [a, b] = [i.lo, i.hi].map(|t| self.raw_jet(Uv::from_axis(axis, t, c)));
-            let slope = |j: &Jet2| if axis == Axis::U { j.du } else { j.dv };
-            closed &= (a.point - b.point).norm() <= SAME_POINT * size;
-            smooth &= (slope(&a) - slope(&b)).norm() <= SAME_SLOPE * slope(&a).norm().max(slope(&b).norm());
-            // A direction that is a point everywhere closes nothing.
-            let mid = self.raw_jet(Uv::from_axis(axis, i.at(0.5), c));
-            extent = extent.max((mid.point - a.point).norm());
-        }
-        closed &= extent > SAME_POINT * size;
-        [closed, closed && smooth]
+    /// Pole (i, j) in homogeneous coordinates `(w x, w y, w z, w)`.
+    pub(crate) fn homogeneous(&self, i: usize, j: usize) -> Vector4<f64> {
+        let at = i * self.net.count[1] + j;
+        let w = self.net.weights.as_ref().map_or(1.0, |w| w[at]);
+        let p = &self.net.points[at];
+        Vector4::new(w * p.x, w * p.y, w * p.z, w)
     }
 
-    fn raw_jet(&self, at: Uv) -> Jet2 {
-        let h = self.patches.jet(self.degree(), at);
-        let v3 = |c: &[f64; 4]| Vec3::new(c[0], c[1], c[2]);
-        let [a, au, av, auu, auv, avv] = &h;
-        if self.net.weights.is_none() {
-            return Jet2 {
-                uv: at,
-                point: Point3::from(v3(a)),
-                du: v3(au),
-                dv: v3(av),
-                duu: v3(auu),
-                duv: v3(auv),
-                dvv: v3(avv),
-                side: Side::Along,
-            };
-        }
-        let w = 1.0 / a[3];
-        let s = v3(a) * w;
-        let du = (v3(au) - s * au[3]) * w;
-        let dv = (v3(av) - s * av[3]) * w;
-        Jet2 {
-            uv: at,
-            point: Point3::from(s),
-            du,
-            dv,
-            duu: (v3(auu) - du * (2.0 * au[3]) - s * auu[3]) * w,
-            duv: (v3(auv) - du * av[3] - dv * au[3] - s * auv[3]) * w,
-            dvv: (v3(avv) - dv * (2.0 * av[3]) - s * avv[3]) * w,
-            side: Side::Along,
-        }
+    /// The spans that hold parameters of the domain.
+    #[inline]
+    pub(crate) fn span(&self, at: Uv) -> [usize; 2] {
+        [self.knots[0].find(at.u), self.knots[1].find(at.v)]
     }
+
+    /// The jet of one piece: at the piece's upper ends that of the piece, not of the next one.
+    #[inline]
+    pub(crate) fn piece_jet(&self, at: Uv, span: [usize; 2]) -> Jet2 {
+        let [point, du, dv, duu, duv, dvv] = self.evaluator.jet(&self.knots, &self.net, at, span);
+        Jet2 { uv: at, point: point.into(), du, dv, duu, duv, dvv, side: self.side }
+    }
+
+    /// What the search for closest points needs, built on first use.
+    pub(crate) fn index(&self) -> &Index {
+        self.index.get_or_init(|| Index::new(self))
+    }
+
+    /// Both knot vectors.
+    pub(crate) const fn both_knots(&self) -> &[Knots; 2] {
+        &self.knots
+    }
+
+    /// The parameters inside the domain that stand for `at`. Inside, nothing is rounded.
+    #[inline]
+    fn bring(&self, at: Uv) -> Uv {
+        let d = &self.domain;
+        if at.u >= d.u.lo && at.u <= d.u.hi && at.v >= d.v.lo && at.v <= d.v.hi { at } else { d.bring(at) }
+    }
+}
+
+/// How two opposite sides of a surface meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Seam {
+    /// They do not.
+    Open,
+    /// In one line with a crease.
+    Creased,
+    /// In one line across which the surface is smooth.
+    Smooth,
 }
 
 impl Surface for NurbsSurface {
@@ -218,101 +354,31 @@ impl Surface for NurbsSurface {
         self.domain
     }
 
-    fn jet2(&self, at: Uv) -> Jet2 {
-        let mut jet = self.raw_jet(self.domain.bring(at));
-        jet.uv = at;
-        jet
+    #[inline]
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        let at = self.bring(uv);
+        self.piece_jet(at, self.span(at))
+    }
+
+    #[inline]
+    fn point(&self, uv: Uv) -> Point3 {
+        let at = self.bring(uv);
+        self.evaluator.point(&self.knots, &self.net, at, self.span(at))
     }
 
     fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.patches.breaks[usize::from(axis == Axis::V)].clone()
+        self.knots(axis).breaks().to_vec()
     }
 }
 
-impl Patches {
-    fn new(knots: &[Knots; 2], net: &Net) -> Self {
-        let [p, q] = [knots[0].degree(), knots[1].degree()];
-        let [nu, nv] = [knots[0].span_count(), knots[1].span_count()];
-        let polynomials: [Vec<Vec<Vec<f64>>>; 2] =
-            [0, 1].map(|k| (0..knots[k].span_count()).map(|s| knots[k].span_polynomials(s)).collect());
-        let mut coefficients = Vec::with_capacity(nu * nv * (p + 1) * (q + 1));
-        let mut rows = vec![[0.0; 4]; (p + 1) * (q + 1)];
-        for (su, in_u) in polynomials[0].iter().enumerate() {
-            let (_, i0) = knots[0].span(su);
-            for (sv, in_v) in polynomials[1].iter().enumerate() {
-                let (_, j0) = knots[1].span(sv);
-                // First over v for each row of poles, then over u.
-                rows.fill([0.0; 4]);
-                for i in 0..=p {
-                    for (j, poly) in in_v.iter().enumerate() {
-                        let k = (i0 + i) * net.count[1] + j0 + j;
-                        let w = net.weights.as_ref().map_or(1.0, |w| w[k]);
-                        let c = &net.points[k];
-                        let h = [c.x * w, c.y * w, c.z * w, w];
-                        for (b, f) in poly.iter().enumerate() {
-                            for (o, x) in rows[i * (q + 1) + b].iter_mut().zip(h) {
-                                *o += f * x;
-                            }
-                        }
-                    }
-                }
-                for a in 0..=p {
-                    for b in 0..=q {
-                        let mut sum = [0.0; 4];
-                        for (i, poly) in in_u.iter().enumerate() {
-                            for (o, x) in sum.iter_mut().zip(rows[i * (q + 1) + b]) {
-                                *o += poly[a] * x;
-                            }
-                        }
-                        coefficients.push(sum);
-                    }
-                }
-            }
-        }
-        Self { breaks: [knots[0].breaks(), knots[1].breaks()], coefficients }
-    }
-
-    /// Homogeneous value, first and second derivatives.
-    fn jet(&self, [p, q]: [usize; 2], at: Uv) -> [[f64; 4]; 6] {
-        let piece = |breaks: &[f64], t: f64| {
-            let k = breaks[1..breaks.len() - 1].partition_point(|b| *b <= t);
-            let h = breaks[k + 1] - breaks[k];
-            (k, (t - breaks[k]) / h, 1.0 / h)
-        };
-        let (iu, s, hu) = piece(&self.breaks[0], at.u);
-        let (iv, t, hv) = piece(&self.breaks[1], at.v);
-        let size = (p + 1) * (q + 1);
-        let start = (iu * (self.breaks[1].len() - 1) + iv) * size;
-        let c = &self.coefficients[start..start + size];
-        let mut out = [[0.0; 4]; 6];
-        let [a, au, av, auu, auv, avv] = &mut out;
-        for row in c.chunks_exact(q + 1).rev() {
-            // Horner in v with both derivatives (the second one halved) ...
-            let (mut f, mut d, mut e) = ([0.0; 4], [0.0; 4], [0.0; 4]);
-            for x in row.iter().rev() {
-                for k in 0..4 {
-                    e[k] = e[k] * t + d[k];
-                    d[k] = d[k] * t + f[k];
-                    f[k] = f[k] * t + x[k];
-                }
-            }
-            // ... and the same in u with these as coefficients.
-            for k in 0..4 {
-                auu[k] = auu[k] * s + au[k];
-                au[k] = au[k] * s + a[k];
-                a[k] = a[k] * s + f[k];
-                auv[k] = auv[k] * s + av[k];
-                av[k] = av[k] * s + d[k];
-                avv[k] = avv[k] * s + e[k];
-            }
-        }
-        for k in 0..4 {
-            au[k] *= hu;
-            av[k] *= hv;
-            auu[k] *= 2.0 * hu * hu;
-            auv[k] *= hu * hv;
-            avv[k] *= 2.0 * hv * hv;
-        }
-        out
+impl fmt::Debug for NurbsSurface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("NurbsSurface")
+            .field("knots", &self.knots)
+            .field("net", &self.net)
+            .field("side", &self.side)
+            .field("domain", &self.domain)
+            .field("closed", &self.closed)
+            .finish_non_exhaustive()
     }
 }

@@ -4,7 +4,7 @@ use crate::args::PartArgs;
 use crate::failure::{Done, Outcome};
 use crate::part::{self, Loaded, LoadedFace};
 use crate::render::{self, Table, number};
-use osculate_geom::Box3;
+use osculate_geom::{Box3, Surface};
 use rayon::prelude::*;
 use serde::Serialize;
 

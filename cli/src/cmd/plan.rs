@@ -10,7 +10,6 @@ use crate::render::{self, Table, number};
 use crate::report_fill::{self, Story};
 use crate::verify::{self, Verification, Verified};
 use osculate_geom::{Axis, Box3, Diagnostic};
-use osculate_postproc::cldata;
 use osculate_productivity::levels::{Totals, levels};
 use osculate_productivity::plan::{
     Along, Linked, Links, Passes, PlanError, Task, contour_2cl, isoparametric, link,
@@ -41,6 +40,15 @@ pub struct Productivity {
     instantaneous_max: f64,
     regional: Vec<f64>,
     pub global: f64,
+}
+
+impl Productivity {
+    pub const fn instantaneous_min(&self) -> f64 {
+        self.instantaneous_min
+    }
+    pub const fn instantaneous_max(&self) -> f64 {
+        self.instantaneous_max
+    }
 }
 
 /// `summary.json`.

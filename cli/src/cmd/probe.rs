@@ -4,7 +4,7 @@ use crate::args::PartArgs;
 use crate::failure::{Done, Failure, Outcome};
 use crate::part;
 use crate::render::{self, number};
-use osculate_geom::{Unit3, uv};
+use osculate_geom::{Surface, Unit3, uv};
 use serde::Serialize;
 
 #[derive(Serialize)]

@@ -4,7 +4,7 @@ use crate::failure::{Done, Failure, Outcome};
 use crate::job::{ContactTable, Job};
 use crate::part;
 use crate::render::{self, Table, number};
-use osculate_geom::{Axis, uv};
+use osculate_geom::{Axis, Surface, uv};
 use osculate_productivity::closed_form::{self, DomainError, Section};
 use osculate_tools::{Contact, FeedLine, strip};
 use serde::Serialize;

@@ -5,7 +5,7 @@
 
 use super::data::{Histogram, Pass, Stage};
 use super::legend::{Rgb, Scale, nice_step};
-use super::text::{coordinate, count, escape, figure, fixed};
+use super::text::{coordinate, count, escape, figure, fixed, short};
 use std::fmt::Write;
 
 /// The frame that all charts share, in SVG user units.
@@ -53,12 +53,6 @@ fn hex([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// `figure` without digits that say nothing: 0.0200 becomes 0.02.
-fn tick(value: f64) -> String {
-    let text = figure(value, 4);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
-}
-
 fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title: &str) -> String {
     let mut out = format!(
         "<svg class=\"chart\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">",
@@ -71,7 +65,7 @@ fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title:
             "<path class=\"grid\" d=\"M{LEFT} {at}H{}\"/><text x=\"{}\" y=\"{at}\" dy=\".35em\" text-anchor=\"end\">{}</text>",
             WIDTH - RIGHT,
             LEFT - 6.0,
-            tick(value)
+            short(value, 4)
         );
     }
     for &value in x_ticks {
@@ -81,7 +75,7 @@ fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title:
             "<path class=\"axis\" d=\"M{at} {}v4\"/><text x=\"{at}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
             HEIGHT - BOTTOM,
             HEIGHT - BOTTOM + 17.0,
-            tick(value)
+            short(value, 4)
         );
     }
     let _ = write!(
@@ -116,7 +110,10 @@ pub fn histogram(data: &Histogram, scale: &Scale) -> Option<String> {
         return None;
     }
     let tallest = bins.iter().map(|b| b.2).fold(0.0, f64::max);
-    let x = Axis { lo: first.0, hi: last.1, from: LEFT, to: WIDTH - RIGHT };
+    // The limits belong into the picture also where nothing comes near them.
+    let (lo, hi) =
+        scale.marks.iter().fold((first.0, last.1), |(lo, hi), m| (lo.min(1.1 * m), hi.max(1.1 * m)));
+    let x = Axis { lo, hi, from: LEFT, to: WIDTH - RIGHT };
     let y = Axis { lo: 0.0, hi: 100.0 * tallest / total, from: HEIGHT - BOTTOM, to: TOP + 6.0 };
     let mut out = frame("Histogram of the deviation", x, y, &x.ticks(8.0), "deviation, mm", "share, %");
     for (lo, hi, weight) in &bins {
@@ -146,7 +143,7 @@ pub fn histogram(data: &Histogram, scale: &Scale) -> Option<String> {
              text-anchor=\"{anchor}\">limit {} mm</text>",
             HEIGHT - BOTTOM,
             TOP + 5.0,
-            tick(mark)
+            short(mark, 4)
         );
     }
     Some(out + &base_line() + "</svg>")
@@ -197,16 +194,16 @@ pub fn strip_widths(passes: &[Pass], scale: Option<&Scale>) -> Option<String> {
         let colour = scale.map_or_else(|| "currentColor".into(), |s| hex(s.colour(w.mean_mm)));
         let _ = write!(
             out,
-            "<g><title>pass {number}: {} to {} mm, mean {} mm</title><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
-             fill=\"{colour}\" opacity=\".45\"/><rect x=\"{0}\" y=\"{}\" width=\"{5}\" height=\"2.4\" fill=\"{colour}\"/></g>",
+            "<g><title>pass {number}: {} to {} mm, mean {} mm</title><rect x=\"{left}\" y=\"{}\" width=\"{bar}\" height=\"{}\" \
+             fill=\"{colour}\" opacity=\".45\"/><rect x=\"{left}\" y=\"{}\" width=\"{bar}\" height=\"2.4\" fill=\"{colour}\"/></g>",
             figure(w.min_mm, 3),
             figure(w.max_mm, 3),
             figure(w.mean_mm, 3),
-            coordinate(at - 0.5 * bar),
             coordinate(high),
-            coordinate(bar),
             coordinate((low - high).max(1.0)),
-            coordinate(mean - 1.2)
+            coordinate(mean - 1.2),
+            left = coordinate(at - 0.5 * bar),
+            bar = coordinate(bar)
         );
     }
     Some(out + &base_line() + "</svg>")
@@ -228,16 +225,73 @@ pub fn stages(stages: &[Stage]) -> Option<String> {
         let length = if longest > 0.0 { axis.at(stage.wall_s) } else { 0.0 };
         let _ = write!(
             out,
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text><rect class=\"bar\" x=\"{left}\" y=\"{}\" width=\"{}\" \
-             height=\"15\" rx=\"2\"/><text x=\"{}\" y=\"{1}\">{} s</text>",
+            "<text x=\"{}\" y=\"{base}\" text-anchor=\"end\">{}</text><rect class=\"bar\" x=\"{left}\" y=\"{}\" width=\"{}\" \
+             height=\"15\" rx=\"2\"/><text x=\"{}\" y=\"{base}\">{} s</text>",
             left - 8.0,
-            coordinate(y + 15.0),
             escape(&stage.name),
             coordinate(y + 3.0),
             coordinate(length.max(1.0)),
             coordinate(left + length + 8.0),
-            if stage.wall_s >= 1000.0 { count(stage.wall_s as usize) } else { fixed(stage.wall_s, 2) }
+            if stage.wall_s >= 1000.0 { count(stage.wall_s as usize) } else { fixed(stage.wall_s, 2) },
+            base = coordinate(y + 15.0)
         );
     }
     Some(out + "</svg>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::legend::Limits;
+    use super::*;
+
+    fn scale() -> Scale {
+        Scale::deviation(Limits { scallop_mm: 0.01, gouge_mm: 0.005 }, 0.0)
+    }
+
+    #[test]
+    fn without_data_there_is_no_chart() {
+        assert!(histogram(&Histogram::default(), &scale()).is_none());
+        assert!(strip_widths(&[Pass::default()], None).is_none());
+        assert!(stages(&[]).is_none());
+        let nothing = Histogram { edges_mm: vec![0.0, 1.0], weights: vec![0.0], unit: String::new() };
+        assert!(histogram(&nothing, &scale()).is_none());
+    }
+
+    #[test]
+    fn bins_have_the_colour_of_their_deviation_and_their_share() {
+        let data = Histogram {
+            edges_mm: vec![-0.02, -0.01, 0.0, 0.01, 0.02],
+            weights: vec![1.0, 0.0, 2.0, 1.0],
+            unit: "mm2".into(),
+        };
+        let text = histogram(&data, &scale()).expect("there is something to show");
+        for (middle, share) in [(-0.015, "(25.0 %)"), (0.005, "(50.0 %)"), (0.015, "(25.0 %)")] {
+            let bar = format!("fill=\"{}\"", hex(scale().colour(middle)));
+            let at = text.find(&bar).unwrap_or_else(|| panic!("no bar for {middle} in {text}"));
+            assert!(text[at..].split("</title>").next().is_some_and(|t| t.ends_with(share)), "{middle}");
+        }
+        assert!(text.contains("limit 0.01 mm") && text.contains("limit \u{2212}0.005 mm"));
+    }
+
+    #[test]
+    fn widths_leave_out_what_is_not_known() {
+        let pass = Pass { points_mm: vec![], widths_mm: vec![2.0, f32::NAN, 4.0] };
+        assert_eq!(Widths::of(&pass), Some(Widths { min_mm: 2.0, mean_mm: 3.0, max_mm: 4.0 }));
+    }
+
+    #[test]
+    fn hostile_numbers_end_in_a_chart_or_in_none() {
+        let far =
+            Histogram { edges_mm: vec![1e300, 1.0000000001e300], weights: vec![1.0], unit: String::new() };
+        assert!(histogram(&far, &scale()).is_some());
+        let broken = Histogram {
+            edges_mm: vec![f64::NAN, 0.0, f64::INFINITY],
+            weights: vec![1.0, 2.0],
+            unit: String::new(),
+        };
+        assert!(histogram(&broken, &scale()).is_none());
+        let stage = |wall_s| Stage { name: "<plan>".into(), wall_s };
+        assert!(stages(&[stage(f64::NAN)]).is_none());
+        assert!(stages(&[stage(0.0), stage(1e9)]).is_some_and(|t| t.contains("&lt;plan&gt;")));
+    }
 }

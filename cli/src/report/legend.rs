@@ -5,7 +5,7 @@
 //! high. Lightness falls away from zero on both sides and green differs from amber in lightness too: the map reads in
 //! grey and for colour-blind eyes.
 
-use super::text::{coordinate, escape, figure};
+use super::text::{coordinate, escape, short};
 use std::fmt::Write;
 
 /// An sRGB colour.
@@ -64,7 +64,13 @@ impl Scale {
         let usable = |x: f64| if x.is_finite() && x > 0.0 { x } else { 0.0 };
         let (scallop, gouge) = (usable(limits.scallop_mm), usable(limits.gouge_mm));
         let reach = if usable(reach_mm) > 0.0 { reach_mm } else { 1.0 };
-        let unit_up = if scallop > 0.0 { scallop } else if gouge > 0.0 { gouge } else { reach / 3.0 };
+        let unit_up = if scallop > 0.0 {
+            scallop
+        } else if gouge > 0.0 {
+            gouge
+        } else {
+            reach / 3.0
+        };
         let unit_down = if gouge > 0.0 { gouge } else { unit_up };
         let mut stops = vec![
             Stop { value: -gouge - 2.0 * unit_down, colour: [0x52, 0x00, 0x4a] },
@@ -96,8 +102,13 @@ impl Scale {
         if lo > hi {
             return None;
         }
-        let colours: [Rgb; 5] =
-            [[0x2a, 0x0f, 0x86], [0x8a, 0x1c, 0x9c], [0xd2, 0x4a, 0x70], [0xf8, 0x93, 0x3f], [0xf4, 0xe4, 0x3a]];
+        let colours: [Rgb; 5] = [
+            [0x2a, 0x0f, 0x86],
+            [0x8a, 0x1c, 0x9c],
+            [0xd2, 0x4a, 0x70],
+            [0xf8, 0x93, 0x3f],
+            [0xf4, 0xe4, 0x3a],
+        ];
         let stops = colours
             .iter()
             .enumerate()
@@ -162,7 +173,11 @@ impl Scale {
         }
         if hi <= lo {
             let [r, g, b] = self.colour(lo);
-            let _ = write!(out, "<rect width=\"14\" height=\"{}\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>", coordinate(length));
+            let _ = write!(
+                out,
+                "<rect width=\"14\" height=\"{}\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>",
+                coordinate(length)
+            );
         }
         for (value, marked) in self.ticks(length) {
             let at = coordinate(y(value));
@@ -182,7 +197,7 @@ impl Scale {
     fn tick_text(&self, value: f64) -> String {
         let (lo, hi) = self.range();
         // A round tick next to zero is zero up to the rounding of its sum.
-        let text = if value.abs() < 1e-9 * (hi - lo) { "0".into() } else { figure(value, 3) };
+        let text = if value.abs() < 1e-9 * (hi - lo) { "0".into() } else { short(value, 3) };
         match value {
             v if self.open_ended && v == hi => format!("\u{2265} {text}"),
             v if self.open_ended && v == lo => format!("\u{2264} {text}"),
@@ -200,7 +215,8 @@ impl Scale {
         let room = 14.0 / length * span;
         let mut ticks: Vec<(f64, bool)> = self.marks.iter().map(|value| (*value, true)).collect();
         let step = nice_step(span / 8.0);
-        let round = (0..).map(|i| ((lo / step).ceil() + f64::from(i)) * step).take(40).take_while(|v| *v <= hi);
+        let round =
+            (0..).map(|i| ((lo / step).ceil() + f64::from(i)) * step).take(40).take_while(|v| *v <= hi);
         let near = |ticks: &[(f64, bool)], v: f64| ticks.iter().any(|(t, _)| (t - v).abs() < room);
         let always = [0.0, hi, lo];
         for v in always.into_iter().filter(|v| (lo..=hi).contains(v)).chain(round) {
@@ -221,7 +237,9 @@ pub fn nice_step(step: f64) -> f64 {
 
 /// `t` of the way from `a` to `b`, in sRGB as the browser's canvas does it.
 fn mix(a: Rgb, b: Rgb, t: f64) -> Rgb {
-    std::array::from_fn(|i| (f64::from(a[i]) + (f64::from(b[i]) - f64::from(a[i])) * t).round().clamp(0.0, 255.0) as u8)
+    std::array::from_fn(|i| {
+        (f64::from(a[i]) + (f64::from(b[i]) - f64::from(a[i])) * t).round().clamp(0.0, 255.0) as u8
+    })
 }
 
 #[cfg(test)]
@@ -266,7 +284,8 @@ mod tests {
 
     #[test]
     fn a_sequential_scale_has_its_ends_at_the_extremes() {
-        let scale = Scale::sequential("w", "mm", [2.0, f64::NAN, 1.0, 3.0].into_iter()).expect("finite values");
+        let scale =
+            Scale::sequential("w", "mm", [2.0, f64::NAN, 1.0, 3.0].into_iter()).expect("finite values");
         assert_eq!(scale.range(), (1.0, 3.0));
         assert_eq!(scale.colour(2.0), [0xd2, 0x4a, 0x70]);
         assert!(Scale::sequential("w", "mm", [f64::NAN].into_iter()).is_none());
@@ -276,7 +295,7 @@ mod tests {
     #[test]
     fn the_bar_names_both_tolerances() {
         let bar = Scale::deviation(LIMITS, 0.0).bar(200.0);
-        for text in [">\u{2212}0.00500<", ">0.0100<", ">0<", ">\u{2265} 0.0300<"] {
+        for text in [">\u{2212}0.005<", ">0.01<", ">0<", ">\u{2265} 0.03<"] {
             assert!(bar.contains(text), "{text} is missing in {bar}");
         }
     }

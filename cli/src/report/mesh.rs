@@ -48,9 +48,11 @@ pub fn clean(face: &FaceMesh, scalars: usize) -> Clean {
                 return at;
             }
             let deviation = face.deviation_mm.get(i).copied().unwrap_or(f32::NAN);
-            let values = (0..scalars).map(|s| face.scalars.get(s).and_then(|v| v.get(i)).copied().unwrap_or(f32::NAN));
+            let values =
+                (0..scalars).map(|s| face.scalars.get(s).and_then(|v| v.get(i)).copied().unwrap_or(f32::NAN));
             // Adding zero makes -0 and 0 the same vertex.
-            let floats = face.positions[i].into_iter().chain(normals[i]).chain([deviation]).chain(values.clone());
+            let floats =
+                face.positions[i].into_iter().chain(normals[i]).chain([deviation]).chain(values.clone());
             let key: Vec<u32> = floats.map(|x| (x + 0.0).to_bits()).collect();
             let next = out.positions.len() as u32;
             let at = *known.entry(key).or_insert(next);
@@ -168,8 +170,10 @@ mod tests {
             })
         };
         let stride = n + 1;
-        let triangles = (0..n).flat_map(|i| [[i, i + 1, i + stride], [i + 1, i + 1 + stride, i + stride]]).collect();
-        let face = FaceMesh { positions: ring(0.0).chain(ring(1.0)).collect(), triangles, ..FaceMesh::default() };
+        let triangles =
+            (0..n).flat_map(|i| [[i, i + 1, i + stride], [i + 1, i + 1 + stride, i + stride]]).collect();
+        let face =
+            FaceMesh { positions: ring(0.0).chain(ring(1.0)).collect(), triangles, ..FaceMesh::default() };
         assert_eq!(clean(&face, 0).borders.len(), 2 * n as usize);
     }
 }

@@ -16,6 +16,10 @@ mod project;
 mod simplify;
 mod text;
 mod tool_body;
+mod viewer;
+
+#[cfg(test)]
+mod tests;
 
 pub use data::{
     Column, FaceMesh, Histogram, Holder, Link, Outcome, Pass, PathPoints, Report, Scalar, Stage, Table, Tool,

@@ -113,7 +113,8 @@ fn octahedral(normal: [f32; 3]) -> [u16; 2] {
 pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
     let mut out = Writer::default();
     let mut notes = Vec::new();
-    let points = faces.iter().flat_map(|f| &f.positions).chain(report.passes.iter().flat_map(|p| &p.points_mm));
+    let points =
+        faces.iter().flat_map(|f| &f.positions).chain(report.passes.iter().flat_map(|p| &p.points_mm));
     let bounds = Bounds::of(points);
     let steps = Steps::new(bounds);
 
@@ -157,7 +158,10 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
         })
         .collect();
     if poses.len() / 8 < report.poses.len() {
-        notes.push(format!("{} tool poses are not finite and not shown.", report.poses.len() - poses.len() / 8));
+        notes.push(format!(
+            "{} tool poses are not finite and not shown.",
+            report.poses.len() - poses.len() / 8
+        ));
     }
     let pose_count = poses.len() / 8;
     let poses_at = out.floats(poses.into_iter());

@@ -96,6 +96,28 @@ impl Camera {
     }
 }
 
+/// The pixels whose centres a triangle covers, as indices row by row, each with the weights of its second and third
+/// corner. None for a triangle without area.
+pub fn covered(
+    [a, b, c]: [[f64; 3]; 3],
+    width: usize,
+    height: usize,
+) -> impl Iterator<Item = (usize, f64, f64)> {
+    let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    let range = move |i: usize, size: usize| {
+        let lo = a[i].min(b[i]).min(c[i]).floor().max(0.0) as usize;
+        let hi = a[i].max(b[i]).max(c[i]).ceil().clamp(0.0, size as f64) as usize;
+        lo..hi
+    };
+    let rows = if twice_area.abs() > 0.0 && twice_area.is_finite() { range(1, height) } else { 0..0 };
+    rows.flat_map(move |y| range(0, width).map(move |x| (x, y))).filter_map(move |(x, y)| {
+        let (px, py) = (x as f64 + 0.5 - a[0], y as f64 + 0.5 - a[1]);
+        let v = (px * (c[1] - a[1]) - (c[0] - a[0]) * py) / twice_area;
+        let w = ((b[0] - a[0]) * py - px * (b[1] - a[1])) / twice_area;
+        (v >= 0.0 && w >= 0.0 && v + w <= 1.0).then_some((y * width + x, v, w))
+    })
+}
+
 /// The nearest depth in each pixel.
 pub struct DepthMap {
     width: usize,
@@ -110,38 +132,25 @@ impl DepthMap {
     }
 
     /// Draws a triangle in picture coordinates.
-    pub fn fill(&mut self, [a, b, c]: [[f64; 3]; 3]) {
-        let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        if !(twice_area.abs() > 0.0 && twice_area.is_finite()) {
-            return;
-        }
-        let range = |i: usize, size: usize| {
-            let lo = a[i].min(b[i]).min(c[i]).floor().max(0.0) as usize;
-            let hi = a[i].max(b[i]).max(c[i]).ceil().clamp(0.0, size as f64) as usize;
-            lo..hi
-        };
-        let columns = range(0, self.width);
-        for y in range(1, self.height) {
-            for x in columns.clone() {
-                let (px, py) = (x as f64 + 0.5, y as f64 + 0.5);
-                let v = ((px - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (py - a[1])) / twice_area;
-                let w = ((b[0] - a[0]) * (py - a[1]) - (px - a[0]) * (b[1] - a[1])) / twice_area;
-                if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
-                    let depth = (a[2] + v * (b[2] - a[2]) + w * (c[2] - a[2])) as f32;
-                    let pixel = &mut self.nearest[y * self.width + x];
-                    *pixel = pixel.max(depth);
-                }
-            }
+    pub fn fill(&mut self, corners: [[f64; 3]; 3]) {
+        let [a, b, c] = corners.map(|p| p[2]);
+        for (pixel, v, w) in covered(corners, self.width, self.height) {
+            self.nearest[pixel] = self.nearest[pixel].max((a + v * (b - a) + w * (c - a)) as f32);
         }
     }
 
-    /// Is nothing drawn more than `slack` pixels in front of `p`? Outside the picture nothing is.
+    /// Is nothing drawn more than `slack` pixels in front of `p`, there or in one of the pixels around? The neighbours
+    /// count because on a steep surface the depth changes much within a pixel. Outside the picture nothing is hidden.
     pub fn sees(&self, p: [f64; 3], slack: f64) -> bool {
         let (x, y) = (p[0].floor(), p[1].floor());
         if !(x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64) {
             return true;
         }
-        f64::from(self.nearest[y as usize * self.width + x as usize]) <= p[2] + slack
+        let (x, y) = (x as usize, y as usize);
+        let rows = y.saturating_sub(1)..(y + 2).min(self.height);
+        let columns = x.saturating_sub(1)..(x + 2).min(self.width);
+        rows.flat_map(|row| columns.clone().map(move |column| row * self.width + column))
+            .any(|pixel| f64::from(self.nearest[pixel]) <= p[2] + slack)
     }
 }
 
@@ -184,7 +193,7 @@ mod tests {
         map.fill([[0.0, 0.0, 5.0], [10.0, 0.0, 5.0], [0.0, 10.0, 5.0]]);
         assert!(map.sees([2.0, 2.0, 5.0], 0.1) && map.sees([2.0, 2.0, 8.0], 0.1));
         assert!(!map.sees([2.0, 2.0, 4.0], 0.1));
-        assert!(map.sees([9.0, 9.0, 4.0], 0.1), "outside the triangle");
+        assert!(map.sees([9.5, 9.5, 4.0], 0.1), "outside the triangle");
         assert!(map.sees([-3.0, 50.0, 4.0], 0.1), "outside the picture");
         map.fill([[0.0; 3], [1.0, f64::NAN, 0.0], [1.0; 3]]);
     }

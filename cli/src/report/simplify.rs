@@ -1,12 +1,14 @@
 //! Fewer triangles for the static picture: vertices that fall into one cell of the picture become one.
 //!
-//! Cells are cubes in picture space, so that the result is equally fine everywhere in the picture. A cell is stood for
-//! by a vertex on the face's border where it has one, so that outlines stay on the part. Its value is the mean of its
-//! vertices' deviations, or the worst one as soon as that is out of tolerance: the picture may show a bad spot too large by a
-//! cell, and never hides one.
+//! Cells are cubes in picture space, the same for all faces, so that the result is equally fine everywhere and faces
+//! stay joined. A cell is stood for by a corner of the face's border where it has one, otherwise by a vertex on the
+//! border, so that outlines stay on the part. A facet's value is the mean over its cells, or their worst as soon as
+//! that is out of tolerance in two of them, or in one that no other facet shows: the picture may show a bad spot too
+//! large by a cell, and never hides one.
 
 use super::legend::Limits;
 use super::mesh::Clean;
+use super::project::{dot, unit};
 use std::collections::{BTreeSet, HashMap};
 
 /// A triangle of vertices of the face, with its value.
@@ -20,31 +22,87 @@ pub struct Facet {
 
 struct Cell {
     vertex: u32,
-    on_border: bool,
+    rank: u8,
     distance: f64,
     sum: f64,
     known: usize,
     worst: f64,
+    /// Shares a facet with another cell out of tolerance.
+    shown: bool,
 }
 
-/// At most about `budget` facets that stand for the triangles of `face`, whose vertices lie at `picture`.
-pub fn simplify(face: &Clean, picture: &[[f64; 3]], limits: Limits, budget: usize) -> Vec<Facet> {
-    if face.triangles.len() <= budget {
-        return face
-            .triangles
-            .iter()
-            .map(|t| Facet { corners: *t, deviation_mm: facet_value(t.map(|i| value_of(face, i)), limits) })
-            .collect();
+impl Cell {
+    fn mean(&self) -> f64 {
+        self.sum / self.known as f64
     }
-    // A cell of the size at which a face that fills the picture once keeps two facets a cell, then larger ones.
+}
+
+/// A border that turns by more than this has a corner there: cos 30 degrees.
+const CORNER_COS: f64 = 0.866;
+
+/// At most about `budget` facets that stand for the triangles of `faces`, whose vertices lie at `pictures`; a list a
+/// face.
+pub fn simplify(
+    faces: &[Clean],
+    pictures: &[Vec<[f64; 3]>],
+    limits: Limits,
+    budget: usize,
+) -> Vec<Vec<Facet>> {
+    let total: usize = faces.iter().map(|f| f.triangles.len()).sum();
+    if total <= budget {
+        let value = |face: &Clean, t: &[u32; 3]| facet_value(t.map(|i| value_of(face, i)), limits);
+        let facet = |face, t: &[u32; 3]| Facet { corners: *t, deviation_mm: value(face, t) };
+        return faces.iter().map(|face| face.triangles.iter().map(|t| facet(face, t)).collect()).collect();
+    }
+    let ranks = ranks(faces);
+    // Cells only grow: once all vertices of a face share one, it has no facet left, so the loop ends.
     let mut size = 2.0;
     loop {
-        let facets = merged(face, picture, limits, size);
-        if facets.len() <= budget {
+        let facets: Vec<Vec<Facet>> = faces
+            .iter()
+            .zip(pictures)
+            .zip(&ranks)
+            .map(|((face, picture), ranks)| merged(face, picture, ranks, limits, size))
+            .collect();
+        let count: usize = facets.iter().map(Vec::len).sum();
+        if count <= budget {
             return facets;
         }
-        size *= (facets.len() as f64 / budget as f64).sqrt().max(1.06);
+        size *= (count as f64 / budget as f64).sqrt().max(1.03);
     }
+}
+
+/// How much each vertex matters for the outline: 3 at a corner of a border, 2 on a border, 1 where the border is also
+/// that of another face, 0 elsewhere.
+fn ranks(faces: &[Clean]) -> Vec<Vec<u8>> {
+    type Place = [u32; 3];
+    let place = |face: &Clean, i: u32| -> Place { face.positions[i as usize].map(|x| (x + 0.0).to_bits()) };
+    let edge = |face: &Clean, [a, b]: [u32; 2]| -> [Place; 2] {
+        let (a, b) = (place(face, a), place(face, b));
+        [a.min(b), a.max(b)]
+    };
+    let mut owners: HashMap<[Place; 2], usize> = HashMap::new();
+    for face in faces {
+        face.borders.iter().for_each(|&e| *owners.entry(edge(face, e)).or_insert(0) += 1);
+    }
+    let of_face = |face: &Clean| {
+        let mut ranks = vec![0_u8; face.positions.len()];
+        let mut before: Vec<Option<[f64; 3]>> = vec![None; face.positions.len()];
+        for &[a, b] in &face.borders {
+            let at = |i: u32| face.positions[i as usize].map(f64::from);
+            let direction = unit(std::array::from_fn(|k| at(b)[k] - at(a)[k]));
+            let rank = if owners.get(&edge(face, [a, b])) == Some(&1) { 2 } else { 1 };
+            for end in [a, b].map(|i| i as usize) {
+                ranks[end] = ranks[end].max(rank);
+                match before[end] {
+                    Some(other) if dot(other, direction).abs() < CORNER_COS => ranks[end] = 3,
+                    _ => before[end] = Some(direction),
+                }
+            }
+        }
+        ranks
+    };
+    faces.iter().map(of_face).collect()
 }
 
 fn value_of(face: &Clean, vertex: u32) -> f64 {
@@ -54,32 +112,36 @@ fn value_of(face: &Clean, vertex: u32) -> f64 {
 /// The worst corner's value where that is out of tolerance, otherwise the mean of those known.
 fn facet_value(values: [f64; 3], limits: Limits) -> f64 {
     let known = || values.into_iter().filter(|v| !v.is_nan());
-    let worst = known().fold(f64::NAN, |w, v| if w.is_nan() || limits.severity(v) > limits.severity(w) { v } else { w });
-    if limits.severity(worst) > 1.0 { worst } else { known().sum::<f64>() / known().count() as f64 }
+    let worst = known()
+        .fold(f64::NAN, |w, v| if w.is_nan() || limits.severity(v) > limits.severity(w) { v } else { w });
+    if limits.severity(worst) > 1.0 { worst } else { mean(values) }
 }
 
-fn merged(face: &Clean, picture: &[[f64; 3]], limits: Limits, size: f64) -> Vec<Facet> {
-    let mut on_border = vec![false; picture.len()];
-    for &end in face.borders.iter().flatten() {
-        on_border[end as usize] = true;
-    }
+/// The mean of the values known; NaN where none is.
+fn mean(values: [f64; 3]) -> f64 {
+    let known = || values.into_iter().filter(|v| !v.is_nan());
+    known().sum::<f64>() / known().count() as f64
+}
+
+fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size: f64) -> Vec<Facet> {
     let mut cells: Vec<Cell> = Vec::new();
     let mut index: HashMap<[i64; 3], usize> = HashMap::new();
     let cell_of: Vec<usize> = picture
         .iter()
-        .zip(&on_border)
+        .zip(ranks)
         .enumerate()
-        .map(|(i, (p, &border))| {
+        .map(|(i, (p, &rank))| {
             let key = p.map(|x| (x / size).floor() as i64);
             let distance = p.iter().zip(key).map(|(x, k)| (x / size - k as f64 - 0.5).powi(2)).sum::<f64>();
             let value = value_of(face, i as u32);
+            let vertex = i as u32;
             let at = *index.entry(key).or_insert(cells.len());
             if at == cells.len() {
-                cells.push(Cell { vertex: i as u32, on_border: border, distance, sum: 0.0, known: 0, worst: value });
+                cells.push(Cell { vertex, rank, distance, sum: 0.0, known: 0, worst: value, shown: false });
             }
             let cell = &mut cells[at];
-            if (border, -distance) > (cell.on_border, -cell.distance) {
-                (cell.vertex, cell.on_border, cell.distance) = (i as u32, border, distance);
+            if (rank, -distance) > (cell.rank, -cell.distance) {
+                (cell.vertex, cell.rank, cell.distance) = (vertex, rank, distance);
             }
             if !value.is_nan() {
                 cell.sum += value;
@@ -92,24 +154,32 @@ fn merged(face: &Clean, picture: &[[f64; 3]], limits: Limits, size: f64) -> Vec<
         })
         .collect();
     let mut seen: BTreeSet<[usize; 3]> = BTreeSet::new();
-    let mut facets = Vec::new();
+    let mut kept: Vec<[usize; 3]> = Vec::new();
     for triangle in &face.triangles {
         let three = triangle.map(|i| cell_of[i as usize]);
         let mut key = three;
         key.sort_unstable();
-        if key[0] == key[1] || key[1] == key[2] || !seen.insert(key) {
-            continue;
+        if key[0] != key[1] && key[1] != key[2] && seen.insert(key) {
+            kept.push(three);
         }
-        let value = |c: usize| {
-            let cell = &cells[c];
-            if limits.severity(cell.worst) > 1.0 { cell.worst } else { cell.sum / cell.known as f64 }
-        };
-        facets.push(Facet {
-            corners: three.map(|c| cells[c].vertex),
-            deviation_mm: facet_value(three.map(value), limits),
-        });
     }
-    facets
+    // Two cells out of tolerance show in the facets between them; one alone shows in all facets around it.
+    let bad = |cells: &[Cell], c: usize| limits.severity(cells[c].worst) > 1.0;
+    for three in &kept {
+        let wrong: Vec<usize> = three.iter().copied().filter(|&c| bad(&cells, c)).collect();
+        if wrong.len() > 1 {
+            wrong.into_iter().for_each(|c| cells[c].shown = true);
+        }
+    }
+    kept.into_iter()
+        .map(|three| {
+            let wrong = || three.into_iter().filter(|&c| bad(&cells, c));
+            let shows = wrong().count() > 1 || wrong().any(|c| !cells[c].shown);
+            let values = three.map(|c| if shows { cells[c].worst } else { cells[c].mean() });
+            let deviation_mm = if shows { facet_value(values, limits) } else { mean(values) };
+            Facet { corners: three.map(|c| cells[c].vertex), deviation_mm }
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -139,16 +209,18 @@ mod tests {
         (clean, picture)
     }
 
+    fn simplify_one(face: &Clean, picture: &[[f64; 3]]) -> Vec<Facet> {
+        simplify(std::slice::from_ref(face), &[picture.to_vec()], LIMITS, 500).remove(0)
+    }
+
     #[test]
     fn the_budget_holds_and_the_border_stays() {
         let (face, picture) = square(60, None);
-        let facets = simplify(&face, &picture, LIMITS, 500);
+        let facets = simplify_one(&face, &picture);
         assert!(facets.len() <= 500 && facets.len() > 150, "{}", facets.len());
         let used: BTreeSet<u32> = facets.iter().flat_map(|f| f.corners).collect();
-        for side in [0, 1] {
-            for end in [0.0, 60.0] {
-                assert!(used.iter().any(|&i| picture[i as usize][side] == end));
-            }
+        for corner in [[0.0, 0.0], [60.0, 0.0], [0.0, 60.0], [60.0, 60.0]] {
+            assert!(used.iter().any(|&i| picture[i as usize][..2] == corner), "{corner:?}");
         }
         assert!(facets.iter().all(|f| (f.deviation_mm - 0.002).abs() < 1e-6));
     }
@@ -157,9 +229,9 @@ mod tests {
     fn one_bad_vertex_of_thousands_is_still_seen() {
         for bad in [0.5_f32, -0.1] {
             let (face, picture) = square(60, Some((1234, bad)));
-            let facets = simplify(&face, &picture, LIMITS, 500);
+            let facets = simplify_one(&face, &picture);
             let shown = facets.iter().filter(|f| (f.deviation_mm - f64::from(bad)).abs() < 1e-9).count();
-            // Its cell with the ring of facets about it, and not half of the picture.
+            // The facets around its cell, and not half of the picture.
             assert!((1..=12).contains(&shown), "{shown}");
         }
     }
@@ -167,6 +239,6 @@ mod tests {
     #[test]
     fn what_fits_is_left_alone() {
         let (face, picture) = square(5, None);
-        assert_eq!(simplify(&face, &picture, LIMITS, 500).len(), 50);
+        assert_eq!(simplify_one(&face, &picture).len(), 50);
     }
 }

@@ -45,6 +45,16 @@ pub fn figure(value: f64, digits: usize) -> String {
     grouped(&format!("{value:.decimals$}"))
 }
 
+/// [`figure`] without the zeros at its end: for ticks and limits, which are round.
+pub fn short(value: f64, digits: usize) -> String {
+    let text = figure(value, digits);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').into()
+    } else {
+        text
+    }
+}
+
 /// `value` with a fixed number of decimals; a dash where it is not finite, and no minus before a zero.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
@@ -106,7 +116,10 @@ mod tests {
 
     #[test]
     fn markup_is_escaped() {
-        assert_eq!(escape("<b a=\"1\" c='2'>&</b>"), "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;&lt;/b&gt;");
+        assert_eq!(
+            escape("<b a=\"1\" c='2'>&</b>"),
+            "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;&lt;/b&gt;"
+        );
         assert_eq!(escape("a\u{0}b\u{1b}c\nd"), "a\u{FFFD}b\u{FFFD}c\nd");
     }
 
@@ -142,6 +155,7 @@ mod tests {
         assert_eq!(figure(1234.0, 4), "1234");
         assert_eq!(figure(3.2e-9, 2), "3.2e\u{2212}9");
         assert_eq!(figure(f64::NAN, 3), "\u{2013}");
+        assert_eq!([short(0.0200, 4), short(20.0, 4), short(1e-7, 3)], ["0.02", "20", "1.00e\u{2212}7"]);
         assert_eq!(fixed(-0.000_04, 3), "0.000");
         assert_eq!(fixed(1.25, 1), "1.2");
         assert_eq!(count(1_234_567), "1\u{2009}234\u{2009}567");

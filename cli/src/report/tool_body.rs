@@ -25,8 +25,12 @@ pub fn outlines(tool: &Tool) -> Vec<(Piece, Vec<[f64; 2]>)> {
     let good = |x: f64| x.is_finite() && x > 0.0;
     let mut pieces = Vec::new();
     let mut top = 0.0_f64;
-    let given: Vec<[f64; 2]> =
-        tool.meridian_mm.iter().copied().filter(|p| p[0].is_finite() && p[0] >= 0.0 && p[1].is_finite()).collect();
+    let given: Vec<[f64; 2]> = tool
+        .meridian_mm
+        .iter()
+        .copied()
+        .filter(|p| p[0].is_finite() && p[0] >= 0.0 && p[1].is_finite())
+        .collect();
     if let (Some(first), Some(last)) = (given.first().copied(), given.last().copied()) {
         let mut outline = given;
         if first[0] > 0.0 {
@@ -38,7 +42,8 @@ pub fn outlines(tool: &Tool) -> Vec<(Piece, Vec<[f64; 2]>)> {
     } else if good(tool.diameter_mm) && good(tool.length_mm) {
         let radius = 0.5 * tool.diameter_mm;
         let corner = if good(tool.corner_radius_mm) { tool.corner_radius_mm.min(radius) } else { 0.0 };
-        let end = tool.flute_mm.filter(|f| good(*f)).map_or(tool.length_mm, |f| f.clamp(corner, tool.length_mm));
+        let end =
+            tool.flute_mm.filter(|f| good(*f)).map_or(tool.length_mm, |f| f.clamp(corner, tool.length_mm));
         let mut outline = vec![[0.0, 0.0]];
         if corner > 0.0 {
             for i in 0..=CORNER_STEPS {
@@ -95,7 +100,10 @@ mod tests {
             ..Tool::default()
         };
         let pieces = outlines(&tool);
-        assert_eq!(pieces.iter().map(|p| p.0).collect::<Vec<_>>(), [Piece::Cutter, Piece::Shank, Piece::Holder]);
+        assert_eq!(
+            pieces.iter().map(|p| p.0).collect::<Vec<_>>(),
+            [Piece::Cutter, Piece::Shank, Piece::Holder]
+        );
         for pair in pieces.windows(2) {
             assert_eq!(pair[0].1.last().map(|p| p[1]), pair[1].1.first().map(|p| p[1]));
         }

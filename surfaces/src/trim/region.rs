@@ -207,7 +207,9 @@ impl Region {
             let flips = self.flips.partition_point(|f| *f <= x);
             let odd_below = (flips + self.columns.below(x, y - hair)) % 2 == 1;
             // Inside above means outside below: the corner's state is then the opposite of the count's parity.
-            let corner_inside = if run > 0.0 { odd_below } else { !odd_below };
+            // Exchanged coordinates exchange left and right.
+            let inside_above = (run > 0.0) != self.swap;
+            let corner_inside = if inside_above { odd_below } else { !odd_below };
             ballot += if corner_inside { run.abs() } else { -run.abs() };
             total += run.abs();
         }

@@ -1,0 +1,201 @@
+//! Between jobs and the postprocessor: machine, dialect, setup, text out and motions back.
+
+use crate::failure::{Failure, beside, read_text};
+use crate::job::Job;
+use crate::part::{self, JobFaces};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use osculate_geom::{Box3, Diagnostic, Vec3};
+use osculate_postproc::cldata::{self, ClWriteOptions};
+use osculate_postproc::feed::FeedMode;
+use osculate_postproc::nc::Dialect;
+use osculate_postproc::nc::readback::{self, ReadOptions};
+use osculate_postproc::{Machine, PostOptions, Posted, Setup, built_in_names};
+use osculate_tools::cl::{ClPath, Motion};
+use osculate_tools::removal::Swept;
+use std::path::Path;
+
+/// Largest rise of F from block to block for `kz` where the job gives none, mm/min.
+const DEFAULT_KZ_STEP: f64 = 200.0;
+
+/// A machine with the control's language and feed mode.
+pub struct Control {
+    /// The machine.
+    pub machine: Machine,
+    /// The language.
+    pub dialect: Dialect,
+    /// How F is programmed.
+    pub feed: FeedMode,
+    /// As the job names it.
+    pub dialect_name: String,
+    /// As the job names it.
+    pub feed_name: String,
+    /// Extension of program files.
+    pub extension: &'static str,
+}
+
+/// The words of a control, from a job or a command line.
+pub struct Words<'a> {
+    /// A built-in name.
+    pub name: Option<&'a str>,
+    /// A machine file.
+    pub file: Option<&'a Path>,
+    /// The language.
+    pub dialect: &'a str,
+    /// The feed mode.
+    pub feed: &'a str,
+    /// For `kz`.
+    pub kz_step: Option<f64>,
+}
+
+impl Control {
+    /// The control that the words describe.
+    pub fn from_words(words: &Words<'_>) -> Result<Self, Failure> {
+        let machine = match (words.name, words.file) {
+            (_, Some(file)) => {
+                Machine::from_toml(&read_text(file)?).map_err(|e| Failure::file(file, e.to_string().trim_end()))?
+            }
+            (Some(name), None) => Machine::built_in(name).map_err(Failure::job)?,
+            (None, None) => {
+                return Err(Failure::job(format!(
+                    "a machine is needed: name = one of {} or file = \"...\"",
+                    built_in_names().join(", ")
+                )));
+            }
+        };
+        let dialect: Dialect = words.dialect.parse().map_err(Failure::job)?;
+        let kz = words.kz_step.unwrap_or(DEFAULT_KZ_STEP);
+        let feed = match words.feed {
+            "tcp" => FeedMode::Tcp,
+            "none" => FeedMode::None,
+            "kf" => FeedMode::Kf,
+            "kv" => FeedMode::Kv { fgref_mm: None },
+            "kz" => FeedMode::Kz { step_mm_min: kz, fgref_mm: None },
+            "inverse_time" => FeedMode::InverseTime,
+            other => {
+                return Err(Failure::job(format!(
+                    "feed = \"{other}\" is no feed mode; there are tcp, none, kv, kf, kz, inverse_time"
+                )));
+            }
+        };
+        Ok(Self {
+            machine,
+            dialect,
+            feed,
+            dialect_name: words.dialect.to_owned(),
+            feed_name: words.feed.to_owned(),
+            extension: dialect.extension(),
+        })
+    }
+}
+
+/// The control of a job.
+pub fn control(job: &Job) -> Result<Control, Failure> {
+    let here = |f: Failure| Failure::file(&job.path, format!("[machine] {}", f.message()));
+    let Some(m) = &job.machine else {
+        return Err(Failure::file(
+            &job.path,
+            "a [machine] table is needed: name = \"trunnion-ac\", dialect = \"sinumerik\", feed = \"tcp\"",
+        ));
+    };
+    let file = m.file.as_ref().map(|f| beside(&job.path, f));
+    Control::from_words(&Words {
+        name: m.name.as_deref(),
+        file: file.as_deref(),
+        dialect: m.dialect.as_deref().unwrap_or("sinumerik"),
+        feed: m.feed.as_deref().unwrap_or("tcp"),
+        kz_step: m.kz_step,
+    })
+    .map_err(here)
+}
+
+/// Where the part of a job sits on the machine: as the job says, or with the middle of the faces' box over the
+/// table's reference point and its lowest point on it.
+pub fn setup(job: &Job, faces: &JobFaces) -> Result<Setup, Failure> {
+    let s = &job.setup;
+    let finite = |key: &str, v: &[f64; 3]| {
+        if v.iter().all(|c| c.is_finite()) {
+            Ok(())
+        } else {
+            Err(Failure::file(&job.path, format!("[setup] {key} = {v:?} must be three finite numbers")))
+        }
+    };
+    finite("rotate_deg", &s.rotate_deg)?;
+    let [a, b, c] = s.rotate_deg.map(f64::to_radians);
+    let turn = |axis: Vec3, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
+    let rotation = turn(Vec3::z(), c) * turn(Vec3::y(), b) * turn(Vec3::x(), a);
+    let zero = match s.part_zero_mm {
+        Some(zero) => {
+            finite("part_zero_mm", &zero)?;
+            Vec3::from(zero)
+        }
+        None => {
+            let mut turned = Box3::empty();
+            for face in &faces.faces {
+                let b = part::bounds(face);
+                for k in 0..8 {
+                    let pick = |bit: usize, i: usize| if k & bit == 0 { b.min[i] } else { b.max[i] };
+                    turned.add(&(rotation * osculate_geom::Point3::new(pick(1, 0), pick(2, 1), pick(4, 2))));
+                }
+            }
+            let middle = turned.centre();
+            -Vec3::new(middle.x, middle.y, turned.min.z)
+        }
+    };
+    let gauge = job.cutter()?.length_mm() + job.holder()?.map_or(0.0, |h| h.length_mm());
+    Ok(Setup { part_zero: Isometry3::from_parts(Translation3::from(zero), rotation), gauge_length_mm: gauge })
+}
+
+/// CL data as text.
+pub fn cl_text(path: &ClPath, part_name: &str) -> Result<String, String> {
+    let options = ClWriteOptions { part_name: part_name.to_owned(), ..ClWriteOptions::default() };
+    cldata::write(path, &options).map_err(|e| e.to_string())
+}
+
+/// NC code for a path.
+pub fn post(path: &ClPath, control: &Control, setup: &Setup, name: &str) -> Result<Posted, Failure> {
+    let options = PostOptions {
+        program_name: name.to_owned(),
+        ..PostOptions::new(control.dialect, control.feed)
+    };
+    osculate_postproc::post(path, &control.machine, setup, &options).map_err(Failure::job)
+}
+
+/// What an NC program does, in the part's frame.
+pub struct Motions {
+    /// Straight pieces with the line of the program that makes them.
+    pub motions: Vec<Swept>,
+    /// Time at the end of each piece, min.
+    pub times_min: Vec<f64>,
+    /// Total time, min.
+    pub time_min: f64,
+    /// Time of feed moves, min.
+    pub cutting_time_min: f64,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads an NC program back through the machine.
+pub fn read_back(text: &str, control: &Control, setup: &Setup, lenient: bool) -> Result<Motions, String> {
+    let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
+    let read = readback::read(text, control.dialect, &control.machine, setup, &options).map_err(|e| e.to_string())?;
+    let mut out = Motions {
+        motions: Vec::with_capacity(read.moves.len()),
+        times_min: Vec::with_capacity(read.moves.len()),
+        time_min: read.time_min(),
+        cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),
+        diagnostics: read.diagnostics,
+    };
+    let mut clock = 0.0;
+    for w in read.moves.windows(2) {
+        clock += w[1].time_min;
+        out.motions.push(Swept {
+            from: w[0].pose,
+            to: w[1].pose,
+            rapid: matches!(w[1].motion, Motion::Rapid),
+            // Lines beyond 2^32 do not fit in memory.
+            block: u32::try_from(w[1].line).unwrap_or(u32::MAX),
+        });
+        out.times_min.push(clock);
+    }
+    Ok(out)
+}

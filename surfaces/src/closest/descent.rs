@@ -1,0 +1,161 @@
+//! Down to the nearest point of a surface from a start: Newton's method on `f = |S(u, v) - q|^2 / 2` in a rectangle.
+//!
+//! ```text
+//! f_a = (S - q) . S_a        f_ab = S_a . S_b + (S - q) . S_ab
+//! ```
+//!
+//! A parameter at an end of its range is held there while `f` falls outwards. The step is Newton's where the matrix of
+//! second derivatives is positive definite, Gauss's (without the second term) elsewhere, and is shortened until `f`
+//! falls, so that the distance never grows.
+
+use osculate_geom::{Domain, Interval, Jet2, Point3, Uv, uv};
+
+/// Where a descent ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// The jet there.
+    pub(super) jet: Jet2,
+    pub(super) distance_mm: f64,
+    /// As in [`super::Foot::residual`].
+    pub(super) residual: f64,
+    pub(super) steps: u32,
+}
+
+/// Steps at most. A good start takes three or four, a bad one over a wavy surface some twenty.
+const MAX_STEPS: u32 = 60;
+
+/// Shortenings of a step by four at most: then it is below a millionth of the first one.
+const MAX_SHORTENINGS: u32 = 10;
+
+/// A position is known to this fraction of the coordinates: two units in the last place.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A step below this fraction of the coordinates changes `f` by less than its rounding: no use in shortening it.
+const BLIND: f64 = 1e-10;
+
+/// Squared sine between the columns of a step's matrix (in its own metric) below which it is not solved.
+const SINGULAR: f64 = 1e-13;
+
+/// First-order data at a place.
+struct State {
+    jet: Jet2,
+    /// `|S - q|^2`.
+    square: f64,
+    gradient: [f64; 2],
+    /// Squared lengths of S_u and S_v.
+    metric: [f64; 2],
+    held: [bool; 2],
+    /// Length of the offset's part along the free directions, mm.
+    along_mm: f64,
+}
+
+fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
+    let r = jet.point - query;
+    let gradient = [r.dot(&jet.du), r.dot(&jet.dv)];
+    let metric = [jet.du.norm_squared(), jet.dv.norm_squared()];
+    let hold = |i: &Interval, t: f64, g: f64| {
+        // At rest at an end counts as held too: the edge is where it wants to be.
+        !i.periodic && ((t <= i.lo && g > 0.0) || (t >= i.hi && g < 0.0))
+    };
+    let held = [hold(&rect.u, jet.uv.u, gradient[0]), hold(&rect.v, jet.uv.v, gradient[1])];
+    let along = |k: usize| {
+        if held[k] || metric[k] == 0.0 { 0.0 } else { gradient[k].abs() / metric[k].sqrt() }
+    };
+    State { jet, square: r.norm_squared(), gradient, metric, held, along_mm: along(0).max(along(1)) }
+}
+
+/// The nearest point reached from `start`, brought into `rect` first. `jet` must take the parameters as they are there.
+#[inline]
+pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, start: Uv) -> Found {
+    let mut here = state(jet(rect.bring(start)), rect, query);
+    let size = here.jet.point.coords.norm() + query.coords.norm();
+    let mut steps = 0;
+    while steps < MAX_STEPS {
+        steps += 1;
+        let step = newton_step(&here, query);
+        let target = |scale: f64| {
+            let uv = here.jet.uv;
+            rect.bring(uv_minus(uv, step, scale))
+        };
+        // What is left of the step inside the rectangle; over a seam all of it.
+        let inside = |scale: f64| {
+            let to = target(scale);
+            let d = |i: &Interval, s: f64, a: f64, b: f64| if i.periodic { -scale * s } else { b - a };
+            let (du, dv) = (
+                d(&rect.u, step[0], here.jet.uv.u, to.u),
+                d(&rect.v, step[1], here.jet.uv.v, to.v),
+            );
+            here.jet.du.norm() * du.abs() + here.jet.dv.norm() * dv.abs()
+        };
+        let length_mm = inside(1.0);
+        if !(length_mm > ROUNDING * size) {
+            break;
+        }
+        let mut scale = 1.0;
+        let mut next = None;
+        for _ in 0..=MAX_SHORTENINGS {
+            let there = state(jet(target(scale)), rect, query);
+            // Near the foot the squares differ by rounding alone; there the offset's part along the surface decides.
+            let same = there.square <= here.square * (1.0 + 8.0 * f64::EPSILON);
+            if there.square < here.square || (same && there.along_mm < here.along_mm) {
+                next = Some(there);
+                break;
+            }
+            if length_mm <= BLIND * size {
+                break;
+            }
+            scale *= 0.25;
+        }
+        match next {
+            Some(there) => here = there,
+            None => break,
+        }
+        if length_mm * scale <= ROUNDING * size {
+            break;
+        }
+    }
+    let distance_mm = here.square.sqrt();
+    // An offset of a few roundings has no direction.
+    let residual =
+        if distance_mm <= 16.0 * ROUNDING * size { 0.0 } else { noise_free(here.along_mm, size) / distance_mm };
+    Found { jet: here.jet, distance_mm, residual, steps }
+}
+
+fn uv_minus(at: Uv, step: [f64; 2], scale: f64) -> Uv {
+    uv(at.u - scale * step[0], at.v - scale * step[1])
+}
+
+/// A length less what rounding of coordinates of this size can make of nothing.
+fn noise_free(length_mm: f64, size: f64) -> f64 {
+    if length_mm <= ROUNDING * size { 0.0 } else { length_mm }
+}
+
+/// The step to subtract from the parameters.
+#[inline]
+fn newton_step(here: &State, query: &Point3) -> [f64; 2] {
+    let j = &here.jet;
+    let r = j.point - query;
+    let [e, g] = here.metric;
+    let f = j.du.dot(&j.dv);
+    let full = [e + r.dot(&j.duu), f + r.dot(&j.duv), g + r.dot(&j.dvv)];
+    solve(full, here.gradient, here.held).unwrap_or_else(|| {
+        // Lifted by a little of itself, so that a direction without length moves by a finite amount.
+        let lift = 1e-12 * (e + g);
+        solve([e + lift, f, g + lift], here.gradient, here.held).unwrap_or([0.0, 0.0])
+    })
+}
+
+/// Solves `[[a, b], [b, c]] x = g` with held unknowns zero; `None` unless it is positive definite.
+#[inline]
+fn solve([a, b, c]: [f64; 3], g: [f64; 2], held: [bool; 2]) -> Option<[f64; 2]> {
+    match held {
+        [true, true] => Some([0.0, 0.0]),
+        [true, false] => (c > 0.0).then(|| [0.0, g[1] / c]),
+        [false, true] => (a > 0.0).then(|| [g[0] / a, 0.0]),
+        [false, false] => {
+            let det = a * c - b * b;
+            (a > 0.0 && c > 0.0 && det > SINGULAR * a * c)
+                .then(|| [(g[0] * c - g[1] * b) / det, (g[1] * a - g[0] * b) / det])
+        }
+    }
+}

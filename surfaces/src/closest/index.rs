@@ -1,0 +1,333 @@
+//! The index of a NURBS surface for closest points: nearly flat cells with proven bounds, in a tree of boxes.
+//!
+//! A cell is a sub-rectangle of one piece with its tangent parallelogram at the middle, `c + a s + b t` for s and t in
+//! `[-1, 1]`, and bounds of the second and third derivatives over it ([`super::bounds`]). By Taylor's theorem the
+//! surface stays within
+//!
+//! ```text
+//! flatness = (|S_ss| + 2 |S_st| + |S_tt|) / 2
+//! ```
+//!
+//! of the parallelogram, point by point, so that the distance of a query from the parallelogram less the flatness bounds
+//! its distance from the cell from below.
+
+use super::bounds::{Bounds, bounds, moved};
+use crate::nurbs::NurbsSurface;
+use crate::nurbs_eval::piece_powers;
+use nalgebra::Vector4;
+use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Uv, Vec3, uv};
+
+/// A cell is flat enough for the index when it strays from its parallelogram by less than this fraction of its own
+/// size: then Newton's method converges from any start in it unless the query is near a centre of curvature.
+const FLAT: f64 = 0.06;
+
+/// Most halvings of a piece for the index; what is still curved then is halved by the search where it matters.
+const MAX_HALVINGS: u32 = 8;
+
+/// Most cells made by halving pieces, beyond the one that every piece has.
+const MAX_EXTRA_CELLS: usize = 1 << 17;
+
+/// Cells in a leaf of the tree.
+const LEAF_CELLS: usize = 2;
+
+/// A sub-rectangle of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    /// The spans of its piece.
+    pub(super) span: [u32; 2],
+    /// Parameters of its middle and half its widths.
+    pub(super) middle: Uv,
+    pub(super) half: Uv,
+    /// The point in the middle.
+    pub(super) centre: Point3,
+    /// Derivatives there by s and t.
+    pub(super) sides: [Vec3; 2],
+    pub(super) bounds: Bounds,
+}
+
+/// The nearest point of a cell's parallelogram.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// Its distance.
+    pub(super) distance_mm: f64,
+    /// Its place, each in `[-1, 1]`.
+    pub(super) place: [f64; 2],
+}
+
+impl Cell {
+    /// Largest distance of a point of the cell from the parallelogram's point with the same s and t.
+    pub(super) fn flatness_mm(&self) -> f64 {
+        let [ss, st, tt] = self.bounds.second;
+        0.5 * (ss + tt) + st
+    }
+
+    /// Radius of a ball around the middle that holds the cell.
+    pub(super) fn radius_mm(&self) -> f64 {
+        self.sides[0].norm() + self.sides[1].norm() + self.flatness_mm()
+    }
+
+    /// The axis whose halving flattens the cell more.
+    pub(super) fn bent_axis(&self) -> Axis {
+        if self.bounds.second[0] >= self.bounds.second[2] { Axis::U } else { Axis::V }
+    }
+
+    /// Parameters at a place of the cell.
+    pub(super) fn at(&self, place: [f64; 2]) -> Uv {
+        uv(self.middle.u + self.half.u * place[0], self.middle.v + self.half.v * place[1])
+    }
+
+    /// The cell's rectangle, cut to the ends of its piece, which rounding could pass.
+    pub(super) fn rect(&self, surface: &NurbsSurface) -> Domain {
+        let side = |axis: Axis| {
+            let ends = &surface.knots(axis).breaks()[self.span[axis as usize] as usize..][..2];
+            let (m, h) = (self.middle.get(axis), self.half.get(axis));
+            Interval::new((m - h).max(ends[0]), (m + h).min(ends[1]))
+        };
+        Domain { u: side(Axis::U), v: side(Axis::V) }
+    }
+
+    /// The jet of the cell's own piece.
+    pub(super) fn jet(&self, surface: &NurbsSurface, at: Uv) -> Jet2 {
+        surface.piece_jet(at, self.span.map(|s| s as usize))
+    }
+
+    /// The nearest point of the parallelogram.
+    #[inline]
+    pub(super) fn reach(&self, query: &Point3) -> Reach {
+        let [a, b] = &self.sides;
+        let r = self.centre - query;
+        let (e, f, g) = (a.norm_squared(), a.dot(b), b.norm_squared());
+        let (ra, rb) = (r.dot(a), r.dot(b));
+        let value = |s: f64, t: f64| (r + a * s + b * t).norm_squared();
+        // The part of b across a, for a determinant without cancellation.
+        if e > 0.0 {
+            let across = b - a * (f / e);
+            let det = across.norm_squared();
+            if det > 1e-24 * g {
+                let t = -r.dot(&across) / det;
+                let s = -(ra + f * t) / e;
+                if s.abs() <= 1.0 && t.abs() <= 1.0 {
+                    return Reach { distance_mm: value(s, t).sqrt(), place: [s, t] };
+                }
+            }
+        }
+        // On one of the four sides; those of a parallelogram without area are all of it.
+        let ratio = |num: f64, den: f64| if den > 0.0 { (num / den).clamp(-1.0, 1.0) } else { 0.0 };
+        let mut best = (f64::INFINITY, [0.0, 0.0]);
+        for end in [-1.0, 1.0] {
+            for place in [[end, ratio(-(rb + f * end), g)], [ratio(-(ra + f * end), e), end]] {
+                let d = value(place[0], place[1]);
+                if d < best.0 {
+                    best = (d, place);
+                }
+            }
+        }
+        Reach { distance_mm: best.0.sqrt(), place: best.1 }
+    }
+
+    /// Both halves across an axis, with bounds that shrink with them.
+    pub(super) fn halves(&self, surface: &NurbsSurface, axis: Axis) -> [Self; 2] {
+        let [(pu, fu), (pv, fv)] = match axis {
+            Axis::U => [(0.5, 0.5), (0.0, 1.0)],
+            Axis::V => [(0.0, 1.0), (0.5, 0.5)],
+        };
+        [-1.0, 1.0].map(|sign| {
+            let middle = self.at([sign * pu, sign * pv]);
+            let half = uv(self.half.u * fu, self.half.v * fv);
+            let jet = self.jet(surface, middle);
+            let [t0, t1, t2, t3] = self.bounds.third;
+            let third = [t0 * fu * fu * fu, t1 * fu * fu * fv, t2 * fu * fv * fv, t3 * fv * fv * fv];
+            let here = [
+                jet.duu.norm() * half.u * half.u,
+                jet.duv.norm() * half.u * half.v,
+                jet.dvv.norm() * half.v * half.v,
+            ];
+            // Taylor from the new middle, where that is better than what holds for the whole.
+            let [s0, s1, s2] = self.bounds.second;
+            let second = [
+                (s0 * fu * fu).min((here[0] + third[0] + third[1]) * (1.0 + 1e-9)),
+                (s1 * fu * fv).min((here[1] + third[1] + third[2]) * (1.0 + 1e-9)),
+                (s2 * fv * fv).min((here[2] + third[2] + third[3]) * (1.0 + 1e-9)),
+            ];
+            Self {
+                span: self.span,
+                middle,
+                half,
+                centre: jet.point,
+                sides: [jet.du * half.u, jet.dv * half.v],
+                bounds: Bounds { second, third },
+            }
+        })
+    }
+
+    fn box_around(&self) -> Box3 {
+        let reach = self.sides[0].abs() + self.sides[1].abs() + Vec3::repeat(self.flatness_mm());
+        Box3 { min: self.centre - reach, max: self.centre + reach }
+    }
+}
+
+/// A node of the tree: a box and either two nodes or a few cells.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    min: [f64; 3],
+    max: [f64; 3],
+    /// First cell, or the first of two child nodes.
+    first: u32,
+    /// Number of cells; zero for a node with children.
+    cells: u32,
+}
+
+impl Node {
+    #[inline]
+    fn distance_squared(&self, q: &Point3) -> f64 {
+        (0..3).map(|k| (self.min[k] - q[k]).max(q[k] - self.max[k]).max(0.0).powi(2)).sum()
+    }
+}
+
+/// Cells and the tree over them.
+#[derive(Clone, Debug)]
+pub(crate) struct Index {
+    pub(super) cells: Vec<Cell>,
+    nodes: Vec<Node>,
+}
+
+impl Index {
+    pub(crate) fn new(surface: &NurbsSurface) -> Self {
+        let mut cells = cells(surface);
+        let boxes: Vec<Box3> = cells.iter().map(Cell::box_around).collect();
+        let mut order: Vec<u32> = (0..cells.len() as u32).collect();
+        let mut nodes = vec![Node { min: [0.0; 3], max: [0.0; 3], first: 0, cells: 0 }];
+        let mut stack = vec![(0, 0, order.len())];
+        while let Some((node, from, to)) = stack.pop() {
+            let around = order[from..to].iter().fold(Box3::empty(), |b, k| b.union(&boxes[*k as usize]));
+            nodes[node].min = around.min.into();
+            nodes[node].max = around.max.into();
+            if to - from <= LEAF_CELLS {
+                nodes[node].first = from as u32;
+                nodes[node].cells = (to - from) as u32;
+                continue;
+            }
+            let axis = (around.max - around.min).imax();
+            let middle = (from + to) / 2;
+            let key = |k: &u32| boxes[*k as usize].centre()[axis];
+            order[from..to].select_nth_unstable_by(middle - from, |a, b| {
+                key(a).total_cmp(&key(b)).then(a.cmp(b))
+            });
+            let child = nodes.len();
+            nodes[node].first = child as u32;
+            nodes.extend([Node { min: [0.0; 3], max: [0.0; 3], first: 0, cells: 0 }; 2]);
+            stack.push((child, from, middle));
+            stack.push((child + 1, middle, to));
+        }
+        cells = order.iter().map(|k| cells[*k as usize]).collect();
+        Self { cells, nodes }
+    }
+
+    /// Calls `visit` with the cells that may be within the limit that `visit` returns, near ones first. The limit is a
+    /// distance in mm.
+    pub(super) fn visit(&self, query: &Point3, mut visit: impl FnMut(u32) -> f64) {
+        let mut limit = f64::INFINITY;
+        // Halving keeps the depth below 33 for 2^32 cells, and every level leaves one node behind.
+        let mut stack = [(0.0, 0u32); 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let (square, at) = stack[depth];
+            if square > limit {
+                continue;
+            }
+            let node = &self.nodes[at as usize];
+            if node.cells > 0 {
+                for k in node.first..node.first + node.cells {
+                    let reach = visit(k);
+                    limit = reach * reach;
+                }
+                continue;
+            }
+            let [a, b] = [node.first, node.first + 1];
+            let [da, db] = [a, b].map(|n| self.nodes[n as usize].distance_squared(query));
+            let (near, far) = if da <= db { ((da, a), (db, b)) } else { ((db, b), (da, a)) };
+            stack[depth] = far;
+            stack[depth + 1] = near;
+            depth += 2;
+        }
+    }
+}
+
+/// The cells of all pieces, halved until they are flat enough or too many.
+fn cells(surface: &NurbsSurface) -> Vec<Cell> {
+    let knots = surface.both_knots();
+    let net = surface.net();
+    let powers =
+        [0, 1].map(|a| (0..knots[a].span_count()).map(|s| knots[a].span_powers(s)).collect::<Vec<_>>());
+    let terms = [knots[0].degree() + 1, knots[1].degree() + 1];
+    let mut cells = Vec::new();
+    let mut extra = 0;
+    for (su, pu) in powers[0].iter().enumerate() {
+        for (sv, pv) in powers[1].iter().enumerate() {
+            let (_, c) = piece_powers(knots, net, [su, sv], [pu, pv]);
+            let piece = Piece { surface, span: [su as u32, sv as u32], terms, c, least_weight: least_weight(surface, [su, sv]) };
+            let mut stack = vec![([0.0, 0.0], [1.0, 1.0], 0)];
+            while let Some((middle, half, depth)) = stack.pop() {
+                let cell = piece.cell(middle, half);
+                let size = cell.sides[0].norm().max(cell.sides[1].norm());
+                // Negated: a NaN from huge coordinates must not be halved.
+                let curved = cell.flatness_mm() > FLAT * size;
+                if !curved || depth >= MAX_HALVINGS || extra >= MAX_EXTRA_CELLS {
+                    cells.push(cell);
+                    continue;
+                }
+                extra += 1;
+                let k = cell.bent_axis() as usize;
+                for sign in [1.0, -1.0] {
+                    let (mut m, mut h) = (middle, half);
+                    h[k] *= 0.5;
+                    m[k] += sign * h[k];
+                    stack.push((m, h, depth + 1));
+                }
+            }
+        }
+    }
+    cells
+}
+
+/// The least weight of the poles that act on a piece: its denominator is a mean of them.
+fn least_weight(surface: &NurbsSurface, span: [usize; 2]) -> f64 {
+    let net = surface.net();
+    let Some(weights) = &net.weights else { return 1.0 };
+    let [u, v] = surface.both_knots();
+    let (i0, j0) = (u.first_pole(span[0]), v.first_pole(span[1]));
+    let rows = i0..=i0 + u.degree();
+    rows.flat_map(|i| weights[i * net.count[1] + j0..][..=v.degree()].iter().copied()).fold(f64::INFINITY, f64::min)
+}
+
+/// A piece of the surface as a polynomial in x and y over `[-1, 1]`.
+struct Piece<'a> {
+    surface: &'a NurbsSurface,
+    span: [u32; 2],
+    terms: [usize; 2],
+    c: Vec<Vector4<f64>>,
+    least_weight: f64,
+}
+
+impl Piece<'_> {
+    /// The cell around (x, y) = `middle`.
+    fn cell(&self, middle: [f64; 2], half: [f64; 2]) -> Cell {
+        let c = moved(&self.c, self.terms, middle, half);
+        let on = |axis: Axis| {
+            let ends = &self.surface.knots(axis).breaks()[self.span[axis as usize] as usize..][..2];
+            let (k, w) = (axis as usize, 0.5 * (ends[1] - ends[0]));
+            (ends[0] + w * (1.0 + middle[k]), w * half[k])
+        };
+        let ((u, hu), (v, hv)) = (on(Axis::U), on(Axis::V));
+        let jet = self.surface.piece_jet(uv(u, v), self.span.map(|s| s as usize));
+        Cell {
+            span: self.span,
+            middle: uv(u, v),
+            half: uv(hu, hv),
+            centre: jet.point,
+            sides: [jet.du * hu, jet.dv * hv],
+            bounds: bounds(&c, self.terms, self.least_weight),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The certified search for the nearest point of a NURBS surface.
+//!
+//! The tree gives the cells whose lower bound is below the best upper bound. The nearest of them starts a descent over
+//! the whole surface; after it a cell is done with when one of these is shown:
+//!
+//! 1. its lower bound is not below the best distance;
+//! 2. the squared distance is convex over it, and the tangent plane of that function at some place of the cell, or a
+//!    descent in the cell, shows that it has nothing nearer;
+//! 3. else it is halved, until the work allowed is spent; then the least lower bound left is reported as the gap.
+
+use super::descent::{Found, descend};
+use super::index::{Cell, Reach};
+use super::{ClosestError, Foot, FootKind, PERPENDICULAR, finish};
+use crate::nurbs::NurbsSurface;
+use osculate_geom::{Axis, Domain, Jet2, Point3, Surface, Uv};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Cells looked at after the tree, at most: some milliseconds. Ordinary queries need fewer than twenty.
+const MAX_CELLS: u32 = 20_000;
+
+/// Lower bounds within this fraction of the best distance are not followed up: it is the accuracy of a distance.
+const SAME_DISTANCE: f64 = 1e-12;
+
+/// A cell to look at.
+#[derive(Clone, Copy, Debug)]
+struct Task {
+    /// No point of the cell is nearer, mm.
+    least_mm: f64,
+    cell: Cell,
+    /// Order of arrival, so that equal bounds are worked on in one order on every machine.
+    number: u32,
+}
+
+impl Ord for Task {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // The heap gives the greatest first: the least bound, then the earliest.
+        other.least_mm.total_cmp(&self.least_mm).then(other.number.cmp(&self.number))
+    }
+}
+impl PartialOrd for Task {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl PartialEq for Task {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Task {}
+
+/// The nearest point of the whole surface.
+pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, ClosestError> {
+    let index = surface.index();
+    let mut candidates: Vec<(f64, u32, Reach)> = Vec::with_capacity(32);
+    let mut upper = f64::INFINITY;
+    index.visit(query, |k| {
+        let cell = &index.cells[k as usize];
+        let (reach, flatness) = (cell.reach(query), cell.flatness_mm());
+        let least = reach.distance_mm - flatness;
+        // Negated, so that a NaN is kept and found out about below.
+        if !(least > upper) {
+            candidates.push((least, k, reach));
+            upper = upper.min(reach.distance_mm + flatness);
+        }
+        upper
+    });
+    candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    // The start is the nearest parallelogram, not the least bound, which favours large cells.
+    let start = candidates.iter().min_by(|a, b| a.2.distance_mm.total_cmp(&b.2.distance_mm));
+    let Some((_, k, reach)) = start else { return Err(ClosestError::NotFinite { query: *query }) };
+    let start = index.cells[*k as usize].at(reach.place);
+    let domain = surface.domain();
+    let mut best = Best { found: descend(|at| surface.jet2(at), &domain, query, start), cell: None };
+
+    let mut gap_mm = 0.0;
+    let mut tasks: BinaryHeap<Task> = BinaryHeap::new();
+    let mut number = 0;
+    let mut next = candidates.iter();
+    let mut pending = next.next();
+    loop {
+        // Candidates and tasks are both in the order of their bounds.
+        let from_list = match (pending, tasks.peek()) {
+            (Some(c), Some(t)) => c.0 <= t.least_mm,
+            (Some(_), None) => true,
+            (None, Some(_)) => false,
+            (None, None) => break,
+        };
+        let (least_mm, cell) = if from_list {
+            let c = pending.expect("looked at above");
+            pending = next.next();
+            (c.0, index.cells[c.1 as usize])
+        } else {
+            let t = tasks.pop().expect("looked at above");
+            (t.least_mm, t.cell)
+        };
+        if least_mm >= best.found.distance_mm * (1.0 - SAME_DISTANCE) {
+            break;
+        }
+        if number >= MAX_CELLS {
+            gap_mm = best.found.distance_mm - least_mm.max(0.0);
+            break;
+        }
+        let centre = cell.jet(surface, cell.middle);
+        let rect = cell.rect(surface);
+        if is_convex(&cell, &centre, query) {
+            let at = rect.bring(best.found.jet.uv);
+            if cannot_beat(&cell.jet(surface, at), &rect, query, best.found.distance_mm) {
+                continue;
+            }
+            best.offer(descend(|at| cell.jet(surface, at), &rect, query, at), &cell);
+            continue;
+        }
+        if number == 0 {
+            // Once, in the hope of a better limit.
+            best.offer(descend(|at| cell.jet(surface, at), &rect, query, cell.middle), &cell);
+        }
+        for half in cell.halves(surface, cell.bent_axis()) {
+            number += 1;
+            let reach = half.reach(query);
+            // A point of the half is at hand.
+            let least = reach.distance_mm - half.flatness_mm();
+            if least < best.found.distance_mm * (1.0 - SAME_DISTANCE) {
+                tasks.push(Task { least_mm: least.max(least_mm), cell: half, number });
+            }
+        }
+    }
+    best.foot(surface, &domain, query, gap_mm)
+}
+
+/// The nearest point so far, and the cell in which it was found where that was not the whole surface.
+struct Best {
+    found: Found,
+    cell: Option<Cell>,
+}
+
+impl Best {
+    fn offer(&mut self, found: Found, cell: &Cell) {
+        if found.distance_mm < self.found.distance_mm {
+            *self = Self { found, cell: Some(*cell) };
+        }
+    }
+
+    /// The foot. A point found in a cell is followed over the whole surface first, in case it stopped at the cell's side.
+    fn foot(
+        self,
+        surface: &NurbsSurface,
+        domain: &Domain,
+        query: &Point3,
+        gap_mm: f64,
+    ) -> Result<Foot, ClosestError> {
+        let Some(cell) = self.cell else {
+            if self.found.residual <= PERPENDICULAR {
+                return finish(&self.found, domain, gap_mm);
+            }
+            return self.on_crease(surface, domain, query, gap_mm);
+        };
+        let free = descend(|at| surface.jet2(at), domain, query, self.found.jet.uv);
+        if free.residual <= PERPENDICULAR && free.distance_mm <= self.found.distance_mm {
+            return finish(&free, domain, gap_mm);
+        }
+        Self { found: self.found, cell: Some(cell) }.on_crease(surface, domain, query, gap_mm)
+    }
+
+    /// The foot where the distance does not fall on either side of a line between pieces.
+    ///
+    /// The offset is perpendicular to the surface on no side, but each side alone holds the parameter at its end.
+    fn on_crease(
+        self,
+        surface: &NurbsSurface,
+        domain: &Domain,
+        query: &Point3,
+        gap_mm: f64,
+    ) -> Result<Foot, ClosestError> {
+        let at = self.found.jet.uv;
+        for span in spans_around(surface, at) {
+            let piece = |axis: Axis| {
+                let ends = &surface.knots(axis).breaks()[span[axis as usize]..][..2];
+                osculate_geom::Interval::new(ends[0], ends[1])
+            };
+            let rect = Domain { u: piece(Axis::U), v: piece(Axis::V) };
+            let found = descend(|at| surface.piece_jet(at, span), &rect, query, at);
+            let near = found.distance_mm <= self.found.distance_mm * (1.0 + SAME_DISTANCE);
+            if near && found.residual <= PERPENDICULAR {
+                let mut foot = finish(&found, domain, gap_mm)?;
+                if foot.kind == FootKind::Interior {
+                    foot.kind = FootKind::Crease;
+                }
+                return Ok(foot);
+            }
+        }
+        finish(&self.found, domain, gap_mm)
+    }
+}
+
+/// The pieces that meet at a place: one, two on a line between pieces, four where lines cross.
+fn spans_around(surface: &NurbsSurface, at: Uv) -> Vec<[usize; 2]> {
+    let on = |axis: Axis| {
+        let knots = surface.knots(axis);
+        let (t, breaks) = (at.get(axis), knots.breaks());
+        // As far from the line as rounding of the parameter may have put the place.
+        let slack = 1e-12 * (breaks[breaks.len() - 1] - breaks[0]);
+        (0..knots.span_count())
+            .filter(|k| t >= breaks[*k] - slack && t <= breaks[*k + 1] + slack)
+            .collect::<Vec<_>>()
+    };
+    let (us, vs) = (on(Axis::U), on(Axis::V));
+    us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])).collect()
+}
+
+/// Whether `|S - q|^2` is convex over the whole cell: its matrix of second derivatives in the middle, less the most that
+/// it can change over the cell, is positive definite.
+fn is_convex(cell: &Cell, centre: &Jet2, query: &Point3) -> bool {
+    let [a, b] = &cell.sides;
+    let (hu, hv) = (cell.half.u, cell.half.v);
+    let (ss, st, tt) = (centre.duu * (hu * hu), centre.duv * (hu * hv), centre.dvv * (hv * hv));
+    let r = cell.centre - query;
+    let h = [a.dot(a) + r.dot(&ss), a.dot(b) + r.dot(&st), b.dot(b) + r.dot(&tt)];
+    // Changes of the first derivatives, the second ones and the offset.
+    let ([m0, m1, m2], [t0, t1, t2, t3]) = (cell.bounds.second, cell.bounds.third);
+    let (da, db) = (m0 + m1, m1 + m2);
+    let (dss, dst, dtt) = (t0 + t1, t1 + t2, t2 + t3);
+    let (la, lb, lr, dr) = (a.norm(), b.norm(), r.norm(), cell.radius_mm());
+    let change = [
+        2.0 * la * da + da * da + lr * dss + dr * (ss.norm() + dss),
+        la * db + lb * da + da * db + lr * dst + dr * (st.norm() + dst),
+        2.0 * lb * db + db * db + lr * dtt + dr * (tt.norm() + dtt),
+    ];
+    let (p, q, m) = (h[0] - change[0], h[2] - change[2], h[1].abs() + change[1]);
+    p > 0.0 && q > 0.0 && p * q > m * m
+}
+
+/// Whether a convex squared distance with this jet at a place of the rectangle stays above the best one everywhere in
+/// it.
+fn cannot_beat(jet: &Jet2, rect: &Domain, query: &Point3, best_mm: f64) -> bool {
+    let r = jet.point - query;
+    // The squared distance lies above its tangent plane, whose least value is at a corner of the rectangle.
+    let fall = |g: f64, t: f64, lo: f64, hi: f64| (g * (lo - t)).min(g * (hi - t));
+    let least = r.norm_squared()
+        + 2.0 * fall(r.dot(&jet.du), jet.uv.u, rect.u.lo, rect.u.hi)
+        + 2.0 * fall(r.dot(&jet.dv), jet.uv.v, rect.v.lo, rect.v.hi);
+    least >= best_mm * best_mm * (1.0 - SAME_DISTANCE)
+}

@@ -1,0 +1,311 @@
+//! What an import gives: faces as trimmed surfaces, what was left out and why, and findings on the way.
+//!
+//! Lengths are millimetres whatever the file's unit was. Nothing is repaired silently: every departure from what the
+//! file says is a [`Diagnostic`].
+
+use crate::trim::carrier::FaceSurface;
+use crate::trimmed::TrimmedSurface;
+use crate::{iges, step};
+use osculate_geom::{Axis, Box3, Diagnostic, Domain, Jet2, Point3, Surface, Uv};
+use std::fmt;
+use std::sync::Arc;
+
+/// The file format of an import.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// ISO 10303-21.
+    Step,
+    /// IGES, fixed ASCII form.
+    Iges,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Step => "STEP",
+            Self::Iges => "IGES",
+        })
+    }
+}
+
+/// An imported part.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The format it came from.
+    pub format: Format,
+    /// Name of the file's length unit, as the file says it; several differing ones joined with `, `.
+    pub unit: String,
+    /// Schema (STEP) or version (IGES) as the file says it.
+    pub schema: String,
+    /// The faces in file order.
+    pub faces: Vec<Face>,
+    /// What the file has and the part has not, by kind.
+    pub not_used: Vec<NotUsed>,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Entities of one kind that became no face.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotUsed {
+    /// The file's own name of the kind.
+    pub kind: String,
+    /// How many.
+    pub count: usize,
+    /// Why.
+    pub why: String,
+}
+
+/// The kind of surface that a file gave for a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FaceKind {
+    /// Plane.
+    Plane,
+    /// Circular cylinder.
+    Cylinder,
+    /// Circular cone.
+    Cone,
+    /// Sphere.
+    Sphere,
+    /// Torus.
+    Torus,
+    /// B-spline surface, rational or not.
+    Bspline,
+    /// Bezier surface.
+    Bezier,
+    /// Surface of revolution.
+    Revolution,
+    /// Surface of linear extrusion.
+    Extrusion,
+    /// Offset surface.
+    Offset,
+    /// Ruled surface.
+    Ruled,
+    /// Anything else.
+    Other,
+}
+
+impl fmt::Display for FaceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Plane => "plane",
+            Self::Cylinder => "cylinder",
+            Self::Cone => "cone",
+            Self::Sphere => "sphere",
+            Self::Torus => "torus",
+            Self::Bspline => "bspline",
+            Self::Bezier => "bezier",
+            Self::Revolution => "revolution",
+            Self::Extrusion => "extrusion",
+            Self::Offset => "offset",
+            Self::Ruled => "ruled",
+            Self::Other => "other",
+        })
+    }
+}
+
+/// A face of a part.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// `F1`, `F2`, ... in file order.
+    pub id: String,
+    /// The face's name in the file, empty where it has none.
+    pub name: String,
+    /// STEP: the instance number of the face. IGES: the sequence number of its directory entry.
+    pub entity: u64,
+    /// What the file says its surface is.
+    pub kind: FaceKind,
+    /// True where the file says on which side the material is. Where it does not, the outward normal is
+    /// `S_u x S_v` and the caller has to decide.
+    pub oriented: bool,
+    /// The surface without trims; the carrier of `surface`.
+    pub carrier: FaceSurface,
+    /// The trimmed surface with its material side.
+    pub surface: Arc<TrimmedSurface>,
+}
+
+/// Range of the principal curvatures over a face, 1/mm, convex positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvatureRange {
+    /// The most concave curvature found.
+    pub k_min_per_mm: f64,
+    /// The most convex curvature found.
+    pub k_max_per_mm: f64,
+    /// Number of points it was taken at.
+    pub samples: usize,
+}
+
+impl Face {
+    /// Degrees of a spline face.
+    #[must_use]
+    pub fn degree(&self) -> Option<[usize; 2]> {
+        self.carrier.nurbs().map(|n| n.degree())
+    }
+
+    /// Numbers of poles of a spline face.
+    #[must_use]
+    pub fn pole_count(&self) -> Option<[usize; 2]> {
+        self.carrier.nurbs().map(|n| n.net().count)
+    }
+
+    /// Whether a spline face is rational.
+    #[must_use]
+    pub fn is_rational(&self) -> Option<bool> {
+        self.carrier.nurbs().map(|n| n.is_rational())
+    }
+
+    /// Whether the boundary is something else than the four sides of the parameter rectangle.
+    #[must_use]
+    pub fn trimmed(&self) -> bool {
+        self.surface.is_trimmed()
+    }
+
+    /// Area of the face, mm2.
+    #[must_use]
+    pub fn area_mm2(&self) -> f64 {
+        self.surface.area_mm2()
+    }
+
+    /// Box around the face, mm.
+    #[must_use]
+    pub fn bbox(&self) -> Box3 {
+        self.surface.bbox(4)
+    }
+
+    /// Principal curvatures on a grid of about `per_side` points between any two sides, inside the face; `None`
+    /// where no sampled point has a tangent plane.
+    #[must_use]
+    pub fn curvature_range(&self, per_side: usize) -> Option<CurvatureRange> {
+        let spans = self.surface.breaks(Axis::U).len().max(self.surface.breaks(Axis::V).len()) - 1;
+        let mut range: Option<CurvatureRange> = None;
+        for (at, _) in self.surface.samples(per_side.div_ceil(spans.max(1))) {
+            let Ok(forms) = self.surface.jet2(at).forms() else { continue };
+            let k = forms.principal();
+            let so_far =
+                range.unwrap_or(CurvatureRange { k_min_per_mm: k.k_min, k_max_per_mm: k.k_max, samples: 0 });
+            range = Some(CurvatureRange {
+                k_min_per_mm: so_far.k_min_per_mm.min(k.k_min),
+                k_max_per_mm: so_far.k_max_per_mm.max(k.k_max),
+                samples: so_far.samples + 1,
+            });
+        }
+        range
+    }
+
+    /// The face with the material on the other side.
+    #[must_use]
+    pub fn flipped(mut self) -> Self {
+        self.surface = Arc::new(TrimmedSurface::clone(&self.surface).flipped());
+        self
+    }
+}
+
+impl Surface for Face {
+    fn domain(&self) -> Domain {
+        self.surface.domain()
+    }
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        self.surface.jet2(uv)
+    }
+    fn point(&self, uv: Uv) -> Point3 {
+        self.surface.point(uv)
+    }
+    fn contains(&self, uv: Uv) -> bool {
+        self.surface.contains(uv)
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        self.surface.breaks(axis)
+    }
+}
+
+impl Part {
+    /// The face with this id.
+    #[must_use]
+    pub fn face(&self, id: &str) -> Option<&Face> {
+        self.faces.iter().find(|f| f.id == id)
+    }
+
+    /// Box around all faces, mm.
+    #[must_use]
+    pub fn bbox(&self) -> Box3 {
+        self.faces.iter().fold(Box3::empty(), |b, f| b.union(&f.bbox()))
+    }
+}
+
+/// Why bytes are no part.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ImportError {
+    /// Nothing to read.
+    #[error("the file is empty")]
+    Empty,
+    /// Neither format.
+    #[error(
+        "not a STEP or IGES file: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
+         in column 73 of its lines"
+    )]
+    Unknown {
+        /// The first characters.
+        begin: String,
+    },
+    /// A STEP file that cannot be read.
+    #[error(transparent)]
+    Step(#[from] step::StepError),
+    /// An IGES file that cannot be read.
+    #[error(transparent)]
+    Iges(#[from] iges::IgesError),
+}
+
+/// The format of a file, by its first lines.
+#[must_use]
+pub fn detect(bytes: &[u8]) -> Option<Format> {
+    if step::looks_like(bytes) {
+        Some(Format::Step)
+    } else if iges::looks_like(bytes) {
+        Some(Format::Iges)
+    } else {
+        None
+    }
+}
+
+/// Reads a STEP or IGES file.
+///
+/// # Errors
+/// [`ImportError`] where the bytes are neither, or nothing of them can be read.
+pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(ImportError::Empty);
+    }
+    match detect(bytes) {
+        Some(Format::Step) => Ok(step::read(bytes)?),
+        Some(Format::Iges) => Ok(iges::read(bytes)?),
+        None => {
+            let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
+            Err(ImportError::Unknown { begin })
+        }
+    }
+}
+
+/// Counts of entities left out, by kind and reason, in order of first appearance.
+#[derive(Debug, Default)]
+pub(crate) struct Leftovers {
+    entries: Vec<NotUsed>,
+}
+
+impl Leftovers {
+    /// Counts one more.
+    pub(crate) fn add(&mut self, kind: &str, why: &str) {
+        self.add_many(kind, 1, why);
+    }
+
+    /// Counts several.
+    pub(crate) fn add_many(&mut self, kind: &str, count: usize, why: &str) {
+        match self.entries.iter_mut().find(|e| e.kind == kind && e.why == why) {
+            Some(e) => e.count += count,
+            None => self.entries.push(NotUsed { kind: kind.to_owned(), count, why: why.to_owned() }),
+        }
+    }
+
+    pub(crate) fn into_entries(self) -> Vec<NotUsed> {
+        self.entries
+    }
+}

@@ -1,0 +1,125 @@
+//! Edges of a face's loops, joined to closed chains of parameters.
+//!
+//! An edge used twice by the same face is a slit (the seam of a cylinder, the bridge to a hole): the inside is on both
+//! of its sides, so it bounds nothing and is left out. What remains is joined end to end in space, and every edge is
+//! shifted by whole periods to continue the one before.
+
+use super::carrier::Carrier;
+use super::pull::unwrap;
+use super::region::Chain;
+use osculate_geom::{Point3, Surface, Uv, uv};
+
+/// An edge as one loop uses it.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeUse {
+    /// Parameters along the loop's sense.
+    pub(crate) points: Vec<Uv>,
+    /// Ends in space, along the loop's sense.
+    pub(crate) ends: [Point3; 2],
+    /// The edge's identity in the file, where it has one.
+    pub(crate) key: Option<u64>,
+    /// The loop it belongs to.
+    pub(crate) owner: usize,
+}
+
+/// Joined chains and the largest jump between consecutive ends, mm.
+#[derive(Clone, Debug)]
+pub(crate) struct Joined {
+    pub(crate) chains: Vec<Chain>,
+    pub(crate) jump_mm: f64,
+}
+
+/// Joins the edges of all loops of a face. Ends within `slack_mm` are the same vertex.
+pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joined {
+    let kept = without_slits(edges);
+    let mut used = vec![false; kept.len()];
+    let mut chains = Vec::new();
+    let mut jump_mm = 0.0_f64;
+    for first in 0..kept.len() {
+        if used[first] {
+            continue;
+        }
+        used[first] = true;
+        let start = kept[first].ends[0];
+        let mut last = first;
+        let mut points = kept[first].points.clone();
+        loop {
+            let end = kept[last].ends[1];
+            let gap = |k: usize| (kept[k].ends[0] - end).norm();
+            let closing = (start - end).norm();
+            // The next edge in the file where it continues; else the chain closes; else the nearest start.
+            let following = (last + 1 < kept.len() && !used[last + 1] && kept[last + 1].owner == kept[last].owner)
+                .then_some(last + 1);
+            let next = match following {
+                Some(k) if gap(k) <= slack_mm => Some(k),
+                _ if closing <= slack_mm => None,
+                _ => (0..kept.len())
+                    .filter(|k| !used[*k] && kept[*k].owner == kept[last].owner)
+                    .min_by(|a, b| gap(*a).total_cmp(&gap(*b)))
+                    .filter(|k| gap(*k) < closing),
+            };
+            let Some(next) = next else {
+                jump_mm = jump_mm.max(closing);
+                break;
+            };
+            used[next] = true;
+            jump_mm = jump_mm.max(gap(next));
+            append(carrier, &mut points, &kept[next].points);
+            last = next;
+        }
+        close(carrier, &mut points);
+        if points.len() > 1 {
+            chains.push(Chain { points });
+        }
+    }
+    Joined { chains, jump_mm }
+}
+
+/// The edges that the face uses once (or an odd number of times).
+fn without_slits(edges: Vec<EdgeUse>) -> Vec<EdgeUse> {
+    let mut seen = std::collections::BTreeMap::<u64, usize>::new();
+    for e in &edges {
+        if let Some(key) = e.key {
+            *seen.entry(key).or_default() += 1;
+        }
+    }
+    edges.into_iter().filter(|e| e.key.is_none_or(|k| seen.get(&k).is_none_or(|n| n % 2 == 1))).collect()
+}
+
+/// Appends a piece, shifted by whole periods so that it begins near the end.
+pub(crate) fn append(carrier: &Carrier, points: &mut Vec<Uv>, piece: &[Uv]) {
+    let (Some(end), Some(begin)) = (points.last().copied(), piece.first().copied()) else {
+        points.extend_from_slice(piece);
+        return;
+    };
+    let moved = unwrap(carrier, begin, end);
+    let shift = uv(moved.u - begin.u, moved.v - begin.v);
+    let meets = same_place(carrier, moved, end);
+    for (k, p) in piece.iter().enumerate() {
+        // Rounding between two edges at one vertex would leave a needle: the earlier edge's end stands.
+        if !(k == 0 && meets) {
+            points.push(uv(p.u + shift.u, p.v + shift.v));
+        }
+    }
+}
+
+/// Ends a chain at its first point, shifted by the whole periods it winds.
+fn close(carrier: &Carrier, points: &mut Vec<Uv>) {
+    let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
+        return;
+    };
+    let target = unwrap(carrier, first, last);
+    if points.len() > 1 && same_place(carrier, target, last) {
+        points.pop();
+    }
+    points.push(target);
+}
+
+/// Whether two parameter pairs are the same but for rounding.
+fn same_place(carrier: &Carrier, a: Uv, b: Uv) -> bool {
+    let domain = carrier.surface.domain();
+    let near = |d: f64, length: f64, scale: f64| {
+        d.abs() <= 1e-9 * if length.is_finite() { length } else { scale.abs() + 1.0 }
+    };
+    near(a.u - b.u, domain.u.length(), a.u) && near(a.v - b.v, domain.v.length(), a.v)
+}

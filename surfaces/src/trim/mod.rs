@@ -1,0 +1,18 @@
+//! Trimming: boundary curves pulled onto a carrier, the inside of their loops, and integrals over it.
+
+pub(crate) mod analytic;
+mod area;
+pub(crate) mod assemble;
+mod bands;
+pub(crate) mod boundary;
+pub(crate) mod carrier;
+pub(crate) mod chain;
+pub(crate) mod curve;
+mod foot;
+mod outline;
+pub(crate) mod pull;
+pub(crate) mod region;
+pub(crate) mod spline;
+pub(crate) mod sweep;
+
+pub(crate) use area::{Cell, Crossing, crossing, integrate};

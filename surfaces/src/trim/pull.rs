@@ -1,0 +1,166 @@
+//! Space curves pulled onto a surface: polylines of parameters, followed continuously across closing sides.
+//!
+//! The curve is sampled from its middle outwards, so that an end in a pole takes the parameter of its neighbour, and
+//! refined until the middle of every piece is within the chord tolerance of the straight parameter line.
+
+use super::carrier::Carrier;
+use super::curve::Curve;
+use osculate_geom::{Uv, uv};
+
+/// Lengths that a pull compares with, mm.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tolerance {
+    /// Largest distance, measured on the surface, of the polyline from the curve.
+    pub(crate) chord_mm: f64,
+    /// A curve point farther from the surface than this is looked for elsewhere on it.
+    pub(crate) near_mm: f64,
+}
+
+/// A curve on a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Pulled {
+    /// Unwrapped parameters along the curve.
+    pub(crate) points: Vec<Uv>,
+    /// Largest distance between curve and surface, mm.
+    pub(crate) gap_mm: f64,
+}
+
+/// Pieces between the breaks of a curve before refinement. Eight see any inflection of a cubic or a conic's quarter.
+const START_PIECES: usize = 8;
+
+/// Halvings of a start piece at most: below 2^-14 of it a kink of the curve or the surface is being chased.
+const MAX_DEPTH: u32 = 14;
+
+/// Samples of one curve at most, a bound for hostile input.
+const MAX_POINTS: usize = 50_000;
+
+/// Pulls a curve with parameter range `[0, 1]`.
+pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -> Pulled {
+    let mut breaks = vec![0.0];
+    breaks.extend(curve.breaks());
+    breaks.push(1.0);
+    let stride = breaks.len().div_ceil(4000);
+    let last = breaks.len() - 1;
+    let breaks: Vec<f64> = breaks.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last).map(|b| *b.1).collect();
+    let pieces = (START_PIECES * 4 / breaks.len()).clamp(2, START_PIECES);
+    let mut ts = vec![0.0];
+    for w in breaks.windows(2) {
+        ts.extend((1..=pieces).map(|k| if k == pieces { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / pieces as f64 }));
+    }
+    let mut gap_mm = 0.0_f64;
+    let mut locate = |t: f64, hint: Option<Uv>| {
+        let (at, gap) = carrier.locate(&curve.point(t), hint, tolerance.near_mm);
+        gap_mm = gap_mm.max(gap);
+        hint.map_or(at, |h| unwrap(carrier, at, h))
+    };
+    // The middle first, then outwards in both directions with a neighbour as hint.
+    let middle = ts.len() / 2;
+    let mut start = vec![uv(0.0, 0.0); ts.len()];
+    start[middle] = locate(ts[middle], None);
+    for k in (0..middle).rev() {
+        start[k] = locate(ts[k], Some(start[k + 1]));
+    }
+    for k in middle + 1..ts.len() {
+        start[k] = locate(ts[k], Some(start[k - 1]));
+    }
+    let mut points = vec![start[0]];
+    for k in 1..ts.len() {
+        // A stack of pending right ends instead of recursion.
+        let mut pending = vec![(ts[k], start[k], 0_u32)];
+        let (mut t0, mut p0) = (ts[k - 1], start[k - 1]);
+        while let Some((t1, p1, depth)) = pending.pop() {
+            let tm = 0.5 * (t0 + t1);
+            let guess = uv(0.5 * (p0.u + p1.u), 0.5 * (p0.v + p1.v));
+            let room = depth < MAX_DEPTH && points.len() + pending.len() < MAX_POINTS;
+            let split = room.then(|| locate(tm, Some(guess))).filter(|pm| {
+                let jet = osculate_geom::Surface::jet2(&carrier.surface, *pm);
+                let off = jet.tangent(uv(pm.u - guess.u, pm.v - guess.v)).norm();
+                off > tolerance.chord_mm
+            });
+            if let Some(pm) = split {
+                pending.push((t1, p1, depth + 1));
+                pending.push((tm, pm, depth + 1));
+            } else {
+                points.push(p1);
+                (t0, p0) = (t1, p1);
+            }
+        }
+    }
+    Pulled { points: simplify(carrier, &points, 0.05 * tolerance.chord_mm), gap_mm }
+}
+
+/// The parameters shifted by whole periods to be nearest to `near`.
+pub(crate) fn unwrap(carrier: &Carrier, at: Uv, near: Uv) -> Uv {
+    let shift = |t: f64, n: f64, k: usize| {
+        let i = if k == 0 { carrier.domain.u } else { carrier.domain.v };
+        if carrier.closes[k] { t + ((n - t) / i.length()).round() * i.length() } else { t }
+    };
+    uv(shift(at.u, near.u, 0), shift(at.v, near.v, 1))
+}
+
+/// Leaves out points that lie on the straight line between their neighbours, to `slack_mm`.
+fn simplify(carrier: &Carrier, points: &[Uv], slack_mm: f64) -> Vec<Uv> {
+    let scaled = |p: Uv| [p.u * carrier.speed[0], p.v * carrier.speed[1]];
+    let mut kept: Vec<Uv> = Vec::with_capacity(points.len());
+    let mut k = 0;
+    while k < points.len() {
+        kept.push(points[k]);
+        let mut end = k + 1;
+        // Straight runs are short or exactly straight: a window bounds the work.
+        while end + 1 < points.len() && end - k < 64 {
+            let (a, b) = (scaled(points[k]), scaled(points[end + 1]));
+            let d = [b[0] - a[0], b[1] - a[1]];
+            let length2 = d[0] * d[0] + d[1] * d[1];
+            let straight = points[k + 1..=end].iter().all(|q| {
+                let w = [scaled(*q)[0] - a[0], scaled(*q)[1] - a[1]];
+                let along = w[0] * d[0] + w[1] * d[1];
+                let across = (w[0] * d[1] - w[1] * d[0]).abs();
+                along >= 0.0 && along <= length2 && across <= slack_mm * length2.sqrt()
+            });
+            if !straight {
+                break;
+            }
+            end += 1;
+        }
+        k = end;
+    }
+    kept
+}
+
+/// A parameter-space curve (z = 0) with parameter range `[0, 1]` as a polyline, to the chord tolerance on the surface.
+pub(crate) fn flatten(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -> Vec<Uv> {
+    let at = |t: f64| {
+        let p = curve.point(t);
+        uv(p.x, p.y)
+    };
+    let mut breaks = vec![0.0];
+    breaks.extend(curve.breaks());
+    breaks.push(1.0);
+    let pieces = if breaks.len() > 64 { 1 } else { 4 };
+    let mut ts = vec![0.0];
+    for w in breaks.windows(2) {
+        ts.extend((1..=pieces).map(|k| {
+            if k == pieces { w[1] } else { w[0] + (w[1] - w[0]) * f64::from(k) / f64::from(pieces) }
+        }));
+    }
+    let mut points = vec![at(0.0)];
+    for w in ts.windows(2) {
+        let mut pending = vec![(w[1], at(w[1]), 0_u32)];
+        let (mut t0, mut p0) = (w[0], at(w[0]));
+        while let Some((t1, p1, depth)) = pending.pop() {
+            let tm = 0.5 * (t0 + t1);
+            let pm = at(tm);
+            let off = uv(pm.u - 0.5 * (p0.u + p1.u), pm.v - 0.5 * (p0.v + p1.v));
+            let room = depth < MAX_DEPTH && points.len() + pending.len() < MAX_POINTS;
+            let jet = osculate_geom::Surface::jet2(&carrier.surface, pm);
+            if room && jet.tangent(off).norm() > tolerance.chord_mm {
+                pending.push((t1, p1, depth + 1));
+                pending.push((tm, pm, depth + 1));
+            } else {
+                points.push(p1);
+                (t0, p0) = (t1, p1);
+            }
+        }
+    }
+    simplify(carrier, &points, 0.05 * tolerance.chord_mm)
+}
