@@ -147,7 +147,8 @@ mod tests {
                 for (i, step) in (0..n + p + 1).zip(steps) {
                     let inside = i > p && i <= n;
                     if !clamped || inside {
-                        t += if step < 0.3 && p > 1 && i % 2 == 0 && i < n { 0.0 } else { step };
+                        let double = step < 0.3 && p > 1 && i % 2 == 0 && i > p + 1 && i < n;
+                        t += if double { 0.0 } else { step };
                     }
                     knots.push(t);
                 }

@@ -23,8 +23,8 @@ pub struct Clean {
     pub dropped: usize,
 }
 
-/// Makes `face` fit for drawing, with `scalars` quantities at each vertex. The order of vertices and triangles is that
-/// of the triangles given: equal input gives equal output.
+/// Makes `face` fit for drawing, with `scalars` quantities at each vertex. The order of vertices and triangles is
+/// that of the triangles given: equal input gives equal output.
 pub fn clean(face: &FaceMesh, scalars: usize) -> Clean {
     let mut out = Clean { scalars: vec![Vec::new(); scalars], ..Clean::default() };
     let finite = |i: u32| face.positions.get(i as usize).is_some_and(|p| p.iter().all(|x| x.is_finite()));

@@ -1,9 +1,9 @@
 //! What a person looks at before cutting metal: one offline HTML page, and a picture of it as SVG.
 //!
-//! [`html`] makes the page of a [`Report`]: verdict, part in 3D coloured by what the verification measured, path, moving
-//! tool, tables, charts and findings. Scripts and data stand in the file itself; nothing is loaded from anywhere. [`svg`] makes a static
-//! picture of at most about 300 kB, which the page also shows where the browser has no WebGL. Same report, same
-//! bytes.
+//! [`html`] makes the page of a [`Report`]: verdict, part in 3D coloured by what the verification measured, path,
+//! moving tool, tables, charts and findings. Scripts and data stand in the file itself; nothing is loaded from
+//! anywhere. [`svg`] makes a static picture of at most about 300 kB, which the page also shows where the browser
+//! has no WebGL. Same report, same bytes.
 
 mod chart;
 mod data;

@@ -263,7 +263,8 @@ mod tests {
         let faces = [clean(&report.faces[0], 0)];
         let packed = pack(&report, &faces);
         let head = &packed.head["faces"][0];
-        // 3 vertices: 18 bytes of positions rounded up to 20, 12 of normals, 12 of deviations, 6 of indices, 3 borders.
+        // 3 vertices: 18 bytes of positions rounded up to 20, 12 of normals, 12 of deviations, 6 of indices, 3
+        // borders.
         assert_eq!([&head["position"], &head["normal"], &head["deviation"], &head["index"]], [0, 20, 32, 44]);
         assert_eq!(packed.bytes.len(), 52 + 24);
         assert_eq!(packed.head["step"][1], 2.0 / 65535.0);
@@ -282,8 +283,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Half a step in each of two coordinates of a map that stretches lengths by at most 3 (a corner of the octahedron
-        /// against the sphere): 3 * sqrt(2) * 0.5 / 32767 = 6.5e-5.
+        /// Half a step in each of two coordinates of a map that stretches lengths by at most 3 (a corner of the
+        /// octahedron against the sphere): 3 * sqrt(2) * 0.5 / 32767 = 6.5e-5.
         #[test]
         fn normals_come_back(x in -1.0..1.0_f32, y in -1.0..1.0_f32, z in -1.0..1.0_f32) {
             let length = (x * x + y * y + z * z).sqrt();

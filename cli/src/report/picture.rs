@@ -1,8 +1,8 @@
 //! The static picture: part, path and tool in orthographic projection as plain SVG.
 //!
-//! Surfaces are painted from far to near, lines are drawn where a depth map of the full mesh says that nothing lies in
-//! front of them. The number of facets and line points is bounded, so that the file stays near 300 kB whatever the part;
-//! where passes are left out, the caption says so. Coordinates are written in half pixels, as integers.
+//! Surfaces are painted from far to near, lines are drawn where a depth map of the full mesh says that nothing lies
+//! in front of them. The number of facets and line points is bounded, so that the file stays near 300 kB whatever
+//! the part; where passes are left out, the caption says so. Coordinates are written in half pixels, as integers.
 
 mod lines;
 mod paint;

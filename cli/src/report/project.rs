@@ -1,7 +1,7 @@
 //! Orthographic projection and hidden points for the static picture.
 //!
-//! Picture frame: x to the right and y down in pixels, depth towards the viewer in the same unit. The camera stands at
-//! an azimuth about z (from +x towards +y) and an elevation above the xy plane and looks at the part with z up.
+//! Picture frame: x to the right and y down in pixels, depth towards the viewer in the same unit. The camera stands
+//! at an azimuth about z (from +x towards +y) and an elevation above the xy plane and looks at the part with z up.
 
 /// Where the camera stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,8 +139,9 @@ impl DepthMap {
         }
     }
 
-    /// Is nothing drawn more than `slack` pixels in front of `p`, there or in one of the pixels around? The neighbours
-    /// count because on a steep surface the depth changes much within a pixel. Outside the picture nothing is hidden.
+    /// Is nothing drawn more than `slack` pixels in front of `p`, there or in one of the pixels around? The
+    /// neighbours count because on a steep surface the depth changes much within a pixel. Outside the picture
+    /// nothing is hidden.
     pub fn sees(&self, p: [f64; 3], slack: f64) -> bool {
         let (x, y) = (p[0].floor(), p[1].floor());
         if !(x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64) {

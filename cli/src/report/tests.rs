@@ -1,4 +1,5 @@
-//! The page and the picture as a whole: well-formed, safe against what names may contain, calm about nothing and nonsense.
+//! The page and the picture as a whole: well-formed, safe against what names may contain, calm about nothing and
+//! nonsense.
 
 use super::*;
 use osculate_geom::Diagnostic;
@@ -64,8 +65,8 @@ fn sheet(n: u32) -> Report {
     }
 }
 
-/// Every element that opens closes in order, every attribute is quoted, and no bare `<` or `&` stands in text: what an
-/// XML parser would insist on, for the subset that is written here. Panics with what is wrong.
+/// Every element that opens closes in order, every attribute is quoted, and no bare `<` or `&` stands in text: what
+/// an XML parser would insist on, for the subset that is written here. Panics with what is wrong.
 fn assert_well_formed(xml: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut rest = xml;

@@ -69,7 +69,7 @@ fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
 pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, start: Uv) -> Found {
     let mut here = state(jet(rect.bring(start)), rect, query);
     let size = here.jet.point.coords.norm() + query.coords.norm();
-    let mut steps = 0;
+    let (mut steps, mut before_mm) = (0, 0.0);
     while steps < MAX_STEPS {
         steps += 1;
         let step = newton_step(&here, query);
@@ -110,9 +110,13 @@ pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, s
             Some(there) => here = there,
             None => break,
         }
-        if length_mm * scale <= ROUNDING * size {
+        // Newton's steps go like the square of the one before, with the factor that the last two show: where the next
+        // one would be lost in rounding it need not be tried.
+        let next_mm = (length_mm / before_mm).powi(2) * length_mm;
+        if length_mm * scale <= ROUNDING * size || (scale == 1.0 && 16.0 * next_mm <= ROUNDING * size) {
             break;
         }
+        before_mm = length_mm;
     }
     let distance_mm = here.square.sqrt();
     // An offset of a few roundings has no direction.

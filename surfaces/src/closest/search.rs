@@ -4,15 +4,16 @@
 //! the whole surface; after it a cell is done with when one of these is shown:
 //!
 //! 1. its lower bound is not below the best distance;
-//! 2. the squared distance is convex over it, and the tangent plane of that function at some place of the cell, or a
-//!    descent in the cell, shows that it has nothing nearer;
-//! 3. else it is halved, until the work allowed is spent; then the least lower bound left is reported as the gap.
+//! 2. the quadratic Taylor polynomial of the squared distance, less a bound of its remainder, is not below it;
+//! 3. the squared distance is convex over it, or over the side to which it falls all over the cell, and the tangent
+//!    plane of that function at some place, or a descent in the cell, shows that it has nothing nearer;
+//! 4. else it is halved, until the work allowed is spent; then the least lower bound left is reported as the gap.
 
 use super::descent::{Found, descend};
 use super::index::{Cell, Reach};
 use super::{ClosestError, Foot, FootKind, PERPENDICULAR, finish};
 use crate::nurbs::NurbsSurface;
-use osculate_geom::{Axis, Domain, Jet2, Point3, Surface, Uv};
+use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, Uv};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -102,25 +103,24 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
             gap_mm = best.found.distance_mm - least_mm.max(0.0);
             break;
         }
-        let centre = cell.jet(surface, cell.middle);
-        let rect = cell.rect(surface);
-        if is_convex(&cell, &centre, query) {
-            let at = rect.bring(best.found.jet.uv);
-            if cannot_beat(&cell.jet(surface, at), &rect, query, best.found.distance_mm) {
-                continue;
-            }
-            best.offer(descend(|at| cell.jet(surface, at), &rect, query, at), &cell);
+        let model = Model::new(surface, &cell, query);
+        if model.least_mm() >= best.found.distance_mm * (1.0 - SAME_DISTANCE) {
             continue;
         }
-        if number == 0 {
-            // Once, in the hope of a better limit.
+        let mut rect = cell.rect(surface);
+        if model.cut_to_least(&mut rect) {
+            let at = rect.bring(best.found.jet.uv);
+            if !cannot_beat(&cell.jet(surface, at), &rect, query, best.found.distance_mm) {
+                best.offer(descend(|at| cell.jet(surface, at), &rect, query, at), &cell);
+            }
+            continue;
+        }
+        if 2.0 * model.value < best.found.distance_mm * best.found.distance_mm {
             best.offer(descend(|at| cell.jet(surface, at), &rect, query, cell.middle), &cell);
         }
         for half in cell.halves(surface, cell.bent_axis()) {
             number += 1;
-            let reach = half.reach(query);
-            // A point of the half is at hand.
-            let least = reach.distance_mm - half.flatness_mm();
+            let least = half.reach(query).distance_mm - half.flatness_mm();
             if least < best.found.distance_mm * (1.0 - SAME_DISTANCE) {
                 tasks.push(Task { least_mm: least.max(least_mm), cell: half, number });
             }
@@ -177,7 +177,7 @@ impl Best {
         for span in spans_around(surface, at) {
             let piece = |axis: Axis| {
                 let ends = &surface.knots(axis).breaks()[span[axis as usize]..][..2];
-                osculate_geom::Interval::new(ends[0], ends[1])
+                Interval::new(ends[0], ends[1])
             };
             let rect = Domain { u: piece(Axis::U), v: piece(Axis::V) };
             let found = descend(|at| surface.piece_jet(at, span), &rect, query, at);
@@ -209,26 +209,89 @@ fn spans_around(surface: &NurbsSurface, at: Uv) -> Vec<[usize; 2]> {
     us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])).collect()
 }
 
-/// Whether `|S - q|^2` is convex over the whole cell: its matrix of second derivatives in the middle, less the most that
-/// it can change over the cell, is positive definite.
-fn is_convex(cell: &Cell, centre: &Jet2, query: &Point3) -> bool {
-    let [a, b] = &cell.sides;
-    let (hu, hv) = (cell.half.u, cell.half.v);
-    let (ss, st, tt) = (centre.duu * (hu * hu), centre.duv * (hu * hv), centre.dvv * (hv * hv));
-    let r = cell.centre - query;
-    let h = [a.dot(a) + r.dot(&ss), a.dot(b) + r.dot(&st), b.dot(b) + r.dot(&tt)];
-    // Changes of the first derivatives, the second ones and the offset.
-    let ([m0, m1, m2], [t0, t1, t2, t3]) = (cell.bounds.second, cell.bounds.third);
-    let (da, db) = (m0 + m1, m1 + m2);
-    let (dss, dst, dtt) = (t0 + t1, t1 + t2, t2 + t3);
-    let (la, lb, lr, dr) = (a.norm(), b.norm(), r.norm(), cell.radius_mm());
-    let change = [
-        2.0 * la * da + da * da + lr * dss + dr * (ss.norm() + dss),
-        la * db + lb * da + da * db + lr * dst + dr * (st.norm() + dst),
-        2.0 * lb * db + db * db + lr * dtt + dr * (tt.norm() + dtt),
-    ];
-    let (p, q, m) = (h[0] - change[0], h[2] - change[2], h[1].abs() + change[1]);
-    p > 0.0 && q > 0.0 && p * q > m * m
+/// Taylor's polynomial of `f = |S - q|^2 / 2` about the middle of a cell, by s and t in `[-1, 1]`, with a bound of how
+/// much its second derivatives change over the cell.
+struct Model {
+    value: f64,
+    gradient: [f64; 2],
+    /// By ss, st and tt.
+    second: [f64; 3],
+    /// The most that each may differ from that in the cell.
+    change: [f64; 3],
+}
+
+impl Model {
+    fn new(surface: &NurbsSurface, cell: &Cell, query: &Point3) -> Self {
+        let centre = cell.jet(surface, cell.middle);
+        let [a, b] = &cell.sides;
+        let (hu, hv) = (cell.half.u, cell.half.v);
+        let (ss, st, tt) = (centre.duu * (hu * hu), centre.duv * (hu * hv), centre.dvv * (hv * hv));
+        let r = cell.centre - query;
+        // Changes of the first derivatives, the second ones and the offset. All shrink at least in proportion on the
+        // way to the middle.
+        let ([m0, m1, m2], [t0, t1, t2, t3]) = (cell.bounds.second, cell.bounds.third);
+        let (da, db) = (m0 + m1, m1 + m2);
+        let (dss, dst, dtt) = (t0 + t1, t1 + t2, t2 + t3);
+        let (la, lb, lr, dr) = (a.norm(), b.norm(), r.norm(), cell.radius_mm());
+        Self {
+            value: 0.5 * r.norm_squared(),
+            gradient: [r.dot(a), r.dot(b)],
+            second: [a.dot(a) + r.dot(&ss), a.dot(b) + r.dot(&st), b.dot(b) + r.dot(&tt)],
+            change: [
+                2.0 * la * da + da * da + lr * dss + dr * (ss.norm() + dss),
+                la * db + lb * da + da * db + lr * dst + dr * (st.norm() + dst),
+                2.0 * lb * db + db * db + lr * dtt + dr * (tt.norm() + dtt),
+            ],
+        }
+    }
+
+    /// Cuts the cell's rectangle to the side or corner on which the least value of f must lie, where f falls all the way
+    /// to it, and says whether f is convex over what is left.
+    fn cut_to_least(&self, rect: &mut Domain) -> bool {
+        let (h, d) = (&self.second, &self.change);
+        // A gradient changes by at most this on the way from the middle; changes that grow in proportion count half.
+        let turns = [
+            h[0].abs() + h[1].abs() + 0.5 * (d[0] + d[1]),
+            h[2].abs() + h[1].abs() + 0.5 * (d[2] + d[1]),
+        ];
+        let falls = [0, 1].map(|k| self.gradient[k].abs() > turns[k]);
+        for (k, side) in [&mut rect.u, &mut rect.v].into_iter().enumerate() {
+            if falls[k] {
+                let end = if self.gradient[k] > 0.0 { side.lo } else { side.hi };
+                *side = Interval::new(end, end);
+            }
+        }
+        let (p, q, m) = (h[0] - d[0], h[2] - d[2], h[1].abs() + d[1]);
+        match falls {
+            [true, true] => true,
+            [true, false] => q > 0.0,
+            [false, true] => p > 0.0,
+            [false, false] => p > 0.0 && q > 0.0 && p * q > m * m,
+        }
+    }
+
+    /// No point of the cell is nearer: the least value of the quadratic polynomial over the cell, less the remainder. A
+    /// change of the second derivatives that grows in proportion to the way counts with a sixth.
+    fn least_mm(&self) -> f64 {
+        let ([g, h], [a, b, c]) = (self.gradient, self.second);
+        let quadratic = |s: f64, t: f64| g * s + h * t + 0.5 * (a * s * s + c * t * t) + b * s * t;
+        // The least value of l x + q x^2 / 2 over [-1, 1] is at the vertex of a parabola open upwards or at an end.
+        let place = |l: f64, q: f64| if q > 0.0 { (-l / q).clamp(-1.0, 1.0) } else { -l.signum() };
+        let mut least = f64::INFINITY;
+        for end in [-1.0, 1.0] {
+            least = least.min(quadratic(end, place(h + b * end, c)));
+            least = least.min(quadratic(place(g + b * end, a), end));
+        }
+        let det = a * c - b * b;
+        if a > 0.0 && det > 0.0 {
+            let (s, t) = ((b * h - c * g) / det, (b * g - a * h) / det);
+            if s.abs() <= 1.0 && t.abs() <= 1.0 {
+                least = least.min(quadratic(s, t));
+            }
+        }
+        let [d0, d1, d2] = self.change;
+        (2.0 * (self.value + least - (d0 + 2.0 * d1 + d2) / 6.0)).max(0.0).sqrt()
+    }
 }
 
 /// Whether a convex squared distance with this jet at a place of the rectangle stays above the best one everywhere in

@@ -238,19 +238,19 @@ fn plain(text: &[u8]) -> Param {
 
 fn global(text: &[u8], diagnostics: &mut Vec<Diagnostic>) -> (Separators, Global) {
     // The first two parameters name the delimiters, as `1H,` and `1H;`, or are left out: `,,`.
-    let trimmed: &[u8] = &text[text.iter().position(|c| *c != b' ').unwrap_or(text.len())..];
+    let skip = |t: &'_ [u8]| t.iter().position(|c| *c != b' ').unwrap_or(t.len());
+    let named = |t: &[u8]| if t.len() > 2 && t[0] == b'1' && matches!(t[1], b'H' | b'h') { Some(t[2]) } else { None };
     let mut separators = Separators { parameter: b',', record: b';' };
-    if trimmed.starts_with(b"1H") || trimmed.starts_with(b"1h") {
-        separators.parameter = trimmed.get(2).copied().unwrap_or(b',');
-        let rest = trimmed.get(4..).unwrap_or_default();
-        let rest = &rest[rest.iter().position(|c| *c != b' ').unwrap_or(rest.len())..];
-        if rest.starts_with(b"1H") || rest.starts_with(b"1h") {
-            separators.record = rest.get(2).copied().unwrap_or(b';');
-        }
-    } else if trimmed.first() == Some(&b',') {
-        let rest = &trimmed[1..];
-        if rest.starts_with(b"1H") || rest.starts_with(b"1h") {
-            separators.record = rest.get(2).copied().unwrap_or(b';');
+    let mut rest = &text[skip(text)..];
+    if let Some(c) = named(rest) {
+        separators.parameter = c;
+        rest = &rest[3..];
+        rest = &rest[skip(rest)..];
+    }
+    if rest.first() == Some(&separators.parameter) {
+        rest = &rest[1..];
+        if let Some(c) = named(&rest[skip(rest)..]) {
+            separators.record = c;
         }
     }
     let Parsed { params, lies, .. } = parse(text, separators);

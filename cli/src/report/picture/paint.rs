@@ -72,3 +72,39 @@ pub fn step(out: &mut String, command: char, from: [i64; 2], to: [i64; 2]) {
     }
     let _ = write!(out, "{dy}");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RED: Rgb = [200, 0, 0];
+    const BLUE: Rgb = [0, 0, 200];
+
+    fn facet(x: f64, colour: Rgb) -> Facet {
+        Facet { corners: [[x, 0.0, 0.0], [x + 10.0, 0.0, 0.0], [x, 10.0, 0.0]], colour }
+    }
+
+    fn colours(svg: &str) -> Vec<&str> {
+        svg.split("color=\"").skip(1).map(|p| &p[..7]).collect()
+    }
+
+    #[test]
+    fn facets_that_do_not_overlap_share_the_path_of_their_colour() {
+        let out = paint(&[facet(0.0, RED), facet(20.0, BLUE), facet(40.0, RED)], 100, 20);
+        assert_eq!(colours(&out), ["#c80000", "#0000c8"]);
+    }
+
+    #[test]
+    fn what_comes_later_stays_above_what_it_covers() {
+        let out = paint(&[facet(0.0, RED), facet(2.0, BLUE), facet(4.0, RED)], 100, 20);
+        assert_eq!(colours(&out), ["#c80000", "#0000c8", "#c80000"]);
+    }
+
+    /// Filled by the winding rule, two overlapping triangles of one path would otherwise leave a hole.
+    #[test]
+    fn all_triangles_turn_the_same_way() {
+        let back = Facet { corners: [[0.0; 3], [0.0, 10.0, 0.0], [10.0, 0.0, 0.0]], colour: RED };
+        let out = paint(&[facet(0.0, RED), back], 100, 20);
+        assert_eq!(out, "<path color=\"#c80000\" d=\"M0 0l20 0-20 20zM0 0l20 0-20 20z\"/>");
+    }
+}
