@@ -4,6 +4,7 @@ pub mod cl;
 pub mod contact;
 mod cutter;
 mod pose;
+pub mod removal;
 mod spec;
 pub mod strip;
 pub mod sweep;

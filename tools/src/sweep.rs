@@ -223,10 +223,10 @@ fn on_sharp_edge(
     (falls && rises).then_some(Reach { at_mm, t: root.x })
 }
 
-/// The deepest entry of an open motion, searched from parameter `guess` outward with first step `step`.
+/// The deepest entry of an open motion near parameter `guess`, searched downhill in growing steps from `step` on.
 ///
-/// None where the line misses around the guess or the motion ends before a minimum is bracketed and the line
-/// misses at its end.
+/// The search stays within [`REACH_STEPS`] first steps of the guess: on a thin part the tool comes by again on the far
+/// side. None where the line misses at every instant looked at.
 pub fn reach_from(
     cutter: &Cutter,
     line: &Line,
@@ -234,27 +234,34 @@ pub fn reach_from(
     guess: f64,
     step: f64,
 ) -> Option<Reach> {
-    /// Enough to double past any strip and to close in on the end of a motion from there.
+    /// Enough to double to the end of the search and to close in on the end of a motion from there.
     const MAX_STEPS: u32 = 60;
     let start = state(cutter, line, motion, guess);
     let slope = start.rate();
-    if slope == 0.0 {
-        return hit(start, guess);
+    let mut best = hit(start, guess);
+    if slope == 0.0 || slope.is_nan() {
+        return best;
     }
-    if slope.is_nan() {
-        return None;
-    }
-    let mut step = if slope > 0.0 { -step.abs() } else { step.abs() };
-    let tolerance = T_TOLERANCE * step.abs();
+    let lower = |a: Option<Reach>, b: Option<Reach>| match (a, b) {
+        (Some(x), Some(y)) if y.at_mm < x.at_mm => Some(y),
+        (None, y) => y,
+        (x, _) => x,
+    };
+    let first = step.abs();
+    let mut step = if slope > 0.0 { -first } else { first };
+    let tolerance = T_TOLERANCE * first;
     let (mut near, mut near_state) = (guess, start);
     for _ in 0..MAX_STEPS {
         let far = near + step;
+        if (far - guess).abs() > REACH_STEPS * first {
+            break;
+        }
         let far_state = state(cutter, line, motion, far);
         let rate = far_state.rate();
         if rate.is_nan() {
-            // The motion ends between: halve towards the end, which itself is the deepest instant.
+            // The motion ends between: close in on its end, which is the deepest instant.
             if step.abs() <= tolerance.max(1e-9 * guess.abs()) {
-                return hit(near_state, near);
+                break;
             }
             step *= 0.25;
             continue;
@@ -265,10 +272,14 @@ pub fn reach_from(
             } else {
                 [(far, far_state), (near, near_state)]
             };
-            return between(cutter, line, motion, ends, tolerance);
+            return lower(best, between(cutter, line, motion, ends, tolerance));
         }
+        best = lower(best, hit(far_state, far));
         (near, near_state) = (far, far_state);
         step *= 2.0;
     }
-    hit(near_state, near)
+    best
 }
+
+/// How far [`reach_from`] looks, in first steps to each side.
+pub const REACH_STEPS: f64 = 40.0;

@@ -1,0 +1,110 @@
+//! Time of `removal::cut` on finishing passes over a bump: samples, motions, seconds.
+//!
+//! `cargo run --release -p osculate-tools --example removal_bench -- 300000 30000`
+
+#![allow(clippy::print_stdout, reason = "a bench prints its figures")]
+
+use osculate_geom::{Domain, Interval, Jet2, Point3, Side, Surface, Unit3, Uv, Vec3, uv};
+use osculate_tools::removal::{Job, Limits, Swept, cut, judge, sample_surface};
+use osculate_tools::{Cutter, CutterSpec, Pose};
+use std::error::Error;
+use std::time::Instant;
+
+/// z = height sin(u k) sin(v k) over a square.
+struct Waves {
+    side_mm: f64,
+    height_mm: f64,
+    per_mm: f64,
+}
+
+impl Surface for Waves {
+    fn domain(&self) -> Domain {
+        Domain { u: Interval::new(0.0, self.side_mm), v: Interval::new(0.0, self.side_mm) }
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        let (h, k) = (self.height_mm, self.per_mm);
+        let ((su, cu), (sv, cv)) = ((at.u * k).sin_cos(), (at.v * k).sin_cos());
+        Jet2 {
+            uv: at,
+            point: Point3::new(at.u, at.v, h * su * sv),
+            du: Vec3::new(1.0, 0.0, h * k * cu * sv),
+            dv: Vec3::new(0.0, 1.0, h * k * su * cv),
+            duu: Vec3::new(0.0, 0.0, -h * k * k * su * sv),
+            duv: Vec3::new(0.0, 0.0, h * k * k * cu * cv),
+            dvv: Vec3::new(0.0, 0.0, -h * k * k * su * sv),
+            side: Side::Along,
+        }
+    }
+}
+
+/// Passes over the waves: the tool touches at each pose, three-axis or with the axis leaned from the normal.
+fn passes(
+    waves: &Waves,
+    cutter: &Cutter,
+    count: usize,
+    five_axis: bool,
+) -> Result<Vec<Swept>, Box<dyn Error>> {
+    // As many steps along a pass as needed for steps twice the stepover.
+    let lines = (count as f64 * 2.0).sqrt().round().max(2.0) as usize;
+    let steps = (count / lines).max(1);
+    let mut poses = Vec::new();
+    for i in 0..lines {
+        for j in 0..=steps {
+            let f = j as f64 / steps as f64;
+            let u = waves.side_mm * if i % 2 == 0 { f } else { 1.0 - f };
+            let jet = waves.jet2(uv(u, waves.side_mm * i as f64 / (lines - 1) as f64));
+            let n = jet.normal()?.into_inner();
+            let lean = if five_axis { n + Vec3::x() * 0.25 } else { Vec3::z() };
+            let axis = Unit3::new_normalize(lean);
+            let (r, core) = (cutter.corner_mm(), cutter.core_mm());
+            let side = axis.into_inner() * n.dot(&axis) - n;
+            let out = if core > 0.0 { side.normalize() * core } else { Vec3::zeros() };
+            poses.push(Pose { tip: jet.point + n * r - out - axis.into_inner() * r, axis });
+        }
+    }
+    let pairs = poses.windows(2).zip(1u32..);
+    Ok(pairs.map(|(p, block)| Swept { from: p[0], to: p[1], rapid: false, block }).collect())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut args = std::env::args().skip(1);
+    let mut number = |default: usize| args.next().map_or(Ok(default), |s| s.parse());
+    let (samples, motions) = (number(300_000)?, number(30_000)?);
+    let waves = Waves { side_mm: 100.0, height_mm: 4.0, per_mm: 0.1 };
+    let begin = Instant::now();
+    let sampling = sample_surface(&waves, 0, 1e-3, samples)?;
+    println!("sampling   {:>9} samples {:>27.2} s", sampling.samples.len(), begin.elapsed().as_secs_f64());
+    let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+    let bull =
+        Cutter::try_from(CutterSpec::Toroidal { diameter_mm: 10.0, corner_radius_mm: 2.0, length_mm: 60.0 })?;
+    let holder = Cutter::cylinder(40.0, 60.0)?;
+    for (name, cutter, five_axis, stock_mm) in
+        [("3-axis", &ball, false, 0.3), ("5-axis", &bull, true, 0.3), ("thick", &bull, true, 3.0)]
+    {
+        let motions = passes(&waves, cutter, motions, five_axis)?;
+        let begin = Instant::now();
+        let job = Job {
+            cutter,
+            holder: Some(&holder),
+            motions: &motions,
+            samples: &sampling.samples,
+            stock_mm,
+            depth_mm: 1.0,
+        };
+        let cuts = cut(&job, &|_| ())?;
+        let seconds = begin.elapsed().as_secs_f64();
+        let begin = Instant::now();
+        let verdict = judge(&sampling.samples, &cuts, &Limits::new(0.02, 0.02), &sampling.density, 5.0)?;
+        println!(
+            "{name:<10} {:>9} samples {:>8} motions {seconds:>8.2} s, judged in {:.2} s: \
+             scallop {:.4} gouge {:.4} uncut {:.1} mm2",
+            cuts.len(),
+            motions.len(),
+            begin.elapsed().as_secs_f64(),
+            verdict.scallop_max_mm,
+            verdict.gouge_max_mm,
+            verdict.uncut_area_mm2,
+        );
+    }
+    Ok(())
+}

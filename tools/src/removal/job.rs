@@ -1,0 +1,171 @@
+//! What goes into [`cut`](super::cut) and what comes out.
+
+use crate::cl::{ClPath, Motion};
+use crate::cutter::Cutter;
+use crate::pose::Pose;
+use osculate_geom::{Point3, Unit3, Uv};
+
+/// A point of a face at which material is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The point, mm.
+    pub point: Point3,
+    /// Outward normal of the part.
+    pub normal: Unit3,
+    /// Which face, as numbered by the caller.
+    pub face: u32,
+    /// Surface parameters.
+    pub uv: Uv,
+    /// The share of the face's area that the sample stands for, mm2.
+    pub area_mm2: f64,
+    /// True on a face that is not to be machined: it carries no stock, and only gouges count.
+    pub check_only: bool,
+}
+
+/// One motion of the tool: tip and axis move linearly, the axis renormalised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swept {
+    /// Where it begins.
+    pub from: Pose,
+    /// Where it ends.
+    pub to: Pose,
+    /// Whether it is a rapid, which must not touch material.
+    pub rapid: bool,
+    /// The NC line or CL point that it is reported under.
+    pub block: u32,
+}
+
+impl Swept {
+    /// The motions of a path, each with the index of the CL point at which it ends as its block. The first
+    /// point is reached from an unknown place and makes no motion.
+    #[must_use]
+    pub fn along(path: &ClPath) -> Vec<Self> {
+        path.moves
+            .windows(2)
+            .zip(1u32..)
+            .map(|(pair, block)| Self {
+                from: pair[0].pose,
+                to: pair[1].pose,
+                rapid: matches!(pair[1].motion, Motion::Rapid),
+                block,
+            })
+            .collect()
+    }
+}
+
+/// A removal to be computed.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// The cutter. Its whole length cuts.
+    pub cutter: &'a Cutter,
+    /// The holder, a body whose lower end sits where the cutter's length ends.
+    pub holder: Option<&'a Cutter>,
+    /// The motions in the order in which they happen.
+    pub motions: &'a [Swept],
+    /// Where material is measured.
+    pub samples: &'a [Sample],
+    /// Height of material above each sample before the first motion, mm. Zero: only gouges are looked for.
+    pub stock_mm: f64,
+    /// How deep gouges are followed, mm; deeper ones are reported as this deep.
+    pub depth_mm: f64,
+}
+
+/// A job that cannot be computed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum JobError {
+    /// The stock is negative or not finite.
+    #[error("stock_mm must be finite and not negative, got {got}")]
+    Stock {
+        /// The value, mm.
+        got: f64,
+    },
+    /// The depth is not positive and finite.
+    #[error("depth_mm must be positive and finite, got {got}")]
+    Depth {
+        /// The value, mm.
+        got: f64,
+    },
+    /// A motion with a coordinate that is not finite.
+    #[error("motion {motion} (block {block}) has a coordinate that is not finite")]
+    NotFinite {
+        /// Index of the motion.
+        motion: usize,
+        /// Its block.
+        block: u32,
+    },
+    /// A motion whose axis turns by nearly 180 degrees: the linear motion of the axis has no plane.
+    #[error(
+        "in motion {motion} (block {block}) the tool axis turns by more than 179 degrees, which a linear \
+         motion of the axis leaves undefined: put a pose in between"
+    )]
+    Reversal {
+        /// Index of the motion.
+        motion: usize,
+        /// Its block.
+        block: u32,
+    },
+    /// A sample with a coordinate that is not finite.
+    #[error("sample {sample} (face {face}) has a coordinate that is not finite")]
+    SampleNotFinite {
+        /// Index of the sample.
+        sample: usize,
+        /// Its face.
+        face: u32,
+    },
+    /// More of something than can be numbered or held.
+    #[error("too many {what}, at most {limit}: verify in parts")]
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// The limit.
+        limit: usize,
+    },
+}
+
+/// What touched the material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// The cutter.
+    Cutter,
+    /// The holder.
+    Holder,
+}
+
+/// What cut a sample to its final height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct By {
+    /// Index of the motion.
+    pub motion: u32,
+    /// Its block.
+    pub block: u32,
+    /// With what.
+    pub body: Body,
+    /// Whether the motion was a rapid.
+    pub rapid: bool,
+}
+
+/// Material taken where none should be: by a rapid or by the holder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Height taken at the sample, mm.
+    pub removed_mm: f64,
+    /// Index of the motion.
+    pub motion: u32,
+    /// Its block.
+    pub block: u32,
+}
+
+/// What the path did at one sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// Height left above the sample along its normal, mm: the stock where nothing cut, negative for a gouge.
+    pub standoff_mm: f64,
+    /// What cut it to this height; None where nothing did. Of several motions that reach the same height it
+    /// is one of them, the same in every run.
+    pub by: Option<By>,
+    /// The most that a rapid of the cutter took here, given what had been cut before it.
+    pub rapid: Option<Touch>,
+    /// The most that the holder took here, given what had been cut before it and by the cutter in the same
+    /// motion.
+    pub holder: Option<Touch>,
+}

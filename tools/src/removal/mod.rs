@@ -1,0 +1,61 @@
+//! What a tool path leaves on the faces of a part, or takes from them: removal along normals.
+//!
+//! Every [`Sample`] of the part's faces carries a layer of material, `stock_mm` high along its outward normal
+//! n.
+//! [`cut`] moves cutter and holder through the whole path and keeps the lowest height at which any of them
+//! enters the line `p + s n`: the standoff. Positive is material left (a scallop, or a place never machined),
+//! negative a gouge. [`judge`] turns standoffs into a verdict, [`sample_surface`] makes the samples.
+//!
+//! Tools are exact and so are the motions ([`crate::sweep::LinearMotion`]), but for 2e-5 mm where a turning
+//! tool is deepest twice within a small stretch. What is approximate is that the part is looked at in
+//! samples:
+//! [`Density::bound`] says what can hide between them.
+//!
+//! What a single height per normal cannot say: an island that a tool leaves hanging above the height it cut
+//! is not seen, and the layer of stock is taken to be as high everywhere.
+//!
+//! ```
+//! use osculate_geom::{Domain, Interval, Point3, Vec3, analytic::Plane};
+//! use osculate_tools::removal::{Job, Limits, Swept, cut, judge, sample_surface};
+//! use osculate_tools::{Cutter, CutterSpec, Pose};
+//! let face = Plane::new(Domain { u: Interval::new(0.0, 4.0), v: Interval::new(0.0, 4.0) });
+//! let sampling = sample_surface(&face, 0, 0.5, 10_000)?;
+//! let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 40.0 })?;
+//! let at = |x: f64, y: f64| Pose { tip: Point3::new(x, y, 0.0), axis: Vec3::z_axis() };
+//! let motions: Vec<Swept> = (0..=10)
+//!     .map(|k| 0.4 * f64::from(k))
+//!     .map(|y| Swept { from: at(0.0, y), to: at(4.0, y), rapid: false, block: 1 })
+//!     .collect();
+//! let job = Job {
+//!     cutter: &cutter,
+//!     holder: None,
+//!     motions: &motions,
+//!     samples: &sampling.samples,
+//!     stock_mm: 0.5,
+//!     depth_mm: 1.0,
+//! };
+//! let cuts = cut(&job, &|_| ())?;
+//! let verdict = judge(&sampling.samples, &cuts, &Limits::new(0.01, 0.005), &sampling.density, 3.0)?;
+//! // Passes 0.4 mm apart with a ball of radius 3: R - sqrt(R^2 - 0.2^2).
+//! assert!(verdict.within && verdict.scallop_max_mm <= 3.0 - (9.0f64 - 0.04).sqrt() + 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod body;
+mod cluster;
+mod cut;
+mod deepest;
+mod density;
+mod grid;
+mod job;
+mod piece;
+mod sampling;
+mod target;
+mod tree;
+mod verdict;
+
+pub use cut::cut;
+pub use density::{Density, Hidden};
+pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
+pub use sampling::{Sampling, SamplingError, sample_surface};
+pub use verdict::{Bin, JudgeError, Kind, Limits, Verdict, Worst, judge};

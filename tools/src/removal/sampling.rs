@@ -1,0 +1,270 @@
+//! Samples of a face, nearly evenly spaced, with the area that each stands for.
+//!
+//! Rows of constant v follow each other at the wanted spacing along the v-lines where these are longest;
+//! along each row samples follow at the wanted spacing. Each sample owns the cell of the parameter rectangle
+//! around it; cells of a row meet half way between samples, rows half way between rows. Where the rectangle
+//! has an edge, samples lie on it. Cells that a trim crosses are divided further: the part inside gives the
+//! area, and where the cell's own sample is outside one is put on the trim. A strip of the face narrower than
+//! half a spacing may be missed.
+
+use super::density::Density;
+use super::grid::{Cell, Table, normal, weight};
+use super::job::Sample;
+use osculate_geom::{Axis, Surface, Uv, quadrature, uv};
+use rayon::prelude::*;
+
+/// The samples of a face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampling {
+    /// The samples, row by row.
+    pub samples: Vec<Sample>,
+    /// The spacing used, larger than asked for where `max_samples` required it, and the part's curvature.
+    pub density: Density,
+    /// Area of all cells, mm2: what the samples' areas add up to.
+    pub area_mm2: f64,
+    /// Area of cells without a tangent plane anywhere, mm2, which no sample stands for.
+    pub lost_area_mm2: f64,
+}
+
+/// A sampling that cannot be made.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SamplingError {
+    /// A spacing that is not positive and finite.
+    #[error("the sample spacing must be positive and finite, got {got} mm")]
+    Spacing {
+        /// The value, mm.
+        got: f64,
+    },
+    /// Too few samples allowed.
+    #[error("max_samples = {got} is too few for a face: allow at least 9")]
+    Count {
+        /// The value.
+        got: usize,
+    },
+    /// No sample lies on the face.
+    #[error("face {face}: no sample at a spacing of {spacing_mm} mm lies on the face; refine the spacing")]
+    Nothing {
+        /// The face.
+        face: u32,
+        /// The spacing used, mm.
+        spacing_mm: f64,
+    },
+    /// The area of the face is not a number.
+    #[error("face {face}: its area is {area_mm2} mm2; the surface has points that are not finite")]
+    Area {
+        /// The face.
+        face: u32,
+        /// What came out.
+        area_mm2: f64,
+    },
+}
+
+/// Lines across the rows on which the distance of rows is measured.
+const ACROSS: usize = 17;
+/// Attempts to get below the allowed count; each aims at it, and the second nearly always meets it.
+const MAX_ATTEMPTS: u32 = 40;
+
+/// Samples a face at about `spacing_mm`, more densely where it bends, with at most `max_samples` samples:
+/// where that is too few the spacing is increased, and the one used is reported in [`Sampling::density`].
+///
+/// # Errors
+/// [`SamplingError`].
+pub fn sample_surface(
+    surface: &dyn Surface,
+    face: u32,
+    spacing_mm: f64,
+    max_samples: usize,
+) -> Result<Sampling, SamplingError> {
+    if !(spacing_mm > 0.0 && spacing_mm.is_finite()) {
+        return Err(SamplingError::Spacing { got: spacing_mm });
+    }
+    if max_samples < 9 {
+        return Err(SamplingError::Count { got: max_samples });
+    }
+    // Coarse: only to choose a first spacing.
+    let area = quadrature::area(surface, 1e-2).value;
+    if !area.is_finite() {
+        return Err(SamplingError::Area { face, area_mm2: area });
+    }
+    let most = max_samples as f64;
+    let inside = inside_share(surface);
+    let mut spacing = spacing_mm.max((area * inside / most).sqrt());
+    for _ in 0..MAX_ATTEMPTS {
+        let grid = Grid { surface, face, spacing };
+        let rows = grid.rows();
+        // Every row has a cell at least, so that this also bounds the work of counting.
+        let wanted =
+            if rows.count() > 4.0 * most / inside { rows.count() } else { grid.count(&rows) * inside };
+        if wanted <= most {
+            let sampling = grid.samples(&rows);
+            if sampling.samples.is_empty() {
+                return Err(SamplingError::Nothing { face, spacing_mm: spacing });
+            }
+            if sampling.samples.len() <= max_samples {
+                return Ok(sampling);
+            }
+            spacing *= 1.02 * (sampling.samples.len() as f64 / most).sqrt();
+        } else {
+            spacing *= 1.02 * (wanted / most).sqrt();
+        }
+    }
+    Err(SamplingError::Nothing { face, spacing_mm: spacing })
+}
+
+/// The share of the parameter rectangle that the face covers, from a raster; never below one place of the
+/// raster.
+fn inside_share(surface: &dyn Surface) -> f64 {
+    const RASTER: u32 = 32;
+    let domain = surface.domain();
+    let at = |k: u32| (f64::from(k) + 0.5) / f64::from(RASTER);
+    let hits =
+        (0..RASTER * RASTER).filter(|k| surface.contains(domain.at(at(k % RASTER), at(k / RASTER)))).count();
+    hits.max(1) as f64 / f64::from(RASTER * RASTER)
+}
+
+struct Grid<'a> {
+    surface: &'a dyn Surface,
+    face: u32,
+    spacing: f64,
+}
+
+/// A sample, or the area that has none.
+struct Owned {
+    sample: Option<Sample>,
+    convex: f64,
+    area: f64,
+}
+
+impl Grid<'_> {
+    fn rows(&self) -> Table {
+        let domain = self.surface.domain();
+        let breaks = self.surface.breaks(Axis::V);
+        Table::new(domain.v, &breaks, |v| {
+            (0..ACROSS)
+                .map(|k| {
+                    let jet = self.surface.jet2(uv(domain.u.at(k as f64 / (ACROSS - 1) as f64), v));
+                    weight(&jet.dv, &jet.dvv, normal(&jet).as_ref(), self.spacing)
+                })
+                .fold(0.0, f64::max)
+        })
+    }
+
+    fn row(&self, breaks: &[f64], v: f64) -> Table {
+        Table::new(self.surface.domain().u, breaks, |u| {
+            let jet = self.surface.jet2(uv(u, v));
+            weight(&jet.du, &jet.duu, normal(&jet).as_ref(), self.spacing)
+        })
+    }
+
+    /// The number of cells of the whole rectangle.
+    fn count(&self, rows: &Table) -> f64 {
+        let breaks = self.surface.breaks(Axis::U);
+        rows.cells().par_iter().map(|c| self.row(&breaks, c.at).count()).collect::<Vec<_>>().iter().sum()
+    }
+
+    fn samples(&self, rows: &Table) -> Sampling {
+        let breaks = self.surface.breaks(Axis::U);
+        let owned: Vec<Vec<Owned>> = rows
+            .cells()
+            .par_iter()
+            .map(|row| {
+                let cells = self.row(&breaks, row.at).cells();
+                cells.iter().filter_map(|cell| self.own(cell, row)).collect()
+            })
+            .collect();
+        let mut out = Sampling {
+            samples: Vec::with_capacity(owned.iter().map(Vec::len).sum()),
+            density: Density { spacing_mm: self.spacing, convex_per_mm: 0.0 },
+            area_mm2: 0.0,
+            lost_area_mm2: 0.0,
+        };
+        for one in owned.into_iter().flatten() {
+            out.density.convex_per_mm = out.density.convex_per_mm.max(one.convex);
+            match one.sample {
+                Some(sample) => {
+                    out.area_mm2 += one.area;
+                    out.samples.push(sample);
+                }
+                None => out.lost_area_mm2 += one.area,
+            }
+        }
+        out
+    }
+
+    /// The sample of a cell; None where the cell is not on the face.
+    fn own(&self, u: &Cell, v: &Cell) -> Option<Owned> {
+        let node = uv(u.at, v.at);
+        // Quarters between the sample and the cell's corners; those on an edge of the rectangle are empty.
+        let mut quarters = [(node, 0.0); 4];
+        let mut area = 0.0;
+        for (k, q) in quarters.iter_mut().enumerate() {
+            let (u0, u1) = if k % 2 == 0 { (u.lo, u.at) } else { (u.at, u.hi) };
+            let (v0, v1) = if k / 2 == 0 { (v.lo, v.at) } else { (v.at, v.hi) };
+            let middle = uv(0.5 * (u0 + u1), 0.5 * (v0 + v1));
+            let share = (u1 - u0) * (v1 - v0);
+            if share > 0.0 {
+                let jet = self.surface.jet2(middle);
+                *q = (middle, share * jet.du.cross(&jet.dv).norm());
+                area += q.1;
+            }
+        }
+        let full: Vec<Uv> = quarters.iter().filter(|q| q.1 > 0.0).map(|q| q.0).collect();
+        let in_node = self.surface.contains(node);
+        let hits = full.iter().filter(|q| self.surface.contains(**q)).count();
+        let at = if in_node && hits == full.len() {
+            node
+        } else if !in_node && hits == 0 {
+            return None;
+        } else {
+            let part = self.inside(u, v, node, in_node)?;
+            area *= part.share;
+            part.at
+        };
+        let around = full.iter().flat_map(|q| {
+            // Next to a pole first, then well away from it.
+            [1e-3, 1.0].map(|f| uv(at.u + f * (q.u - at.u), at.v + f * (q.v - at.v)))
+        });
+        let regular = std::iter::once(at).chain(around.filter(|p| self.surface.contains(*p))).find_map(|p| {
+            let jet = self.surface.jet2(p);
+            jet.forms().ok().map(|forms| (p, jet.point, forms))
+        });
+        let Some((uv, point, forms)) = regular else {
+            return Some(Owned { sample: None, convex: 0.0, area });
+        };
+        let sample =
+            Sample { point, normal: forms.normal, face: self.face, uv, area_mm2: area, check_only: false };
+        Some(Owned { sample: Some(sample), convex: forms.principal().k_max.max(0.0), area })
+    }
+
+    /// The part of a cell that lies on the face, where a trim crosses it.
+    fn inside(&self, u: &Cell, v: &Cell, node: Uv, in_node: bool) -> Option<Inside> {
+        /// Places tested along each side of a cell: areas of crossed cells are good to about a tenth of a
+        /// cell.
+        const SIDE: u32 = 8;
+        let part = |c: &Cell, k: u32| c.lo + (c.hi - c.lo) * (f64::from(k) + 0.5) / f64::from(SIDE);
+        // Distances in parts of the cell.
+        let far = |p: &Uv| ((p.u - node.u) / (u.hi - u.lo)).hypot((p.v - node.v) / (v.hi - v.lo));
+        let hits: Vec<Uv> = (0..SIDE * SIDE)
+            .map(|k| uv(part(u, k % SIDE), part(v, k / SIDE)))
+            .filter(|p| self.surface.contains(*p))
+            .collect();
+        let share = (hits.len() as f64 / f64::from(SIDE * SIDE)).max(0.5 / f64::from(SIDE * SIDE));
+        if in_node {
+            return Some(Inside { at: node, share });
+        }
+        let mut inner = *hits.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
+        let mut outer = node;
+        // To the last digits of the cell.
+        for _ in 0..40 {
+            let middle = uv(0.5 * (inner.u + outer.u), 0.5 * (inner.v + outer.v));
+            if self.surface.contains(middle) { inner = middle } else { outer = middle }
+        }
+        Some(Inside { at: inner, share })
+    }
+}
+
+/// The part of a cell on the face: its share of the area and a place in it.
+struct Inside {
+    at: Uv,
+    share: f64,
+}

@@ -1,0 +1,9 @@
+//! Material removal against closed forms, against brute force, and on planted faults.
+
+mod brute_force;
+mod closed_forms;
+mod collisions;
+mod common;
+mod gouges;
+mod sampling;
+mod verdicts;

@@ -1,0 +1,147 @@
+//! From standoffs to verdicts.
+
+use crate::common::sample;
+use osculate_tools::cl::{ClMove, ClPath, Motion};
+use osculate_tools::removal::{
+    Body, By, Cut, Density, JudgeError, Kind, Limits, Sample, Swept, Touch, Verdict, judge,
+};
+
+const DENSITY: Density = Density { spacing_mm: 0.1, convex_per_mm: 0.0 };
+
+fn cut_to(standoff_mm: f64) -> Cut {
+    let by = By { motion: 3, block: 30, body: Body::Cutter, rapid: false };
+    Cut { standoff_mm, by: Some(by), rapid: None, holder: None }
+}
+
+fn line(count: usize) -> Vec<Sample> {
+    (0..count).map(|k| sample([k as f64, 0.0, 0.0], [0.0, 0.0, 1.0])).collect()
+}
+
+fn judged(samples: &[Sample], cuts: &[Cut]) -> Verdict {
+    judge(samples, cuts, &Limits::new(0.01, 0.005), &DENSITY, 5.0).expect("good limits")
+}
+
+#[test]
+fn quantiles_go_by_area() {
+    let mut samples = line(200);
+    let mut cuts: Vec<Cut> = (0..200).map(|k| cut_to(4e-5 * k as f64)).collect();
+    let even = judged(&samples, &cuts);
+    assert!(even.within);
+    // 198 of 200 samples reach 99 percent, 100 the median.
+    assert_eq!((even.scallop_p99_mm, even.median_mm), (4e-5 * 197.0, 4e-5 * 99.0));
+    assert_eq!(even.scallop_max_mm, 4e-5 * 199.0);
+    // The highest sample stands for as much as all others together: it is the 99th percentile.
+    samples[199].area_mm2 = 200.0;
+    assert_eq!(judged(&samples, &cuts).scallop_p99_mm, 4e-5 * 199.0);
+    let bins: f64 = even.histogram.iter().map(|b| b.area_mm2).sum();
+    assert_eq!(bins, 200.0);
+    assert!(even.histogram.windows(2).all(|b| b[0].to_mm == b[1].from_mm));
+    // One sample above the tolerance is enough.
+    cuts[5] = cut_to(0.0101);
+    assert!(!judged(&samples, &cuts).within);
+}
+
+#[test]
+fn uncut_is_told_from_scallops() {
+    let samples = line(100);
+    let mut cuts = vec![cut_to(0.004); 100];
+    cuts[10] = Cut { standoff_mm: 0.3, by: None, rapid: None, holder: None };
+    cuts[50] = cut_to(0.2);
+    let v = judged(&samples, &cuts);
+    assert!(!v.within && v.uncut_area_mm2 == 2.0 && v.uncut_samples == 2 && v.scallop_max_mm == 0.004);
+    let uncut: Vec<_> =
+        v.worst.iter().filter(|w| w.kind == Kind::Uncut).map(|w| (w.value_mm, w.block)).collect();
+    assert_eq!(uncut, [(0.3, None), (0.2, Some(30))]);
+    // A layer of stock thinner than the tolerance is uncut all the same where nothing touched it.
+    cuts[10].standoff_mm = 0.001;
+    cuts[50] = cut_to(0.004);
+    assert!(!judged(&samples, &cuts).within);
+    // But not on a checked face.
+    let mut checked = samples.clone();
+    checked[10].check_only = true;
+    assert!(judged(&checked, &cuts).within);
+}
+
+#[test]
+fn gouges_and_collisions_fail_a_path() {
+    let samples = line(100);
+    let mut cuts = vec![cut_to(0.004); 100];
+    cuts[20] = cut_to(-0.006);
+    let v = judged(&samples, &cuts);
+    assert!(
+        !v.within && v.gouge_max_mm == 0.006 && v.gouge_area_mm2 == 1.0 && v.worst[0].kind == Kind::Gouge
+    );
+    cuts[20] = cut_to(-0.004);
+    assert!(judged(&samples, &cuts).within);
+    let touch = Some(Touch { removed_mm: 0.2, motion: 1, block: 9 });
+    for (kind, hit) in [
+        (Kind::Holder, Cut { holder: touch, ..cut_to(0.0) }),
+        (Kind::Rapid, Cut { rapid: touch, ..cut_to(0.0) }),
+    ] {
+        cuts[30] = hit;
+        let v = judged(&samples, &cuts);
+        let worst = v.worst.iter().find(|w| w.kind == kind).unwrap();
+        assert!(!v.within && v.holder_max_mm + v.rapid_max_mm == 0.2);
+        assert!(worst.block == Some(9) && worst.value_mm == 0.2 && worst.at == samples[30].point);
+    }
+}
+
+#[test]
+fn worst_places_are_apart_and_few() {
+    let samples = line(1000);
+    // A hump around 500 and a lower one around 200.
+    let height = |k: usize| {
+        let hump = |at: f64, top: f64| top - 1e-6 * (k as f64 - at).abs();
+        hump(500.0, 0.02).max(hump(200.0, 0.018))
+    };
+    let cuts: Vec<Cut> = (0..1000).map(|k| cut_to(height(k))).collect();
+    let v = judged(&samples, &cuts);
+    let at: Vec<f64> = v.worst.iter().map(|w| w.at.x).collect();
+    assert!(at.len() == 10 && at[0] == 500.0, "{at:?}");
+    for (k, a) in at.iter().enumerate() {
+        assert!(at[..k].iter().all(|b| (a - b).abs() >= 999.0 / 50.0), "{at:?}");
+    }
+    assert!(v.worst.windows(2).all(|w| w[0].value_mm >= w[1].value_mm));
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let samples = line(3);
+    let cuts = vec![cut_to(0.0); 2];
+    let limits = Limits::new(0.01, 0.005);
+    assert!(matches!(
+        judge(&samples, &cuts, &limits, &DENSITY, 5.0),
+        Err(JudgeError::Count { samples: 3, cuts: 2 })
+    ));
+    let cuts = vec![cut_to(0.0); 3];
+    for bad in [
+        Limits { scallop_mm: 0.0, ..limits },
+        Limits { gouge_mm: f64::NAN, ..limits },
+        Limits { uncut_mm: 0.009, ..limits },
+    ] {
+        assert!(matches!(judge(&samples, &cuts, &bad, &DENSITY, 5.0), Err(JudgeError::Limits(_))));
+    }
+    let mut no_area = samples.clone();
+    no_area[1].area_mm2 = f64::NAN;
+    assert!(matches!(
+        judge(&no_area, &cuts, &limits, &DENSITY, 5.0),
+        Err(JudgeError::Area { sample: 1, .. })
+    ));
+    let empty = judge(&[], &[], &limits, &DENSITY, 5.0).unwrap();
+    assert!(empty.samples == 0 && empty.scallop_p99_mm == 0.0 && empty.worst.is_empty());
+}
+
+#[test]
+fn a_path_becomes_motions() {
+    let at = |x: f64| crate::common::upright(x, 0.0, 0.0);
+    let go = |x: f64, motion: Motion| ClMove { pose: at(x), motion };
+    let path = ClPath {
+        moves: vec![go(0.0, Motion::Rapid), go(1.0, Motion::Feed(100.0)), go(2.0, Motion::Rapid)],
+        ..ClPath::default()
+    };
+    let want = [
+        Swept { from: at(0.0), to: at(1.0), rapid: false, block: 1 },
+        Swept { from: at(1.0), to: at(2.0), rapid: true, block: 2 },
+    ];
+    assert_eq!(Swept::along(&path), want);
+}
