@@ -160,8 +160,7 @@ mod tests {
     #[test]
     fn quadratic_by_hand() {
         // [The NURBS Book, example 2.3]: p = 2, u = 5/2.
-        let k =
-            Knots::new(2, 8, vec![0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 4.0, 5.0, 5.0, 5.0]).unwrap();
+        let k = Knots::new(2, 8, vec![0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 4.0, 5.0, 5.0, 5.0]).unwrap();
         let (first, n) = k.basis_values(k.find(2.5), 2.5);
         assert_eq!(first, 2);
         assert!((n[0] - 0.125).abs() < 1e-15 && (n[1] - 0.75).abs() < 1e-15 && (n[2] - 0.125).abs() < 1e-15);

@@ -174,7 +174,7 @@ pub fn closest_sampled(surface: &dyn Surface, query: &Point3) -> Result<Foot, Cl
 
 /// The foot of a descent over the whole domain.
 fn finish(found: &Found, domain: &Domain, gap_mm: f64) -> Result<Foot, ClosestError> {
-    if !(found.residual <= PERPENDICULAR) {
+    if found.residual > PERPENDICULAR || found.residual.is_nan() {
         return Err(ClosestError::NotConverged {
             at: found.jet.uv,
             distance_mm: found.distance_mm,

@@ -2,8 +2,8 @@
 //!
 //! - [`NurbsSurface`] is a checked tensor-product NURBS; it implements [`osculate_geom::Surface`].
 //! - [`NurbsCurve`] is a NURBS curve in the plane ([`NurbsCurve2`]) or in space ([`NurbsCurve3`]).
-//! - [`closest`] finds the nearest point of a NURBS surface with a certificate, [`closest_near`] the one near a hint.
-//! - [`ruled`] joins two curves by straight rulings.
+//! - [`closest()`] finds the nearest point of a NURBS surface with a certificate, [`closest_near`] the one near a hint.
+//! - [`ruled()`] joins two curves by straight rulings.
 //!
 //! Lengths are millimetres, parameters have no unit.
 //!

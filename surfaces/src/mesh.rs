@@ -46,12 +46,9 @@ pub fn tessellate(surface: &TrimmedSurface, chord_mm: f64, max_edge_mm: Option<f
             let cell = Cell { u: [u[0], u[1]], v: [v[0], v[1]] };
             match region.as_ref().map_or(Crossing::Inside, |r| crossing(cell, r)) {
                 Crossing::Outside => {}
-                Crossing::Inside => builder.quad([
-                    uv(u[0], v[0]),
-                    uv(u[1], v[0]),
-                    uv(u[1], v[1]),
-                    uv(u[0], v[1]),
-                ]),
+                Crossing::Inside => {
+                    builder.quad([uv(u[0], v[0]), uv(u[1], v[0]), uv(u[1], v[1]), uv(u[0], v[1])])
+                }
                 Crossing::Cut(columns) => {
                     if let Some(r) = &region {
                         for c in columns.windows(2) {
@@ -78,8 +75,7 @@ fn lines(surface: &TrimmedSurface, axis: Axis, chord_mm: f64, edge_mm: f64) -> V
         for f in [0.0, 0.25, 0.5, 0.75, 1.0] {
             for g in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
                 let jet = surface.jet2(Uv::from_axis(axis, w[0] + f * width, across.at(g)));
-                let (first, second) =
-                    if axis == Axis::U { (jet.du, jet.duu) } else { (jet.dv, jet.dvv) };
+                let (first, second) = if axis == Axis::U { (jet.du, jet.duu) } else { (jet.dv, jet.dvv) };
                 bend = bend.max(second.norm());
                 speed = speed.max(first.norm());
             }
@@ -92,11 +88,7 @@ fn lines(surface: &TrimmedSurface, axis: Axis, chord_mm: f64, edge_mm: f64) -> V
     }
     // A twist bends the diagonals of a bilinear patch: never fewer than four cells.
     while out.len() < 5 {
-        out = out
-            .windows(2)
-            .flat_map(|w| [w[0], 0.5 * (w[0] + w[1])])
-            .chain(out.last().copied())
-            .collect();
+        out = out.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).chain(out.last().copied()).collect();
     }
     out
 }

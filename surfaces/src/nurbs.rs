@@ -40,7 +40,9 @@ pub enum NurbsError {
         poles: usize,
     },
     /// Wrong number of knots.
-    #[error("{got} knots along {axis:?}, but poles + degree + 1 = {need} are needed (write multiple knots out)")]
+    #[error(
+        "{got} knots along {axis:?}, but poles + degree + 1 = {need} are needed (write multiple knots out)"
+    )]
     KnotCount {
         /// Along which parameter.
         axis: Axis,
@@ -220,8 +222,9 @@ impl NurbsSurface {
             for k in 0..places {
                 let t = w[0] + (w[1] - w[0]) * k as f64 / (places - 1) as f64;
                 let [lo, hi] = [along.lo, along.hi].map(|end| self.jet2(Uv::from_axis(axis, end, t)));
-                // Negated, so that a NaN from coordinates near the end of the number range is no seam.
-                if !((lo.point - hi.point).norm() <= SAME_LINE * size) {
+                let gap = (lo.point - hi.point).norm();
+                // A NaN from coordinates near the end of the number range is no seam.
+                if gap > SAME_LINE * size || gap.is_nan() {
                     return Seam::Open;
                 }
                 let [a, b] = if axis == Axis::U { [lo.du, hi.du] } else { [lo.dv, hi.dv] };

@@ -159,9 +159,9 @@ impl<const D: usize> NurbsCurve<D> {
         let (first, n) = self.knots.basis_values(self.knots.find(t), t);
         let origin = self.poles[first];
         let (mut a, mut w) = (SVector::zeros(), 0.0);
-        for r in 0..=self.degree() {
-            let share = n[r] * self.weight(first + r);
-            a += (self.poles[first + r] - origin) * share;
+        for (i, value) in (first..=first + self.degree()).zip(n) {
+            let share = value * self.weight(i);
+            a += (self.poles[i] - origin) * share;
             w += share;
         }
         origin + a / w
@@ -195,10 +195,8 @@ impl<const D: usize> NurbsCurve<D> {
     /// The same curve over the finer or shorter knots `new`.
     fn over(&self, new: Vec<f64>) -> Self {
         let means = means(&self.knots, &new);
-        let weights: Option<Vec<f64>> = self
-            .weights
-            .as_ref()
-            .map(|w| means.iter().map(|m| m.of(|i| Vector1::new(w[i])).x).collect());
+        let weights: Option<Vec<f64>> =
+            self.weights.as_ref().map(|w| means.iter().map(|m| m.of(|i| Vector1::new(w[i])).x).collect());
         let poles = means
             .iter()
             .enumerate()
@@ -268,14 +266,18 @@ impl<const D: usize> NurbsCurve<D> {
     /// # Errors
     /// [`CurveError::Chord`] where `chord` is not positive or would take more than 2^20 pieces between two knots.
     pub fn polyline(&self, chord: f64) -> Result<Vec<f64>, CurveError> {
-        if !(chord > 0.0) {
+        if chord <= 0.0 || chord.is_nan() {
             return Err(CurveError::Chord { chord, least: 0.0 });
         }
         let breaks = self.knots.breaks();
         let mut out = vec![breaks[0]];
         for (piece, ends) in self.bezier_pieces().iter().zip(breaks.windows(2)) {
-            let poles: Vec<_> =
-                piece.poles.iter().enumerate().map(|(i, p)| (p.coords * piece.weight(i), piece.weight(i))).collect();
+            let poles: Vec<_> = piece
+                .poles
+                .iter()
+                .enumerate()
+                .map(|(i, p)| (p.coords * piece.weight(i), piece.weight(i)))
+                .collect();
             // The part that comes first along the curve is on top.
             let mut stack = vec![(poles, ends[0], ends[1], 0)];
             while let Some((poles, lo, hi, depth)) = stack.pop() {

@@ -147,8 +147,9 @@ impl NurbsSurface {
         let mut patches = Vec::with_capacity(along.len() * across.len());
         for (u, mu) in &along {
             for (v, mv) in &across {
-                let poles =
-                    mu.iter().flat_map(|a| mv.iter().map(move |b| a.of(|i| b.of(|j| self.homogeneous(i, j)))));
+                let poles = mu
+                    .iter()
+                    .flat_map(|a| mv.iter().map(move |b| a.of(|i| b.of(|j| self.homogeneous(i, j)))));
                 let net = net_of([mu.len(), mv.len()], poles, self.net().weights.is_some());
                 patches.push(BezierPatch { domain: Domain { u: *u, v: *v }, net });
             }

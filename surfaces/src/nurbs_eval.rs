@@ -43,7 +43,12 @@ pub(crate) struct Pieces<const C: usize> {
     origins: Vec<Point3>,
     /// Piece after piece: `x^a y^b` at `a * terms[1] + b`.
     coefficients: Vec<[f64; C]>,
+    /// Piece after piece: what rounding makes of derivatives by x and y that are zero.
+    noise: Vec<f64>,
 }
+
+/// Rounding of a derivative, in units of the sum of its terms.
+const NOISE: f64 = 4.0 * f64::EPSILON;
 
 /// Value, first derivatives by u and v, second ones by uu, uv and vv.
 type Orders<T> = [T; 6];
@@ -71,18 +76,18 @@ impl Evaluator {
     pub(crate) fn jet(&self, knots: &[Knots; 2], net: &Net, at: Uv, span: [usize; 2]) -> Orders<Vec3> {
         match self {
             Self::Polynomial(pieces) => {
-                let (origin, orders) = pieces.orders(knots, at, span);
+                let (origin, orders, noise) = pieces.orders(knots, at, span);
                 let mut jet = orders.map(|c| Vec3::new(c[0], c[1], c[2]));
                 jet[0] += origin.coords;
-                jet
+                without_noise(jet, noise)
             }
             Self::Rational(pieces) => {
-                let (origin, orders) = pieces.orders(knots, at, span);
-                quotient(&origin, &orders.map(Vector4::from))
+                let (origin, orders, noise) = pieces.orders(knots, at, span);
+                without_noise(quotient(&origin, &orders.map(Vector4::from)), noise)
             }
             Self::Direct => {
-                let (origin, orders) = direct(knots, net, at, span);
-                quotient(&origin, &orders)
+                let (origin, orders, noise) = direct(knots, net, at, span);
+                without_noise(quotient(&origin, &orders), noise)
             }
         }
     }
@@ -101,6 +106,18 @@ impl Evaluator {
             Self::Direct => self.jet(knots, net, at, span)[0].into(),
         }
     }
+}
+
+/// First derivatives that are all rounding are zero: a side that shrinks to a point has no tangent there, and must not
+/// pretend to.
+#[inline]
+fn without_noise(mut jet: Orders<Vec3>, noise: [f64; 2]) -> Orders<Vec3> {
+    for k in 0..2 {
+        if jet[k + 1].norm_squared() < noise[k] * noise[k] {
+            jet[k + 1] = Vec3::zeros();
+        }
+    }
+    jet
 }
 
 /// Coefficients of one piece about `origin`, `(w (P - origin), w)` in powers of x and y, v fastest. The weights are
@@ -141,14 +158,14 @@ pub(crate) fn piece_powers(
 
 impl<const C: usize> Pieces<C> {
     fn new(knots: &[Knots; 2], net: &Net) -> Self {
-        let powers = [0, 1].map(|a| {
-            (0..knots[a].span_count()).map(|s| knots[a].span_powers(s)).collect::<Vec<_>>()
-        });
+        let powers =
+            [0, 1].map(|a| (0..knots[a].span_count()).map(|s| knots[a].span_powers(s)).collect::<Vec<_>>());
         let mut pieces = Self {
             terms: [knots[0].degree() + 1, knots[1].degree() + 1],
             across: powers[1].len(),
             origins: Vec::new(),
             coefficients: Vec::new(),
+            noise: Vec::new(),
         };
         // Equal weights divide out.
         let plain = Net { count: net.count, points: net.points.clone(), weights: None };
@@ -157,6 +174,13 @@ impl<const C: usize> Pieces<C> {
             for (sv, pv) in powers[1].iter().enumerate() {
                 let (origin, sums) = piece_powers(knots, net, [su, sv], [pu, pv]);
                 pieces.origins.push(origin);
+                // Terms x^a y^b at 1, times the powers that derivatives bring down; the constant term only counts through
+                // the weights' derivatives.
+                let n = pieces.terms[1];
+                let sum: f64 =
+                    sums.iter().enumerate().map(|(k, c)| (k / n + k % n) as f64 * c.xyz().norm()).sum();
+                let least = sums[0].w - sums[1..].iter().map(|c| c.w.abs()).sum::<f64>();
+                pieces.noise.push(NOISE * sum / least.max(0.25 * sums[0].w));
                 pieces.coefficients.extend(sums.iter().map(|s| std::array::from_fn(|c| s[c])));
             }
         }
@@ -165,22 +189,17 @@ impl<const C: usize> Pieces<C> {
 
     /// The piece at `at`: its origin and coefficients, and x, y with their rates by u, v.
     #[inline]
-    fn find(
-        &self,
-        knots: &[Knots; 2],
-        at: Uv,
-        span: [usize; 2],
-    ) -> (Point3, &[[f64; C]], [f64; 2], [f64; 2]) {
+    fn find(&self, knots: &[Knots; 2], at: Uv, span: [usize; 2]) -> (usize, &[[f64; C]], [f64; 2], [f64; 2]) {
         let (x, rx) = local(&knots[0], span[0], at.u);
         let (y, ry) = local(&knots[1], span[1], at.v);
         let piece = span[0] * self.across + span[1];
         let size = self.terms[0] * self.terms[1];
-        (self.origins[piece], &self.coefficients[piece * size..][..size], [x, y], [rx, ry])
+        (piece, &self.coefficients[piece * size..][..size], [x, y], [rx, ry])
     }
 
     #[inline]
-    fn orders(&self, knots: &[Knots; 2], at: Uv, span: [usize; 2]) -> (Point3, Orders<[f64; C]>) {
-        let (origin, coefficients, [x, y], [rx, ry]) = self.find(knots, at, span);
+    fn orders(&self, knots: &[Knots; 2], at: Uv, span: [usize; 2]) -> (Point3, Orders<[f64; C]>, [f64; 2]) {
+        let (piece, coefficients, [x, y], [rx, ry]) = self.find(knots, at, span);
         let mut orders = match self.terms {
             // Known counts let the compiler unroll the commonest case.
             [4, 4] => match coefficients.as_chunks::<16>().0 {
@@ -189,19 +208,18 @@ impl<const C: usize> Pieces<C> {
             },
             terms => horner(coefficients, terms, x, y),
         };
-        for c in 0..C {
-            orders[1][c] *= rx;
-            orders[2][c] *= ry;
-            orders[3][c] *= rx * rx;
-            orders[4][c] *= rx * ry;
-            orders[5][c] *= ry * ry;
+        for (order, rate) in orders[1..].iter_mut().zip([rx, ry, rx * rx, rx * ry, ry * ry]) {
+            for c in order {
+                *c *= rate;
+            }
         }
-        (origin, orders)
+        let noise = self.noise[piece];
+        (self.origins[piece], orders, [noise * rx, noise * ry])
     }
 
     #[inline]
     fn value(&self, knots: &[Knots; 2], at: Uv, span: [usize; 2]) -> (Point3, [f64; C]) {
-        let (origin, coefficients, [x, y], _) = self.find(knots, at, span);
+        let (piece, coefficients, [x, y], _) = self.find(knots, at, span);
         let mut sum = [0.0; C];
         for row in coefficients.chunks_exact(self.terms[1]).rev() {
             let mut inner = [0.0; C];
@@ -214,7 +232,7 @@ impl<const C: usize> Pieces<C> {
                 sum[c] = sum[c] * x + inner[c];
             }
         }
-        (origin, sum)
+        (self.origins[piece], sum)
     }
 }
 
@@ -251,9 +269,10 @@ fn horner<const C: usize>(coefficients: &[[f64; C]], terms: [usize; 2], x: f64, 
             s[5][c] = s[5][c] * x + r[2][c];
         }
     }
-    for c in 0..C {
-        s[3][c] *= 2.0;
-        s[5][c] *= 2.0;
+    for k in [3, 5] {
+        for c in &mut s[k] {
+            *c *= 2.0;
+        }
     }
     s
 }
@@ -272,13 +291,20 @@ fn quotient(origin: &Point3, a: &Orders<Vector4<f64>>) -> Orders<Vec3> {
 }
 
 /// Sum over the basis functions, about the middle pole of those that act.
-fn direct(knots: &[Knots; 2], net: &Net, at: Uv, span: [usize; 2]) -> (Point3, Orders<Vector4<f64>>) {
+fn direct(
+    knots: &[Knots; 2],
+    net: &Net,
+    at: Uv,
+    span: [usize; 2],
+) -> (Point3, Orders<Vector4<f64>>, [f64; 2]) {
     let bu = knots[0].basis(span[0], at.u);
     let bv = knots[1].basis(span[1], at.v);
     let [p, q] = [knots[0].degree(), knots[1].degree()];
     let place = |i: usize, j: usize| (bu.first + i) * net.count[1] + bv.first + j;
     let origin = net.points[place(p.div_ceil(2), q.div_ceil(2))];
     let mut sums = [Vector4::zeros(); 6];
+    // Sizes of the terms of both first derivatives.
+    let mut terms = [0.0; 2];
     for i in 0..=p {
         let mut row = [Vector4::zeros(); 3];
         for j in 0..=q {
@@ -286,14 +312,22 @@ fn direct(knots: &[Knots; 2], net: &Net, at: Uv, span: [usize; 2]) -> (Point3, O
             let w = net.weights.as_ref().map_or(1.0, |w| w[k]);
             let d = (net.points[k] - origin) * w;
             let pole = Vector4::new(d.x, d.y, d.z, w);
+            let size = d.norm();
+            terms[0] += size * (bu.order[1][i] * bv.order[0][j]).abs();
+            terms[1] += size * (bu.order[0][i] * bv.order[1][j]).abs();
             for (sum, order) in row.iter_mut().zip(&bv.order) {
                 *sum += pole * order[j];
             }
         }
         let [n0, n1, n2] = [bu.order[0][i], bu.order[1][i], bu.order[2][i]];
-        for (sum, term) in
-            sums.iter_mut().zip([row[0] * n0, row[0] * n1, row[1] * n0, row[0] * n2, row[1] * n1, row[2] * n0])
-        {
+        for (sum, term) in sums.iter_mut().zip([
+            row[0] * n0,
+            row[0] * n1,
+            row[1] * n0,
+            row[0] * n2,
+            row[1] * n1,
+            row[2] * n0,
+        ]) {
             *sum += term;
         }
     }
@@ -303,7 +337,9 @@ fn direct(knots: &[Knots; 2], net: &Net, at: Uv, span: [usize; 2]) -> (Point3, O
             sum.w = if k == 0 { 1.0 } else { 0.0 };
         }
     }
-    (origin, sums)
+    // The basis itself carries a rounding or two a degree.
+    let noise = terms.map(|t| NOISE * (p + q) as f64 * t / sums[0].w);
+    (origin, sums, noise)
 }
 
 const _: () = assert!(MAX_POWER_DEGREE <= MAX_DEGREE);

@@ -53,6 +53,14 @@ pub enum TrimError {
         /// The direction.
         axis: Axis,
     },
+    /// The boundary belongs to another surface.
+    #[error("the boundary, {size_mm:.3e} mm large, lies up to {gap_mm:.3e} mm off the surface")]
+    OffSurface {
+        /// Largest distance, mm.
+        gap_mm: f64,
+        /// Diagonal of the box around the boundary, mm.
+        size_mm: f64,
+    },
     /// The loops enclose nothing.
     #[error("the {loops} loops enclose no area in the parameter rectangle")]
     Empty {
@@ -135,12 +143,17 @@ impl TrimmedSurface {
             }
         }
         if region.is_whole(RIM) {
-            let corners = [domain.at(0.0, 0.0), domain.at(1.0, 0.0), domain.at(1.0, 1.0), domain.at(0.0, 1.0)];
+            let corners =
+                [domain.at(0.0, 0.0), domain.at(1.0, 0.0), domain.at(1.0, 1.0), domain.at(0.0, 1.0)];
             let rectangle = Loop { points: corners.to_vec() };
             return Ok(Self { carrier, domain, side, loops: vec![rectangle], region: None });
         }
-        let mut outlines: Vec<Loop> =
-            region.outline().into_iter().map(|points| Loop { points }).filter(|l| l.points.len() > 2).collect();
+        let mut outlines: Vec<Loop> = region
+            .outline()
+            .into_iter()
+            .map(|points| Loop { points })
+            .filter(|l| l.points.len() > 2)
+            .collect();
         // The loop around the largest area is the outer one.
         outlines.sort_by(|a, b| b.signed_area().abs().total_cmp(&a.signed_area().abs()));
         let smallest = 1e-14 * domain.u.length() * domain.v.length();
@@ -213,11 +226,13 @@ impl TrimmedSurface {
     /// settled to the extreme point near the best samples.
     #[must_use]
     pub fn bbox(&self, lines: usize) -> Box3 {
+        /// Direction slots: the coordinate upwards, then downwards.
+        const SIGNS: [f64; 2] = [1.0, -1.0];
         let mut found = Box3::empty();
         // The best samples of each of the six directions, inside and on the boundary.
         let mut inside = [(f64::NEG_INFINITY, uv(0.0, 0.0)); 6];
         let mut rim = [(f64::NEG_INFINITY, [uv(0.0, 0.0); 2]); 6];
-        let value = |p: &Point3, slot: usize| if slot % 2 == 0 { p[slot / 2] } else { -p[slot / 2] };
+        let value = |p: &Point3, slot: usize| SIGNS[slot % 2] * p[slot / 2];
         for (at, p) in self.samples(lines) {
             found.add(&p);
             for (slot, best) in inside.iter_mut().enumerate() {
@@ -252,7 +267,7 @@ impl TrimmedSurface {
             }
         }
         for slot in 0..6 {
-            let sign = if slot % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = SIGNS[slot % 2];
             if inside[slot].0.is_finite()
                 && let Some(p) = self.climb(inside[slot].1, slot / 2, sign)
             {
@@ -289,8 +304,7 @@ impl TrimmedSurface {
             if !(h[0] < 0.0 && det > 0.0) {
                 return None;
             }
-            let next =
-                uv(at.u - (g[0] * h[2] - g[1] * h[1]) / det, at.v - (g[1] * h[0] - g[0] * h[1]) / det);
+            let next = uv(at.u - (g[0] * h[2] - g[1] * h[1]) / det, at.v - (g[1] * h[0] - g[0] * h[1]) / det);
             if !(next.u.is_finite() && next.v.is_finite() && self.contains(next)) {
                 return None;
             }
@@ -342,8 +356,7 @@ impl Surface for TrimmedSurface {
         self.carrier.point(uv)
     }
     fn contains(&self, uv: Uv) -> bool {
-        self.domain.contains(uv)
-            && self.region.as_ref().is_none_or(|r| r.inside(self.domain.bring(uv)))
+        self.domain.contains(uv) && self.region.as_ref().is_none_or(|r| r.inside(self.domain.bring(uv)))
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         let i = self.domain.get(axis);

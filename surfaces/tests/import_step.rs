@@ -1,8 +1,11 @@
 //! STEP import against closed forms: every file is written here, face by face.
 
+#![allow(clippy::unwrap_used)]
+
 use osculate_geom::{Axis, Side, Surface, uv};
 use osculate_surfaces::step::{self, StepError};
 use osculate_surfaces::{Face, FaceKind, Format, ImportError, Part, detect, read};
+use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Loops follow their curves to 2e-6 of the face's size and areas come to 1e-7 of the rectangle; a boundary of length
@@ -37,8 +40,24 @@ fn polygon(n: u64, points: &[[f64; 3]]) -> (String, u64) {
             "#{at}=CARTESIAN_POINT('',({:?},{:?},{:?}));\n#{}=VERTEX_POINT('',#{at});\n\
              #{}=DIRECTION('',({:?},{:?},{:?}));\n#{}=VECTOR('',#{},1.);\n#{}=LINE('',#{at},#{});\n\
              #{}=EDGE_CURVE('',#{},#{},#{},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},.T.);\n",
-            p[0], p[1], p[2], at + 1, at + 2, d[0], d[1], d[2], at + 3, at + 2, at + 4, at + 3, at + 5, at + 1,
-            next + 1, at + 4, at + 6, at + 5,
+            p[0],
+            p[1],
+            p[2],
+            at + 1,
+            at + 2,
+            d[0],
+            d[1],
+            d[2],
+            at + 3,
+            at + 2,
+            at + 4,
+            at + 3,
+            at + 5,
+            at + 1,
+            next + 1,
+            at + 4,
+            at + 6,
+            at + 5,
         );
     }
     let edges: Vec<String> = (0..k).map(|i| format!("#{}", n + 10 * i + 6)).collect();
@@ -55,7 +74,21 @@ fn circle(n: u64, centre: [f64; 3], radius: f64, forward: bool) -> String {
         "#{n}=CARTESIAN_POINT('',({x:?},{y:?},{z:?}));\n#{}=AXIS2_PLACEMENT_3D('',#{n},#4,#5);\n\
          #{}=CIRCLE('',#{},{radius:?});\n#{}=CARTESIAN_POINT('',({:?},{y:?},{z:?}));\n#{}=VERTEX_POINT('',#{});\n\
          #{}=EDGE_CURVE('',#{},#{},#{},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},{sense});\n#{}=EDGE_LOOP('',(#{}));\n",
-        n + 1, n + 2, n + 1, n + 3, x + radius, n + 4, n + 3, n + 5, n + 4, n + 4, n + 2, n + 6, n + 5, n + 9, n + 6,
+        n + 1,
+        n + 2,
+        n + 1,
+        n + 3,
+        x + radius,
+        n + 4,
+        n + 3,
+        n + 5,
+        n + 4,
+        n + 4,
+        n + 2,
+        n + 6,
+        n + 5,
+        n + 9,
+        n + 6,
     )
 }
 
@@ -105,7 +138,10 @@ fn a_patch_with_a_circular_hole() {
     )));
     assert_eq!((face.id.as_str(), face.name.as_str(), face.entity), ("F1", "the patch", 402));
     assert_eq!((face.kind, face.oriented, face.trimmed()), (FaceKind::Bspline, true, true));
-    assert_eq!((face.degree(), face.pole_count(), face.is_rational()), (Some([3, 3]), Some([4, 4]), Some(false)));
+    assert_eq!(
+        (face.degree(), face.pole_count(), face.is_rational()),
+        (Some([3, 3]), Some([4, 4]), Some(false))
+    );
     assert_area(&face, 100.0 - 4.0 * PI);
     assert_eq!(face.surface.loops().len(), 2);
     // The hole has radius 0.2 in both parameters; loops are within 2e-6 of 14 mm of it.
@@ -181,7 +217,10 @@ fn a_cylinder_with_a_seam() {
     assert!((face.area_mm2() - 30.0 * PI).abs() < 1e-9 * 30.0 * PI);
     let jet = face.jet2(uv(0.7, 2.0));
     let n = jet.normal().unwrap();
-    assert!((n.x - 0.7f64.cos()).abs() < 1e-12 && (jet.forms().unwrap().principal().k_max - 1.0 / 3.0).abs() < 1e-12);
+    assert!(
+        (n.x - 0.7f64.cos()).abs() < 1e-12
+            && (jet.forms().unwrap().principal().k_max - 1.0 / 3.0).abs() < 1e-12
+    );
     let k = face.curvature_range(9).unwrap();
     assert!((k.k_max_per_mm - 1.0 / 3.0).abs() < 1e-12 && k.k_min_per_mm.abs() < 1e-12);
     // The bore: material outside.
@@ -240,7 +279,10 @@ fn rational_complex_records() {
         #240=EDGE_LOOP('',(#230,#231,#232,#233));#241=FACE_BOUND('',#240,.T.);\
         #402=ADVANCED_FACE('',(#241),#120,.T.);";
     let face = only_face(&file(data));
-    assert_eq!((face.degree(), face.pole_count(), face.is_rational()), (Some([2, 1]), Some([3, 2]), Some(true)));
+    assert_eq!(
+        (face.degree(), face.pole_count(), face.is_rational()),
+        (Some([2, 1]), Some([3, 2]), Some(true))
+    );
     assert!(!face.trimmed());
     assert!((face.area_mm2() - 3.0 * PI).abs() < 1e-6 * 3.0 * PI);
     let p = face.point(uv(0.3, 1.0));
@@ -333,7 +375,10 @@ fn units_convert_to_millimetres() {
         flat_patch()
     ));
     let part = step::read(text.as_bytes()).unwrap();
-    assert_eq!((part.unit.as_str(), part.schema.as_str(), part.format), ("millimetre", "AUTOMOTIVE_DESIGN", Format::Step));
+    assert_eq!(
+        (part.unit.as_str(), part.schema.as_str(), part.format),
+        ("millimetre", "AUTOMOTIVE_DESIGN", Format::Step)
+    );
     let inch = text.replace(
         "#1=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));",
         "#8=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.));\
@@ -379,10 +424,16 @@ fn what_cannot_be_read_is_told() {
     assert!(face(&fewer).1.contains("7 knots"), "{}", face(&fewer).1);
     assert!(face("#120=CYLINDRICAL_SURFACE('',#7,-1.);").1.contains("radius"));
     // An edge on a curve that refers to itself.
-    let text = file("#120=PLANE('',#7);#130=SURFACE_CURVE('',#130,(),.CURVE_3D.);#131=VERTEX_POINT('',#6);\
+    let text = file(
+        "#120=PLANE('',#7);#130=SURFACE_CURVE('',#130,(),.CURVE_3D.);#131=VERTEX_POINT('',#6);\
         #132=EDGE_CURVE('',#131,#131,#130,.T.);#133=ORIENTED_EDGE('',*,*,#132,.T.);#134=EDGE_LOOP('',(#133));\
-        #135=FACE_BOUND('',#134,.T.);#402=ADVANCED_FACE('',(#135),#120,.T.);");
+        #135=FACE_BOUND('',#134,.T.);#402=ADVANCED_FACE('',(#135),#120,.T.);",
+    );
     assert!(notes(&step::read(text.as_bytes()).unwrap()).contains("circle"));
+    // A boundary that is nowhere near its surface.
+    let far =
+        "#118=CARTESIAN_POINT('',(0.,0.,40.));#119=AXIS2_PLACEMENT_3D('',#118,#4,#5);#120=PLANE('',#119);";
+    assert!(face(far).1.contains("mm off the surface"));
     // A plane without any boundary is unlimited.
     let text = file("#120=PLANE('',#7);#402=ADVANCED_FACE('',(),#120,.T.);");
     assert!(notes(&step::read(text.as_bytes()).unwrap()).contains("unlimited"));
@@ -443,6 +494,27 @@ fn no_truncation_is_fatal() {
         match step::read(&text.as_bytes()[..end]) {
             Ok(part) => assert!(notes(&part).contains("truncated"), "{end}"),
             Err(e) => assert!(matches!(e, StepError::NoRecords { .. }), "{end}: {e}"),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Bytes changed anywhere: an error or a part, never a panic.
+    #[test]
+    fn damage_never_panics(changes in prop::collection::vec((0.0..1.0, any::<u8>(), any::<bool>()), 1..8)) {
+        let text = file(&format!("{}#402=ADVANCED_FACE('',(#367),#120,.T.);", wall()));
+        let mut bytes = text.into_bytes();
+        for (at, byte, keyboard) in changes {
+            let k = (at * (bytes.len() - 1) as f64) as usize;
+            // Half of the changes are characters that mean something.
+            bytes[k] = if keyboard { b"0123456789.,;()#$*'-E"[byte as usize % 21] } else { byte };
+        }
+        if let Ok(part) = read(&bytes) {
+            for f in &part.faces {
+                prop_assert!(f.area_mm2() >= 0.0 && f.entity > 0);
+            }
         }
     }
 }

@@ -130,6 +130,13 @@ impl LocalLine {
     }
 }
 
+/// Distance from the axis and height above the tip.
+fn local(pose: &Pose, p: &Point3) -> (f64, f64) {
+    let w = p - pose.tip;
+    let z = w.dot(&pose.axis);
+    ((w - pose.axis.into_inner() * z).norm(), z)
+}
+
 /// Newton steps towards the entry into the rounded corner. The distance along a line is convex, so the iteration
 /// from outside is monotone and quadratic; more steps than this happen only for lines that graze.
 const MAX_CORNER_STEPS: u32 = 60;
@@ -193,18 +200,25 @@ impl Cutter {
     /// where it is a lower bound.
     #[must_use]
     pub fn local_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
+        self.local_endless_distance(rho_mm, z_mm).max(z_mm - self.length)
+    }
+
+    fn local_endless_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
         let (x, y) = (rho_mm - self.core_mm(), self.corner - z_mm);
-        let d = if x > 0.0 && y > 0.0 { x.hypot(y) } else { x.max(y) } - self.corner;
-        d.max(z_mm - self.length)
+        (if x > 0.0 && y > 0.0 { x.hypot(y) } else { x.max(y) }) - self.corner
     }
 
     /// Signed distance of a point to the cutter in a pose, see [`Cutter::local_distance`].
     #[must_use]
     pub fn distance(&self, pose: &Pose, p: &Point3) -> f64 {
-        let w = p - pose.tip;
-        let z = w.dot(&pose.axis);
-        let rho = (w - pose.axis.into_inner() * z).norm();
+        let (rho, z) = local(pose, p);
         self.local_distance(rho, z)
+    }
+
+    /// Signed distance to the cutter with a shank that goes on without end.
+    pub(crate) fn endless_distance(&self, pose: &Pose, p: &Point3) -> f64 {
+        let (rho, z) = local(pose, p);
+        self.local_endless_distance(rho, z)
     }
 
     /// Outward unit normal of the boundary part next to a point, in world coordinates.

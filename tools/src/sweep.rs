@@ -92,11 +92,10 @@ fn state(cutter: &Cutter, line: &Line, motion: &impl SweptMotion, t: f64) -> Sta
             State::Hit { s: e.at_mm, rate, part: e.part }
         }
         None => {
+            // The shank counts as endless: a line that misses it passes beside the tool or below.
             let x = nearest_on_line(cutter, &m.pose, line);
             let z = (x - m.pose.tip).dot(&m.pose.axis);
-            let part = if z > cutter.length_mm() {
-                Part::Top
-            } else if z >= cutter.corner_mm() {
+            let part = if z >= cutter.corner_mm() {
                 Part::Side
             } else {
                 let rho = (x - m.pose.tip - m.pose.axis.into_inner() * z).norm();
@@ -116,7 +115,7 @@ fn nearest_on_line(cutter: &Cutter, pose: &Pose, line: &Line) -> osculate_geom::
     // 48 sections shrink the bracket by 1e-10: enough for a sign.
     for _ in 0..48 {
         let (x, y) = (b - RATIO * (b - a), a + RATIO * (b - a));
-        if cutter.distance(pose, &line.point(x)) < cutter.distance(pose, &line.point(y)) {
+        if cutter.endless_distance(pose, &line.point(x)) < cutter.endless_distance(pose, &line.point(y)) {
             b = y;
         } else {
             a = x;
@@ -128,24 +127,6 @@ fn nearest_on_line(cutter: &Cutter, pose: &Pose, line: &Line) -> osculate_geom::
 /// Relative accuracy of the motion parameter at a minimum. The entry is flat there, so that its own error is of
 /// second order but on a sharp edge.
 const T_TOLERANCE: f64 = 1e-13;
-
-/// The deepest entry over the closed interval `[lo, hi]` of the motion; None where the line misses throughout.
-pub fn reach(
-    cutter: &Cutter,
-    line: &Line,
-    motion: &impl SweptMotion,
-    [lo, hi]: [f64; 2],
-    t_tolerance: f64,
-) -> Option<Reach> {
-    let (a, b) = (state(cutter, line, motion, lo), state(cutter, line, motion, hi));
-    if a.rate() >= 0.0 {
-        return hit(a, lo);
-    }
-    if b.rate() <= 0.0 {
-        return hit(b, hi);
-    }
-    between(cutter, line, motion, [(lo, a), (hi, b)], t_tolerance)
-}
 
 fn hit(s: State, t: f64) -> Option<Reach> {
     match s {
@@ -266,6 +247,10 @@ pub fn reach_from(
             step *= 0.25;
             continue;
         }
+        if matches!(far_state, State::Hit { s, .. } if s < -FAR_SIDE * cutter.radius_mm()) {
+            // The tool has come round to the far side of the part.
+            break;
+        }
         if (rate > 0.0) != (slope > 0.0) {
             let ends = if near < far {
                 [(near, near_state), (far, far_state)]
@@ -281,5 +266,7 @@ pub fn reach_from(
     best
 }
 
+/// An entry this many radii below the surface is that of a tool on the far side of a thin part, not an undercut.
+const FAR_SIDE: f64 = 0.25;
 /// How far [`reach_from`] looks, in first steps to each side.
 pub const REACH_STEPS: f64 = 40.0;

@@ -191,7 +191,7 @@ fn field<'a>(task: &'a Task<'a>, axis: Unit3) -> Result<Field<'a>, PlanError> {
 fn intervals(f: &Field<'_>) -> Result<(Vec<[f64; 2]>, [(f64, &'static str); 2]), PlanError> {
     let task = f.task;
     let domain = task.surface.domain();
-    let h = task.design_scallop_mm(-1.0);
+    let h = task.design_scallop_mm(-1.0, 0.0);
     let found: Vec<Result<Option<[f64; 2]>, PlanError>> = (0..f.height.len())
         .into_par_iter()
         .map(|k| {
@@ -338,7 +338,8 @@ fn knot(f: &Field<'_>, at: Uv) -> Option<Knot> {
     }
     let r = f.task.cutter.radius_mm();
     let tip = jet.point + normal.into_inner() * r - f.axis.into_inner() * r;
-    Some(Knot { t: at.u, v: at.v, point: jet.point, normal, pose: Pose { tip, axis: f.axis } })
+    let pose = Pose { tip, axis: f.axis };
+    Some(Knot { t: at.u, v: at.v, point: jet.point, normal, pose, height: 0.0 })
 }
 
 /// Appends the contour from `a` to `b`, halved until the straight motion holds the chord tolerance.

@@ -8,6 +8,7 @@
 
 use super::cover::{across_range, spans, union};
 use super::resample::{contact_points, resample};
+use super::seat::{Averaged, Seat};
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::roots::{End, bracketed};
@@ -66,12 +67,13 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     let done = std::sync::atomic::AtomicUsize::new(0);
     let total = layout.levels.len();
     let breaks = task.surface.breaks(layout.along);
+    let seat = Seat::new(task);
     let built: Vec<Result<Vec<Pass>, LineError>> = layout
         .levels
         .par_iter()
         .enumerate()
         .map(|(k, level)| {
-            let passes = build(task, &layout, k, level, &breaks);
+            let passes = build(&seat, task, &layout, k, level, &breaks);
             let n = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
             (task.progress)(0.5 + 0.5 * n as f64 / total as f64);
             passes
@@ -101,6 +103,8 @@ struct Column {
     inside: Vec<[f64; 2]>,
     /// None once the column is covered.
     frontier: Option<f64>,
+    /// What the pass before leaves on its own line here, because the face is rough.
+    left: f64,
 }
 
 impl Column {
@@ -122,11 +126,17 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
     let slack = 1e-7 * (hi - lo);
     let mut columns: Vec<Column> = column_parameters(task, along, across)?
         .into_par_iter()
-        .map(|t| Column { t, inside: spans(surface, along.other(), t, 400), frontier: None })
+        .map(|t| Column { t, inside: spans(surface, along.other(), t, 400), frontier: None, left: 0.0 })
         .collect();
     for c in &mut columns {
         c.advance(lo, slack);
     }
+    let seat = Seat::new(task);
+    rough_columns(&seat, along, lo, false, &mut columns);
+    let rough = [0.0, 0.25, 0.5, 0.75, 1.0].iter().any(|f| {
+        let line = IsoLine { surface, along, fixed: across.at(*f), reversed: false };
+        columns.par_iter().any(|c| seat.is_rough(&line, c.t))
+    });
     let closed = surface.domain().get(along).periodic;
     let mut levels: Vec<Level> = Vec::new();
     let mut length_mm = 0.0;
@@ -140,10 +150,10 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
             });
         }
         let reversed = !closed && levels.len() % 2 == 1;
-        let cover = Cover { task, along, reversed, hi, guess };
+        let cover = Cover { seat: &seat, rough, task, along, reversed, hi, guess };
         let next = columns
             .par_iter()
-            .filter_map(|c| c.frontier.map(|f| cover.furthest_pass(c.t, f)))
+            .filter_map(|c| c.frontier.map(|f| cover.furthest_pass(c, f)))
             .collect::<Result<Vec<f64>, LineError>>()
             .map_err(|e| task.contact(e.into()))?
             .into_iter()
@@ -151,7 +161,7 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
         let reached = columns
             .par_iter()
             .map(|c| match c.frontier {
-                Some(f) if f <= next + cover.guess * 50.0 => cover.reached(c.t, next).map(Some),
+                Some(f) if f <= next + cover.guess * 50.0 => cover.reached(c, next).map(Some),
                 _ => Ok(None),
             })
             .collect::<Result<Vec<_>, LineError>>()
@@ -177,7 +187,8 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
                 ),
             });
         }
-        let (level, mean_speed) = measure(task, along, next, reversed, &columns)?;
+        rough_columns(&seat, along, next, reversed, &mut columns);
+        let (level, mean_speed) = measure(&seat, along, next, reversed, &columns)?;
         length_mm += mean_speed;
         if let Some(last) = levels.last() {
             guess = (next - last.fixed).max(slack);
@@ -194,12 +205,13 @@ fn column_parameters(task: &Task<'_>, along: Axis, across: Interval) -> Result<V
     let surface = task.surface;
     let i = surface.domain().get(along);
     let breaks = surface.breaks(along);
+    let seat = Seat::new(task);
     let mut all: Vec<f64> = (0..=COLUMNS[0]).map(|k| i.at(k as f64 / COLUMNS[0] as f64)).collect();
     for f in [0.02, 0.5, 0.98] {
         let line = IsoLine { surface, along, fixed: across.at(f), reversed: false };
         for s in spans(surface, along, across.at(f), 200) {
             if s[1] - s[0] > 1e-9 * i.length()
-                && let Ok(knots) = resample(task, &line, s, &breaks)
+                && let Ok(knots) = resample(&seat, task, &line, s, &breaks)
             {
                 all.extend(knots.iter().map(|k| k.t));
             }
@@ -234,6 +246,9 @@ fn first_step(task: &Task<'_>, along: Axis, across: Interval) -> f64 {
 
 /// The two questions of the frontier, for one pass direction.
 struct Cover<'a> {
+    seat: &'a Seat<'a>,
+    /// Whether the tool is led by averaged normals.
+    rough: bool,
     task: &'a Task<'a>,
     along: Axis,
     reversed: bool,
@@ -243,14 +258,16 @@ struct Cover<'a> {
 
 impl Cover<'_> {
     /// Standoff above the design height at column `t`, parameter `point`, of the pass at `pass`.
-    fn excess(&self, t: f64, point: f64, pass: f64) -> Result<f64, LineError> {
-        let task = self.task;
+    fn excess(&self, column: &Column, point: f64, pass: f64) -> Result<f64, LineError> {
+        let (task, t) = (self.task, column.t);
         let line =
             IsoLine { surface: task.surface, along: self.along, fixed: pass, reversed: self.reversed };
         let (frame, speed) = line.frame(t)?;
         // The frame turns forward about b at the normal curvature along the feed.
-        let h = task.design_scallop_mm(frame.turn.dot(&frame.left));
-        let motion = ContactMotion { line: &line, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
+        let h = task.design_scallop_mm(frame.turn.dot(&frame.left), column.left);
+        let averaged = Averaged { seat: self.seat, line };
+        let led: &dyn SurfaceLine = if self.rough { &averaged } else { &line };
+        let motion = ContactMotion { line: led, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
         let step = 0.05 * task.cutter.radius_mm() / speed.abs().max(1e-12);
         let at = Uv::from_axis(self.along, t, point);
         let reach = standoff(task.cutter, task.surface, at, &motion, t, step)?;
@@ -296,24 +313,35 @@ impl Cover<'_> {
     }
 
     /// How far on a pass may lie that still covers the frontier of a column.
-    fn furthest_pass(&self, t: f64, frontier: f64) -> Result<f64, LineError> {
-        self.last_below(frontier, |pass| self.excess(t, frontier, pass))
+    fn furthest_pass(&self, column: &Column, frontier: f64) -> Result<f64, LineError> {
+        self.last_below(frontier, |pass| self.excess(column, frontier, pass))
     }
 
     /// How far the strip of a pass reaches at a column.
-    fn reached(&self, t: f64, pass: f64) -> Result<f64, LineError> {
-        self.last_below(pass, |point| self.excess(t, point, pass))
+    fn reached(&self, column: &Column, pass: f64) -> Result<f64, LineError> {
+        self.last_below(pass, |point| self.excess(column, point, pass))
     }
+}
+
+/// What a rough face keeps at each column of a pass.
+fn rough_columns(seat: &Seat<'_>, along: Axis, fixed: f64, reversed: bool, columns: &mut [Column]) {
+    let line = IsoLine { surface: seat.task().surface, along, fixed, reversed };
+    columns.par_iter_mut().for_each(|c| {
+        // Where the pass has no frame the level itself will say so.
+        c.left = seat.left_over(&line, c.t).unwrap_or(0.0);
+    });
 }
 
 /// Exact strip widths along a level, the check that the tool fits, and the level's length.
 fn measure(
-    task: &Task<'_>,
+    seat: &Seat<'_>,
     along: Axis,
     fixed: f64,
     reversed: bool,
     columns: &[Column],
 ) -> Result<(Level, f64), PlanError> {
+    let task = seat.task();
+    let line = IsoLine { surface: task.surface, along, fixed, reversed };
     let found: Vec<Result<Option<(f64, f64)>, PlanError>> = columns
         .par_iter()
         .step_by(WIDTH_STRIDE)
@@ -326,32 +354,19 @@ fn measure(
             let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean)
                 .map_err(|e| task.contact(e))?;
             match strip::exact(&contact, task.tolerance.scallop_mm) {
-                Ok(s) if s.undercut_mm > task.tolerance.gouge_mm => {
-                    contact.fits().map_err(|e| task.contact(e))?;
-                    Ok(Some((c.t, s.width_mm)))
-                }
                 Ok(s) => Ok(Some((c.t, s.width_mm))),
-                // A line that runs into a pole leaves no width there; the pass itself is still good.
-                Err(StripError::Degenerate(_)) => Ok(None),
-                Err(e) => {
-                    contact.fits().map_err(|e| task.contact(e))?;
-                    Err(task.strip(e))
-                }
+                // Where a line runs into a pole, or a ripple throws the unseated tool off its own contact, there is no
+                // width; the pass itself is still good.
+                Err(StripError::Degenerate(_) | StripError::AboveTolerance { .. } | StripError::Edge(_)) => Ok(None),
+                Err(e) => Err(task.strip(e)),
             }
         })
         .collect();
     let mut widths = Vec::with_capacity(found.len());
-    let mut worst: Option<PlanError> = None;
     for f in found {
-        match f {
-            Ok(Some(w)) => widths.push(w),
-            Ok(None) => {}
-            Err(e) => worst = Some(hollower(worst, e)),
-        }
+        widths.extend(f?);
     }
-    if let Some(e) = worst {
-        return Err(e);
-    }
+    fits(seat, &line, columns)?;
     let mut length = 0.0;
     let mut last = None;
     for c in columns {
@@ -365,20 +380,50 @@ fn measure(
     Ok((Level { fixed, reversed, widths }, length))
 }
 
-/// Of two reasons, the one that asks for the smaller tool.
-fn hollower(a: Option<PlanError>, b: PlanError) -> PlanError {
-    let radius = |e: &PlanError| match e {
-        PlanError::Contact { source: ContactError::DoesNotFit { largest_radius_mm, .. }, .. } => *largest_radius_mm,
+/// Refuses a pass on which the part is too hollow for the tool over more than a stretch of half its radius. Shorter
+/// stretches are roughness, which seating deals with and verification judges.
+fn fits(seat: &Seat<'_>, line: &IsoLine<'_>, columns: &[Column]) -> Result<(), PlanError> {
+    let task = seat.task();
+    let held: Vec<Option<ContactError>> = columns
+        .par_iter()
+        .map(|c| {
+            let at = line.uv(c.t);
+            let feed = FeedLine::Iso(line.along);
+            let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean).ok()?;
+            let refusal = contact.fits().err()?;
+            let wide = seat.wide_lift(line, c.t).ok()?;
+            (task.surface.contains(at) && wide > task.tolerance.gouge_mm).then_some(refusal)
+        })
+        .collect();
+    let radius = |e: &ContactError| match e {
+        ContactError::DoesNotFit { largest_radius_mm, .. } => *largest_radius_mm,
         _ => f64::INFINITY,
     };
-    match a {
-        Some(a) if radius(&a) <= radius(&b) => a,
-        _ => b,
+    let (mut start, mut worst): (Option<usize>, Option<ContactError>) = (None, None);
+    for (k, e) in held.iter().enumerate() {
+        let Some(e) = e else {
+            (start, worst) = (None, None);
+            continue;
+        };
+        let first = *start.get_or_insert(k);
+        if worst.is_none_or(|w| radius(e) < radius(&w)) {
+            worst = Some(*e);
+        }
+        let stretch: f64 = (first..k)
+            .map(|j| (task.surface.point(line.uv(columns[j + 1].t)) - task.surface.point(line.uv(columns[j].t))).norm())
+            .sum();
+        if stretch > 0.5 * task.cutter.radius_mm()
+            && let Some(w) = worst
+        {
+            return Err(task.contact(w));
+        }
     }
+    Ok(())
 }
 
 /// The passes of one level: stretches of inside, widened by what their strip reaches to both sides, resampled.
 fn build(
+    seat: &Seat<'_>,
     task: &Task<'_>,
     layout: &Layout,
     k: usize,
@@ -407,7 +452,7 @@ fn build(
             continue;
         }
         let range = if level.reversed { [s[1], s[0]] } else { s };
-        let knots = resample(task, &line, range, breaks)?;
+        let knots = resample(seat, task, &line, range, breaks)?;
         let mut points = contact_points(&knots, |t| line.uv(t));
         for p in &mut points {
             p.width_mm = interpolate(&level.widths, p.uv.get(along));

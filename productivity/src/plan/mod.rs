@@ -9,6 +9,7 @@ mod cover;
 mod isoparametric;
 mod link;
 mod resample;
+mod seat;
 
 
 pub use contour::contour_2cl;
@@ -195,9 +196,11 @@ impl Task<'_> {
 
     /// The height that strips are laid out for: below the tolerance by 2 % for what lies between the places where
     /// spacing is computed and, where the part is hollow along the feed, by what the chords of the path may leave.
-    fn design_scallop_mm(&self, along_per_mm: f64) -> f64 {
+    ///
+    /// `left_mm` is what a rough face keeps on the line of the pass itself ([`seat`]).
+    fn design_scallop_mm(&self, along_per_mm: f64, left_mm: f64) -> f64 {
         let t = &self.tolerance;
         let chord = if along_per_mm < 0.0 { t.chord_mm.min(0.4 * t.scallop_mm) } else { 0.0 };
-        0.98 * (t.scallop_mm - chord)
+        0.98 * (t.scallop_mm - chord - left_mm).max(0.1 * t.scallop_mm)
     }
 }

@@ -1,7 +1,8 @@
 //! Points along a pass: as few as hold the chord tolerance at the contact.
 
 use super::{CcPoint, Task};
-use osculate_geom::line::{LineError, SurfaceLine};
+use super::seat::Seat;
+use osculate_geom::line::{IsoLine, LineError};
 use osculate_geom::{Point3, Unit3};
 use osculate_tools::Pose;
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
@@ -23,19 +24,22 @@ pub(super) struct Knot {
     pub point: Point3,
     pub normal: Unit3,
     pub pose: Pose,
+    /// Height of the seated tool above the contact, mm.
+    pub height: f64,
 }
 
-pub(super) fn knot(task: &Task<'_>, line: &dyn SurfaceLine, t: f64) -> Result<Knot, LineError> {
-    let (frame, _) = line.frame(t)?;
-    let pose = task.lean.pose(task.cutter, &frame, 0.0);
-    Ok(Knot { t, v: 0.0, point: frame.point, normal: frame.normal, pose })
+fn knot(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, t: f64) -> Result<Knot, LineError> {
+    let (pose, frame, _) = seat.at(line, t)?;
+    let height = task.cutter.distance(&pose, &frame.point);
+    Ok(Knot { t, v: 0.0, point: frame.point, normal: frame.normal, pose, height })
 }
 
 /// Parameters and poses along `line` from `from` to `to`, starting from the pieces between `breaks` and halving each
 /// until the straight motion between neighbours stays within the chord tolerance at the contact.
 pub(super) fn resample(
+    seat: &Seat<'_>,
     task: &Task<'_>,
-    line: &dyn SurfaceLine,
+    line: &IsoLine<'_>,
     [from, to]: [f64; 2],
     breaks: &[f64],
 ) -> Result<Vec<Knot>, LineError> {
@@ -47,32 +51,33 @@ pub(super) fn resample(
     if from > to {
         stops.reverse();
     }
-    let mut out = vec![knot(task, line, from)?];
+    let mut out = vec![knot(seat, task, line, from)?];
     for w in stops.windows(2) {
         let mut last = out[out.len() - 1];
         // Two pieces at least between breaks: the mid-point of a symmetric piece can look straight.
         for k in 1..=2 {
             let t = w[0] + (w[1] - w[0]) * 0.5 * f64::from(k);
-            let end = knot(task, line, t)?;
-            halve(task, line, last, end, 0, &mut out)?;
+            let end = knot(seat, task, line, t)?;
+            halve(seat, task, line, last, end, 0, &mut out)?;
             last = end;
         }
     }
-    Ok(thin(task, line, &out))
+    Ok(thin(seat, task, line, &out))
 }
 
 fn halve(
+    seat: &Seat<'_>,
     task: &Task<'_>,
-    line: &dyn SurfaceLine,
+    line: &IsoLine<'_>,
     a: Knot,
     b: Knot,
     depth: u32,
     out: &mut Vec<Knot>,
 ) -> Result<(), LineError> {
-    let mid = knot(task, line, 0.5 * (a.t + b.t))?;
-    if depth < MAX_DEPTH && !straight(task, line, &a, &b, Some(&mid))? {
-        halve(task, line, a, mid, depth + 1, out)?;
-        halve(task, line, mid, b, depth + 1, out)?;
+    let mid = knot(seat, task, line, 0.5 * (a.t + b.t))?;
+    if depth < MAX_DEPTH && !straight(seat, task, line, &a, &b, Some(&mid))? {
+        halve(seat, task, line, a, mid, depth + 1, out)?;
+        halve(seat, task, line, mid, b, depth + 1, out)?;
     } else {
         out.push(b);
     }
@@ -81,8 +86,9 @@ fn halve(
 
 /// Whether the straight motion from `a` to `b` holds the tolerance at three contacts between.
 fn straight(
+    seat: &Seat<'_>,
     task: &Task<'_>,
-    line: &dyn SurfaceLine,
+    line: &IsoLine<'_>,
     a: &Knot,
     b: &Knot,
     mid: Option<&Knot>,
@@ -96,12 +102,12 @@ fn straight(
     for fraction in [0.5, 0.25, 0.75] {
         let k = match mid {
             Some(m) if fraction == 0.5 => *m,
-            _ => knot(task, line, a.t + (b.t - a.t) * fraction)?,
+            _ => knot(seat, task, line, a.t + (b.t - a.t) * fraction)?,
         };
         // The instant at which the straight motion is abreast of the contact.
         let along = if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
         let Some(now) = motion.at(along.clamp(0.0, 1.0)) else { return Ok(false) };
-        if task.cutter.distance(&now.pose, &k.point).abs() > task.tolerance.chord_mm {
+        if (task.cutter.distance(&now.pose, &k.point) - k.height).abs() > task.tolerance.chord_mm {
             return Ok(false);
         }
         let off = (k.point - a.point) - chord * along;
@@ -114,13 +120,13 @@ fn straight(
 }
 
 /// Drops knots whose neighbours can be joined directly: the halving leaves up to twice as many as needed.
-fn thin(task: &Task<'_>, line: &dyn SurfaceLine, knots: &[Knot]) -> Vec<Knot> {
+fn thin(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, knots: &[Knot]) -> Vec<Knot> {
     let mut out = vec![knots[0]];
     let mut at = 0;
     while at + 1 < knots.len() {
         // Join as long as every knot passed over, and the contacts between, stay within the tolerance.
         let mut next = at + 1;
-        while next + 1 < knots.len() && next - at < 8 && joins(task, line, &knots[at..=next + 1]) {
+        while next + 1 < knots.len() && next - at < 8 && joins(seat, task, line, &knots[at..=next + 1]) {
             next += 1;
         }
         out.push(knots[next]);
@@ -129,9 +135,9 @@ fn thin(task: &Task<'_>, line: &dyn SurfaceLine, knots: &[Knot]) -> Vec<Knot> {
     out
 }
 
-fn joins(task: &Task<'_>, line: &dyn SurfaceLine, knots: &[Knot]) -> bool {
+fn joins(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, knots: &[Knot]) -> bool {
     let (a, b) = (&knots[0], &knots[knots.len() - 1]);
-    if !straight(task, line, a, b, None).unwrap_or(false) {
+    if !straight(seat, task, line, a, b, None).unwrap_or(false) {
         return false;
     }
     let motion = LinearMotion { from: a.pose, to: b.pose };
@@ -141,7 +147,7 @@ fn joins(task: &Task<'_>, line: &dyn SurfaceLine, knots: &[Knot]) -> bool {
         let along = if l2 > 0.0 { (k.point - a.point).dot(&chord) / l2 } else { 0.5 };
         motion
             .at(along.clamp(0.0, 1.0))
-            .is_some_and(|m| task.cutter.distance(&m.pose, &k.point).abs() <= task.tolerance.chord_mm)
+            .is_some_and(|m| (task.cutter.distance(&m.pose, &k.point) - k.height).abs() <= task.tolerance.chord_mm)
     })
 }
 

@@ -39,14 +39,16 @@ pub(super) fn moved(
     for row in c.chunks_exact_mut(m) {
         for k in 0..m {
             for b in (k..m - 1).rev() {
-                row[b] = row[b] + row[b + 1] * middle[1];
+                let above = row[b + 1];
+                row[b] += above * middle[1];
             }
         }
     }
     for b in 0..m {
         for k in 0..n {
             for a in (k..n - 1).rev() {
-                c[a * m + b] = c[a * m + b] + c[(a + 1) * m + b] * middle[0];
+                let above = c[(a + 1) * m + b];
+                c[a * m + b] += above * middle[0];
             }
         }
     }

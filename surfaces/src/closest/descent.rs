@@ -33,6 +33,10 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// A step below this fraction of the coordinates changes `f` by less than its rounding: no use in shortening it.
 const BLIND: f64 = 1e-10;
 
+/// After a step of Newton's below this fraction of the coordinates the next one, which goes like its square, would be
+/// lost in rounding.
+const LAST_STEP: f64 = 1e-9;
+
 /// Squared sine between the columns of a step's matrix (in its own metric) below which it is not solved.
 const SINGULAR: f64 = 1e-13;
 
@@ -45,8 +49,9 @@ struct State {
     /// Squared lengths of S_u and S_v.
     metric: [f64; 2],
     held: [bool; 2],
-    /// Length of the offset's part along the free directions, mm.
-    along_mm: f64,
+    /// Square of the offset's part along the free directions, the larger of both, mm2. Squares throughout: roots are
+    /// half of what a step costs beyond the jet.
+    along_square: f64,
 }
 
 fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
@@ -58,50 +63,46 @@ fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
         !i.periodic && ((t <= i.lo && g > 0.0) || (t >= i.hi && g < 0.0))
     };
     let held = [hold(&rect.u, jet.uv.u, gradient[0]), hold(&rect.v, jet.uv.v, gradient[1])];
-    let along = |k: usize| {
-        if held[k] || metric[k] == 0.0 { 0.0 } else { gradient[k].abs() / metric[k].sqrt() }
-    };
-    State { jet, square: r.norm_squared(), gradient, metric, held, along_mm: along(0).max(along(1)) }
+    let along =
+        |k: usize| if held[k] || metric[k] == 0.0 { 0.0 } else { gradient[k] * gradient[k] / metric[k] };
+    State { jet, square: r.norm_squared(), gradient, metric, held, along_square: along(0).max(along(1)) }
 }
 
 /// The nearest point reached from `start`, brought into `rect` first. `jet` must take the parameters as they are there.
 #[inline]
 pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, start: Uv) -> Found {
-    let mut here = state(jet(rect.bring(start)), rect, query);
+    let mut here = state(jet(place(rect, start)), rect, query);
     let size = here.jet.point.coords.norm() + query.coords.norm();
-    let (mut steps, mut before_mm) = (0, 0.0);
+    let mut steps = 0;
     while steps < MAX_STEPS {
         steps += 1;
-        let step = newton_step(&here, query);
+        let (step, newton) = next_step(&here, query);
         let target = |scale: f64| {
             let uv = here.jet.uv;
-            rect.bring(uv_minus(uv, step, scale))
+            place(rect, uv_minus(uv, step, scale))
         };
-        // What is left of the step inside the rectangle; over a seam all of it.
-        let inside = |scale: f64| {
-            let to = target(scale);
-            let d = |i: &Interval, s: f64, a: f64, b: f64| if i.periodic { -scale * s } else { b - a };
-            let (du, dv) = (
-                d(&rect.u, step[0], here.jet.uv.u, to.u),
-                d(&rect.v, step[1], here.jet.uv.v, to.v),
-            );
-            here.jet.du.norm() * du.abs() + here.jet.dv.norm() * dv.abs()
-        };
-        let length_mm = inside(1.0);
-        if !(length_mm > ROUNDING * size) {
+        // What is left of the step inside the rectangle, over a seam all of it; never too short.
+        let to = target(1.0);
+        let part = |i: &Interval, step: f64, from: f64, to: f64| if i.periodic { step } else { to - from };
+        let du = part(&rect.u, step[0], here.jet.uv.u, to.u);
+        let dv = part(&rect.v, step[1], here.jet.uv.v, to.v);
+        let length_square = 2.0 * (here.metric[0] * du * du + here.metric[1] * dv * dv);
+        if length_square <= square(ROUNDING * size) || length_square.is_nan() {
             break;
         }
         let mut scale = 1.0;
         let mut next = None;
         for _ in 0..=MAX_SHORTENINGS {
             let there = state(jet(target(scale)), rect, query);
-            // Near the foot the squares differ by rounding alone; there the offset's part along the surface decides.
-            let same = there.square <= here.square * (1.0 + 8.0 * f64::EPSILON);
-            if there.square < here.square || (same && there.along_mm < here.along_mm) {
+            // Near the foot the distances differ by rounding of coordinates alone; there the offset's part along the
+            // surface decides.
+            let same =
+                there.square <= here.square + 2.0 * ROUNDING * size * (here.square.sqrt() + ROUNDING * size);
+            if there.square < here.square || (same && there.along_square < here.along_square) {
                 next = Some(there);
                 break;
             }
-            if length_mm <= BLIND * size {
+            if length_square <= square(BLIND * size) {
                 break;
             }
             scale *= 0.25;
@@ -110,23 +111,46 @@ pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, s
             Some(there) => here = there,
             None => break,
         }
-        // Newton's steps go like the square of the one before, with the factor that the last two show: where the next
-        // one would be lost in rounding it need not be tried.
-        let next_mm = (length_mm / before_mm).powi(2) * length_mm;
-        if length_mm * scale <= ROUNDING * size || (scale == 1.0 && 16.0 * next_mm <= ROUNDING * size) {
+        if length_square * scale * scale <= square(if newton { LAST_STEP } else { ROUNDING } * size) {
             break;
         }
-        before_mm = length_mm;
     }
     let distance_mm = here.square.sqrt();
     // An offset of a few roundings has no direction.
-    let residual =
-        if distance_mm <= 16.0 * ROUNDING * size { 0.0 } else { noise_free(here.along_mm, size) / distance_mm };
+    let residual = if distance_mm <= 16.0 * ROUNDING * size {
+        0.0
+    } else {
+        noise_free(here.along_square.sqrt(), size) / distance_mm
+    };
     Found { jet: here.jet, distance_mm, residual, steps }
+}
+
+/// The parameters in the rectangle, at its end where they are only rounding away from it: a parameter just inside an end
+/// could neither be held nor move.
+#[inline]
+fn place(rect: &Domain, at: Uv) -> Uv {
+    let snap = |i: &Interval, t: f64| {
+        let near = ROUNDING * i.lo.abs().max(i.hi.abs());
+        if i.periodic || !near.is_finite() {
+            t
+        } else if t - i.lo <= near {
+            i.lo
+        } else if i.hi - t <= near {
+            i.hi
+        } else {
+            t
+        }
+    };
+    let at = rect.bring(at);
+    uv(snap(&rect.u, at.u), snap(&rect.v, at.v))
 }
 
 fn uv_minus(at: Uv, step: [f64; 2], scale: f64) -> Uv {
     uv(at.u - scale * step[0], at.v - scale * step[1])
+}
+
+const fn square(x: f64) -> f64 {
+    x * x
 }
 
 /// A length less what rounding of coordinates of this size can make of nothing.
@@ -134,19 +158,22 @@ fn noise_free(length_mm: f64, size: f64) -> f64 {
     if length_mm <= ROUNDING * size { 0.0 } else { length_mm }
 }
 
-/// The step to subtract from the parameters.
+/// The step to subtract from the parameters, and whether it is Newton's.
 #[inline]
-fn newton_step(here: &State, query: &Point3) -> [f64; 2] {
+fn next_step(here: &State, query: &Point3) -> ([f64; 2], bool) {
     let j = &here.jet;
     let r = j.point - query;
     let [e, g] = here.metric;
     let f = j.du.dot(&j.dv);
     let full = [e + r.dot(&j.duu), f + r.dot(&j.duv), g + r.dot(&j.dvv)];
-    solve(full, here.gradient, here.held).unwrap_or_else(|| {
-        // Lifted by a little of itself, so that a direction without length moves by a finite amount.
-        let lift = 1e-12 * (e + g);
-        solve([e + lift, f, g + lift], here.gradient, here.held).unwrap_or([0.0, 0.0])
-    })
+    match solve(full, here.gradient, here.held) {
+        Some(step) => (step, true),
+        None => {
+            // Lifted by a little of itself, so that a direction without length moves by a finite amount.
+            let lift = 1e-12 * (e + g);
+            (solve([e + lift, f, g + lift], here.gradient, here.held).unwrap_or([0.0, 0.0]), false)
+        }
+    }
 }
 
 /// Solves `[[a, b], [b, c]] x = g` with held unknowns zero; `None` unless it is positive definite.

@@ -210,9 +210,8 @@ impl Index {
             let axis = (around.max - around.min).imax();
             let middle = (from + to) / 2;
             let key = |k: &u32| boxes[*k as usize].centre()[axis];
-            order[from..to].select_nth_unstable_by(middle - from, |a, b| {
-                key(a).total_cmp(&key(b)).then(a.cmp(b))
-            });
+            order[from..to]
+                .select_nth_unstable_by(middle - from, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
             let child = nodes.len();
             nodes[node].first = child as u32;
             nodes.extend([Node { min: [0.0; 3], max: [0.0; 3], first: 0, cells: 0 }; 2]);
@@ -266,7 +265,13 @@ fn cells(surface: &NurbsSurface) -> Vec<Cell> {
     for (su, pu) in powers[0].iter().enumerate() {
         for (sv, pv) in powers[1].iter().enumerate() {
             let (_, c) = piece_powers(knots, net, [su, sv], [pu, pv]);
-            let piece = Piece { surface, span: [su as u32, sv as u32], terms, c, least_weight: least_weight(surface, [su, sv]) };
+            let piece = Piece {
+                surface,
+                span: [su as u32, sv as u32],
+                terms,
+                c,
+                least_weight: least_weight(surface, [su, sv]),
+            };
             let mut stack = vec![([0.0, 0.0], [1.0, 1.0], 0)];
             while let Some((middle, half, depth)) = stack.pop() {
                 let cell = piece.cell(middle, half);
@@ -298,7 +303,8 @@ fn least_weight(surface: &NurbsSurface, span: [usize; 2]) -> f64 {
     let [u, v] = surface.both_knots();
     let (i0, j0) = (u.first_pole(span[0]), v.first_pole(span[1]));
     let rows = i0..=i0 + u.degree();
-    rows.flat_map(|i| weights[i * net.count[1] + j0..][..=v.degree()].iter().copied()).fold(f64::INFINITY, f64::min)
+    rows.flat_map(|i| weights[i * net.count[1] + j0..][..=v.degree()].iter().copied())
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// A piece of the surface as a polynomial in x and y over `[-1, 1]`.

@@ -60,8 +60,8 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
         let cell = &index.cells[k as usize];
         let (reach, flatness) = (cell.reach(query), cell.flatness_mm());
         let least = reach.distance_mm - flatness;
-        // Negated, so that a NaN is kept and found out about below.
-        if !(least > upper) {
+        // A NaN is kept and found out about below.
+        if least <= upper || least.is_nan() {
             candidates.push((least, k, reach));
             upper = upper.min(reach.distance_mm + flatness);
         }
@@ -250,10 +250,8 @@ impl Model {
     fn cut_to_least(&self, rect: &mut Domain) -> bool {
         let (h, d) = (&self.second, &self.change);
         // A gradient changes by at most this on the way from the middle; changes that grow in proportion count half.
-        let turns = [
-            h[0].abs() + h[1].abs() + 0.5 * (d[0] + d[1]),
-            h[2].abs() + h[1].abs() + 0.5 * (d[2] + d[1]),
-        ];
+        let turns =
+            [h[0].abs() + h[1].abs() + 0.5 * (d[0] + d[1]), h[2].abs() + h[1].abs() + 0.5 * (d[2] + d[1])];
         let falls = [0, 1].map(|k| self.gradient[k].abs() > turns[k]);
         for (k, side) in [&mut rect.u, &mut rect.v].into_iter().enumerate() {
             if falls[k] {

@@ -5,6 +5,7 @@
 //! section names.
 
 use osculate_geom::Diagnostic;
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 
 /// A parameter.
@@ -73,19 +74,15 @@ pub(crate) fn cards(bytes: &[u8]) -> Vec<&[u8]> {
     if !bytes.contains(&b'\n') && !bytes.contains(&b'\r') {
         return bytes.chunks(80).collect();
     }
-    bytes
-        .split(|c| *c == b'\n')
-        .flat_map(|l| l.split(|c| *c == b'\r'))
-        .filter(|l| !l.is_empty())
-        .collect()
+    bytes.split(|c| *c == b'\n').flat_map(|l| l.split(|c| *c == b'\r')).filter(|l| !l.is_empty()).collect()
 }
 
 /// Section letter of a card, where it is one.
 pub(crate) fn section(card: &[u8]) -> Option<u8> {
     let letter = *card.get(72)?;
     let numbered = card.get(73..card.len().min(80))?;
-    let is_number = numbered.iter().all(|c| c.is_ascii_digit() || *c == b' ')
-        && numbered.iter().any(u8::is_ascii_digit);
+    let is_number =
+        numbered.iter().all(|c| c.is_ascii_digit() || *c == b' ') && numbered.iter().any(u8::is_ascii_digit);
     (is_number && b"SGDPT".contains(&letter)).then_some(letter)
 }
 
@@ -187,14 +184,16 @@ fn parse(text: &[u8], separators: Separators) -> Parsed {
         }
         let digits = &text[start..at];
         let param = if !digits.is_empty() && matches!(text.get(at), Some(b'H' | b'h')) {
-            let count: usize = std::str::from_utf8(digits).ok().and_then(|d| d.parse().ok()).unwrap_or(usize::MAX);
+            let count: usize =
+                std::str::from_utf8(digits).ok().and_then(|d| d.parse().ok()).unwrap_or(usize::MAX);
             let from = at + 1;
             let mut to = from.saturating_add(count).min(text.len());
             let next = text[to..].iter().copied().find(|c| *c != b' ');
             if next.is_none_or(|c| c != separators.parameter && c != separators.record) {
                 // The count lies: what follows is no delimiter. The string then ends at the first one.
                 lies += 1;
-                let end = text[from..].iter().position(|c| *c == separators.parameter || *c == separators.record);
+                let end =
+                    text[from..].iter().position(|c| *c == separators.parameter || *c == separators.record);
                 to = end.map_or(text.len(), |n| from + n);
             }
             at = to;
@@ -239,7 +238,8 @@ fn plain(text: &[u8]) -> Param {
 fn global(text: &[u8], diagnostics: &mut Vec<Diagnostic>) -> (Separators, Global) {
     // The first two parameters name the delimiters, as `1H,` and `1H;`, or are left out: `,,`.
     let skip = |t: &'_ [u8]| t.iter().position(|c| *c != b' ').unwrap_or(t.len());
-    let named = |t: &[u8]| if t.len() > 2 && t[0] == b'1' && matches!(t[1], b'H' | b'h') { Some(t[2]) } else { None };
+    let named =
+        |t: &[u8]| if t.len() > 2 && t[0] == b'1' && matches!(t[1], b'H' | b'h') { Some(t[2]) } else { None };
     let mut separators = Separators { parameter: b',', record: b';' };
     let mut rest = &text[skip(text)..];
     if let Some(c) = named(rest) {
@@ -291,16 +291,18 @@ fn global(text: &[u8], diagnostics: &mut Vec<Diagnostic>) -> (Separators, Global
     let (unit_mm, default_name) = match flag as i64 {
         1 => (25.4, "IN"),
         2 => (1.0, "MM"),
-        3 => match by_name(&named) {
-            Some(mm) => (mm, ""),
-            None => {
-                diagnostics.push(Diagnostic::warning(
+        3 => {
+            match by_name(&named) {
+                Some(mm) => (mm, ""),
+                None => {
+                    diagnostics.push(Diagnostic::warning(
                     "",
                     format!("the global section names the unit {named:?}, which is none; millimetres are assumed"),
                 ));
-                (1.0, "MM")
+                    (1.0, "MM")
+                }
             }
-        },
+        }
         4 => (304.8, "FT"),
         5 => (1_609_344.0, "MI"),
         6 => (1000.0, "M"),
@@ -320,8 +322,19 @@ fn global(text: &[u8], diagnostics: &mut Vec<Diagnostic>) -> (Separators, Global
     let unit_name = if named.is_empty() { default_name.to_owned() } else { named };
     let version = match number(23).map(|v| v as i64) {
         Some(v @ 1..=11) => {
-            const NAMES: [&str; 11] =
-                ["1.0", "ANSI Y14.26M-1981", "2.0", "3.0", "ANSI Y14.26M-1987", "4.0", "ASME Y14.26M-1989", "5.0", "5.1", "5.2", "5.3"];
+            const NAMES: [&str; 11] = [
+                "1.0",
+                "ANSI Y14.26M-1981",
+                "2.0",
+                "3.0",
+                "ANSI Y14.26M-1987",
+                "4.0",
+                "ASME Y14.26M-1989",
+                "5.0",
+                "5.1",
+                "5.2",
+                "5.3",
+            ];
             format!("IGES {}", NAMES[v as usize - 1])
         }
         _ => "IGES".to_owned(),
@@ -346,7 +359,8 @@ fn entities(
             continue;
         };
         let field = |card: &[u8], k: usize| integer(&columns(card, 8 * k, 8 * k + 8));
-        let (Some(kind), Some(start), Some(number)) = (field(first, 0), field(first, 1), number_of(first)) else {
+        let (Some(kind), Some(start), Some(number)) = (field(first, 0), field(first, 1), number_of(first))
+        else {
             broken += 1;
             continue;
         };
@@ -381,10 +395,11 @@ fn entities(
             label: columns(second, 56, 64).trim().to_owned(),
             params,
         };
-        if out.contains_key(&number) {
-            doubled += 1;
-        } else {
-            out.insert(number, entity);
+        match out.entry(number) {
+            Entry::Occupied(_) => doubled += 1,
+            Entry::Vacant(slot) => {
+                slot.insert(entity);
+            }
         }
     }
     for (count, what) in [

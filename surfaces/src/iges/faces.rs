@@ -150,7 +150,8 @@ fn solid_sides(geometry: &Geometry<'_>) -> BTreeMap<i64, Side> {
         let voids = number(2).unwrap_or(0.0).clamp(0.0, solid.params.len() as f64) as usize;
         shells.extend((0..voids).map(|k| (number(3 + 2 * k), number(4 + 2 * k))));
         for (shell, along) in shells {
-            let Some(shell) = shell.and_then(|s| geometry.entity(s as i64).ok()).filter(|s| s.kind == 514) else {
+            let Some(shell) = shell.and_then(|s| geometry.entity(s as i64).ok()).filter(|s| s.kind == 514)
+            else {
                 continue;
             };
             let n = |k: usize| shell.params.get(k).and_then(Param::number);
@@ -166,7 +167,12 @@ fn solid_sides(geometry: &Geometry<'_>) -> BTreeMap<i64, Side> {
 }
 
 /// Entity 144.
-fn trimmed(geometry: &Geometry<'_>, de: i64, e: &Entity, findings: &mut Vec<String>) -> Result<Made, FaceError> {
+fn trimmed(
+    geometry: &Geometry<'_>,
+    de: i64,
+    e: &Entity,
+    findings: &mut Vec<String>,
+) -> Result<Made, FaceError> {
     let motion = geometry.motion(e)?;
     let surface_de = geometry
         .pointer(de, e, 0)?
@@ -176,12 +182,24 @@ fn trimmed(geometry: &Geometry<'_>, de: i64, e: &Entity, findings: &mut Vec<Stri
     let (surface, kind) = geometry.surface(surface_de, &motion)?;
     let mut loops = Vec::new();
     match outer {
-        Some(curve) => loops.push(curve_on_surface(geometry, curve, &Target { surface: &surface, kind }, &motion, findings)?),
+        Some(curve) => loops.push(curve_on_surface(
+            geometry,
+            curve,
+            &Target { surface: &surface, kind },
+            &motion,
+            findings,
+        )?),
         None => loops.extend(rectangle(geometry, surface_de, &surface)),
     }
     for k in 0..inner {
         if let Some(curve) = geometry.pointer(de, e, 4 + k)? {
-            loops.push(curve_on_surface(geometry, curve, &Target { surface: &surface, kind }, &motion, findings)?);
+            loops.push(curve_on_surface(
+                geometry,
+                curve,
+                &Target { surface: &surface, kind },
+                &motion,
+                findings,
+            )?);
         }
     }
     // Without an outer loop the natural rectangle is the outer one: its sides are needed for the holes to be holes.
@@ -201,7 +219,10 @@ fn lines([u0, u1, v0, v1]: [f64; 4]) -> Vec<Boundary> {
     let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|[u, v]| Point3::new(u, v, 0.0));
     (0..4)
         .map(|k| Boundary::Parameter {
-            piece: Piece { curve: Arc::new(Line::segment(corners[k], corners[(k + 1) % 4])), ends: [0.0, 1.0] },
+            piece: Piece {
+                curve: Arc::new(Line::segment(corners[k], corners[(k + 1) % 4])),
+                ends: [0.0, 1.0],
+            },
         })
         .collect()
 }
@@ -271,7 +292,8 @@ fn choose(
 ) -> Result<Vec<Boundary>, Unread> {
     let parameter = parameter.filter(|p| target.kind == FaceKind::Bspline && !p.is_empty());
     let model = model.filter(|m| !m.is_empty());
-    let in_space = |pieces: Vec<Piece>| pieces.into_iter().map(|piece| Boundary::Space { piece, key: None }).collect();
+    let in_space =
+        |pieces: Vec<Piece>| pieces.into_iter().map(|piece| Boundary::Space { piece, key: None }).collect();
     match (parameter, model) {
         (Some(p), Some(m)) => {
             let off = deviation(target.surface, &p, &m);
@@ -329,7 +351,12 @@ fn deviation(surface: &FaceSurface, parameter: &[Piece], model: &[Piece]) -> Opt
 }
 
 /// Entity 143 with its boundaries 141.
-fn bounded(geometry: &Geometry<'_>, de: i64, e: &Entity, findings: &mut Vec<String>) -> Result<Made, FaceError> {
+fn bounded(
+    geometry: &Geometry<'_>,
+    de: i64,
+    e: &Entity,
+    findings: &mut Vec<String>,
+) -> Result<Made, FaceError> {
     let motion = geometry.motion(e)?;
     let surface_de = geometry
         .pointer(de, e, 1)?
@@ -367,7 +394,13 @@ fn bounded(geometry: &Geometry<'_>, de: i64, e: &Entity, findings: &mut Vec<Stri
             }
             at += 3 + pcurves;
         }
-        loops.push(choose(boundary, &Target { surface: &surface, kind }, complete.then_some(parameter), Some(model), findings)?);
+        loops.push(choose(
+            boundary,
+            &Target { surface: &surface, kind },
+            complete.then_some(parameter),
+            Some(model),
+            findings,
+        )?);
     }
     Ok(Made { built: build(surface, &loops, Side::Along, false)?, kind })
 }

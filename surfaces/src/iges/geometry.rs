@@ -3,12 +3,12 @@
 //! Parameter-space curves use the same entities without units or model transforms: a [`Space`] says which.
 
 use super::cards::{Cards, Entity, Param};
+use crate::knots::MAX_DEGREE;
 use crate::nurbs::{Net, NurbsSurface};
 use crate::part::FaceKind;
 use crate::trim::analytic::{Analytic, Shape};
 use crate::trim::carrier::FaceSurface;
 use crate::trim::curve::{Curve, Ellipse, Line, Motion, Moved, Piece, Polyline};
-use crate::knots::MAX_DEGREE;
 use crate::trim::spline::Spline;
 use crate::trim::sweep::{extrude, revolve};
 use osculate_geom::analytic::Placement;
@@ -85,7 +85,14 @@ impl Geometry<'_> {
     }
 
     /// Parameter `k` as a count of things that take at least `each` parameters from `from` on.
-    pub(crate) fn count(&self, de: i64, e: &Entity, k: usize, from: usize, each: usize) -> Result<usize, Unread> {
+    pub(crate) fn count(
+        &self,
+        de: i64,
+        e: &Entity,
+        k: usize,
+        from: usize,
+        each: usize,
+    ) -> Result<usize, Unread> {
         let n = self.number(de, e, k)?;
         let room = e.params.len().saturating_sub(from) / each.max(1);
         if n >= 0.0 && n.fract() == 0.0 && n <= room as f64 {
@@ -124,7 +131,10 @@ impl Geometry<'_> {
             let linear = nalgebra::Matrix3::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]);
             // A rotation or reflection, to the six digits that sparse writers keep.
             if (linear * linear.transpose() - nalgebra::Matrix3::identity()).norm() > 1e-4 {
-                return Err(Unread::Malformed { de, what: "a matrix that is no rotation or reflection".into() });
+                return Err(Unread::Malformed {
+                    de,
+                    what: "a matrix that is no rotation or reflection".into(),
+                });
             }
             let shift = Vec3::new(a[3], b[3], c[3]) * self.scale_mm;
             motion = motion.then(&Motion { linear, shift });
@@ -237,7 +247,13 @@ impl Geometry<'_> {
     /// Entity 106 as a polyline.
     fn copious(&self, de: i64, e: &Entity, unit: f64) -> Result<Vec<Point3>, Unread> {
         let layout = self.number(de, e, 0)?;
-        let (from, each) = if layout == 1.0 { (3, 2) } else if layout == 2.0 { (2, 3) } else { (2, 6) };
+        let (from, each) = if layout == 1.0 {
+            (3, 2)
+        } else if layout == 2.0 {
+            (2, 3)
+        } else {
+            (2, 6)
+        };
         let n = self.count(de, e, 1, from, each)?;
         if n < 2 {
             return Err(Unread::Malformed { de, what: format!("a polyline of {n} points") });
@@ -247,7 +263,11 @@ impl Geometry<'_> {
         for k in 0..n {
             let at = from + each * k;
             let third = if each == 2 { z } else { self.number(de, e, at + 2)? };
-            points.push(Point3::new(self.number(de, e, at)? * unit, self.number(de, e, at + 1)? * unit, third * unit));
+            points.push(Point3::new(
+                self.number(de, e, at)? * unit,
+                self.number(de, e, at + 1)? * unit,
+                third * unit,
+            ));
         }
         if e.form == 63 && points[0] != points[n - 1] {
             points.push(points[0]);
@@ -282,12 +302,14 @@ impl Geometry<'_> {
         if weights.iter().all(|w| *w == weights[0]) {
             weights.clear();
         }
-        let spline =
-            Spline::new(degree, knots, poles, weights).map_err(|e| Unread::Malformed { de, what: e.to_string() })?;
+        let spline = Spline::new(degree, knots, poles, weights)
+            .map_err(|e| Unread::Malformed { de, what: e.to_string() })?;
         let [lo, hi] = spline.range();
         let after = at + 3 * n;
-        let ends = match (e.params.get(after).and_then(Param::number), e.params.get(after + 1).and_then(Param::number))
-        {
+        let ends = match (
+            e.params.get(after).and_then(Param::number),
+            e.params.get(after + 1).and_then(Param::number),
+        ) {
             (Some(a), Some(b)) if a < b => [a.clamp(lo, hi), b.clamp(lo, hi)],
             _ => [lo, hi],
         };
@@ -315,31 +337,36 @@ impl Geometry<'_> {
                 let origin = Point3::from(normal * (self.number(de, e, 3)? / n2 * self.scale_mm));
                 let made = Analytic::new(Shape::Plane, Placement::new(motion.point(&origin), z, None))
                     .map_err(|e| malformed(e.to_string()))?;
-                Ok((FaceSurface::Analytic(made), FaceKind::Plane))
+                Ok((FaceSurface::Analytic(Arc::new(made)), FaceKind::Plane))
             }
             120 => {
-                let axis = self.pointer(de, e, 0)?.ok_or_else(|| malformed("a revolution without axis".into()))?;
-                let generatrix =
-                    self.pointer(de, e, 1)?.ok_or_else(|| malformed("a revolution without generatrix".into()))?;
+                let axis =
+                    self.pointer(de, e, 0)?.ok_or_else(|| malformed("a revolution without axis".into()))?;
+                let generatrix = self
+                    .pointer(de, e, 1)?
+                    .ok_or_else(|| malformed("a revolution without generatrix".into()))?;
                 let line = self.pieces(axis, Space::Model, &Motion::identity())?;
                 let [a, b] = line
                     .first()
                     .map(Piece::end_points)
                     .ok_or_else(|| malformed("a revolution without axis".into()))?;
-                let z = Unit3::try_new(b - a, 0.0).ok_or_else(|| malformed("an axis of length zero".into()))?;
+                let z =
+                    Unit3::try_new(b - a, 0.0).ok_or_else(|| malformed("an axis of length zero".into()))?;
                 let angles = [self.number(de, e, 2)?, self.number(de, e, 3)?];
                 let sweep = angles[1] - angles[0];
                 if !(sweep > 0.0 && sweep <= TAU * (1.0 + 1e-9)) {
                     return Err(malformed(format!("a revolution over {sweep} rad")));
                 }
                 let curve = self.generatrix(generatrix)?;
-                let made = revolve(&curve, &Placement::new(a, z, None), [angles[0], angles[1].min(angles[0] + TAU)])
-                    .map_err(|e| malformed(e.to_string()))?;
+                let made =
+                    revolve(&curve, &Placement::new(a, z, None), [angles[0], angles[1].min(angles[0] + TAU)])
+                        .map_err(|e| malformed(e.to_string()))?;
                 Ok((moved(de, made, &motion)?, FaceKind::Revolution))
             }
             122 => {
-                let directrix =
-                    self.pointer(de, e, 0)?.ok_or_else(|| malformed("a cylinder without directrix".into()))?;
+                let directrix = self
+                    .pointer(de, e, 0)?
+                    .ok_or_else(|| malformed("a cylinder without directrix".into()))?;
                 let curve = self.generatrix(directrix)?;
                 let end = Point3::from(self.triple(de, e, 1)? * self.scale_mm);
                 let direction = end - curve.point(curve.range()[0]);
@@ -357,7 +384,7 @@ impl Geometry<'_> {
                     Some(motion.linear * placement.x.into_inner()),
                 );
                 let made = Analytic::new(shape, placement).map_err(|e| malformed(e.to_string()))?;
-                Ok((FaceSurface::Analytic(made), kind))
+                Ok((FaceSurface::Analytic(Arc::new(made)), kind))
             }
             _ => Err(Unread::Kind { de, kind: e.kind, form: e.form }),
         }
@@ -383,7 +410,9 @@ impl Geometry<'_> {
         let length = |k: usize| Ok::<f64, Unread>(self.number(de, e, k)? * self.scale_mm);
         let (shape, kind, z, x) = match e.kind {
             190 => (Shape::Plane, FaceKind::Plane, direction(1)?, direction(2)?),
-            192 => (Shape::Cylinder { radius_mm: length(2)? }, FaceKind::Cylinder, direction(1)?, direction(3)?),
+            192 => {
+                (Shape::Cylinder { radius_mm: length(2)? }, FaceKind::Cylinder, direction(1)?, direction(3)?)
+            }
             194 => {
                 let half_angle_rad = self.number(de, e, 3)?.to_radians();
                 let shape = Shape::Cone { radius_mm: length(2)?, half_angle_rad };

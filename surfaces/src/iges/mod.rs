@@ -1,6 +1,6 @@
 //! IGES files (5.3 and its forerunners, fixed ASCII form): trimmed, bounded and free surfaces, and faces of solids.
 //!
-//! [`cards`] takes the sections apart, [`geometry`] makes curves and surfaces, [`faces`] the faces. IGES trims say
+//! `cards` takes the sections apart, `geometry` makes curves and surfaces, `faces` the faces. IGES trims say
 //! nothing about the material side: such faces have [`crate::Face::oriented`] false.
 
 mod cards;
@@ -23,13 +23,17 @@ pub enum IgesError {
         searched: usize,
     },
     /// Truncated before the directory.
-    #[error("the IGES file has no directory entry section among its {lines} lines: it is truncated; export it again")]
+    #[error(
+        "the IGES file has no directory entry section among its {lines} lines: it is truncated; export it again"
+    )]
     NoDirectory {
         /// Lines in the file.
         lines: usize,
     },
     /// Truncated before the parameters.
-    #[error("the IGES file has no parameter data section among its {lines} lines: it is truncated; export it again")]
+    #[error(
+        "the IGES file has no parameter data section among its {lines} lines: it is truncated; export it again"
+    )]
     NoParameters {
         /// Lines in the file.
         lines: usize,

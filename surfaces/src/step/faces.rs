@@ -95,20 +95,16 @@ fn face(
         .or_else(|| record.part("FACE_SURFACE").filter(|a| !a.is_empty()))
         .unwrap_or_default();
     // A complex record has the name and bounds elsewhere; only the simple form occurs in files.
-    let surface_id = arg(args, 2).reference().ok_or_else(|| Unread::Malformed {
-        id,
-        what: "a face without a reference to its surface".into(),
-    })?;
+    let surface_id = arg(args, 2)
+        .reference()
+        .ok_or_else(|| Unread::Malformed { id, what: "a face without a reference to its surface".into() })?;
     let same_sense = arg(args, 3).flag().unwrap_or(true);
     let mut loops: Vec<Vec<Edge>> = Vec::new();
     for bound in arg(args, 1).list().iter().filter_map(Value::reference) {
         loops.extend(bound_edges(geometry, bound)?);
     }
-    let reach: Vec<Point3> = loops
-        .iter()
-        .flatten()
-        .flat_map(|e| (0..=8).map(|k| e.piece.point(f64::from(k) / 8.0)))
-        .collect();
+    let reach: Vec<Point3> =
+        loops.iter().flatten().flat_map(|e| (0..=8).map(|k| e.piece.point(f64::from(k) / 8.0))).collect();
     let carried = geometry.surface(surface_id, &reach, 0)?;
     // The loops are on the left seen along the face's normal; the builder wants them so along the carrier's.
     let along = same_sense != carried.reversed;
@@ -150,8 +146,9 @@ fn bound_edges(geometry: &Geometry<'_>, id: u64) -> Result<Option<Vec<Edge>>, Un
         .part("FACE_BOUND")
         .or_else(|| record.part("FACE_OUTER_BOUND"))
         .ok_or_else(|| Unread::Kind { id, kind: record.kind() })?;
-    let loop_id =
-        arg(args, 1).reference().ok_or_else(|| Unread::Malformed { id, what: "a bound without loop".into() })?;
+    let loop_id = arg(args, 1)
+        .reference()
+        .ok_or_else(|| Unread::Malformed { id, what: "a bound without loop".into() })?;
     let forward = arg(args, 2).flag().unwrap_or(true);
     let record = graph.get(loop_id).ok_or(Unread::Missing { id: loop_id })?;
     let mut edges = if let Some(args) = record.part("EDGE_LOOP") {
@@ -186,7 +183,10 @@ fn polygon(geometry: &Geometry<'_>, id: u64, values: &[Value]) -> Result<Vec<Edg
     let n = points.len();
     let sides = (0..n).map(|k| (points[k], points[(k + 1) % n])).filter(|(a, b)| a != b);
     Ok(sides
-        .map(|(a, b)| Edge { piece: Piece { curve: Arc::new(Line::segment(a, b)), ends: [0.0, 1.0] }, key: None })
+        .map(|(a, b)| Edge {
+            piece: Piece { curve: Arc::new(Line::segment(a, b)), ends: [0.0, 1.0] },
+            key: None,
+        })
         .collect())
 }
 
@@ -218,11 +218,13 @@ fn oriented_edge(geometry: &Geometry<'_>, id: u64) -> Result<Option<Edge>, Unrea
     let one_vertex = arg(args, 1).reference() == arg(args, 2).reference();
     let range = curve.range();
     let sample = if range.iter().all(|t| t.is_finite()) {
-        Box3::around(&[0.0, 0.25, 0.5, 0.75].map(|f| curve.point(range[0] + f * (range[1] - range[0])))).diagonal_mm()
+        Box3::around(&[0.0, 0.25, 0.5, 0.75].map(|f| curve.point(range[0] + f * (range[1] - range[0]))))
+            .diagonal_mm()
     } else {
         (ends[1] - ends[0]).norm()
     };
-    let slack = if one_vertex { 1e-9 * sample } else { (SAME_VERTEX * sample).min(0.1 * (ends[1] - ends[0]).norm()) };
+    let slack =
+        if one_vertex { 1e-9 * sample } else { (SAME_VERTEX * sample).min(0.1 * (ends[1] - ends[0]).norm()) };
     match Piece::between(curve, ends, same_sense, slack) {
         Some(piece) => {
             let piece = if forward { piece } else { piece.reversed() };
@@ -230,7 +232,9 @@ fn oriented_edge(geometry: &Geometry<'_>, id: u64) -> Result<Option<Edge>, Unrea
         }
         // Both ends at one place of an open curve.
         None if one_vertex => Ok(None),
-        None => Err(Unread::Malformed { id: edge_id, what: "both ends at one place of an open curve".into() }),
+        None => {
+            Err(Unread::Malformed { id: edge_id, what: "both ends at one place of an open curve".into() })
+        }
     }
 }
 
@@ -252,7 +256,8 @@ fn reversed_faces(graph: &Graph) -> BTreeSet<u64> {
             if keyword == "ORIENTED_FACE" {
                 flip(target);
             } else if let Some(shell) = graph.get(target) {
-                let faces = shell.part("CLOSED_SHELL").or_else(|| shell.part("OPEN_SHELL")).unwrap_or_default();
+                let faces =
+                    shell.part("CLOSED_SHELL").or_else(|| shell.part("OPEN_SHELL")).unwrap_or_default();
                 arg(faces, 1).list().iter().filter_map(Value::reference).for_each(&mut flip);
             }
         }
@@ -294,7 +299,11 @@ fn leftovers(graph: &Graph, left: &mut Leftovers, diagnostics: &mut Vec<Diagnost
     }
     let placed = graph.records.iter().filter(|r| moves(graph, &r.1)).count();
     if placed > 0 {
-        left.add_many("placed instance", placed, "assemblies are not put together: faces stay in their own part's frame");
+        left.add_many(
+            "placed instance",
+            placed,
+            "assemblies are not put together: faces stay in their own part's frame",
+        );
         diagnostics.push(Diagnostic::warning(
             "",
             format!(

@@ -2,12 +2,12 @@
 
 use super::graph::{Graph, Record, Value, arg};
 use super::units::Units;
+use crate::knots::MAX_DEGREE;
 use crate::nurbs::{Net, NurbsSurface};
 use crate::part::FaceKind;
 use crate::trim::analytic::{Analytic, Shape};
 use crate::trim::carrier::FaceSurface;
 use crate::trim::curve::{Curve, Ellipse, Line, OpenConic, OpenKind, Piece, Polyline};
-use crate::knots::MAX_DEGREE;
 use crate::trim::spline::Spline;
 use crate::trim::sweep::{extrude, revolve};
 use osculate_geom::analytic::Placement;
@@ -77,8 +77,7 @@ impl Geometry<'_> {
     /// A CARTESIAN_POINT, mm.
     pub(crate) fn point(&self, id: u64) -> Result<Point3, Unread> {
         let record = self.record(id)?;
-        let args =
-            record.part("CARTESIAN_POINT").ok_or_else(|| Unread::Kind { id, kind: record.kind() })?;
+        let args = record.part("CARTESIAN_POINT").ok_or_else(|| Unread::Kind { id, kind: record.kind() })?;
         Ok(Point3::from(self.triple(id, arg(args, 1).list())? * self.units.length_mm))
     }
 
@@ -213,9 +212,13 @@ impl Geometry<'_> {
                 Some(p) => self.point(p)?,
                 None => {
                     let Some(t) = choices.iter().find_map(Value::number) else {
-                        return Err(Unread::Malformed { id, what: "a trim without point and parameter".into() });
+                        return Err(Unread::Malformed {
+                            id,
+                            what: "a trim without point and parameter".into(),
+                        });
                     };
-                    let is_angle = self.graph.get(basis_id).is_some_and(|r| r.is("CIRCLE") || r.is("ELLIPSE"));
+                    let is_angle =
+                        self.graph.get(basis_id).is_some_and(|r| r.is("CIRCLE") || r.is("ELLIPSE"));
                     basis.point(if is_angle { t * self.units.angle_rad } else { t })
                 }
             };
@@ -290,7 +293,8 @@ impl Geometry<'_> {
                 knots.extend(std::iter::repeat_n(v, m as usize));
             }
             if knots.len() != need {
-                let what = format!("{} knots for {poles} poles of degree {degree}, {need} are needed", knots.len());
+                let what =
+                    format!("{} knots for {poles} poles of degree {degree}, {need} are needed", knots.len());
                 return Err(Unread::Malformed { id, what });
             }
             return Ok(knots);
@@ -303,7 +307,7 @@ impl Geometry<'_> {
         let bezier = kind.is_some_and(|k| k.starts_with("BEZIER"));
         let step = if bezier { degree } else { 1 };
         let inner = poles.saturating_sub(degree + 1);
-        if bezier && inner % degree != 0 {
+        if bezier && !inner.is_multiple_of(degree) {
             let what = format!("{poles} poles make no whole number of Bezier pieces of degree {degree}");
             return Err(Unread::Malformed { id, what });
         }
@@ -321,9 +325,9 @@ impl Geometry<'_> {
         }
         let plain = |surface, kind| Ok(Carried { surface, kind, reversed: false });
         if let Some((shape, kind, placement)) = self.shape(id, record)? {
-            let made = Analytic::new(shape, placement)
-                .map_err(|e| Unread::Malformed { id, what: e.to_string() })?;
-            return plain(FaceSurface::Analytic(made), kind);
+            let made =
+                Analytic::new(shape, placement).map_err(|e| Unread::Malformed { id, what: e.to_string() })?;
+            return plain(FaceSurface::Analytic(Arc::new(made)), kind);
         }
         if let Some((n, kind)) = self.spline_surface(id, record)? {
             return plain(FaceSurface::Nurbs(Arc::new(n)), kind);
@@ -386,7 +390,8 @@ impl Geometry<'_> {
             if !(step.norm() > 0.0 && step.norm().is_finite()) {
                 return Err(malformed("a line without direction or boundary".into()));
             }
-            return Spline::polyline(vec![origin - step, origin + step]).map_err(|e| malformed(e.to_string()));
+            return Spline::polyline(vec![origin - step, origin + step])
+                .map_err(|e| malformed(e.to_string()));
         }
         if let Some(args) = record.part("TRIMMED_CURVE") {
             // More of the curve than is in use does no harm: the loops cut it. Its sense is the surface's.
@@ -401,9 +406,10 @@ impl Geometry<'_> {
     }
 
     fn shape(&self, id: u64, record: &Record) -> Result<Option<(Shape, FaceKind, Placement)>, Unread> {
-        let found = ["PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SPHERICAL_SURFACE", "TOROIDAL_SURFACE"]
-            .into_iter()
-            .find_map(|k| record.part(k).map(|a| (k, a)));
+        let found =
+            ["PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SPHERICAL_SURFACE", "TOROIDAL_SURFACE"]
+                .into_iter()
+                .find_map(|k| record.part(k).map(|a| (k, a)));
         let Some((kind, args)) = found else { return Ok(None) };
         let placement = self.placement(self.to(id, args, 1)?)?;
         let length = |k| Ok::<f64, Unread>(self.number(id, args, k)? * self.units.length_mm);

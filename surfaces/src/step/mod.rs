@@ -1,6 +1,6 @@
 //! STEP files (ISO 10303-21 with the geometry of ISO 10303-42): faces of boundary representations and shells.
 //!
-//! [`lexer`] and [`graph`] know Part 21 only; [`units`] the contexts; [`geometry`] curves and surfaces; [`faces`] the
+//! `lexer` and `graph` know Part 21 only; `units` the contexts; `geometry` curves and surfaces; `faces` the
 //! topology. Pcurves are not used: the space curves are the definition, and writers disagree about pcurves.
 
 mod faces;

@@ -122,11 +122,17 @@ fn si_name(unit: &Record) -> &str {
     }
 }
 
+/// The prefix of an SI_UNIT, empty for none.
+fn prefix_of(unit: &Record) -> &str {
+    let Some(args) = unit.part("SI_UNIT") else { return "" };
+    match args.len().checked_sub(2).map(|k| &args[k]) {
+        Some(Value::Enum(e)) => e,
+        _ => "",
+    }
+}
+
 fn si_prefix(unit: &Record) -> f64 {
-    let Some(args) = unit.part("SI_UNIT") else { return 1.0 };
-    let prefix = args.len().checked_sub(2).map(|k| &args[k]);
-    let Some(Value::Enum(e)) = prefix else { return 1.0 };
-    match e.as_str() {
+    match prefix_of(unit) {
         "EXA" => 1e18,
         "PETA" => 1e15,
         "TERA" => 1e12,
@@ -153,7 +159,8 @@ fn measure(graph: &Graph, id: u64, depth: usize) -> Option<f64> {
         return None;
     }
     let unit = graph.get(id)?;
-    if let Some(args) = unit.part("CONVERSION_BASED_UNIT").or_else(|| unit.part("CONVERSION_BASED_UNIT_WITH_OFFSET"))
+    if let Some(args) =
+        unit.part("CONVERSION_BASED_UNIT").or_else(|| unit.part("CONVERSION_BASED_UNIT_WITH_OFFSET"))
     {
         // The factor is the reference among the last parameters that is a measure.
         let factor = args.iter().rev().filter_map(Value::reference).find_map(|f| {
@@ -172,21 +179,13 @@ fn measure(graph: &Graph, id: u64, depth: usize) -> Option<f64> {
 
 /// A readable name of a length unit.
 fn name(unit: &Record) -> String {
-    if let Some(args) = unit.part("CONVERSION_BASED_UNIT").or_else(|| unit.part("CONVERSION_BASED_UNIT_WITH_OFFSET"))
+    if let Some(args) =
+        unit.part("CONVERSION_BASED_UNIT").or_else(|| unit.part("CONVERSION_BASED_UNIT_WITH_OFFSET"))
         && let Some(text) = args.iter().map(Value::text).find(|t| !t.is_empty())
     {
         return text.to_lowercase();
     }
-    let prefix = match si_prefix(unit) {
-        x if x == 1e-3 => "milli",
-        x if x == 1e-2 => "centi",
-        x if x == 1e-1 => "deci",
-        x if x == 1e-6 => "micro",
-        x if x == 1e-9 => "nano",
-        x if x == 1e3 => "kilo",
-        x if x == 1.0 => "",
-        x => return format!("{x:e} metre"),
-    };
+    let prefix = prefix_of(unit).to_lowercase();
     format!("{prefix}metre")
 }
 
@@ -213,7 +212,7 @@ mod tests {
              #22=OPEN_SHELL('',(#20));#23=OPEN_SHELL('',(#21));\
              #30=SHAPE_REPRESENTATION('',(#22),#10);#31=SHAPE_REPRESENTATION('',(#23),#11);",
         );
-        assert_eq!(c.of(20), Units { length_mm: 25.4, angle_rad: 0.0174532925, name: "inch".into() });
+        assert_eq!(c.of(20), Units { length_mm: 25.4, angle_rad: 0.017_453_292_5, name: "inch".into() });
         assert_eq!(c.of(21), Units { length_mm: 1.0, angle_rad: 1.0, name: "millimetre".into() });
         assert_eq!(c.names(), "inch, millimetre");
     }

@@ -148,9 +148,9 @@ impl Analytic {
     fn reach_mm(&self) -> f64 {
         match self.shape {
             Shape::Plane => 0.0,
-            Shape::Cylinder { radius_mm }
-            | Shape::Cone { radius_mm, .. }
-            | Shape::Sphere { radius_mm } => radius_mm,
+            Shape::Cylinder { radius_mm } | Shape::Cone { radius_mm, .. } | Shape::Sphere { radius_mm } => {
+                radius_mm
+            }
             Shape::Torus { major_radius_mm, minor_radius_mm } => major_radius_mm + minor_radius_mm,
         }
     }
@@ -181,7 +181,8 @@ impl Surface for Analytic {
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         let i = self.domain.get(axis);
         // An eighth of a turn at most, so that a few quadrature points between breaks are exact to rounding.
-        let panels = if self.is_angle(axis) { (i.length() / (TAU / 8.0) - 1e-9).ceil().max(1.0) } else { 1.0 };
+        let panels =
+            if self.is_angle(axis) { (i.length() / (TAU / 8.0) - 1e-9).ceil().max(1.0) } else { 1.0 };
         (0..=panels as usize)
             .map(|k| if k as f64 == panels { i.hi } else { i.at(k as f64 / panels) })
             .collect()

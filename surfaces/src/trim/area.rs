@@ -17,7 +17,7 @@ const GAUSS5: [(f64, f64); 5] = [
 ];
 
 /// Nodes and weights of the 2-point rule: columns between the vertices of a fine polyline are narrow.
-const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_12, 0.5), (0.788_675_134_594_812_9, 0.5)];
+const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
 
 /// Halvings of a cell at most in each direction.
 const MAX_DEPTH: u32 = 5;
@@ -64,7 +64,13 @@ pub(crate) fn integrate(
     cells.iter().map(|c| cell(*c, region, &density, allowed, 0)).sum()
 }
 
-fn cell(c: Cell, region: Option<&Region>, density: &dyn Fn(f64, f64) -> f64, allowed: f64, depth: u32) -> f64 {
+fn cell(
+    c: Cell,
+    region: Option<&Region>,
+    density: &dyn Fn(f64, f64) -> f64,
+    allowed: f64,
+    depth: u32,
+) -> f64 {
     let whole = panel(c, density);
     let parts = c.quarters().map(|q| panel(q, density));
     let halved: f64 = parts.iter().sum();

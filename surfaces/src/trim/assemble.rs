@@ -52,7 +52,8 @@ pub(crate) fn assemble(carrier: &Carrier, joined: &Joined, side: Side) -> Result
             let k = index(axis);
             if closes[k] {
                 if let Some(range) = cut_free(&chains, axis, domain, &region) {
-                    chains = chains.iter().map(|c| shifted(c, axis, range, domain.get(axis).length())).collect();
+                    chains =
+                        chains.iter().map(|c| shifted(c, axis, range, domain.get(axis).length())).collect();
                     set(&mut domain, axis, range);
                     closes[k] = false;
                     // With one direction cut along a line that is outside, the ends of what is left are out.
@@ -81,11 +82,11 @@ pub(crate) fn assemble(carrier: &Carrier, joined: &Joined, side: Side) -> Result
         }
     }
     let carrier = match &carrier.surface {
-        FaceSurface::Analytic(a) => FaceSurface::Analytic(a.limited(domain)),
+        FaceSurface::Analytic(a) => FaceSurface::Analytic(Arc::new(a.limited(domain))),
         FaceSurface::Nurbs(n) => FaceSurface::Nurbs(n.clone()),
     };
     let shared: Arc<dyn Surface> = match &carrier {
-        FaceSurface::Analytic(a) => Arc::new(*a),
+        FaceSurface::Analytic(a) => a.clone(),
         FaceSurface::Nurbs(n) => n.clone(),
     };
     let surface = TrimmedSurface::from_region(shared, domain, region, side, joined.chains.len())?;

@@ -130,11 +130,6 @@ impl Bands {
         ys.sort_by(f64::total_cmp);
         ys
     }
-
-    /// First coordinates at which a segment begins or ends, ascending.
-    pub(crate) fn edges(&self) -> &[f64] {
-        &self.edges
-    }
 }
 
 #[cfg(test)]

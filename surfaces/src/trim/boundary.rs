@@ -39,6 +39,10 @@ const CHORD: f64 = 2e-6;
 /// parameters are trusted; beyond it the whole surface is searched and the gap is reported.
 const NEAR: f64 = 1e-4;
 
+/// Distance between a boundary curve and its surface, as a fraction of the face's size, beyond which they do not belong
+/// together. Real files of poor quality stay below a hundredth.
+const FAR: f64 = 0.1;
+
 /// Builds the trimmed surface of a face. Loops have the inside on their left, seen against the carrier's normal, if
 /// `oriented`.
 pub(crate) fn build(
@@ -49,7 +53,7 @@ pub(crate) fn build(
 ) -> Result<Built, TrimError> {
     let carrier = Carrier::new(surface, oriented);
     let size = size_mm(&carrier, loops);
-    let tolerance = Tolerance { chord_mm: CHORD * size, near_mm: NEAR * size };
+    let tolerance = Tolerance { chord_mm: CHORD * size, near_mm: NEAR * size, far_mm: FAR * size };
     let mut gap_mm = 0.0_f64;
     let mut edges = Vec::new();
     for (owner, l) in loops.iter().enumerate() {
@@ -69,6 +73,9 @@ pub(crate) fn build(
             });
         }
     }
+    if gap_mm.is_nan() || gap_mm > tolerance.far_mm {
+        return Err(TrimError::OffSurface { gap_mm, size_mm: size });
+    }
     for e in &mut edges {
         snap(&carrier, &mut e.points, tolerance.chord_mm);
     }
@@ -78,7 +85,8 @@ pub(crate) fn build(
         findings.push(format!("the boundary lies up to {gap_mm:.3e} mm off the surface"));
     }
     if joined.jump_mm > tolerance.near_mm {
-        findings.push(format!("the boundary has a gap of {:.3e} mm, closed by a straight line", joined.jump_mm));
+        findings
+            .push(format!("the boundary has a gap of {:.3e} mm, closed by a straight line", joined.jump_mm));
     }
     let assembled = assemble(&carrier, &joined, side)?;
     if !assembled.consistent {

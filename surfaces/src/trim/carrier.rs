@@ -14,7 +14,7 @@ pub enum FaceSurface {
     /// A spline surface.
     Nurbs(Arc<NurbsSurface>),
     /// A surface with a closed form.
-    Analytic(Analytic),
+    Analytic(Arc<Analytic>),
 }
 
 impl FaceSurface {
@@ -30,7 +30,7 @@ impl FaceSurface {
     fn surface(&self) -> &dyn Surface {
         match self {
             Self::Nurbs(s) => &**s,
-            Self::Analytic(s) => s,
+            Self::Analytic(s) => &**s,
         }
     }
 }
@@ -101,8 +101,7 @@ impl Carrier {
             }
             FaceSurface::Nurbs(n) => {
                 let size = Box3::around(&n.net().points).diagonal_mm();
-                let fractions: Vec<f64> =
-                    (0..PROBES).map(|k| k as f64 / (PROBES - 1) as f64).collect();
+                let fractions: Vec<f64> = (0..PROBES).map(|k| k as f64 / (PROBES - 1) as f64).collect();
                 let side = |axis: Axis, end: f64| -> Vec<Point3> {
                     let at = domain.get(axis).at(end);
                     let other = domain.get(axis.other());

@@ -48,8 +48,9 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
             let gap = |k: usize| (kept[k].ends[0] - end).norm();
             let closing = (start - end).norm();
             // The next edge in the file where it continues; else the chain closes; else the nearest start.
-            let following = (last + 1 < kept.len() && !used[last + 1] && kept[last + 1].owner == kept[last].owner)
-                .then_some(last + 1);
+            let following =
+                (last + 1 < kept.len() && !used[last + 1] && kept[last + 1].owner == kept[last].owner)
+                    .then_some(last + 1);
             let next = match following {
                 Some(k) if gap(k) <= slack_mm => Some(k),
                 _ if closing <= slack_mm => None,

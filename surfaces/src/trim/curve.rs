@@ -219,7 +219,8 @@ impl Piece {
         let same = (from - to).norm() <= slack_mm;
         if let Some(period) = curve.period() {
             let hair = 1e-9 * period;
-            if same && (t1 - t0).rem_euclid(period).min(period - (t1 - t0).rem_euclid(period)) < 1e-3 * period {
+            if same && (t1 - t0).rem_euclid(period).min(period - (t1 - t0).rem_euclid(period)) < 1e-3 * period
+            {
                 t1 = t0 + period;
             }
             while t1 <= t0 + hair {

@@ -33,8 +33,7 @@ fn bring(t: f64, i: Interval, closes: bool) -> f64 {
 /// The nearest point reached from `start`: parameters within the rectangle and the distance, mm.
 pub(crate) fn newton(target: &Target<'_>, start: Uv) -> (Uv, f64) {
     let domain = target.surface.domain();
-    let place =
-        |p: Uv| uv(bring(p.u, domain.u, target.closes[0]), bring(p.v, domain.v, target.closes[1]));
+    let place = |p: Uv| uv(bring(p.u, domain.u, target.closes[0]), bring(p.v, domain.v, target.closes[1]));
     let mut at = place(start);
     let mut jet = target.surface.jet2(at);
     let mut distance = (jet.point - target.point).norm();
@@ -47,8 +46,7 @@ pub(crate) fn newton(target: &Target<'_>, start: Uv) -> (Uv, f64) {
             !target.closes[0] && ((at.u <= domain.u.lo && g[0] > 0.0) || (at.u >= domain.u.hi && g[0] < 0.0)),
             !target.closes[1] && ((at.v <= domain.v.lo && g[1] > 0.0) || (at.v >= domain.v.hi && g[1] < 0.0)),
         ];
-        let full =
-            [[e + r.dot(&jet.duu), f + r.dot(&jet.duv)], [f + r.dot(&jet.duv), h + r.dot(&jet.dvv)]];
+        let full = [[e + r.dot(&jet.duu), f + r.dot(&jet.duv)], [f + r.dot(&jet.duv), h + r.dot(&jet.dvv)]];
         let step = solve(full, g, held)
             .or_else(|| {
                 // Gauss and Newton's matrix, lifted where the surface has no tangent plane.

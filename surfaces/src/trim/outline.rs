@@ -93,8 +93,7 @@ fn pieces(sheet: &Sheet<'_>) -> Vec<Vec<[f64; 2]>> {
         // A chain may begin anywhere: its last piece then ends where its first one starts.
         let end = piece[piece.len() - 1];
         let closed = near(sheet, piece[0], end);
-        let follower =
-            joined.iter().position(|j| !closed && !on_rim(sheet, end) && near(sheet, j[0], end));
+        let follower = joined.iter().position(|j| !closed && !on_rim(sheet, end) && near(sheet, j[0], end));
         match follower {
             Some(k) => {
                 let mut whole = piece;

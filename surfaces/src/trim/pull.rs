@@ -6,6 +6,7 @@
 use super::carrier::Carrier;
 use super::curve::Curve;
 use osculate_geom::{Uv, uv};
+use std::cell::Cell;
 
 /// Lengths that a pull compares with, mm.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,8 @@ pub(crate) struct Tolerance {
     pub(crate) chord_mm: f64,
     /// A curve point farther from the surface than this is looked for elsewhere on it.
     pub(crate) near_mm: f64,
+    /// A curve that is farther from the surface than this somewhere is not refined: it is no boundary of it.
+    pub(crate) far_mm: f64,
 }
 
 /// A curve on a surface.
@@ -28,11 +31,11 @@ pub(crate) struct Pulled {
 /// Pieces between the breaks of a curve before refinement. Eight see any inflection of a cubic or a conic's quarter.
 const START_PIECES: usize = 8;
 
-/// Halvings of a start piece at most: below 2^-14 of it a kink of the curve or the surface is being chased.
-const MAX_DEPTH: u32 = 14;
+/// Halvings of a start piece at most: an eighth of a circle takes seven; below 2^-10 a kink is being chased.
+const MAX_DEPTH: u32 = 10;
 
-/// Samples of one curve at most, a bound for hostile input.
-const MAX_POINTS: usize = 50_000;
+/// Samples of one curve at most, a bound for hostile input. A curve of a hundred spans takes 5000.
+const MAX_POINTS: usize = 20_000;
 
 /// Pulls a curve with parameter range `[0, 1]`.
 pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -> Pulled {
@@ -41,16 +44,20 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
     breaks.push(1.0);
     let stride = breaks.len().div_ceil(4000);
     let last = breaks.len() - 1;
-    let breaks: Vec<f64> = breaks.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last).map(|b| *b.1).collect();
+    let breaks: Vec<f64> =
+        breaks.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last).map(|b| *b.1).collect();
     let pieces = (START_PIECES * 4 / breaks.len()).clamp(2, START_PIECES);
     let mut ts = vec![0.0];
     for w in breaks.windows(2) {
-        ts.extend((1..=pieces).map(|k| if k == pieces { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / pieces as f64 }));
+        ts.extend(
+            (1..=pieces)
+                .map(|k| if k == pieces { w[1] } else { w[0] + (w[1] - w[0]) * k as f64 / pieces as f64 }),
+        );
     }
-    let mut gap_mm = 0.0_f64;
-    let mut locate = |t: f64, hint: Option<Uv>| {
+    let gap_mm = Cell::new(0.0_f64);
+    let locate = |t: f64, hint: Option<Uv>| {
         let (at, gap) = carrier.locate(&curve.point(t), hint, tolerance.near_mm);
-        gap_mm = gap_mm.max(gap);
+        gap_mm.set(gap_mm.get().max(gap));
         hint.map_or(at, |h| unwrap(carrier, at, h))
     };
     // The middle first, then outwards in both directions with a neighbour as hint.
@@ -64,6 +71,7 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
         start[k] = locate(ts[k], Some(start[k - 1]));
     }
     let mut points = vec![start[0]];
+    let near = gap_mm.get() <= tolerance.far_mm;
     for k in 1..ts.len() {
         // A stack of pending right ends instead of recursion.
         let mut pending = vec![(ts[k], start[k], 0_u32)];
@@ -71,7 +79,7 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
         while let Some((t1, p1, depth)) = pending.pop() {
             let tm = 0.5 * (t0 + t1);
             let guess = uv(0.5 * (p0.u + p1.u), 0.5 * (p0.v + p1.v));
-            let room = depth < MAX_DEPTH && points.len() + pending.len() < MAX_POINTS;
+            let room = near && depth < MAX_DEPTH && points.len() + pending.len() < MAX_POINTS;
             let split = room.then(|| locate(tm, Some(guess))).filter(|pm| {
                 let jet = osculate_geom::Surface::jet2(&carrier.surface, *pm);
                 let off = jet.tangent(uv(pm.u - guess.u, pm.v - guess.v)).norm();
@@ -86,7 +94,7 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
             }
         }
     }
-    Pulled { points: simplify(carrier, &points, 0.05 * tolerance.chord_mm), gap_mm }
+    Pulled { points: simplify(carrier, &points, 0.05 * tolerance.chord_mm), gap_mm: gap_mm.get() }
 }
 
 /// The parameters shifted by whole periods to be nearest to `near`.

@@ -101,16 +101,24 @@ impl Region {
         let fixed = within(fixed, across);
         let cuts = if along_y { self.columns.crossings(fixed) } else { self.rows.crossings(fixed) };
         let mut ends = vec![line.lo];
-        ends.extend(cuts.into_iter().filter(|t| *t > line.lo && *t < line.hi));
+        let first = within(line.lo, line);
+        ends.extend(cuts.into_iter().filter(|t| *t > first && *t < line.hi));
         ends.push(line.hi);
+        let state = |t: f64| if along_y { self.parity(fixed, t) } else { self.parity(t, fixed) };
+        // Asking in every interval heals a crossing lost to rounding; with very many crossings it would be quadratic.
+        let ask = ends.len() <= 64;
+        let mut inside = state(within(line.lo, line));
         let mut spans: Vec<Interval> = Vec::new();
-        for w in ends.windows(2) {
+        for (k, w) in ends.windows(2).enumerate() {
+            if k > 0 {
+                inside = !inside;
+            }
             if w[1] <= w[0] {
                 continue;
             }
-            let middle = 0.5 * (w[0] + w[1]);
-            let inside =
-                if along_y { self.parity(fixed, middle) } else { self.parity(middle, fixed) };
+            if ask {
+                inside = state(0.5 * (w[0] + w[1]));
+            }
             if !inside {
                 continue;
             }
@@ -126,7 +134,9 @@ impl Region {
     pub(crate) fn is_whole(&self, slack: f64) -> bool {
         let near = |t: f64, i: Interval| (t - i.lo).abs().min((t - i.hi).abs()) <= slack * i.length();
         let on_rim = |s: &Segment| {
-            (near(s.a[0], self.x) && near(s.b[0], self.x) && (s.a[0] - s.b[0]).abs() <= slack * self.x.length())
+            (near(s.a[0], self.x)
+                && near(s.b[0], self.x)
+                && (s.a[0] - s.b[0]).abs() <= slack * self.x.length())
                 || (near(s.a[1], self.y)
                     && near(s.b[1], self.y)
                     && (s.a[1] - s.b[1]).abs() <= slack * self.y.length())
@@ -137,11 +147,6 @@ impl Region {
     /// The boundary segments, as pairs of parameters within the rectangle.
     pub(crate) fn segments(&self) -> impl Iterator<Item = (Uv, Uv)> + '_ {
         self.segments.iter().map(|s| (back(s.a, self.swap), back(s.b, self.swap)))
-    }
-
-    /// Values of one parameter at which boundary segments begin and end, ascending.
-    pub(crate) fn vertices(&self, axis: Axis) -> &[f64] {
-        if (axis == Axis::U) != self.swap { self.columns.edges() } else { self.rows.edges() }
     }
 
     /// The region as closed polylines within the rectangle, cut open along its sides where chains wrap.

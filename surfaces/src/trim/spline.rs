@@ -174,7 +174,8 @@ mod tests {
     #[test]
     fn a_full_turn_is_a_circle() {
         let c = Point3::new(1.0, 2.0, 3.0);
-        let arc = Spline::arc(c, Vec3::x() * 2.0, Vec3::z() * 2.0, [0.3, 0.3 + std::f64::consts::TAU]).unwrap();
+        let arc =
+            Spline::arc(c, Vec3::x() * 2.0, Vec3::z() * 2.0, [0.3, 0.3 + std::f64::consts::TAU]).unwrap();
         let [lo, hi] = arc.range();
         assert_eq!(arc.period(), Some(hi - lo));
         for k in 0..50 {

@@ -21,7 +21,11 @@ pub(crate) enum SweepError {
 ///
 /// # Errors
 /// [`SweepError`].
-pub(crate) fn extrude(generatrix: &Spline, direction: &Vec3, range: [f64; 2]) -> Result<NurbsSurface, SweepError> {
+pub(crate) fn extrude(
+    generatrix: &Spline,
+    direction: &Vec3,
+    range: [f64; 2],
+) -> Result<NurbsSurface, SweepError> {
     let curve = generatrix.curve();
     let n = curve.poles().len();
     let mut points = Vec::with_capacity(2 * n);
@@ -42,7 +46,11 @@ pub(crate) fn extrude(generatrix: &Spline, direction: &Vec3, range: [f64; 2]) ->
 ///
 /// # Errors
 /// [`SweepError`].
-pub(crate) fn revolve(generatrix: &Spline, axis: &Placement, angles: [f64; 2]) -> Result<NurbsSurface, SweepError> {
+pub(crate) fn revolve(
+    generatrix: &Spline,
+    axis: &Placement,
+    angles: [f64; 2],
+) -> Result<NurbsSurface, SweepError> {
     let turn = Spline::arc(Point3::origin(), Vec3::x(), Vec3::y(), angles)?;
     let (around, along) = (turn.curve(), generatrix.curve());
     let (n, m) = (around.poles().len(), along.poles().len());

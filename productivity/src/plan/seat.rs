@@ -1,0 +1,187 @@
+//! Seating the tool on faces that are rough on a scale below the tool's.
+//!
+//! Faces interpolated through measured or computed points often carry ripples of a few micrometres between knots, with
+//! curvatures that no tool follows. A contact there would sink the tool into the neighbouring crests and swing its axis
+//! with every ripple. So the normal that lead and tilt refer to is averaged over a short stretch of the line, and
+//! the tool is raised along it until it rests on the highest places around. On smooth places both change
+//! nothing: the average of a symmetric stretch is the normal up to second order, and the contact itself is the highest place.
+
+use super::Task;
+use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
+use osculate_geom::{Axis, Darboux, Unit3, Uv, Vec3};
+use osculate_tools::Pose;
+
+/// The normal is averaged over this part of the tool's radius to both sides, or less where knots stand closer.
+const AVERAGE: f64 = 0.05;
+/// ... and over this part of the knot span: ripples have the length of one or two spans.
+const SPANS: f64 = 0.75;
+/// Depth of roughness that is looked for, as a part of the tool's radius: the look reaches as far as a ball of that
+/// radius on a plane would come as near.
+const ROUGHNESS: f64 = 0.0125;
+/// Reach of the wide look, in radii of the tool.
+const WIDE: f64 = 0.6;
+/// Points of a look between neighbouring knots, and fewest to one side.
+const PER_SPAN: f64 = 4.0;
+const FEWEST: f64 = 3.0;
+/// Most points of a look to one side.
+const MOST: f64 = 24.0;
+/// Raising moves the place of rest; this many rounds settle it to well below a micrometre.
+const ROUNDS: usize = 3;
+
+/// Length of the knot span around a parameter, in the parameter.
+fn span_at(breaks: &[f64], t: f64) -> f64 {
+    let k = breaks.partition_point(|b| *b <= t).clamp(1, breaks.len() - 1);
+    breaks[k] - breaks[k - 1]
+}
+
+/// Deviation of the normal from its average above which a face counts as rough, rad.
+const ROUGH_ANGLE: f64 = 0.01;
+
+/// The motion of a tool led by averaged normals, not seated.
+pub(super) struct Averaged<'a> {
+    pub(super) seat: &'a Seat<'a>,
+    pub(super) line: IsoLine<'a>,
+}
+
+impl SurfaceLine for Averaged<'_> {
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError> {
+        self.seat.frame(&self.line, t)
+    }
+}
+
+/// Knots of a face, fetched once.
+pub(super) struct Seat<'a> {
+    task: &'a Task<'a>,
+    breaks: [Vec<f64>; 2],
+}
+
+impl<'a> Seat<'a> {
+    pub(super) fn new(task: &'a Task<'a>) -> Self {
+        Self { task, breaks: [task.surface.breaks(Axis::U), task.surface.breaks(Axis::V)] }
+    }
+
+    pub(super) const fn task(&self) -> &'a Task<'a> {
+        self.task
+    }
+
+    fn span(&self, axis: Axis, t: f64) -> f64 {
+        span_at(&self.breaks[usize::from(axis == Axis::V)], t)
+    }
+
+    /// The frame at `t` with its normal and tangent averaged along the line, and the speed there.
+    pub(super) fn frame(&self, line: &IsoLine<'_>, t: f64) -> Result<(Darboux, f64), LineError> {
+        let (here, speed) = line.frame(t)?;
+        let i = self.task.surface.domain().get(line.along);
+        let reach = (AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12))
+            .min(SPANS * self.span(line.along, i.bring(t)));
+        // Sums of normals and tangents and of their rates.
+        let mut sums = [Vec3::zeros(); 4];
+        for k in -3..=3 {
+            // Beyond the end of a line the end itself counts.
+            let s = t + reach * f64::from(k) / 3.0;
+            let s = if i.periodic { s } else { s.clamp(i.lo, i.hi) };
+            let (f, v) = line.frame(s)?;
+            let weight = 4.0 - f64::from(k).abs();
+            let turn = f.turn * v;
+            for (sum, x) in sums.iter_mut().zip([
+                f.normal.into_inner(),
+                f.tangent.into_inner(),
+                turn.cross(&f.normal),
+                turn.cross(&f.tangent),
+            ]) {
+                *sum += x * weight;
+            }
+        }
+        let [n, t, dn, dt] = sums;
+        let (Some(normal), Some(_)) = (Unit3::try_new(n, 1e-6), Unit3::try_new(t, 1e-6)) else {
+            return Ok((here, speed));
+        };
+        let tangent = osculate_geom::project_to_tangent(&normal, &t);
+        let left = Unit3::new_unchecked(normal.cross(&tangent));
+        // The frame turns so that it carries n along, and about n as the tangent does.
+        let turn = normal.cross(&dn) / n.norm() + normal.into_inner() * (left.dot(&dt) / t.norm());
+        // Per mm, as frames have it.
+        let turn = if speed == 0.0 { here.turn } else { turn / speed };
+        Ok((Darboux { tangent, left, normal, turn, ..here }, speed))
+    }
+
+    /// Whether the normal changes faster than the tool can follow: by more than the limit against its average.
+    pub(super) fn is_rough(&self, line: &IsoLine<'_>, t: f64) -> bool {
+        match (line.frame(t), self.frame(line, t)) {
+            (Ok((a, _)), Ok((b, _))) => a.normal.angle(&b.normal) > ROUGH_ANGLE,
+            _ => false,
+        }
+    }
+
+    /// The pose raised (or lowered) along `normal` until the cutter just rests on the face around `at`, and by how much.
+    ///
+    /// The look reaches `reach_mm` to each side.
+    fn rest(&self, at: Uv, normal: &Unit3, pose: Pose, reach_mm: f64) -> (Pose, f64) {
+        let task = self.task;
+        let surface = task.surface;
+        let domain = surface.domain();
+        let jet = surface.jet2(at);
+        let side = |axis: Axis, speed: f64| -> (f64, i32) {
+            let t = domain.get(axis).bring(at.get(axis));
+            let reach = reach_mm / speed.max(1e-12);
+            let step = (self.span(axis, t) / PER_SPAN).min(reach / FEWEST);
+            let n = (reach / step).ceil().min(MOST);
+            // At most two dozen.
+            (reach / n, n as i32)
+        };
+        let ((du, nu), (dv, nv)) = (side(Axis::U, jet.du.norm()), side(Axis::V, jet.dv.norm()));
+        let mut points = Vec::with_capacity(((2 * nu + 1) * (2 * nv + 1)) as usize);
+        for i in -nu..=nu {
+            for j in -nv..=nv {
+                let p = Uv { u: at.u + du * f64::from(i), v: at.v + dv * f64::from(j) };
+                if domain.contains(p) {
+                    points.push(surface.point(p));
+                }
+            }
+        }
+        let mut seated = pose;
+        let mut lift = 0.0;
+        for _ in 0..ROUNDS {
+            let gap = points.iter().map(|p| task.cutter.distance(&seated, p)).fold(f64::INFINITY, f64::min);
+            if !gap.is_finite() || gap.abs() < 1e-7 {
+                break;
+            }
+            lift -= gap;
+            seated = Pose { tip: pose.tip + normal.into_inner() * lift, axis: pose.axis };
+        }
+        (seated, lift)
+    }
+
+    /// The seated pose at a line parameter, its frame, and the lift.
+    pub(super) fn at(&self, line: &IsoLine<'_>, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
+        let (frame, _) = self.frame(line, t)?;
+        let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
+        let reach_mm = self.task.cutter.radius_mm() * (2.0 * ROUGHNESS).sqrt();
+        let (pose, lift) = self.rest(line.uv(t), &frame.normal, pose, reach_mm);
+        Ok((pose, frame, lift))
+    }
+
+    /// What a pass leaves at its own line at `t`, the tool seated there and a little before and after: zero on a smooth
+    /// face, the depth of what the tool cannot enter on a rough one.
+    pub(super) fn left_over(&self, line: &IsoLine<'_>, t: f64) -> Result<f64, LineError> {
+        let (here, speed) = line.frame(t)?;
+        let i = self.task.surface.domain().get(line.along);
+        let step = AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12);
+        let mut least = f64::INFINITY;
+        for k in -4..=4 {
+            let s = t + 0.5 * step * f64::from(k);
+            if i.contains(s) {
+                let (pose, _, _) = self.at(line, s)?;
+                least = least.min(self.task.cutter.distance(&pose, &here.point));
+            }
+        }
+        Ok(least.max(0.0))
+    }
+
+    /// How far the whole end of the tool, not only the part of it next to the contact, is held off the face.
+    pub(super) fn wide_lift(&self, line: &IsoLine<'_>, t: f64) -> Result<f64, LineError> {
+        let (frame, _) = self.frame(line, t)?;
+        let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
+        Ok(self.rest(line.uv(t), &frame.normal, pose, WIDE * self.task.cutter.radius_mm()).1)
+    }
+}
