@@ -1,7 +1,7 @@
 //! Times of the kernel on the bicubic reference surfaces: `cargo bench -p osculate-surfaces --bench kernel`.
 //!
-//! Each line is the best of several rounds over the same random places, in nanoseconds for one call; take ratios within
-//! one run, not times across machines.
+//! Each line is the best of several rounds over the same random places, in nanoseconds for one call; take
+//! ratios within one run, not times across machines.
 #![allow(
     missing_docs,
     clippy::unwrap_used,

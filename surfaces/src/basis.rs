@@ -1,14 +1,15 @@
 //! B-spline basis functions: values and derivatives, their polynomial pieces, and blossoms.
 //!
-//! All three come from one triangle, the Cox-de Boor recurrence on a span `[t_k, t_(k+1)]`: with `N_(i,d)` the function
-//! of degree d of pole i, which lives on `[t_i, t_(i+d+1)]`,
+//! All three come from one triangle, the Cox-de Boor recurrence on a span `[t_k, t_(k+1)]`: with `N_(i,d)`
+//! the function of degree d of pole i, which lives on `[t_i, t_(i+d+1)]`,
 //!
 //! ```text
 //! N_(i,d) (t) = (t - t_i) / (t_(i+d) - t_i) N_(i,d-1) + (t_(i+d+1) - t) / (t_(i+d+1) - t_(i+1)) N_(i+1,d-1)
 //! ```
 //!
-//! Feeding a different argument into every degree gives the blossom instead of the value, and polynomials in place of
-//! numbers give the pieces. Source: [Piegl & Tiller, The NURBS Book, 2.3 to 2.5; Ramshaw, Blossoms are polar forms].
+//! Feeding a different argument into every degree gives the blossom instead of the value, and polynomials in
+//! place of numbers give the pieces. Source: [Piegl & Tiller, The NURBS Book, 2.3 to 2.5; Ramshaw, Blossoms
+//! are polar forms].
 
 use crate::knots::{Knots, MAX_DEGREE};
 
@@ -25,8 +26,8 @@ pub(crate) struct Basis {
 }
 
 impl Knots {
-    /// Values with the argument `x(d)` in the step to degree d: the basis functions where `x` is constant, the
-    /// weights of a blossom elsewhere. `seen(d, values)` gets the values of degree d - 1 before the step.
+    /// Values with the argument `x(d)` in the step to degree d: the basis functions where `x` is constant,
+    /// the weights of a blossom elsewhere. `seen(d, values)` gets the values of degree d - 1 before the step.
     #[inline]
     fn triangle(
         &self,
@@ -67,7 +68,8 @@ impl Knots {
         out
     }
 
-    /// The basis functions on a span at `t`, with two derivatives. The span's polynomials are continued outside it.
+    /// The basis functions on a span at `t`, with two derivatives. The span's polynomials are continued
+    /// outside it.
     pub(crate) fn basis(&self, span: usize, t: f64) -> Basis {
         let (k, p) = (self.knot_index(span), self.degree());
         let (mut one_below, mut two_below) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -97,17 +99,18 @@ impl Knots {
         (k - self.degree(), self.triangle(k, |_| t, |_, _| ()))
     }
 
-    /// Weights of the poles `first + r` in the blossom of a span's polynomial at `args[0], args[1], ..` (as many as
-    /// the degree).
+    /// Weights of the poles `first + r` in the blossom of a span's polynomial at `args[0], args[1], ..` (as
+    /// many as the degree).
     pub(crate) fn blossom(&self, span: usize, args: &[f64]) -> (usize, [f64; WIDTH]) {
         let k = self.knot_index(span);
         (k - self.degree(), self.triangle(k, |d| args[d - 1], |_, _| ()))
     }
 
-    /// The polynomials of the basis functions on a span in powers of `x = (2 t - lo - hi) / (hi - lo)`, which runs
-    /// over `[-1, 1]`: row r belongs to the pole `first + r`.
+    /// The polynomials of the basis functions on a span in powers of `x = (2 t - lo - hi) / (hi - lo)`, which
+    /// runs over `[-1, 1]`: row r belongs to the pole `first + r`.
     ///
-    /// Powers about the middle of the span lose about degree bits to the basis, half as many as about its end.
+    /// Powers about the middle of the span lose about degree bits to the basis, half as many as about its
+    /// end.
     pub(crate) fn span_powers(&self, span: usize) -> Vec<Vec<f64>> {
         let (t, k) = (self.as_slice(), self.knot_index(span));
         let half = 0.5 * (t[k + 1] - t[k]);
@@ -182,8 +185,8 @@ mod tests {
             let pieces = knots.span_powers(span);
             let ends = &knots.breaks()[span..span + 2];
             let x = ((t - ends[0]) - (ends[1] - t)) / (ends[1] - ends[0]);
-            // Sums of p + 1 numbers: the values are at most 1, the derivatives at most p / step and p^2 / step^2 with
-            // steps above 0.05; 100 roundings.
+            // Sums of p + 1 numbers: the values are at most 1, the derivatives at most p / step and p^2 /
+            // step^2 with steps above 0.05; 100 roundings.
             let step = 0.05f64;
             let sizes = [1.0, p as f64 / step, (p * p) as f64 / (step * step)];
             for (order, size) in sizes.iter().enumerate() {

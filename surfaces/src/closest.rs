@@ -1,12 +1,14 @@
 //! The nearest point of a surface.
 //!
-//! - [`closest`] searches a whole NURBS surface and says how sure the result is: pieces are left out only where a
-//!   proven bound puts them farther than the best point found ([`index`], [`search`]).
-//! - [`closest_near`] follows any surface down from a hint ([`descent`]): for neighbouring points, one after the other.
+//! - [`closest`] searches a whole NURBS surface and says how sure the result is: pieces are left out only
+//!   where a proven bound puts them farther than the best point found ([`index`], [`search`]).
+//! - [`closest_near`] follows any surface down from a hint ([`descent`]): for neighbouring points, one after
+//!   the other.
 //! - [`closest_sampled`] starts that from a grid, for surfaces without pieces.
 //!
-//! The point minimises `|S(u, v) - q|`; it may lie on an edge, a corner, a crease or a seam. There the offset `S - q` is
-//! perpendicular to the directions in which the parameters are free to move, not to all of the tangent plane.
+//! The point minimises `|S(u, v) - q|`; it may lie on an edge, a corner, a crease or a seam. There the offset
+//! `S - q` is perpendicular to the directions in which the parameters are free to move, not to all of the
+//! tangent plane.
 
 mod bounds;
 mod descent;
@@ -40,13 +42,13 @@ pub struct Foot {
     pub point: Point3,
     /// Its distance from the query.
     pub distance_mm: f64,
-    /// Sine of the angle by which the offset misses a right angle to the directions free to move; the larger of both.
-    /// Zero where the query lies on the surface.
+    /// Sine of the angle by which the offset misses a right angle to the directions free to move; the larger
+    /// of both. Zero where the query lies on the surface.
     pub residual: f64,
     /// Where on the surface it lies.
     pub kind: FootKind,
-    /// No point of the surface is nearer than `distance_mm - gap_mm`. Zero to rounding for a complete search, the
-    /// distance itself where only a neighbourhood was searched.
+    /// No point of the surface is nearer than `distance_mm - gap_mm`. Zero to rounding for a complete search,
+    /// the distance itself where only a neighbourhood was searched.
     pub gap_mm: f64,
 }
 
@@ -59,8 +61,8 @@ pub enum ClosestError {
         /// The query.
         query: Point3,
     },
-    /// The descent stopped where the offset is not perpendicular: at a place without tangent plane, or where the
-    /// coordinates leave no digits.
+    /// The descent stopped where the offset is not perpendicular: at a place without tangent plane, or where
+    /// the coordinates leave no digits.
     #[error(
         "stopped at u = {}, v = {} after {steps} steps, {distance_mm} mm away, with the offset {residual:.1e} off the \
          normal: start nearer to the point", at.u, at.v
@@ -83,15 +85,15 @@ pub enum ClosestError {
     },
 }
 
-/// Largest sine off a right angle that counts as perpendicular. The descent reaches about 1e-15 of the coordinates
-/// over the distance; a thousandth of a radian would be a wrong foot.
+/// Largest sine off a right angle that counts as perpendicular. The descent reaches about 1e-15 of the
+/// coordinates over the distance; a thousandth of a radian would be a wrong foot.
 const PERPENDICULAR: f64 = 1e-6;
 
-/// The nearest point of a NURBS surface: of all of it without a hint, of the neighbourhood of the hint with one (see
-/// [`closest_near`]).
+/// The nearest point of a NURBS surface: of all of it without a hint, of the neighbourhood of the hint with
+/// one (see [`closest_near`]).
 ///
-/// The first search of a surface builds its index. Queries for which whole regions are equally far (the centre of a
-/// sphere) end after a bounded amount of work with [`Foot::gap_mm`] above zero.
+/// The first search of a surface builds its index. Queries for which whole regions are equally far (the
+/// centre of a sphere) end after a bounded amount of work with [`Foot::gap_mm`] above zero.
 ///
 /// # Errors
 /// [`ClosestError`] for numbers that are not finite, and for a descent from a hint that does not converge.
@@ -103,8 +105,8 @@ pub fn closest(surface: &NurbsSurface, query: &Point3, hint: Option<Uv>) -> Resu
     }
 }
 
-/// The nearest point in the neighbourhood of a hint: where the distance stops shrinking on the way down from there. A
-/// parameter stops at the ends of its range and wraps where the surface is periodic.
+/// The nearest point in the neighbourhood of a hint: where the distance stops shrinking on the way down from
+/// there. A parameter stops at the ends of its range and wraps where the surface is periodic.
 ///
 /// # Errors
 /// [`ClosestError::NotFinite`], [`ClosestError::NotConverged`].
@@ -128,8 +130,9 @@ const MAX_LINES: usize = 65;
 /// Starts that [`closest_sampled`] follows down.
 const STARTS: usize = 6;
 
-/// The nearest point of any surface, from the nearest points of a grid: eight steps between neighbouring breaks, fewer
-/// where that would be more than 64. Not certain: a feature smaller than the grid can be missed.
+/// The nearest point of any surface, from the nearest points of a grid: eight steps between neighbouring
+/// breaks, fewer where that would be more than 64. Not certain: a feature smaller than the grid can be
+/// missed.
 ///
 /// # Errors
 /// [`ClosestError::Unbounded`] where the domain has no end; otherwise as [`closest_near`].

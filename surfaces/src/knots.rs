@@ -1,7 +1,8 @@
 //! Knot vectors of B-spline curves and surfaces.
 //!
-//! A basis of degree p over n poles has n + p + 1 knots `t_0 <= t_1 <= ...` and lives on `[t_p, t_n]`. The ends may
-//! be clamped (p + 1 equal knots) or not, so that periodic splines written out in full are knot vectors too.
+//! A basis of degree p over n poles has n + p + 1 knots `t_0 <= t_1 <= ...` and lives on `[t_p, t_n]`. The
+//! ends may be clamped (p + 1 equal knots) or not, so that periodic splines written out in full are knot
+//! vectors too.
 //!
 //! Source: [Piegl & Tiller, The NURBS Book, chapter 2].
 
@@ -154,8 +155,8 @@ impl Knots {
         self.knots.iter().filter(|k| **k == t).count()
     }
 
-    /// The span that holds `t`, counted between [`Knots::breaks`]: at a break the one to its right, outside the
-    /// domain the first or last.
+    /// The span that holds `t`, counted between [`Knots::breaks`]: at a break the one to its right, outside
+    /// the domain the first or last.
     #[must_use]
     pub fn find(&self, t: f64) -> usize {
         let inner = &self.breaks[1..self.spans.len()];

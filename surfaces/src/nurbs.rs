@@ -1,7 +1,8 @@
 //! Tensor-product NURBS surfaces: the data, its checks, and the view as [`Surface`].
 //!
-//! `S(u, v) = sum N_i(u) N_j(v) w_ij P_ij / sum N_i(u) N_j(v) w_ij` over `[u_p, u_n] x [v_q, v_m]`. Poles are stored
-//! with v running fastest. Parameters outside are clamped to the domain, or wrapped where the surface closes smoothly.
+//! `S(u, v) = sum N_i(u) N_j(v) w_ij P_ij / sum N_i(u) N_j(v) w_ij` over `[u_p, u_n] x [v_q, v_m]`. Poles are
+//! stored with v running fastest. Parameters outside are clamped to the domain, or wrapped where the surface
+//! closes smoothly.
 //!
 //! Source: [Piegl & Tiller, The NURBS Book, chapters 3 and 4].
 
@@ -145,12 +146,12 @@ impl NurbsError {
     }
 }
 
-/// Two opposite sides closer than this fraction of the control box are one line in space: files that keep ten digits
-/// write a seam twice within it, and no wanted gap is as narrow (1e-6 mm on a part of a metre).
+/// Two opposite sides closer than this fraction of the control box are one line in space: files that keep ten
+/// digits write a seam twice within it, and no wanted gap is as narrow (1e-6 mm on a part of a metre).
 const SAME_LINE: f64 = 1e-9;
 
-/// Cross derivatives of the two sides that differ by less than this fraction are one: a crease of a millionth of a
-/// radian is below what any machine shows.
+/// Cross derivatives of the two sides that differ by less than this fraction are one: a crease of a millionth
+/// of a radian is below what any machine shows.
 const SAME_DERIVATIVE: f64 = 1e-6;
 
 /// A checked NURBS surface with precomputed polynomial pieces.
@@ -167,8 +168,8 @@ pub struct NurbsSurface {
 }
 
 impl NurbsSurface {
-    /// The surface of the given degrees, knots (multiple ones written out) and control net; `[u, v]` throughout. The
-    /// outward normal is along `S_u x S_v`.
+    /// The surface of the given degrees, knots (multiple ones written out) and control net; `[u, v]`
+    /// throughout. The outward normal is along `S_u x S_v`.
     ///
     /// # Errors
     /// [`NurbsError`] says which number is wrong and where.

@@ -1,7 +1,8 @@
 //! NURBS curves in the plane and in space.
 //!
-//! `C(t) = sum N_i(t) w_i P_i / sum N_i(t) w_i` over `[t_p, t_n]`. Curves in space are edges, mm; curves in the plane are
-//! mostly lines in the parameters of a surface, without unit. Parameters outside the domain are clamped to it.
+//! `C(t) = sum N_i(t) w_i P_i / sum N_i(t) w_i` over `[t_p, t_n]`. Curves in space are edges, mm; curves in
+//! the plane are mostly lines in the parameters of a surface, without unit. Parameters outside the domain are
+//! clamped to it.
 //!
 //! Source: [Piegl & Tiller, The NURBS Book, chapters 3 and 4].
 
@@ -77,13 +78,13 @@ pub type NurbsCurve2 = NurbsCurve<2>;
 /// A curve in space.
 pub type NurbsCurve3 = NurbsCurve<3>;
 
-/// Most halvings of a span by [`NurbsCurve::polyline`]: each divides the distance from the chord by four, so twenty
-/// reach 1e-12 of the first one.
+/// Most halvings of a span by [`NurbsCurve::polyline`]: each divides the distance from the chord by four, so
+/// twenty reach 1e-12 of the first one.
 const MAX_HALVINGS: u32 = 20;
 
 impl<const D: usize> NurbsCurve<D> {
-    /// The curve of the given degree, knots (multiple ones written out), poles and positive weights, `None` for a
-    /// polynomial curve.
+    /// The curve of the given degree, knots (multiple ones written out), poles and positive weights, `None`
+    /// for a polynomial curve.
     ///
     /// # Errors
     /// [`CurveError`] says which number is wrong.
@@ -217,13 +218,13 @@ impl<const D: usize> NurbsCurve<D> {
         Ok(self.over(inserted(&self.knots, t, times)))
     }
 
-    /// The piece over `[from, to]`, with clamped knots.
+    /// The piece over a parameter interval, with clamped knots.
     ///
     /// # Errors
     /// [`EditError::Interval`] where that is empty or reaches outside.
-    pub fn restricted(&self, from: f64, to: f64) -> Result<Self, EditError> {
-        check_piece(&self.knots, from, to)?;
-        Ok(self.over(clamped_piece(&self.knots, from, to)))
+    pub fn restricted(&self, part: Interval) -> Result<Self, EditError> {
+        check_piece(&self.knots, part.lo, part.hi)?;
+        Ok(self.over(clamped_piece(&self.knots, part.lo, part.hi)))
     }
 
     /// The two pieces below and above `t`.
@@ -257,14 +258,15 @@ impl<const D: usize> NurbsCurve<D> {
         }
     }
 
-    /// Parameters, ascending and with both ends and all knots, between which the curve stays within `chord` (in the
-    /// unit of the poles) of the straight line.
+    /// Parameters, ascending and with both ends and all knots, between which the curve stays within `chord`
+    /// (in the unit of the poles) of the straight line.
     ///
-    /// Certain, not sampled: a piece is halved until its Bezier poles are within `chord` of its chord, and the curve is
-    /// within the hull of these. On a cubic that asks for a tenth to a sixth more points than needed.
+    /// Certain, not sampled: a piece is halved until its Bezier poles are within `chord` of its chord, and
+    /// the curve is within the hull of these. On a cubic that asks for about a sixth more points than needed.
     ///
     /// # Errors
-    /// [`CurveError::Chord`] where `chord` is not positive or would take more than 2^20 pieces between two knots.
+    /// [`CurveError::Chord`] where `chord` is not positive or would take more than 2^20 pieces between two
+    /// knots.
     pub fn polyline(&self, chord: f64) -> Result<Vec<f64>, CurveError> {
         if chord <= 0.0 || chord.is_nan() {
             return Err(CurveError::Chord { chord, least: 0.0 });
@@ -367,8 +369,8 @@ mod tests {
                 let half = 0.5 * (c.point(w[1]) - c.point(w[0])).norm();
                 assert!(1.0 - (1.0 - half * half).sqrt() <= chord * (1.0 + 1e-9));
             }
-            // Equal steps with the full sagitta would need this many; halving costs at most twice, the certificate (the
-            // middle pole is twice as far as the curve) another root of two.
+            // Equal steps with the full sagitta would need this many; halving costs at most twice, the
+            // certificate (the middle pole is twice as far as the curve) another root of two.
             let least = (std::f64::consts::FRAC_PI_2 / (8.0 * chord).sqrt()).ceil();
             assert!((ts.len() as f64) < 3.0 * least + 2.0, "{} for {least}", ts.len());
         }
@@ -392,7 +394,9 @@ mod tests {
         assert_eq!(far, CurveError::NonFinite { index: 1, coordinate: 1, got: f64::INFINITY });
         let line = NurbsCurve::new(1, flat(), ends(), None).unwrap();
         assert_eq!(line.split(1.0).unwrap_err(), EditError::Outside { got: 1.0, lo: 0.0, hi: 1.0 });
-        assert!(line.restricted(0.5, 0.5).is_err() && line.restricted(0.5, f64::NAN).is_err());
+        let empty = line.restricted(Interval::new(0.5, 0.5)).unwrap_err();
+        assert_eq!(empty, EditError::Interval { from: 0.5, to: 0.5, lo: 0.0, hi: 1.0 });
+        assert!(line.restricted(Interval::new(0.5, f64::NAN)).is_err());
         let often = EditError::Multiplicity { at: 0.5, multiplicity: 2, degree: 1 };
         assert_eq!(line.insert_knot(0.5, 2).unwrap_err(), often);
     }

@@ -1,8 +1,9 @@
-//! Changes to a NURBS surface that keep its shape: more knots, a piece of it, Bezier patches, other directions of the
-//! parameters.
+//! Changes to a NURBS surface that keep its shape: more knots, a piece of it, Bezier patches, other
+//! directions of the parameters.
 //!
-//! All are exact up to the rounding of means between poles ([`crate::refine`]); turning and swapping move numbers only.
-//! The outward normal stays where it was, so that [`Side`] changes where the sense of `S_u x S_v` does.
+//! All are exact up to the rounding of means between poles ([`crate::refine`]); turning and swapping move
+//! numbers only. The outward normal stays where it was, so that [`Side`] changes where the sense of `S_u x
+//! S_v` does.
 
 use crate::knots::Knots;
 use crate::nurbs::{Net, NurbsSurface};

@@ -1,10 +1,11 @@
-//! Evaluation of a NURBS surface: polynomial pieces precomputed per knot rectangle, and the direct sum over basis
-//! functions where they would be too many or too steep.
+//! Evaluation of a NURBS surface: polynomial pieces precomputed per knot rectangle, and the direct sum over
+//! basis functions where they would be too many or too steep.
 //!
-//! On the rectangle between neighbouring knots the numerator and the denominator are polynomials in `x` and `y`, which
-//! run over `[-1, 1]`. Their coefficients are stored once, about an origin of their own near the piece, so that
-//! derivatives do not lose digits to the distance from the frame's origin. A jet is then Horner's rule with two
-//! derivatives and, for rational surfaces, the quotient rule [The NURBS Book, eq. 4.20]:
+//! On the rectangle between neighbouring knots the numerator and the denominator are polynomials in `x` and
+//! `y`, which run over `[-1, 1]`. Their coefficients are stored once, about an origin of their own near the
+//! piece, so that derivatives do not lose digits to the distance from the frame's origin. A jet is then
+//! Horner's rule with two derivatives and, for rational surfaces, the quotient rule [The NURBS Book, eq.
+//! 4.20]:
 //!
 //! ```text
 //! S = A / w,  S_a = (A_a - w_a S) / w,  S_ab = (A_ab - w_a S_b - w_b S_a - w_ab S) / w
@@ -15,7 +16,8 @@ use crate::nurbs::Net;
 use nalgebra::Vector4;
 use osculate_geom::{Point3, Uv, Vec3};
 
-/// Above this degree the powers on `[-1, 1]` lose more digits (a bit a degree and direction) than the direct sum.
+/// Above this degree the powers on `[-1, 1]` lose more digits (a bit a degree and direction) than the direct
+/// sum.
 const MAX_POWER_DEGREE: usize = 7;
 
 /// Most coefficients stored, 8 bytes each: 64 MiB, 130 thousand rational bicubic pieces.
@@ -108,8 +110,8 @@ impl Evaluator {
     }
 }
 
-/// First derivatives that are all rounding are zero: a side that shrinks to a point has no tangent there, and must not
-/// pretend to.
+/// First derivatives that are all rounding are zero: a side that shrinks to a point has no tangent there, and
+/// must not pretend to.
 #[inline]
 fn without_noise(mut jet: Orders<Vec3>, noise: [f64; 2]) -> Orders<Vec3> {
     for k in 0..2 {
@@ -120,8 +122,8 @@ fn without_noise(mut jet: Orders<Vec3>, noise: [f64; 2]) -> Orders<Vec3> {
     jet
 }
 
-/// Coefficients of one piece about `origin`, `(w (P - origin), w)` in powers of x and y, v fastest. The weights are
-/// those of `net`, or 1.
+/// Coefficients of one piece about `origin`, `(w (P - origin), w)` in powers of x and y, v fastest. The
+/// weights are those of `net`, or 1.
 pub(crate) fn piece_powers(
     knots: &[Knots; 2],
     net: &Net,
@@ -174,8 +176,8 @@ impl<const C: usize> Pieces<C> {
             for (sv, pv) in powers[1].iter().enumerate() {
                 let (origin, sums) = piece_powers(knots, net, [su, sv], [pu, pv]);
                 pieces.origins.push(origin);
-                // Terms x^a y^b at 1, times the powers that derivatives bring down; the constant term only counts through
-                // the weights' derivatives.
+                // Terms x^a y^b at 1, times the powers that derivatives bring down; the constant term only
+                // counts through the weights' derivatives.
                 let n = pieces.terms[1];
                 let sum: f64 =
                     sums.iter().enumerate().map(|(k, c)| (k / n + k % n) as f64 * c.xyz().norm()).sum();
@@ -384,8 +386,8 @@ mod tests {
             let slow = Evaluator::Direct.jet(&knots, &net, at, span);
             let size = slow.iter().skip(1).fold(10.0_f64, |m, d| m.max(d.norm()));
             for (a, b) in fast.iter().zip(&slow) {
-                // Powers of degree 7 in two directions lose up to 14 bits of a result of this size, the quotient rule
-                // up to 4 more with weights from 0.5 to 2.5.
+                // Powers of degree 7 in two directions lose up to 14 bits of a result of this size, the
+                // quotient rule up to 4 more with weights from 0.5 to 2.5.
                 prop_assert!((a - b).norm() <= 2e-16 * f64::from(1 << 16) * size, "{a} {b}");
             }
             prop_assert!((evaluator.point(&knots, &net, at, span).coords - fast[0]).norm() <= 1e-14 * size);

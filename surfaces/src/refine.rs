@@ -1,8 +1,8 @@
 //! Change of knots without change of shape, by blossoms.
 //!
-//! A pole of a spline is the blossom of its polynomial at the pole's own inner knots, so the poles over any other
-//! knot vector that has the old breaks are blossoms too: one formula inserts knots, cuts out a piece and extracts
-//! Bezier segments. Every new pole is a mean of old ones with weights between 0 and 1.
+//! A pole of a spline is the blossom of its polynomial at the pole's own inner knots, so the poles over any
+//! other knot vector that has the old breaks are blossoms too: one formula inserts knots, cuts out a piece
+//! and extracts Bezier segments. Every new pole is a mean of old ones with weights between 0 and 1.
 //!
 //! Source: [Ramshaw, Blossoms are polar forms; Cohen, Lyche & Riesenfeld, Discrete B-splines].
 
@@ -24,14 +24,15 @@ impl Mean {
     }
 }
 
-/// The means that give the poles over `new`, a knot vector of the same degree that lies in the old domain and has
-/// all old breaks between its ends.
+/// The means that give the poles over `new`, a knot vector of the same degree that lies in the old domain and
+/// has all old breaks between its ends.
 pub(crate) fn means(old: &Knots, new: &[f64]) -> Vec<Mean> {
     let p = old.degree();
     (0..new.len() - p - 1)
         .map(|j| {
-            // The piece where this pole's support begins; it may end several pieces later, which the blossom does
-            // not notice since the pieces join smoothly up to the multiplicity of the knots between them.
+            // The piece where this pole's support begins; it may end several pieces later, which the blossom
+            // does not notice since the pieces join smoothly up to the multiplicity of the knots between
+            // them.
             let (first, weights) = old.blossom(old.find(new[j]), &new[j + 1..=j + p]);
             Mean { first, weights: weights[..=p].to_vec() }
         })

@@ -1,8 +1,8 @@
 //! The ruled surface between two curves.
 //!
-//! `S(u, v)` runs along the straight line from `A(u)` at v = 0 to `B(u)` at v = 1. It is exact: the curves' poles are
-//! the two rows of its net. Where the curves have different weights the point at v does not divide the ruling as v to
-//! 1 - v, but it lies on it.
+//! `S(u, v)` runs along the straight line from `A(u)` at v = 0 to `B(u)` at v = 1. It is exact: the curves'
+//! poles are the two rows of its net. Where the curves have different weights the point at v does not divide
+//! the ruling as v to 1 - v, but it lies on it.
 
 use crate::knots::Knots;
 use crate::nurbs::{Net, NurbsSurface};
@@ -25,7 +25,9 @@ pub enum RuledError {
         poles: [usize; 2],
     },
     /// The knots differ.
-    #[error("knot {index} is {} on one curve and {} on the other: bring both to one domain and the same knots", knots[0], knots[1])]
+    #[error(
+        "knot {index} is {} on one curve and {} on the other: bring both to one domain and the same knots", knots[0], knots[1]
+    )]
     Knots {
         /// The first knot that differs, from 0.
         index: usize,
@@ -34,8 +36,8 @@ pub enum RuledError {
     },
 }
 
-/// The ruled surface with `at_zero` at v = 0 and `at_one` at v = 1, over the curves' parameter u. The outward normal is
-/// along `S_u x S_v`.
+/// The ruled surface with `at_zero` at v = 0 and `at_one` at v = 1, over the curves' parameter u. The outward
+/// normal is along `S_u x S_v`.
 ///
 /// # Errors
 /// [`RuledError`] where degrees, numbers of poles or knots differ.

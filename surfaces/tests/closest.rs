@@ -1,5 +1,5 @@
-//! Closest points: a thousand hard queries with known distances, closed forms on quadrics, every kind of foot, and
-//! brute force on random surfaces.
+//! Closest points: a thousand hard queries with known distances, closed forms on quadrics, every kind of
+//! foot, and brute force on random surfaces.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,7 +13,8 @@ use osculate_surfaces::{
 };
 use proptest::prelude::*;
 
-/// Checks a foot against the surface: the point, the distance, and a right angle where the parameters are free.
+/// Checks a foot against the surface: the point, the distance, and a right angle where the parameters are
+/// free.
 fn consistent(s: &NurbsSurface, q: &Point3, foot: &Foot) {
     assert!(s.domain().contains(foot.uv), "{foot:?}");
     let size = foot.point.coords.norm() + q.coords.norm();
@@ -226,7 +227,8 @@ proptest! {
         let sine = jet.du.cross(&jet.dv).norm() / (jet.du.norm() * jet.dv.norm());
         let Ok(forms) = jet.forms() else { return Ok(()) };
         let p = forms.principal();
-        // Well inside both centres of curvature and not on a fold, the foot below a point is where it came from.
+        // Well inside both centres of curvature and not on a fold, the foot below a point is where it came
+        // from.
         prop_assume!(sine > 0.2 && p.k_max.abs().max(p.k_min.abs()) * up.abs() < 0.3);
         let q = jet.point + forms.normal.into_inner() * up;
         let (du, dv) = (1e-3 * s.domain().u.length(), 1e-3 * s.domain().v.length());

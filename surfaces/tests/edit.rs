@@ -9,8 +9,8 @@ use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, uv};
 use osculate_surfaces::{EditError, NurbsCurve, NurbsCurve2, NurbsSurface};
 use proptest::prelude::*;
 
-/// Coordinates are up to 130 mm and means are convex: a few roundings at each of two axes, and up to 18 bits for the
-/// powers of degree 9 (7 at most is evaluated by powers).
+/// Coordinates are up to 130 mm and means are convex: a few roundings at each of two axes, and up to 18 bits
+/// for the powers of degree 9 (7 at most is evaluated by powers).
 const POINT: f64 = 1e-10;
 
 fn same_jet(a: &Jet2, b: &Jet2) -> Result<(), TestCaseError> {
@@ -18,8 +18,8 @@ fn same_jet(a: &Jet2, b: &Jet2) -> Result<(), TestCaseError> {
     let size = pairs.iter().fold(100.0_f64, |m, (x, _)| m.max(x.norm()));
     prop_assert!((a.point - b.point).norm() <= POINT, "{a:?} {b:?}");
     for (x, y) in pairs {
-        // Derivatives of a cut piece multiply the rounding of poles by the square of twice the degree over a span, a
-        // tenth of a unit at least: 1e-14 * (2 * 9 / 0.1)^2 of the poles.
+        // Derivatives of a cut piece multiply the rounding of poles by the square of twice the degree over a
+        // span, a tenth of a unit at least: 1e-14 * (2 * 9 / 0.1)^2 of the poles.
         prop_assert!((x - y).norm() <= 1e-8 * size, "{x:?} {y:?}");
     }
     Ok(())
@@ -76,7 +76,8 @@ proptest! {
         prop_assert_eq!(patches.len(), s.knots(Axis::U).span_count() * s.knots(Axis::V).span_count());
         let at = s.domain().at(f, g);
         let patch = patches.iter().find(|p| p.domain.contains(at)).unwrap();
-        // De Casteljau's scheme in both directions, a way of evaluation that shares nothing with the surface's.
+        // De Casteljau's scheme in both directions, a way of evaluation that shares nothing with the
+        // surface's.
         let [n, m] = patch.net.count;
         let weight = |k: usize| patch.net.weights.as_ref().map_or(1.0, |w| w[k]);
         let reduce = |mut row: Vec<nalgebra::Vector4<f64>>, t: f64| {
@@ -184,7 +185,7 @@ proptest! {
         let pieces = c.bezier_pieces();
         prop_assert!(near(pieces.iter().find(|b| b.domain().contains(at)).unwrap().point(at)));
         if f > 0.0 {
-            prop_assert!(near(c.restricted(d.lo, at).unwrap().point(at)));
+            prop_assert!(near(c.restricted(Interval::new(d.lo, at)).unwrap().point(at)));
         }
     }
 
@@ -196,7 +197,8 @@ proptest! {
         let t = b[k] + (b[k + 1] - b[k]) * (0.01 + 0.98 * ((b.len() - 1) as f64 * f - k as f64));
         let (j, up, down) = (c.jet(t), c.jet(t + h), c.jet(t - h));
         prop_assert!((j.point - c.point(t)).norm() <= 1e-13);
-        // The third derivative is at most some (4 * 6)^3 of a span to the third: 1e4 * 1e-8 / 6, times a few units.
+        // The third derivative is at most some (4 * 6)^3 of a span to the third: 1e4 * 1e-8 / 6, times a few
+        // units.
         let (size1, size2) = (j.first.norm().max(10.0), j.second.norm().max(100.0));
         prop_assert!(((up.point - down.point) / (2.0 * h) - j.first).norm() <= 1e-4 * size1);
         prop_assert!(((up.first - down.first) / (2.0 * h) - j.second).norm() <= 1e-3 * size2);

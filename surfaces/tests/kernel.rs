@@ -1,5 +1,5 @@
-//! NURBS surfaces: reference vectors of another kernel (`data/NOTICE.md`), textbook examples, quadrics that NURBS hold
-//! exactly, the laws of surfaces, and everything that is refused.
+//! NURBS surfaces: reference vectors of another kernel (`data/NOTICE.md`), textbook examples, quadrics that
+//! NURBS hold exactly, the laws of surfaces, and everything that is refused.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -78,7 +78,8 @@ fn book_curves() {
 
 #[test]
 fn book_surface() {
-    // [The NURBS Book, example 4.3]: only the nine poles that act at (5/2, 1) are given, the others are set to zero.
+    // [The NURBS Book, example 4.3]: only the nine poles that act at (5/2, 1) are given, the others are set
+    // to zero.
     let mut net = Net { count: [8, 5], points: vec![Point3::origin(); 40], weights: Some(vec![1.0; 40]) };
     let rows = [
         [([0.0, 2.0, 4.0], 1.0), ([0.0, 3.0, 2.0], 2.0), ([0.0, 2.0, 0.0], 1.0)],
@@ -213,7 +214,8 @@ fn derivatives_do_not_lose_digits_far_from_the_origin() {
         let near = reference(rational);
         let far = moved(&near, 1.0, Vec3::new(1e5, -3e5, 2e5));
         let (a, b) = (near.jet2(uv(0.31, 0.77)), far.jet2(uv(0.31, 0.77)));
-        // The poles themselves are rounded by 3e-11 mm there; second derivatives multiply that by some 7^2 * 6.
+        // The poles themselves are rounded by 3e-11 mm there; second derivatives multiply that by some 7^2 *
+        // 6.
         for (x, y) in [(a.du, b.du), (a.dv, b.dv), (a.duu, b.duu), (a.duv, b.duv), (a.dvv, b.dvv)] {
             assert!((x - y).norm() < 1e-8, "{x:?} {y:?}");
         }
@@ -354,8 +356,9 @@ proptest! {
             (b[k] + (b[k + 1] - b[k]) * (0.01 + 0.98 * part), b[k + 1] - b[k])
         };
         let ((u, hu), (v, hv)) = (inside(Axis::U, f), inside(Axis::V, g));
-        // Step 1e-5 of a span of a polynomial of degree 9 with a third derivative up to (2 * 9)^2 times the first one:
-        // 3e-8; rounding 1e-15 * 100 mm / 1e-5 of 10 mm a span: 1e-9; rational ones are some tens of times steeper.
+        // Step 1e-5 of a span of a polynomial of degree 9 with a third derivative up to (2 * 9)^2 times the
+        // first one: 3e-8; rounding 1e-15 * 100 mm / 1e-5 of 10 mm a span: 1e-9; rational ones are some tens
+        // of times steeper.
         let step = 1e-5 * hu.min(hv);
         laws::jets_match_differences(&s, uv(u, v), step, 2e-6);
         let jet = s.jet2(uv(u, v));

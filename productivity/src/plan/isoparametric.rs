@@ -67,7 +67,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     let done = std::sync::atomic::AtomicUsize::new(0);
     let total = layout.levels.len();
     let breaks = task.surface.breaks(layout.along);
-    let seat = Seat::new(task);
+    let seat = Seat::new(task, layout.along);
     let built: Vec<Result<Vec<Pass>, LineError>> = layout
         .levels
         .par_iter()
@@ -124,19 +124,15 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
     let [lo, hi] = across_range(surface, along).ok_or_else(nothing)?;
     let across = Interval::new(lo, hi);
     let slack = 1e-7 * (hi - lo);
-    let mut columns: Vec<Column> = column_parameters(task, along, across)?
+    let seat = Seat::new(task, along);
+    let mut columns: Vec<Column> = column_parameters(&seat, along, across)?
         .into_par_iter()
         .map(|t| Column { t, inside: spans(surface, along.other(), t, 400), frontier: None, left: 0.0 })
         .collect();
     for c in &mut columns {
         c.advance(lo, slack);
     }
-    let seat = Seat::new(task);
     rough_columns(&seat, along, lo, false, &mut columns);
-    let rough = [0.0, 0.25, 0.5, 0.75, 1.0].iter().any(|f| {
-        let line = IsoLine { surface, along, fixed: across.at(*f), reversed: false };
-        columns.par_iter().any(|c| seat.is_rough(&line, c.t))
-    });
     let closed = surface.domain().get(along).periodic;
     let mut levels: Vec<Level> = Vec::new();
     let mut length_mm = 0.0;
@@ -150,7 +146,7 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
             });
         }
         let reversed = !closed && levels.len() % 2 == 1;
-        let cover = Cover { seat: &seat, rough, task, along, reversed, hi, guess };
+        let cover = Cover { seat: &seat, task, along, reversed, hi, guess };
         let next = columns
             .par_iter()
             .filter_map(|c| c.frontier.map(|f| cover.furthest_pass(c, f)))
@@ -201,17 +197,17 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
 }
 
 /// Parameters of the columns: where a path along three lines of the face would put its points, thinned.
-fn column_parameters(task: &Task<'_>, along: Axis, across: Interval) -> Result<Vec<f64>, PlanError> {
+fn column_parameters(seat: &Seat<'_>, along: Axis, across: Interval) -> Result<Vec<f64>, PlanError> {
+    let task = seat.task();
     let surface = task.surface;
     let i = surface.domain().get(along);
     let breaks = surface.breaks(along);
-    let seat = Seat::new(task);
     let mut all: Vec<f64> = (0..=COLUMNS[0]).map(|k| i.at(k as f64 / COLUMNS[0] as f64)).collect();
     for f in [0.02, 0.5, 0.98] {
         let line = IsoLine { surface, along, fixed: across.at(f), reversed: false };
         for s in spans(surface, along, across.at(f), 200) {
             if s[1] - s[0] > 1e-9 * i.length()
-                && let Ok(knots) = resample(&seat, task, &line, s, &breaks)
+                && let Ok(knots) = resample(seat, task, &line, s, &breaks)
             {
                 all.extend(knots.iter().map(|k| k.t));
             }
@@ -247,8 +243,6 @@ fn first_step(task: &Task<'_>, along: Axis, across: Interval) -> f64 {
 /// The two questions of the frontier, for one pass direction.
 struct Cover<'a> {
     seat: &'a Seat<'a>,
-    /// Whether the tool is led by averaged normals.
-    rough: bool,
     task: &'a Task<'a>,
     along: Axis,
     reversed: bool,
@@ -266,7 +260,7 @@ impl Cover<'_> {
         // The frame turns forward about b at the normal curvature along the feed.
         let h = task.design_scallop_mm(frame.turn.dot(&frame.left), column.left);
         let averaged = Averaged { seat: self.seat, line };
-        let led: &dyn SurfaceLine = if self.rough { &averaged } else { &line };
+        let led: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &line };
         let motion = ContactMotion { line: led, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
         let step = 0.05 * task.cutter.radius_mm() / speed.abs().max(1e-12);
         let at = Uv::from_axis(self.along, t, point);

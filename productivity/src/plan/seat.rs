@@ -10,6 +10,7 @@ use super::Task;
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::{Axis, Darboux, Unit3, Uv, Vec3};
 use osculate_tools::Pose;
+use rayon::prelude::*;
 
 /// The normal is averaged over this part of the tool's radius to both sides, or less where knots stand closer.
 const AVERAGE: f64 = 0.05;
@@ -24,7 +25,7 @@ const WIDE: f64 = 0.6;
 const PER_SPAN: f64 = 4.0;
 const FEWEST: f64 = 3.0;
 /// Most points of a look to one side.
-const MOST: f64 = 24.0;
+const MOST: f64 = 32.0;
 /// Raising moves the place of rest; this many rounds settle it to well below a micrometre.
 const ROUNDS: usize = 3;
 
@@ -36,6 +37,9 @@ fn span_at(breaks: &[f64], t: f64) -> f64 {
 
 /// Deviation of the normal from its average above which a face counts as rough, rad.
 const ROUGH_ANGLE: f64 = 0.01;
+
+/// Knot spans looked at to tell whether a face is rough.
+const MOST_SPANS: usize = 500;
 
 /// The motion of a tool led by averaged normals, not seated.
 pub(super) struct Averaged<'a> {
@@ -53,11 +57,30 @@ impl SurfaceLine for Averaged<'_> {
 pub(super) struct Seat<'a> {
     task: &'a Task<'a>,
     breaks: [Vec<f64>; 2],
+    rough: bool,
 }
 
 impl<'a> Seat<'a> {
-    pub(super) fn new(task: &'a Task<'a>) -> Self {
-        Self { task, breaks: [task.surface.breaks(Axis::U), task.surface.breaks(Axis::V)] }
+    /// For passes along `along`.
+    pub(super) fn new(task: &'a Task<'a>, along: Axis) -> Self {
+        let surface = task.surface;
+        let mut seat = Self { task, breaks: [surface.breaks(Axis::U), surface.breaks(Axis::V)], rough: false };
+        let knots = &seat.breaks[usize::from(along == Axis::V)];
+        let stride = knots.len().div_ceil(MOST_SPANS);
+        let across = surface.domain().get(along.other());
+        let rough = [0.02, 0.25, 0.5, 0.75, 0.98].par_iter().any(|f| {
+            let line = IsoLine { surface, along, fixed: across.at(*f), reversed: false };
+            knots.windows(2).step_by(stride).any(|w| {
+                [0.0, 0.25, 0.5, 0.75].iter().any(|g| seat.is_rough(&line, w[0] + (w[1] - w[0]) * g))
+            })
+        });
+        seat.rough = rough;
+        seat
+    }
+
+    /// Whether the face changes its normal faster than the tool can follow.
+    pub(super) const fn rough(&self) -> bool {
+        self.rough
     }
 
     pub(super) const fn task(&self) -> &'a Task<'a> {
@@ -105,8 +128,8 @@ impl<'a> Seat<'a> {
         Ok((Darboux { tangent, left, normal, turn, ..here }, speed))
     }
 
-    /// Whether the normal changes faster than the tool can follow: by more than the limit against its average.
-    pub(super) fn is_rough(&self, line: &IsoLine<'_>, t: f64) -> bool {
+    /// Whether the normal at `t` differs from its average by more than the limit.
+    fn is_rough(&self, line: &IsoLine<'_>, t: f64) -> bool {
         match (line.frame(t), self.frame(line, t)) {
             (Ok((a, _)), Ok((b, _))) => a.normal.angle(&b.normal) > ROUGH_ANGLE,
             _ => false,
@@ -156,7 +179,9 @@ impl<'a> Seat<'a> {
     pub(super) fn at(&self, line: &IsoLine<'_>, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
         let (frame, _) = self.frame(line, t)?;
         let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
-        let reach_mm = self.task.cutter.radius_mm() * (2.0 * ROUGHNESS).sqrt();
+        // A ripple's normal leans the tool towards places further off than those next to the contact.
+        let radii = if self.rough { WIDE } else { (2.0 * ROUGHNESS).sqrt() };
+        let reach_mm = radii * self.task.cutter.radius_mm();
         let (pose, lift) = self.rest(line.uv(t), &frame.normal, pose, reach_mm);
         Ok((pose, frame, lift))
     }

@@ -1,8 +1,9 @@
 //! Proven bounds for the derivatives of a piece of a NURBS surface over a sub-rectangle.
 //!
-//! Around the middle of the sub-rectangle, in parameters s and t that run over `[-1, 1]`, a polynomial is bounded by the
-//! sum of the magnitudes of its coefficients, and so are its derivatives. For a rational piece `S = A / w`, Leibniz's
-//! rule for `A = w S` gives, with `|.|` a bound over the sub-rectangle and `w_min` the least weight,
+//! Around the middle of the sub-rectangle, in parameters s and t that run over `[-1, 1]`, a polynomial is
+//! bounded by the sum of the magnitudes of its coefficients, and so are its derivatives. For a rational piece
+//! `S = A / w`, Leibniz's rule for `A = w S` gives, with `|.|` a bound over the sub-rectangle and `w_min` the
+//! least weight,
 //!
 //! ```text
 //! |S_ij| <= ( |A_ij| + sum over (k, l) != (0, 0) of C(i, k) C(j, l) |w_kl| |S_(i-k, j-l)| ) / w_min

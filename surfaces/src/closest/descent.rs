@@ -1,12 +1,13 @@
-//! Down to the nearest point of a surface from a start: Newton's method on `f = |S(u, v) - q|^2 / 2` in a rectangle.
+//! Down to the nearest point of a surface from a start: Newton's method on `f = |S(u, v) - q|^2 / 2` in a
+//! rectangle.
 //!
 //! ```text
 //! f_a = (S - q) . S_a        f_ab = S_a . S_b + (S - q) . S_ab
 //! ```
 //!
-//! A parameter at an end of its range is held there while `f` falls outwards. The step is Newton's where the matrix of
-//! second derivatives is positive definite, Gauss's (without the second term) elsewhere, and is shortened until `f`
-//! falls, so that the distance never grows.
+//! A parameter at an end of its range is held there while `f` falls outwards. The step is Newton's where the
+//! matrix of second derivatives is positive definite, Gauss's (without the second term) elsewhere, and is
+//! shortened until `f` falls, so that the distance never grows.
 
 use osculate_geom::{Domain, Interval, Jet2, Point3, Uv, uv};
 
@@ -30,11 +31,12 @@ const MAX_SHORTENINGS: u32 = 10;
 /// A position is known to this fraction of the coordinates: two units in the last place.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A step below this fraction of the coordinates changes `f` by less than its rounding: no use in shortening it.
+/// A step below this fraction of the coordinates changes `f` by less than its rounding: no use in shortening
+/// it.
 const BLIND: f64 = 1e-10;
 
-/// After a step of Newton's below this fraction of the coordinates the next one, which goes like its square, would be
-/// lost in rounding.
+/// After a step of Newton's below this fraction of the coordinates the next one, which goes like its square,
+/// would be lost in rounding.
 const LAST_STEP: f64 = 1e-9;
 
 /// Squared sine between the columns of a step's matrix (in its own metric) below which it is not solved.
@@ -49,8 +51,8 @@ struct State {
     /// Squared lengths of S_u and S_v.
     metric: [f64; 2],
     held: [bool; 2],
-    /// Square of the offset's part along the free directions, the larger of both, mm2. Squares throughout: roots are
-    /// half of what a step costs beyond the jet.
+    /// Square of the offset's part along the free directions, the larger of both, mm2. Squares throughout:
+    /// roots are half of what a step costs beyond the jet.
     along_square: f64,
 }
 
@@ -68,7 +70,8 @@ fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
     State { jet, square: r.norm_squared(), gradient, metric, held, along_square: along(0).max(along(1)) }
 }
 
-/// The nearest point reached from `start`, brought into `rect` first. `jet` must take the parameters as they are there.
+/// The nearest point reached from `start`, brought into `rect` first. `jet` must take the parameters as they
+/// are there.
 #[inline]
 pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, start: Uv) -> Found {
     let mut here = state(jet(place(rect, start)), rect, query);
@@ -94,8 +97,8 @@ pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, s
         let mut next = None;
         for _ in 0..=MAX_SHORTENINGS {
             let there = state(jet(target(scale)), rect, query);
-            // Near the foot the distances differ by rounding of coordinates alone; there the offset's part along the
-            // surface decides.
+            // Near the foot the distances differ by rounding of coordinates alone; there the offset's part
+            // along the surface decides.
             let same =
                 there.square <= here.square + 2.0 * ROUNDING * size * (here.square.sqrt() + ROUNDING * size);
             if there.square < here.square || (same && there.along_square < here.along_square) {
@@ -125,8 +128,8 @@ pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, s
     Found { jet: here.jet, distance_mm, residual, steps }
 }
 
-/// The parameters in the rectangle, at its end where they are only rounding away from it: a parameter just inside an end
-/// could neither be held nor move.
+/// The parameters in the rectangle, at its end where they are only rounding away from it: a parameter just
+/// inside an end could neither be held nor move.
 #[inline]
 fn place(rect: &Domain, at: Uv) -> Uv {
     let snap = |i: &Interval, t: f64| {

@@ -1,15 +1,15 @@
 //! The index of a NURBS surface for closest points: nearly flat cells with proven bounds, in a tree of boxes.
 //!
-//! A cell is a sub-rectangle of one piece with its tangent parallelogram at the middle, `c + a s + b t` for s and t in
-//! `[-1, 1]`, and bounds of the second and third derivatives over it ([`super::bounds`]). By Taylor's theorem the
-//! surface stays within
+//! A cell is a sub-rectangle of one piece with its tangent parallelogram at the middle, `c + a s + b t` for s
+//! and t in `[-1, 1]`, and bounds of the second and third derivatives over it ([`super::bounds`]). By
+//! Taylor's theorem the surface stays within
 //!
 //! ```text
 //! flatness = (|S_ss| + 2 |S_st| + |S_tt|) / 2
 //! ```
 //!
-//! of the parallelogram, point by point, so that the distance of a query from the parallelogram less the flatness bounds
-//! its distance from the cell from below.
+//! of the parallelogram, point by point, so that the distance of a query from the parallelogram less the
+//! flatness bounds its distance from the cell from below.
 
 use super::bounds::{Bounds, bounds, moved};
 use crate::nurbs::NurbsSurface;
@@ -17,11 +17,13 @@ use crate::nurbs_eval::piece_powers;
 use nalgebra::Vector4;
 use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Uv, Vec3, uv};
 
-/// A cell is flat enough for the index when it strays from its parallelogram by less than this fraction of its own
-/// size: then Newton's method converges from any start in it unless the query is near a centre of curvature.
+/// A cell is flat enough for the index when it strays from its parallelogram by less than this fraction of
+/// its own size: then Newton's method converges from any start in it unless the query is near a centre of
+/// curvature.
 const FLAT: f64 = 0.06;
 
-/// Most halvings of a piece for the index; what is still curved then is halved by the search where it matters.
+/// Most halvings of a piece for the index; what is still curved then is halved by the search where it
+/// matters.
 const MAX_HALVINGS: u32 = 8;
 
 /// Most cells made by halving pieces, beyond the one that every piece has.
@@ -222,8 +224,8 @@ impl Index {
         Self { cells, nodes }
     }
 
-    /// Calls `visit` with the cells that may be within the limit that `visit` returns, near ones first. The limit is a
-    /// distance in mm.
+    /// Calls `visit` with the cells that may be within the limit that `visit` returns, near ones first. The
+    /// limit is a distance in mm.
     pub(super) fn visit(&self, query: &Point3, mut visit: impl FnMut(u32) -> f64) {
         let mut limit = f64::INFINITY;
         // Halving keeps the depth below 33 for 2^32 cells, and every level leaves one node behind.

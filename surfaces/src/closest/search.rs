@@ -1,13 +1,16 @@
 //! The certified search for the nearest point of a NURBS surface.
 //!
-//! The tree gives the cells whose lower bound is below the best upper bound. The nearest of them starts a descent over
-//! the whole surface; after it a cell is done with when one of these is shown:
+//! The tree gives the cells whose lower bound is below the best upper bound. The nearest of them starts a
+//! descent over the whole surface; after it a cell is done with when one of these is shown:
 //!
 //! 1. its lower bound is not below the best distance;
-//! 2. the quadratic Taylor polynomial of the squared distance, less a bound of its remainder, is not below it;
-//! 3. the squared distance is convex over it, or over the side to which it falls all over the cell, and the tangent
-//!    plane of that function at some place, or a descent in the cell, shows that it has nothing nearer;
-//! 4. else it is halved, until the work allowed is spent; then the least lower bound left is reported as the gap.
+//! 2. the quadratic Taylor polynomial of the squared distance, less a bound of its remainder, is not below
+//!    it;
+//! 3. the squared distance is convex over it, or over the side to which it falls all over the cell, and the
+//!    tangent plane of that function at some place, or a descent in the cell, shows that it has nothing
+//!    nearer;
+//! 4. else it is halved, until the work allowed is spent; then the least lower bound left is reported as the
+//!    gap.
 
 use super::descent::{Found, descend};
 use super::index::{Cell, Reach};
@@ -20,7 +23,8 @@ use std::collections::BinaryHeap;
 /// Cells looked at after the tree, at most: some milliseconds. Ordinary queries need fewer than twenty.
 const MAX_CELLS: u32 = 20_000;
 
-/// Lower bounds within this fraction of the best distance are not followed up: it is the accuracy of a distance.
+/// Lower bounds within this fraction of the best distance are not followed up: it is the accuracy of a
+/// distance.
 const SAME_DISTANCE: f64 = 1e-12;
 
 /// A cell to look at.
@@ -142,7 +146,8 @@ impl Best {
         }
     }
 
-    /// The foot. A point found in a cell is followed over the whole surface first, in case it stopped at the cell's side.
+    /// The foot. A point found in a cell is followed over the whole surface first, in case it stopped at the
+    /// cell's side.
     fn foot(
         self,
         surface: &NurbsSurface,
@@ -165,7 +170,8 @@ impl Best {
 
     /// The foot where the distance does not fall on either side of a line between pieces.
     ///
-    /// The offset is perpendicular to the surface on no side, but each side alone holds the parameter at its end.
+    /// The offset is perpendicular to the surface on no side, but each side alone holds the parameter at its
+    /// end.
     fn on_crease(
         self,
         surface: &NurbsSurface,
@@ -184,7 +190,9 @@ impl Best {
             let near = found.distance_mm <= self.found.distance_mm * (1.0 + SAME_DISTANCE);
             if near && found.residual <= PERPENDICULAR {
                 let mut foot = finish(&found, domain, gap_mm)?;
-                if foot.kind == FootKind::Interior {
+                let stands = |i: Interval, t: f64| t <= i.lo || t >= i.hi;
+                let at_side = stands(rect.u, found.jet.uv.u) || stands(rect.v, found.jet.uv.v);
+                if foot.kind == FootKind::Interior && at_side {
                     foot.kind = FootKind::Crease;
                 }
                 return Ok(foot);
@@ -209,8 +217,8 @@ fn spans_around(surface: &NurbsSurface, at: Uv) -> Vec<[usize; 2]> {
     us.iter().flat_map(|u| vs.iter().map(move |v| [*u, *v])).collect()
 }
 
-/// Taylor's polynomial of `f = |S - q|^2 / 2` about the middle of a cell, by s and t in `[-1, 1]`, with a bound of how
-/// much its second derivatives change over the cell.
+/// Taylor's polynomial of `f = |S - q|^2 / 2` about the middle of a cell, by s and t in `[-1, 1]`, with a
+/// bound of how much its second derivatives change over the cell.
 struct Model {
     value: f64,
     gradient: [f64; 2],
@@ -227,8 +235,8 @@ impl Model {
         let (hu, hv) = (cell.half.u, cell.half.v);
         let (ss, st, tt) = (centre.duu * (hu * hu), centre.duv * (hu * hv), centre.dvv * (hv * hv));
         let r = cell.centre - query;
-        // Changes of the first derivatives, the second ones and the offset. All shrink at least in proportion on the
-        // way to the middle.
+        // Changes of the first derivatives, the second ones and the offset. All shrink at least in proportion
+        // on the way to the middle.
         let ([m0, m1, m2], [t0, t1, t2, t3]) = (cell.bounds.second, cell.bounds.third);
         let (da, db) = (m0 + m1, m1 + m2);
         let (dss, dst, dtt) = (t0 + t1, t1 + t2, t2 + t3);
@@ -245,11 +253,12 @@ impl Model {
         }
     }
 
-    /// Cuts the cell's rectangle to the side or corner on which the least value of f must lie, where f falls all the way
-    /// to it, and says whether f is convex over what is left.
+    /// Cuts the cell's rectangle to the side or corner on which the least value of f must lie, where f falls
+    /// all the way to it, and says whether f is convex over what is left.
     fn cut_to_least(&self, rect: &mut Domain) -> bool {
         let (h, d) = (&self.second, &self.change);
-        // A gradient changes by at most this on the way from the middle; changes that grow in proportion count half.
+        // A gradient changes by at most this on the way from the middle; changes that grow in proportion
+        // count half.
         let turns =
             [h[0].abs() + h[1].abs() + 0.5 * (d[0] + d[1]), h[2].abs() + h[1].abs() + 0.5 * (d[2] + d[1])];
         let falls = [0, 1].map(|k| self.gradient[k].abs() > turns[k]);
@@ -268,12 +277,13 @@ impl Model {
         }
     }
 
-    /// No point of the cell is nearer: the least value of the quadratic polynomial over the cell, less the remainder. A
-    /// change of the second derivatives that grows in proportion to the way counts with a sixth.
+    /// No point of the cell is nearer: the least value of the quadratic polynomial over the cell, less the
+    /// remainder. A change of the second derivatives that grows in proportion to the way counts with a sixth.
     fn least_mm(&self) -> f64 {
         let ([g, h], [a, b, c]) = (self.gradient, self.second);
         let quadratic = |s: f64, t: f64| g * s + h * t + 0.5 * (a * s * s + c * t * t) + b * s * t;
-        // The least value of l x + q x^2 / 2 over [-1, 1] is at the vertex of a parabola open upwards or at an end.
+        // The least value of l x + q x^2 / 2 over [-1, 1] is at the vertex of a parabola open upwards or at
+        // an end.
         let place = |l: f64, q: f64| if q > 0.0 { (-l / q).clamp(-1.0, 1.0) } else { -l.signum() };
         let mut least = f64::INFINITY;
         for end in [-1.0, 1.0] {
@@ -292,8 +302,8 @@ impl Model {
     }
 }
 
-/// Whether a convex squared distance with this jet at a place of the rectangle stays above the best one everywhere in
-/// it.
+/// Whether a convex squared distance with this jet at a place of the rectangle stays above the best one
+/// everywhere in it.
 fn cannot_beat(jet: &Jet2, rect: &Domain, query: &Point3, best_mm: f64) -> bool {
     let r = jet.point - query;
     // The squared distance lies above its tangent plane, whose least value is at a corner of the rectangle.

@@ -92,8 +92,8 @@ pub fn moved(s: &NurbsSurface, scale: f64, shift: Vec3) -> NurbsSurface {
     NurbsSurface::new(s.degree(), knots, net).unwrap()
 }
 
-/// A wavy surface of any degree to 9, rational or not, with double knots and unclamped ends among them. The poles are
-/// those of a plane of 10 mm a pole, moved by up to 4 mm.
+/// A wavy surface of any degree to 9, rational or not, with double knots and unclamped ends among them. The
+/// poles are those of a plane of 10 mm a pole, moved by up to 4 mm.
 pub fn any_surface() -> impl Strategy<Value = NurbsSurface> {
     let line = || {
         (1usize..=5, any::<bool>(), 0usize..4, any::<bool>(), proptest::collection::vec(0.3f64..1.0, 24))
