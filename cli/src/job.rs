@@ -209,9 +209,8 @@ pub struct MachineTable {
 pub struct SetupTable {
     /// Where the part's origin sits from the table's reference point; chosen from the part's box where not given.
     pub part_zero_mm: Option<[f64; 3]>,
-    /// The part's axes turned on the table, about x, then y, then z.
-    #[serde(default)]
-    pub rotate_deg: [f64; 3],
+    /// The part's axes turned on the table, about x, then y, then z; chosen from the faces' normals where not given.
+    pub rotate_deg: Option<[f64; 3]>,
     /// Clearance of rapid moves over the sphere around the part.
     pub clearance_mm: Option<f64>,
     /// Distance from the surface at which rapid moves end.

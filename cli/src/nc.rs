@@ -4,12 +4,12 @@ use crate::failure::{Failure, beside, read_text};
 use crate::job::Job;
 use crate::part::{self, JobFaces};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
-use osculate_geom::{Box3, Diagnostic, Vec3};
+use osculate_geom::{Diagnostic, Vec3};
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::readback::{self, ReadOptions};
-use osculate_postproc::{Machine, PostOptions, Posted, Setup, built_in_names};
+use osculate_postproc::{Machine, PostOptions, Posted, Setup, built_in_names, suggest};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::Swept;
 use std::path::Path;
@@ -108,9 +108,8 @@ pub fn control(job: &Job) -> Result<Control, Failure> {
     .map_err(here)
 }
 
-/// Where the part of a job sits on the machine: as the job says, or with the middle of the faces' box over the
-/// table's reference point and its lowest point on it.
-pub fn setup(job: &Job, faces: &JobFaces) -> Result<Setup, Failure> {
+/// Where the part of a job sits on the machine, as the job says or as [`suggest`] has it.
+pub fn setup(job: &Job, faces: &JobFaces) -> Result<(Setup, Vec<Diagnostic>), Failure> {
     let s = &job.setup;
     let finite = |key: &str, v: &[f64; 3]| {
         if v.iter().all(|c| c.is_finite()) {
@@ -119,30 +118,56 @@ pub fn setup(job: &Job, faces: &JobFaces) -> Result<Setup, Failure> {
             Err(Failure::file(&job.path, format!("[setup] {key} = {v:?} must be three finite numbers")))
         }
     };
-    finite("rotate_deg", &s.rotate_deg)?;
-    let [a, b, c] = s.rotate_deg.map(f64::to_radians);
-    let turn = |axis: Vec3, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
-    let rotation = turn(Vec3::z(), c) * turn(Vec3::y(), b) * turn(Vec3::x(), a);
-    let zero = match s.part_zero_mm {
-        Some(zero) => {
-            finite("part_zero_mm", &zero)?;
-            Vec3::from(zero)
+    let gauge = job.cutter()?.length_mm() + job.holder()?.map_or(0.0, |h| h.length_mm());
+    let (mut normals, mut points) = (Vec::new(), Vec::new());
+    for (_, p, n) in faces.faces.iter().flat_map(|f| part::grid(&*f.surface, 24)) {
+        points.push(p);
+        normals.push(n);
+    }
+    // A given turn leaves only the place to be found.
+    let given = s.rotate_deg.map(|deg| {
+        let [a, b, c] = deg.map(f64::to_radians);
+        let turn = |axis: Vec3, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
+        turn(Vec3::z(), c) * turn(Vec3::y(), b) * turn(Vec3::x(), a)
+    });
+    if let Some(deg) = &s.rotate_deg {
+        finite("rotate_deg", deg)?;
+    }
+    let mut notes = Vec::new();
+    let mut setup = match given {
+        Some(rotation) => {
+            let turned: Vec<_> = points.iter().map(|p| rotation * p).collect();
+            let place = suggest(&[], &turned, gauge).setup.part_zero.translation;
+            Setup { part_zero: Isometry3::from_parts(place, rotation), gauge_length_mm: gauge }
         }
         None => {
-            let mut turned = Box3::empty();
-            for face in &faces.faces {
-                let b = part::bounds(face);
-                for k in 0..8 {
-                    let pick = |bit: usize, i: usize| if k & bit == 0 { b.min[i] } else { b.max[i] };
-                    turned.add(&(rotation * osculate_geom::Point3::new(pick(1, 0), pick(2, 1), pick(4, 2))));
-                }
+            let found = suggest(&normals, &points, gauge);
+            if found.turned {
+                let (x, y, z) = found.setup.part_zero.rotation.euler_angles();
+                notes.push(Diagnostic::note(
+                    "setup",
+                    format!(
+                        "the part is turned so that its faces look up: rotate_deg = [{:.3}, {:.3}, {:.3}]",
+                        x.to_degrees(),
+                        y.to_degrees(),
+                        z.to_degrees()
+                    ),
+                ));
             }
-            let middle = turned.centre();
-            -Vec3::new(middle.x, middle.y, turned.min.z)
+            found.setup
         }
     };
-    let gauge = job.cutter()?.length_mm() + job.holder()?.map_or(0.0, |h| h.length_mm());
-    Ok(Setup { part_zero: Isometry3::from_parts(Translation3::from(zero), rotation), gauge_length_mm: gauge })
+    if let Some(zero) = s.part_zero_mm {
+        finite("part_zero_mm", &zero)?;
+        setup.part_zero.translation = Translation3::from(Vec3::from(zero));
+    } else {
+        let t = setup.part_zero.translation.vector;
+        notes.push(Diagnostic::note(
+            "setup",
+            format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces", t.x, t.y, t.z),
+        ));
+    }
+    Ok((setup, notes))
 }
 
 /// CL data as text.

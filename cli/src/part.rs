@@ -207,7 +207,7 @@ pub fn bounds(face: &LoadedFace) -> Box3 {
 }
 
 /// Points with normals on a grid over a face's parameters, those inside its trims.
-fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, Unit3)> {
+pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, Unit3)> {
     let d = surface.domain();
     let mut out = Vec::new();
     for i in 0..=n {

@@ -149,8 +149,15 @@ pub fn run(
     let effective = strip * strip / (8.0 * tolerance.scallop_mm);
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
     let verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
-    let worst = verdict
-        .worst
+    // Worst first: by how much of its own limit a place takes.
+    let share = |w: &removal::Worst| match w.kind {
+        Kind::Scallop | Kind::Uncut => w.value_mm / limits.scallop_mm,
+        Kind::Gouge => w.value_mm / limits.gouge_mm,
+        Kind::Holder | Kind::Rapid => w.value_mm / limits.collision_mm,
+    };
+    let mut places: Vec<removal::Worst> = verdict.worst.clone();
+    places.sort_by(|a, b| share(b).total_cmp(&share(a)));
+    let worst = places
         .iter()
         .map(|w| WorstPlace {
             kind: match w.kind {

@@ -33,6 +33,7 @@ mod post;
 mod sequence;
 mod setup;
 mod solve;
+mod suggest;
 
 pub use feed::{FeedMode, PathMetric};
 pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
@@ -41,4 +42,5 @@ pub use nc::Dialect;
 pub use nc::readback;
 pub use post::{PostError, PostOptions, PostSummary, Posted, post};
 pub use setup::{Setup, SetupError};
+pub use suggest::{Suggestion, suggest};
 pub use solve::{SolveError, SolveOptions};

@@ -107,8 +107,9 @@ fn every_dialect_and_mode_that_the_control_reads_so() {
             // LinuxCNC reads F over X Y Z; the other built-in controls over all axes, a degree as a mm.
             let reads = dialect == Dialect::Sinumerik || linuxcnc == (feed == FeedMode::Kf);
             let machine = Machine::built_in(machine).unwrap();
-            // The other machine files have no words that switch LinuxCNC's kinematics.
-            if dialect == Dialect::LinuxCnc && feed == FeedMode::Tcp && !linuxcnc {
+            // Some machine files have no words that switch LinuxCNC's kinematics.
+            let switches = machine.control().linuxcnc_tcp.is_some();
+            if dialect == Dialect::LinuxCnc && feed == FeedMode::Tcp && !switches {
                 let refused = post(&path, &machine, &setup, &PostOptions::new(dialect, feed)).unwrap_err();
                 assert!(refused.to_string().contains("linuxcnc_tcp"), "{refused}");
                 continue;

@@ -199,7 +199,7 @@ fn what_cannot_be_reached_is_said() {
     let text =
         machine("3-axis").solve(&far, &Setup::at(Vec3::new(150.0, 0.0, 0.0), 0.0), &options).unwrap_err();
     assert!(
-        text.to_string().contains("450.0000 mm") && text.to_string().contains("-400 to 400 mm"),
+        text.to_string().contains("450.0000 mm") && text.to_string().contains("-400.0000 to 400.0000 mm"),
         "{text}"
     );
 }

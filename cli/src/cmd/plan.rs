@@ -99,7 +99,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     wall_s.plan = stage.end();
 
     let stage = Stage::begin("post");
-    let setup = nc::setup(&job, &faces)?;
+    let (setup, setup_notes) = nc::setup(&job, &faces)?;
     let mut cl = planned.linked.path.clone();
     cl.cutter = Some(job.cutter_spec()?);
     cl.holder = job.tool.holder;
@@ -122,6 +122,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let diagnostics: Vec<Diagnostic> = [
         &faces.part.diagnostics,
         &planned.passes.diagnostics,
+        &setup_notes,
         &posted.diagnostics,
         &read.diagnostics,
         &verified.diagnostics,

@@ -45,7 +45,8 @@ pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
         (Swept::along(&cl.path), "cl")
     } else {
         let control = nc::control(&job)?;
-        let setup = nc::setup(&job, &faces)?;
+        let (setup, notes) = nc::setup(&job, &faces)?;
+        diagnostics.extend(notes);
         let read = nc::read_back(&text, &control, &setup, lenient).map_err(|e| Failure::file(file, e))?;
         diagnostics.extend(read.diagnostics);
         (read.motions, "nc")

@@ -18,7 +18,7 @@ use osculate_tools::{Contact, ContactError, ContactMotion, FeedLine};
 use rayon::prelude::*;
 
 /// Fewest and most columns at which spacing is computed.
-const COLUMNS: [usize; 2] = [32, 320];
+const COLUMNS: [usize; 2] = [96, 320];
 /// Strip width and undercut are computed at every so many columns of a pass.
 const WIDTH_STRIDE: usize = 4;
 
@@ -33,6 +33,8 @@ struct Level {
 /// A covering of the face by levels.
 struct Layout {
     along: Axis,
+    /// Range of the fixed parameter that the face covers.
+    across: [f64; 2],
     levels: Vec<Level>,
     length_mm: f64,
 }
@@ -133,7 +135,7 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
         c.advance(lo, slack);
     }
     rough_columns(&seat, along, lo, false, &mut columns);
-    let closed = surface.domain().get(along).periodic;
+    let closed = seat.closes(along);
     let mut levels: Vec<Level> = Vec::new();
     let mut length_mm = 0.0;
     let mut guess = first_step(task, along, across);
@@ -193,7 +195,7 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
         let open = columns.iter().filter_map(|c| c.frontier).fold(hi, f64::min);
         (task.progress)(0.5 * (open - lo) / (hi - lo));
     }
-    Ok(Layout { along, levels, length_mm })
+    Ok(Layout { along, across: [lo, hi], levels, length_mm })
 }
 
 /// Parameters of the columns: where a path along three lines of the face would put its points, thinned.
@@ -427,13 +429,13 @@ fn build(
     let surface = task.surface;
     let (along, domain) = (layout.along, surface.domain().get(layout.along));
     let neighbour = |j: Option<usize>| j.and_then(|j| layout.levels.get(j)).map(|l| l.fixed);
-    let below = neighbour(k.checked_sub(1)).unwrap_or(level.fixed);
-    let above = neighbour(Some(k + 1)).unwrap_or(level.fixed);
+    // Towards a neighbour three quarters of the way; at the first and last pass the whole way to the end of the face.
+    let below = neighbour(k.checked_sub(1)).map_or(layout.across[0], |b| level.fixed - 0.75 * (level.fixed - b));
+    let above = neighbour(Some(k + 1)).map_or(layout.across[1], |a| level.fixed + 0.75 * (a - level.fixed));
     let mut stretches = Vec::new();
-    for f in [-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75] {
+    for f in [-1.0, -0.67, -0.33, 0.0, 0.33, 0.67, 1.0] {
         let reach = if f < 0.0 { level.fixed - below } else { above - level.fixed };
-        let fixed = level.fixed + f * reach;
-        stretches.extend(spans(surface, along, fixed, 400));
+        stretches.extend(spans(surface, along, level.fixed + f * reach, 400));
     }
     let mut stretches = union(stretches, 1e-3 * domain.length());
     if level.reversed {
@@ -451,7 +453,7 @@ fn build(
         for p in &mut points {
             p.width_mm = interpolate(&level.widths, p.uv.get(along));
         }
-        let closed = domain.periodic && s[1] - s[0] >= domain.length() * (1.0 - 1e-9);
+        let closed = seat.closes(along) && s[1] - s[0] >= domain.length() * (1.0 - 1e-9);
         out.push(Pass { points, closed });
     }
     Ok(out)

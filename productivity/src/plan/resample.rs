@@ -84,6 +84,19 @@ fn halve(
     Ok(())
 }
 
+/// Whether a pose of the straight motion does what the true pose of a knot does: at the contact, and as far to its
+/// sides as the strip reaches.
+fn holds(task: &Task<'_>, pose: &Pose, knot: &Knot) -> bool {
+    let t = &task.tolerance;
+    if (task.cutter.distance(pose, &knot.point) - knot.height).abs() > t.chord_mm {
+        return false;
+    }
+    // A ball is the same under any lean.
+    let radius = task.cutter.radius_mm();
+    let reach = radius.min(2.0 * (2.0 * t.scallop_mm * radius).sqrt());
+    task.cutter.is_ball() || pose.axis.angle(&knot.pose.axis) * reach <= t.chord_mm
+}
+
 /// Whether the straight motion from `a` to `b` holds the tolerance at three contacts between.
 fn straight(
     seat: &Seat<'_>,
@@ -107,7 +120,7 @@ fn straight(
         // The instant at which the straight motion is abreast of the contact.
         let along = if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
         let Some(now) = motion.at(along.clamp(0.0, 1.0)) else { return Ok(false) };
-        if (task.cutter.distance(&now.pose, &k.point) - k.height).abs() > task.tolerance.chord_mm {
+        if !holds(task, &now.pose, &k) {
             return Ok(false);
         }
         let off = (k.point - a.point) - chord * along;
@@ -147,7 +160,7 @@ fn joins(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, knots: &[Knot]) -
         let along = if l2 > 0.0 { (k.point - a.point).dot(&chord) / l2 } else { 0.5 };
         motion
             .at(along.clamp(0.0, 1.0))
-            .is_some_and(|m| (task.cutter.distance(&m.pose, &k.point) - k.height).abs() <= task.tolerance.chord_mm)
+            .is_some_and(|m| holds(task, &m.pose, k))
     })
 }
 

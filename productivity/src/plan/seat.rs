@@ -8,7 +8,7 @@
 
 use super::Task;
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Darboux, Unit3, Uv, Vec3};
+use osculate_geom::{Axis, Darboux, Surface, Unit3, Uv, Vec3};
 use osculate_tools::Pose;
 use rayon::prelude::*;
 
@@ -26,8 +26,8 @@ const PER_SPAN: f64 = 4.0;
 const FEWEST: f64 = 3.0;
 /// Most points of a look to one side.
 const MOST: f64 = 32.0;
-/// Raising moves the place of rest; this many rounds settle it to well below a micrometre.
-const ROUNDS: usize = 3;
+/// Raising moves the place of rest, slowly where that is on a steep part of the tool; rounds end early once settled.
+const ROUNDS: usize = 10;
 
 /// Length of the knot span around a parameter, in the parameter.
 fn span_at(breaks: &[f64], t: f64) -> f64 {
@@ -53,18 +53,32 @@ impl SurfaceLine for Averaged<'_> {
     }
 }
 
+/// Whether a face is the same line of points at both ends of a parameter, to a millionth of its size.
+fn meets_itself(surface: &dyn Surface, axis: Axis) -> bool {
+    let (i, across) = (surface.domain().get(axis), surface.domain().get(axis.other()));
+    let at = |t: f64, f: f64| surface.point(Uv::from_axis(axis, t, across.at(f)));
+    let fractions = [0.0, 0.3, 0.5, 0.8, 1.0];
+    let gap = fractions.iter().map(|f| (at(i.hi, *f) - at(i.lo, *f)).norm()).fold(0.0, f64::max);
+    let size = fractions.iter().map(|f| (at(i.at(0.5), *f) - at(i.lo, *f)).norm()).fold(0.0, f64::max);
+    i.periodic || gap <= 1e-6 * size
+}
+
 /// Knots of a face, fetched once.
 pub(super) struct Seat<'a> {
     task: &'a Task<'a>,
     breaks: [Vec<f64>; 2],
     rough: bool,
+    /// Whether the face meets itself at the ends of u and of v, smoothly or in a crease.
+    closes: [bool; 2],
 }
 
 impl<'a> Seat<'a> {
     /// For passes along `along`.
     pub(super) fn new(task: &'a Task<'a>, along: Axis) -> Self {
         let surface = task.surface;
-        let mut seat = Self { task, breaks: [surface.breaks(Axis::U), surface.breaks(Axis::V)], rough: false };
+        let breaks = [surface.breaks(Axis::U), surface.breaks(Axis::V)];
+        let closes = [Axis::U, Axis::V].map(|axis| meets_itself(surface, axis));
+        let mut seat = Self { task, breaks, rough: false, closes };
         let knots = &seat.breaks[usize::from(along == Axis::V)];
         let stride = knots.len().div_ceil(MOST_SPANS);
         let across = surface.domain().get(along.other());
@@ -76,6 +90,29 @@ impl<'a> Seat<'a> {
         });
         seat.rough = rough;
         seat
+    }
+
+    /// Whether the face meets itself at the ends of `axis`.
+    pub(super) const fn closes(&self, axis: Axis) -> bool {
+        match axis {
+            Axis::U => self.closes[0],
+            Axis::V => self.closes[1],
+        }
+    }
+
+    /// The parameters brought round where the face closes; None outside it.
+    fn bring(&self, at: Uv) -> Option<Uv> {
+        let domain = self.task.surface.domain();
+        let round = |axis: Axis| {
+            let i = domain.get(axis);
+            let t = at.get(axis);
+            if i.contains(t) {
+                Some(t)
+            } else {
+                self.closes(axis).then(|| (t - i.lo).rem_euclid(i.length()) + i.lo)
+            }
+        };
+        Some(Uv { u: round(Axis::U)?, v: round(Axis::V)? })
     }
 
     /// Whether the face changes its normal faster than the tool can follow.
@@ -157,9 +194,7 @@ impl<'a> Seat<'a> {
         for i in -nu..=nu {
             for j in -nv..=nv {
                 let p = Uv { u: at.u + du * f64::from(i), v: at.v + dv * f64::from(j) };
-                if domain.contains(p) {
-                    points.push(surface.point(p));
-                }
+                points.extend(self.bring(p).map(|p| surface.point(p)));
             }
         }
         let mut seated = pose;
@@ -179,10 +214,16 @@ impl<'a> Seat<'a> {
     pub(super) fn at(&self, line: &IsoLine<'_>, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
         let (frame, _) = self.frame(line, t)?;
         let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
-        // A ripple's normal leans the tool towards places further off than those next to the contact.
-        let radii = if self.rough { WIDE } else { (2.0 * ROUGHNESS).sqrt() };
-        let reach_mm = radii * self.task.cutter.radius_mm();
-        let (pose, lift) = self.rest(line.uv(t), &frame.normal, pose, reach_mm);
+        let radius = self.task.cutter.radius_mm();
+        let near = (2.0 * ROUGHNESS).sqrt() * radius;
+        let (seated, lift) =
+            if self.rough { (pose, 0.0) } else { self.rest(line.uv(t), &frame.normal, pose, near) };
+        // A tool that does not rest on its contact leans towards places further off than those next to it.
+        let (pose, lift) = if self.rough || lift > 1e-3 * self.task.tolerance.gouge_mm {
+            self.rest(line.uv(t), &frame.normal, pose, WIDE * radius)
+        } else {
+            (seated, lift)
+        };
         Ok((pose, frame, lift))
     }
 
