@@ -12,13 +12,17 @@ use super::seat::{Averaged, Seat};
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::roots::{End, bracketed};
-use osculate_geom::{Axis, Diagnostic, Interval, Uv};
+use osculate_geom::{Axis, Diagnostic, Interval, Surface, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
 use osculate_tools::{Contact, ContactError, ContactMotion, FeedLine};
 use rayon::prelude::*;
 
 /// Fewest and most columns at which spacing is computed.
 const COLUMNS: [usize; 2] = [96, 320];
+/// Rows to each side of a pass in which the stretches that it must run over are looked for.
+const COVER_ROWS: i32 = 10;
+/// Lines looked at between a column and each of its neighbours.
+const BETWEEN: i32 = 8;
 /// Strip width and undercut are computed at every so many columns of a pass.
 const WIDTH_STRIDE: usize = 4;
 
@@ -127,9 +131,10 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
     let across = Interval::new(lo, hi);
     let slack = 1e-7 * (hi - lo);
     let seat = Seat::new(task, along);
-    let mut columns: Vec<Column> = column_parameters(&seat, along, across)?
+    let parameters = column_parameters(&seat, along, across)?;
+    let mut columns: Vec<Column> = (0..parameters.len())
         .into_par_iter()
-        .map(|t| Column { t, inside: spans(surface, along.other(), t, 400), frontier: None, left: 0.0 })
+        .map(|k| Column { t: parameters[k], inside: stretches(surface, along, [lo, hi], &parameters, k), frontier: None, left: 0.0 })
         .collect();
     for c in &mut columns {
         c.advance(lo, slack);
@@ -196,6 +201,28 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
         (task.progress)(0.5 * (open - lo) / (hi - lo));
     }
     Ok(Layout { along, across: [lo, hi], levels, length_mm })
+}
+
+/// Stretches of inside across the passes that column `k` answers for: its own and those up to its neighbours, so that
+/// no corner of a trim falls between columns.
+fn stretches(
+    surface: &dyn Surface,
+    along: Axis,
+    [lo, hi]: [f64; 2],
+    parameters: &[f64],
+    k: usize,
+) -> Vec<[f64; 2]> {
+    let t = parameters[k];
+    let before = k.checked_sub(1).map_or(surface.domain().get(along).lo, |j| parameters[j]);
+    let after = parameters.get(k + 1).copied().unwrap_or(surface.domain().get(along).hi);
+    let mut all = Vec::new();
+    for i in -BETWEEN..=BETWEEN {
+        let f = f64::from(i.abs()) / f64::from(BETWEEN);
+        let to = if i < 0 { before } else { after };
+        all.extend(spans(surface, along.other(), t + (to - t) * f, 400));
+    }
+    let within = all.into_iter().map(|s| [s[0].max(lo), s[1].min(hi)]).filter(|s| s[0] < s[1]);
+    union(within.collect(), 0.0)
 }
 
 /// Parameters of the columns: where a path along three lines of the face would put its points, thinned.
@@ -433,8 +460,9 @@ fn build(
     let below = neighbour(k.checked_sub(1)).map_or(layout.across[0], |b| level.fixed - 0.75 * (level.fixed - b));
     let above = neighbour(Some(k + 1)).map_or(layout.across[1], |a| level.fixed + 0.75 * (a - level.fixed));
     let mut stretches = Vec::new();
-    for f in [-1.0, -0.67, -0.33, 0.0, 0.33, 0.67, 1.0] {
-        let reach = if f < 0.0 { level.fixed - below } else { above - level.fixed };
+    for k in -COVER_ROWS..=COVER_ROWS {
+        let f = f64::from(k) / f64::from(COVER_ROWS);
+        let reach = if k < 0 { level.fixed - below } else { above - level.fixed };
         stretches.extend(spans(surface, along, level.fixed + f * reach, 400));
     }
     let mut stretches = union(stretches, 1e-3 * domain.length());
