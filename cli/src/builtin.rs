@@ -105,7 +105,9 @@ fn patch<S: Surface + 'static>(
                 Err(format!("{key} = [{lo}, {hi}] leaves the parameters of the {kind}, [{}, {}]", i.lo, i.hi))
             }
         }
-        Some([lo, hi]) => Err(format!("{key} = [{lo}, {hi}] must be two finite numbers, the lower one first")),
+        Some([lo, hi]) => {
+            Err(format!("{key} = [{lo}, {hi}] must be two finite numbers, the lower one first"))
+        }
     };
     let domain = Domain { u: cut("u_range", whole.u, ranges[0])?, v: cut("v_range", whole.v, ranges[1])? };
     let side = match material {
@@ -120,7 +122,11 @@ pub fn build(keys: &toml::Table) -> Result<Builtin, String> {
     let keys: Keys = keys.clone().try_into().map_err(|e: toml::de::Error| e.message().to_owned())?;
     let say = |e: osculate_geom::analytic::BadSize| e.to_string();
     let size = |key: &str, v: f64| {
-        if v.is_finite() && v > 0.0 { Ok(v) } else { Err(format!("{key} must be positive and finite, got {v}")) }
+        if v.is_finite() && v > 0.0 {
+            Ok(v)
+        } else {
+            Err(format!("{key} must be positive and finite, got {v}"))
+        }
     };
     match keys {
         Keys::Plane { half_size_mm, material, u_range, v_range } => {
@@ -157,7 +163,8 @@ pub fn build(keys: &toml::Table) -> Result<Builtin, String> {
 /// The surface of a `--builtin` argument: the keys of a TOML table, separated by commas.
 pub fn parse(keys: &str) -> Result<Builtin, String> {
     let text = format!("builtin = {{ {keys} }}");
-    let table: toml::Table = toml::from_str(&text).map_err(|e| format!("--builtin '{keys}': {}", e.message()))?;
+    let table: toml::Table =
+        toml::from_str(&text).map_err(|e| format!("--builtin '{keys}': {}", e.message()))?;
     match table.get("builtin") {
         Some(toml::Value::Table(t)) => build(t).map_err(|e| format!("--builtin: {e}")),
         _ => Err(format!("--builtin '{keys}' is not a list of keys")),

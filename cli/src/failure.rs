@@ -57,8 +57,9 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 
 /// The text of a file.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
-    String::from_utf8(read(path)?)
-        .map_err(|e| Failure::file(path, format!("is not UTF-8 text (byte {})", e.utf8_error().valid_up_to())))
+    String::from_utf8(read(path)?).map_err(|e| {
+        Failure::file(path, format!("is not UTF-8 text (byte {})", e.utf8_error().valid_up_to()))
+    })
 }
 
 /// A path in a file, relative to the folder of that file.

@@ -140,7 +140,9 @@ impl<'de> Deserialize<'de> for AutoOr {
         match Raw::deserialize(d)? {
             Raw::Number(x) => Ok(Self::Given(x)),
             Raw::Word(w) if w == "auto" => Ok(Self::Auto),
-            Raw::Word(w) => Err(serde::de::Error::custom(format!("expected a number or \"auto\", got \"{w}\""))),
+            Raw::Word(w) => {
+                Err(serde::de::Error::custom(format!("expected a number or \"auto\", got \"{w}\"")))
+            }
         }
     }
 }
@@ -255,13 +257,19 @@ impl Job {
     /// Reads and checks a job file.
     pub fn load(path: &Path) -> Result<Self, Failure> {
         let text = read_text(path)?;
-        let mut job: Self = toml::from_str(&text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
+        let mut job: Self =
+            toml::from_str(&text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
         job.path = path.to_path_buf();
         if job.format != FORMAT {
-            return Err(Failure::file(path, format!("format = {}: this version reads format = {FORMAT}", job.format)));
+            return Err(Failure::file(
+                path,
+                format!("format = {}: this version reads format = {FORMAT}", job.format),
+            ));
         }
         match (&job.part.file, &job.part.builtin) {
-            (None, None) => return Err(Failure::file(path, "[part] needs file = \"...\" or builtin = { ... }")),
+            (None, None) => {
+                return Err(Failure::file(path, "[part] needs file = \"...\" or builtin = { ... }"));
+            }
             (Some(_), Some(_)) => {
                 return Err(Failure::file(path, "[part] has both file and builtin; keep one of them"));
             }
@@ -313,7 +321,9 @@ impl Job {
                 Ok(CutterSpec::Flat { diameter_mm, length_mm })
             }
             "toroidal" => match t.corner_radius_mm {
-                Some(corner_radius_mm) => Ok(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm }),
+                Some(corner_radius_mm) => {
+                    Ok(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm })
+                }
                 None => Err(Failure::file(&self.path, "[tool] kind = \"toroidal\" needs corner_radius_mm")),
             },
             other => Err(Failure::file(
@@ -331,9 +341,9 @@ impl Job {
     /// The holder as a cylinder.
     pub fn holder(&self) -> Result<Option<Cutter>, Failure> {
         let Some(h) = &self.tool.holder else { return Ok(None) };
-        Cutter::cylinder(h.diameter_mm, h.length_mm)
-            .map(Some)
-            .map_err(|e| Failure::file(&self.path, format!("[tool.holder] {}", e.to_string().replace("cutter", "holder"))))
+        Cutter::cylinder(h.diameter_mm, h.length_mm).map(Some).map_err(|e| {
+            Failure::file(&self.path, format!("[tool.holder] {}", e.to_string().replace("cutter", "holder")))
+        })
     }
 
     /// Lead and tilt, with this lead where the job leaves it to the program.

@@ -51,9 +51,8 @@ impl Control {
     /// The control that the words describe.
     pub fn from_words(words: &Words<'_>) -> Result<Self, Failure> {
         let machine = match (words.name, words.file) {
-            (_, Some(file)) => {
-                Machine::from_toml(&read_text(file)?).map_err(|e| Failure::file(file, e.to_string().trim_end()))?
-            }
+            (_, Some(file)) => Machine::from_toml(&read_text(file)?)
+                .map_err(|e| Failure::file(file, e.to_string().trim_end()))?,
             (Some(name), None) => Machine::built_in(name).map_err(Failure::job)?,
             (None, None) => {
                 return Err(Failure::job(format!(
@@ -178,10 +177,8 @@ pub fn cl_text(path: &ClPath, part_name: &str) -> Result<String, String> {
 
 /// NC code for a path.
 pub fn post(path: &ClPath, control: &Control, setup: &Setup, name: &str) -> Result<Posted, Failure> {
-    let options = PostOptions {
-        program_name: name.to_owned(),
-        ..PostOptions::new(control.dialect, control.feed)
-    };
+    let options =
+        PostOptions { program_name: name.to_owned(), ..PostOptions::new(control.dialect, control.feed) };
     osculate_postproc::post(path, &control.machine, setup, &options).map_err(Failure::job)
 }
 
@@ -202,7 +199,8 @@ pub struct Motions {
 /// Reads an NC program back through the machine.
 pub fn read_back(text: &str, control: &Control, setup: &Setup, lenient: bool) -> Result<Motions, String> {
     let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
-    let read = readback::read(text, control.dialect, &control.machine, setup, &options).map_err(|e| e.to_string())?;
+    let read = readback::read(text, control.dialect, &control.machine, setup, &options)
+        .map_err(|e| e.to_string())?;
     let mut out = Motions {
         motions: Vec::with_capacity(read.moves.len()),
         times_min: Vec::with_capacity(read.moves.len()),

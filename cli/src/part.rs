@@ -53,7 +53,10 @@ impl Loaded {
         self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
             let ids: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).take(12).collect();
             let more = if self.faces.len() > ids.len() { ", ..." } else { "" };
-            Failure::job(format!("there is no face {id}; the part has {}{more} (see inspect)", ids.join(", ")))
+            Failure::job(format!(
+                "there is no face {id}; the part has {}{more} (see inspect)",
+                ids.join(", ")
+            ))
         })
     }
 }
@@ -226,9 +229,8 @@ pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, 
 
 /// Turns faces over whose file does not say where the material is.
 fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<(), Failure> {
-    let open: Vec<usize> = (0..faces.len())
-        .filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented))
-        .collect();
+    let open: Vec<usize> =
+        (0..faces.len()).filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented)).collect();
     let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
     match job.part.normals {
         Normals::File => return Ok(()),

@@ -111,8 +111,12 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
 /// Bin borders; the two open bins at the ends are drawn as wide as their neighbours.
 fn histogram_edges(story: &Story<'_>) -> Vec<f64> {
     let bins = &story.verified.verdict.histogram;
-    let inner: Vec<f64> =
-        bins.iter().map(|b| b.from_mm).chain(bins.last().map(|b| b.to_mm)).filter(|x| x.is_finite()).collect();
+    let inner: Vec<f64> = bins
+        .iter()
+        .map(|b| b.from_mm)
+        .chain(bins.last().map(|b| b.to_mm))
+        .filter(|x| x.is_finite())
+        .collect();
     let (Some(first), Some(last)) = (inner.first(), inner.last()) else { return Vec::new() };
     let width = if inner.len() > 1 { inner[1] - inner[0] } else { 1.0 };
     let mut edges = Vec::with_capacity(inner.len() + 2);
@@ -300,7 +304,14 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             vec![
                 ("samples", v.samples.to_string()),
                 ("spacing", format!("{} mm", number(v.spacing_mm, 3))),
-                ("may hide between samples", format!("{} mm of scallop, {} mm of gouge", number(v.hidden_scallop_mm, 2), number(v.hidden_gouge_mm, 2))),
+                (
+                    "may hide between samples",
+                    format!(
+                        "{} mm of scallop, {} mm of gouge",
+                        number(v.hidden_scallop_mm, 2),
+                        number(v.hidden_gouge_mm, 2)
+                    ),
+                ),
                 ("scallop max", format!("{:.5} mm", v.scallop_max_mm)),
                 ("scallop p99", format!("{:.5} mm", v.scallop_p99_mm)),
                 ("scallop median", format!("{:.5} mm", v.scallop_median_mm)),

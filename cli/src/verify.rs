@@ -100,7 +100,10 @@ pub fn run(
     let wanted = match job.verification.spacing_mm {
         Some(s) if s.is_finite() && s > 0.0 => s,
         Some(s) => {
-            return Err(Failure::file(&job.path, format!("[verification] spacing_mm = {s} must be positive")));
+            return Err(Failure::file(
+                &job.path,
+                format!("[verification] spacing_mm = {s} must be positive"),
+            ));
         }
         None => strip / SAMPLES_ACROSS,
     };
@@ -114,7 +117,9 @@ pub fn run(
     if spacing > 1.01 * wanted {
         diagnostics.push(Diagnostic::warning(
             "verification",
-            format!("samples are {spacing:.4} mm apart instead of {wanted:.4} mm to stay within {max} of them"),
+            format!(
+                "samples are {spacing:.4} mm apart instead of {wanted:.4} mm to stay within {max} of them"
+            ),
         ));
     }
     let mut samples = Vec::new();

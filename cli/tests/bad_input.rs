@@ -28,7 +28,8 @@ fn files_that_are_no_parts() {
     let inspect = |path: &std::path::Path| osculate(&["inspect", path.to_str().unwrap()]);
     inspect(&scratch.path("nothing.igs")).refused(&["nothing.igs", "cannot be read"]);
     inspect(&scratch.write("empty.step", "")).refused(&["empty.step", "empty"]);
-    inspect(&scratch.write("prose.step", "It was a dark and stormy night.\n")).refused(&["prose.step", "not a STEP"]);
+    inspect(&scratch.write("prose.step", "It was a dark and stormy night.\n"))
+        .refused(&["prose.step", "not a STEP"]);
     let hull = include_str!("../../examples/wigley-hull/hull.step");
     let cut = &hull[..hull.len() / 3];
     // What is complete of a truncated file is read, and the loss is said; here no face is complete.
@@ -60,7 +61,8 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
     with("scallop_mm = 0.02", "scallop_mm = -1").refused(&["scallop_mm = -1", "positive"]);
     with("scallop_mm = 0.02", "scallop_mm = nan").refused(&["scallop_mm = NaN", "positive"]);
     with("scallop_mm = 0.02", "scallop_mm = \"fine\"").refused(&["scallop_mm"]);
-    with("kind = \"ball\"", "kind = \"toroidal\"\ncorner_radius_mm = 6").refused(&["corner_radius_mm = 6", "radius 5"]);
+    with("kind = \"ball\"", "kind = \"toroidal\"\ncorner_radius_mm = 6")
+        .refused(&["corner_radius_mm = 6", "radius 5"]);
     with("kind = \"ball\"", "kind = \"drill\"").refused(&["drill", "toroidal"]);
     with("kind = \"ball\"", "kind = \"ball\"\ncorner_radius_mm = 1").refused(&["corner_radius_mm = 1"]);
     with("kind = \"isoparametric\"", "kind = \"spiral\"").refused(&["spiral", "isoparametric"]);
@@ -72,8 +74,11 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
     with("builtin", "file = \"a.igs\"\nbuiltin").refused(&["both"]);
     with("half_size_mm = 6", "half_size_mm = 6, v_range = [0, 9]").refused(&["v_range"]);
     // A ball of 300 mm in a place hollow with a radius of 100 mm.
-    with("diameter_mm = 10\nlength_mm = 50", "diameter_mm = 300\nlength_mm = 400")
-        .refused(&["does not fit", "radius", "or less"]);
+    with("diameter_mm = 10\nlength_mm = 50", "diameter_mm = 300\nlength_mm = 400").refused(&[
+        "does not fit",
+        "radius",
+        "or less",
+    ]);
     // Upside down the tool would have to come through the table.
     with("[verification]", "[setup]\nrotate_deg = [180, 0, 0]\n[verification]").refused(&["limit"]);
 }

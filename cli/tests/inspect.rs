@@ -23,7 +23,10 @@ fn example_parts() {
     assert_eq!(blade["format"], "iges");
     let faces = blade["faces"].as_array().unwrap();
     assert_eq!(faces.len(), 1);
-    assert_eq!((&faces[0]["kind"], &faces[0]["degree"], &faces[0]["poles"]), (&"bspline".into(), &serde_json::json!([3, 3]), &serde_json::json!([419, 5])));
+    assert_eq!(
+        (&faces[0]["kind"], &faces[0]["degree"], &faces[0]["poles"]),
+        (&"bspline".into(), &serde_json::json!([3, 3]), &serde_json::json!([419, 5]))
+    );
     // The other kernel's area is good to 0.25 mm2.
     close(&blade["area_mm2"], 10_828.078, 4e-5);
     close(&blade["bbox_mm"][0], 6401.0556, 1e-5);
@@ -49,7 +52,8 @@ fn built_in_surfaces() {
     let run = osculate(&["inspect", "--builtin", keys, "--json"]);
     assert_eq!(run.code, 0, "{}", run.err);
     close(&run.json()["area_mm2"], 4.0 * std::f64::consts::PI.powi(2) * 12_000.0, 1e-9);
-    let run = osculate(&["probe", "--builtin", keys, "--at", "0.3,3.141592653589793", "--at", "0,0", "--json"]);
+    let run =
+        osculate(&["probe", "--builtin", keys, "--at", "0.3,3.141592653589793", "--at", "0,0", "--json"]);
     assert_eq!(run.code, 0, "{}", run.err);
     let points = run.json();
     let k = &points["points"][0]["principal_per_mm"];

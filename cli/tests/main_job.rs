@@ -27,8 +27,13 @@ fn a_plan_is_written_posted_verified_and_reported() {
             .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
             .collect();
         names.sort();
-        let mut want =
-            vec!["path.cl".to_owned(), "picture.svg".into(), format!("program.{extension}"), "report.html".into(), "summary.json".into()];
+        let mut want = vec![
+            "path.cl".to_owned(),
+            "picture.svg".into(),
+            format!("program.{extension}"),
+            "report.html".into(),
+            "summary.json".into(),
+        ];
         want.sort();
         assert_eq!(names, want);
 
@@ -43,11 +48,15 @@ fn a_plan_is_written_posted_verified_and_reported() {
         assert!(number(&summary, &["time_min"]) >= number(&summary, &["cutting_time_min"]));
         let global = number(&summary, &["area_mm2"]) / number(&summary, &["time_min"]);
         assert!((number(&summary, &["productivity_mm2_min", "global"]) / global - 1.0).abs() < 1e-12);
-        assert_eq!(summary["productivity_mm2_min"]["regional"].as_array().unwrap().len() as f64, number(&summary, &["passes"]));
+        assert_eq!(
+            summary["productivity_mm2_min"]["regional"].as_array().unwrap().len() as f64,
+            number(&summary, &["passes"])
+        );
 
         // The CL file verifies too, and so does the program on its own.
         for (file, source) in [(out.join("path.cl"), "cl"), (program.clone(), "nc")] {
-            let run = osculate(&["verify", file.to_str().unwrap(), "--job", path.to_str().unwrap(), "--json"]);
+            let run =
+                osculate(&["verify", file.to_str().unwrap(), "--job", path.to_str().unwrap(), "--json"]);
             assert_eq!(run.code, 0, "{}{}", run.out, run.err);
             let v = run.json();
             assert_eq!((v["source"].as_str(), v["within_tolerance"].as_bool()), (Some(source), Some(true)));
@@ -64,7 +73,8 @@ fn a_plan_is_written_posted_verified_and_reported() {
         for k in 0..3 {
             numbers[k] -= 0.03 * numbers[k + 3];
         }
-        let spoiled = format!("GOTO/{}", numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(","));
+        let spoiled =
+            format!("GOTO/{}", numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(","));
         let mut changed: Vec<&str> = lines.clone();
         changed[middle] = &spoiled;
         let file = scratch.write("spoiled.cl", &changed.join("\n"));
@@ -129,13 +139,24 @@ fn cl_data_is_posted_for_other_machines() {
     let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(run.code, 0, "{}", run.err);
     let cl = out.join("path.cl");
-    for (machine, dialect, feed) in
-        [("trunnion-ac", "sinumerik", "inverse_time"), ("trunnion-ac", "sinumerik", "kv"), ("trunnion-bc", "linuxcnc", "inverse_time")]
-    {
+    for (machine, dialect, feed) in [
+        ("trunnion-ac", "sinumerik", "inverse_time"),
+        ("trunnion-ac", "sinumerik", "kv"),
+        ("trunnion-bc", "linuxcnc", "inverse_time"),
+    ] {
         let program = scratch.path("program.txt");
         let args = [
-            "post", cl.to_str().unwrap(), "--machine", machine, "--dialect", dialect, "--feed", feed, "--out",
-            program.to_str().unwrap(), "--json",
+            "post",
+            cl.to_str().unwrap(),
+            "--machine",
+            machine,
+            "--dialect",
+            dialect,
+            "--feed",
+            feed,
+            "--out",
+            program.to_str().unwrap(),
+            "--json",
         ];
         let run = osculate(&args);
         assert_eq!(run.code, 0, "{}{}", run.out, run.err);
@@ -147,6 +168,15 @@ fn cl_data_is_posted_for_other_machines() {
     osculate(&["post", cl.to_str().unwrap(), "--machine", "nope", "--dialect", "sinumerik", "--out", "x"])
         .refused(&["nope", "trunnion-ac"]);
     let bad = scratch.write("bad.cl", "GOTO/1,2,zebra\n");
-    osculate(&["post", bad.to_str().unwrap(), "--machine", "trunnion-ac", "--dialect", "sinumerik", "--out", "x"])
-        .refused(&["bad.cl", "line 1"]);
+    osculate(&[
+        "post",
+        bad.to_str().unwrap(),
+        "--machine",
+        "trunnion-ac",
+        "--dialect",
+        "sinumerik",
+        "--out",
+        "x",
+    ])
+    .refused(&["bad.cl", "line 1"]);
 }

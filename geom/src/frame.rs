@@ -46,9 +46,8 @@ impl Darboux {
         let w_tb = forms.geodesic_torsion(&tangent);
         // dn/ds = omega x n with omega = x t + y b + z n: t x n = -b, b x n = t, so y = k_n and x = -w_tb.
         // dt/ds = omega x t: z b - y n, the geodesic curvature is z.
-        let turn = tangent.into_inner() * -w_tb
-            + left.into_inner() * k_n
-            + normal.into_inner() * geodesic_per_mm;
+        let turn =
+            tangent.into_inner() * -w_tb + left.into_inner() * k_n + normal.into_inner() * geodesic_per_mm;
         Self { point: jet.point, tangent, left, normal, turn }
     }
 }

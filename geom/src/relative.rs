@@ -45,16 +45,10 @@ impl Relative {
         let (c, s) = (tool.direction.dot(&e1), tool.direction.dot(&e2));
         let (a, b) = (tool.along, tool.across);
         let w = part.curvature
-            + Matrix2::new(
-                a * c * c + b * s * s,
-                (a - b) * c * s,
-                (a - b) * c * s,
-                a * s * s + b * c * c,
-            );
+            + Matrix2::new(a * c * c + b * s * s, (a - b) * c * s, (a - b) * c * s, a * s * s + b * c * c);
         let eig = SymEigen::of(&w);
-        let dir = |d: [f64; 2]| -> Unit3 {
-            Unit3::new_normalize(e1.into_inner() * d[0] + e2.into_inner() * d[1])
-        };
+        let dir =
+            |d: [f64; 2]| -> Unit3 { Unit3::new_normalize(e1.into_inner() * d[0] + e2.into_inner() * d[1]) };
         Self { min: eig.min, max: eig.max, d_min: dir(eig.d_min), d_max: dir(eig.d_max) }
     }
 

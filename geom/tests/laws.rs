@@ -6,8 +6,8 @@ use osculate_geom::analytic::{
 use osculate_geom::geodesic::GeodesicState;
 use osculate_geom::line::{GeodesicLine, IsoLine, SurfaceLine};
 use osculate_geom::{
-    Axis, Domain, Flipped, Interval, Patch, Point3, Relative, Side, Surface, ToolCurvature, Unit3, Vec3, laws,
-    quadrature, uv,
+    Axis, Domain, Flipped, Interval, Patch, Point3, Relative, Side, Surface, ToolCurvature, Unit3, Vec3,
+    laws, quadrature, uv,
 };
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -120,7 +120,8 @@ proptest! {
 
 #[test]
 fn gauss_bonnet_on_closed_surfaces() {
-    let total = |s: &dyn Surface| quadrature::over_surface(s, 1e-10, |j| j.forms().map_or(0.0, |f| f.gauss()));
+    let total =
+        |s: &dyn Surface| quadrature::over_surface(s, 1e-10, |j| j.forms().map_or(0.0, |f| f.gauss()));
     assert!((total(&Sphere::new(7.0).unwrap()).value - 4.0 * PI).abs() < 1e-8);
     assert!((total(&Ellipsoid::new([3.0, 2.0, 1.0]).unwrap()).value - 4.0 * PI).abs() < 1e-6);
     assert!(total(&Torus::new(5.0, 2.0).unwrap()).value.abs() < 1e-8);
@@ -174,5 +175,9 @@ fn places_without_a_tangent_plane_are_an_error_not_a_nan() {
     assert!(apex.forms().is_err());
     let error = apex.normal().unwrap_err().to_string();
     assert!(error.contains("no tangent plane"), "{error}");
-    assert!(Sphere::new(f64::NAN).is_err() && Torus::new(1.0, -1.0).is_err() && Cone::new(1.0, 2.0, Interval::new(0.0, 1.0)).is_err());
+    assert!(
+        Sphere::new(f64::NAN).is_err()
+            && Torus::new(1.0, -1.0).is_err()
+            && Cone::new(1.0, 2.0, Interval::new(0.0, 1.0)).is_err()
+    );
 }

@@ -42,5 +42,5 @@ pub use nc::Dialect;
 pub use nc::readback;
 pub use post::{PostError, PostOptions, PostSummary, Posted, post};
 pub use setup::{Setup, SetupError};
-pub use suggest::{Suggestion, suggest};
 pub use solve::{SolveError, SolveOptions};
+pub use suggest::{Suggestion, suggest};

@@ -85,7 +85,12 @@ mod tests {
             assert!(low.abs() < 1e-12);
         }
         // All around a post: as it stands.
-        let around: Vec<Unit3> = (0..12).map(|k| { let (s, c) = (f64::from(k) * 0.5236).sin_cos(); unit(c, s, -0.2) }).collect();
+        let around: Vec<Unit3> = (0..12)
+            .map(|k| {
+                let (s, c) = (f64::from(k) * 0.5236).sin_cos();
+                unit(c, s, -0.2)
+            })
+            .collect();
         assert!(!suggest(&around, &points, 50.0).turned);
     }
 }

@@ -73,7 +73,8 @@ mod tests {
     #[test]
     fn means_are_weighted_by_length() {
         // 1 mm at width 1 and 3 mm at width 2, with the trapezoid between: (1 + 3 * 2) / 4 less the joint.
-        let pass = Pass { points: vec![at(0.0, 1.0), at(1.0, 1.0), at(1.0, 2.0), at(4.0, 2.0)], closed: false };
+        let pass =
+            Pass { points: vec![at(0.0, 1.0), at(1.0, 1.0), at(1.0, 2.0), at(4.0, 2.0)], closed: false };
         let l = levels(&[pass], 100.0, Totals { area_mm2: 50.0, time_min: 2.0 });
         assert!((l.regional[0] - 100.0 * 7.0 / 4.0).abs() < 1e-12);
         assert_eq!((l.instantaneous_min, l.instantaneous_max, l.global), (100.0, 200.0, 25.0));

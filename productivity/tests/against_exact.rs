@@ -107,7 +107,8 @@ fn two_contact_widths() {
         let formula = five_axis_flat(10.0, 0.0, 1.0 / 140.0, -1.0 / 60.0, h).unwrap();
         let posture = |lead_rad: f64| {
             let lean = Lean { lead_rad, tilt_rad: 0.0 };
-            Contact::new(&groove, uv(0.0, std::f64::consts::PI), &cutter, FeedLine::Iso(Axis::U), lean).unwrap()
+            Contact::new(&groove, uv(0.0, std::f64::consts::PI), &cutter, FeedLine::Iso(Axis::U), lean)
+                .unwrap()
         };
         // The formula's lead makes the tool dip by h to leading order; the exact one lies a little beside it.
         let dip = |lead: f64| strip::exact(&posture(lead), 1e-9).unwrap().undercut_mm;

@@ -153,8 +153,14 @@ fn a_tool_too_large_for_the_hollow_is_refused_with_the_largest_that_fits() {
     let groove = Flipped(Patch { surface: torus, domain, side: Side::Along });
     let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 130.0, length_mm: 200.0 }).unwrap();
     let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
-    let task =
-        Task { surface: &groove, face: "F7", cutter: &cutter, lean: Lean::default(), tolerance, progress: &|_| {} };
+    let task = Task {
+        surface: &groove,
+        face: "F7",
+        cutter: &cutter,
+        lean: Lean::default(),
+        tolerance,
+        progress: &|_| {},
+    };
     let error = isoparametric(&task, Along::Auto).unwrap_err().to_string();
     assert!(error.contains("F7") && error.contains("does not fit"), "{error}");
     assert!(error.contains("60.000 mm or less") || error.contains("59.999"), "{error}");

@@ -42,12 +42,12 @@ mod ruled;
 
 pub use closest::{ClosestError, Foot, FootKind, closest, closest_near, closest_sampled};
 pub use knots::{KnotError, Knots, MAX_DEGREE};
+pub use mesh::{Mesh, tessellate};
 pub use nurbs::{Net, NurbsError, NurbsSurface};
 pub use nurbs_curve::{CurveError, CurveJet, NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_edit::{BezierPatch, EditError};
-pub use ruled::{RuledError, ruled};
-pub use mesh::{Mesh, tessellate};
 pub use part::{CurvatureRange, Face, FaceKind, Format, ImportError, NotUsed, Part, detect, read};
+pub use ruled::{RuledError, ruled};
 pub use trim::analytic::{Analytic, Shape};
 pub use trim::carrier::FaceSurface;
 pub use trimmed::{Loop, TrimError, TrimmedSurface};

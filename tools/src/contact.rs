@@ -38,7 +38,9 @@ pub enum ContactError {
     #[error(transparent)]
     Line(#[from] LineError),
     /// A lead of 90 degrees or more, or a tilt that is not finite.
-    #[error("lead must lie strictly between -90 and 90 degrees and tilt be finite, got lead {lead_deg} and tilt {tilt_deg} degrees")]
+    #[error(
+        "lead must lie strictly between -90 and 90 degrees and tilt be finite, got lead {lead_deg} and tilt {tilt_deg} degrees"
+    )]
     Lean {
         /// Lead, degrees.
         lead_deg: f64,

@@ -229,7 +229,8 @@ impl Cutter {
         let z = w.dot(&axis);
         let radial = w - axis * z;
         let rho = radial.norm();
-        let out = if rho > 0.0 { radial / rho } else { osculate_geom::any_perpendicular(&pose.axis).into_inner() };
+        let out =
+            if rho > 0.0 { radial / rho } else { osculate_geom::any_perpendicular(&pose.axis).into_inner() };
         match part {
             Part::Bottom => -axis,
             Part::Top => axis,
@@ -308,7 +309,12 @@ impl Cutter {
             return None;
         }
         let root = disc.sqrt();
-        let s = if b > 0.0 { (-b - root) / a } else { let q = root - b; if q > 0.0 { c / q } else { 0.0 } };
+        let s = if b > 0.0 {
+            (-b - root) / a
+        } else {
+            let q = root - b;
+            if q > 0.0 { c / q } else { 0.0 }
+        };
         // A grazing line may pass the ball above its centre: it then met the side instead, which `lo` excluded.
         (s <= hi && l.z(s) <= self.corner).then_some(Entry { at_mm: s, part: Part::Corner })
     }

@@ -191,11 +191,10 @@ fn on_sharp_edge(
         Some((s, (line.point(s) - pose.tip).norm() - cutter.radius_mm()))
     };
     let (a, b) = (plane(lo)?, plane(hi)?);
-    let root =
-        bracketed(End { x: lo, f: a.1 }, End { x: hi, f: b.1 }, t_tolerance, |t| {
-            plane(t).map_or(f64::NAN, |p| p.1)
-        })
-        .ok()?;
+    let root = bracketed(End { x: lo, f: a.1 }, End { x: hi, f: b.1 }, t_tolerance, |t| {
+        plane(t).map_or(f64::NAN, |p| p.1)
+    })
+    .ok()?;
     // Only where the entry really has its minimum: on the far side of the rim it would be a maximum.
     let at_mm = plane(root.x)?.0;
     let d = 1e-6 * (hi - lo);

@@ -62,7 +62,10 @@ fn widths_agree_to_seven_digits() {
         worst = worst.max(close("width", got.width_mm, number(want, "width_mm")));
         // Undercut is a height: within a millionth of the tolerance.
         let deep = number(want, "undercut_mm");
-        assert!((got.undercut_mm - deep).abs() < 1e-6 * number(case, "scallop_mm"), "case {k}: {got:?} {case}");
+        assert!(
+            (got.undercut_mm - deep).abs() < 1e-6 * number(case, "scallop_mm"),
+            "case {k}: {got:?} {case}"
+        );
         assert!(got.error_mm < 1e-7 * got.width_mm, "case {k}: {got:?}");
     }
     println!("worst relative difference {worst:.2e} over {} cases", cases.len());

@@ -64,7 +64,8 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
         trimmed: source.is_some_and(|f| f.trimmed()),
         area_mm2: part::area(face),
         bbox_mm: corners(&b),
-        principal_curvature_per_mm: part::curvature_range(&*face.surface).map_or_else(Vec::new, |r| r.to_vec()),
+        principal_curvature_per_mm: part::curvature_range(&*face.surface)
+            .map_or_else(Vec::new, |r| r.to_vec()),
         u_range: [d.u.lo, d.u.hi],
         v_range: [d.v.lo, d.v.hi],
     };
@@ -113,12 +114,22 @@ fn describe(a: &Answer, part: &Loaded) -> String {
         out.push_str(&format!("  box mm: {x0:.3} {y0:.3} {z0:.3} to {x1:.3} {y1:.3} {z1:.3}\n"));
     }
     if !a.faces.is_empty() {
-        let mut t =
-            Table::new(["face", "kind", "degree", "poles", "rational", "trimmed", "area mm2", "k_min 1/mm", "k_max 1/mm"]);
+        let mut t = Table::new([
+            "face",
+            "kind",
+            "degree",
+            "poles",
+            "rational",
+            "trimmed",
+            "area mm2",
+            "k_min 1/mm",
+            "k_max 1/mm",
+        ]);
         let pair = |v: &[usize]| v.iter().map(ToString::to_string).collect::<Vec<_>>().join("x");
         let yes = |b: bool| if b { "yes" } else { "-" }.to_owned();
         for f in &a.faces {
-            let k = |i: usize| f.principal_curvature_per_mm.get(i).map_or_else(|| "-".into(), |k| number(*k, 4));
+            let k =
+                |i: usize| f.principal_curvature_per_mm.get(i).map_or_else(|| "-".into(), |k| number(*k, 4));
             t.row([
                 f.id.clone(),
                 f.kind.clone(),

@@ -44,7 +44,12 @@ pub fn machines(json: bool) -> Outcome {
 pub fn dialects(json: bool) -> Outcome {
     let rows: Vec<[&str; 2]> = Dialect::ALL.iter().map(|d| [d.name(), d.extension()]).collect();
     if json {
-        render::json(&rows.iter().map(|[name, extension]| serde_json::json!({ "name": name, "extension": extension })).collect::<Vec<_>>())?;
+        render::json(
+            &rows
+                .iter()
+                .map(|[name, extension]| serde_json::json!({ "name": name, "extension": extension }))
+                .collect::<Vec<_>>(),
+        )?;
         return Ok(Done::Yes);
     }
     let mut t = Table::new(["dialect", "extension"]);

@@ -215,7 +215,11 @@ fn planned(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> Resu
             }
             let axis = job.contour_axis()?;
             let plan = |task: &Task<'_>| contour_2cl(task, axis);
-            ("contour_2cl", each_face(job, faces, &cutter, Lean::default(), progress, &plan)?, Lean::default())
+            (
+                "contour_2cl",
+                each_face(job, faces, &cutter, Lean::default(), progress, &plan)?,
+                Lean::default(),
+            )
         }
         other => {
             return Err(Failure::file(
@@ -313,7 +317,10 @@ fn isoparametric_passes(
             if leads.len() > 1 {
                 passes.diagnostics.push(Diagnostic::note(
                     "lead",
-                    format!("{:.0} deg gives the shortest path of the leads tried", lean.lead_rad.to_degrees()),
+                    format!(
+                        "{:.0} deg gives the shortest path of the leads tried",
+                        lean.lead_rad.to_degrees()
+                    ),
                 ));
             }
             Ok((passes, lean))

@@ -38,20 +38,24 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
         feed: &args.feed,
         kz_step: args.kz_step,
     })?;
-    let cutter = cl.path.cutter.map(Cutter::try_from).transpose().map_err(|e| Failure::file(&args.clfile, e))?;
+    let cutter =
+        cl.path.cutter.map(Cutter::try_from).transpose().map_err(|e| Failure::file(&args.clfile, e))?;
     let mut notes = cl.diagnostics.clone();
     let gauge = match (args.gauge_length_mm, cutter) {
         (Some(g), _) => g,
         (None, Some(c)) => c.length_mm() + cl.path.holder.map_or(0.0, |h| h.length_mm),
         (None, None) => {
-            notes.push(Diagnostic::note("setup", "the CL data has no cutter: a gauge length of 0 mm is assumed"));
+            notes.push(Diagnostic::note(
+                "setup",
+                "the CL data has no cutter: a gauge length of 0 mm is assumed",
+            ));
             0.0
         }
     };
     let setup = Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), gauge);
     let name = args.out.file_stem().map_or_else(|| "OSCULATE".into(), |s| s.to_string_lossy().into_owned());
-    let posted = nc::post(&cl.path, &control, &setup, &name)
-        .map_err(|f| Failure::file(&args.clfile, f.message()))?;
+    let posted =
+        nc::post(&cl.path, &control, &setup, &name).map_err(|f| Failure::file(&args.clfile, f.message()))?;
     output::write(&args.out, posted.text.as_bytes())?;
     notes.extend(posted.diagnostics);
     let s = &posted.summary;

@@ -72,7 +72,10 @@ pub fn run(args: &PartArgs, face: Option<&str>, at: &[[f64; 2]], json: bool) -> 
         render::text(&format!("  outward normal       {}\n", list(&p.normal)));
         render::text(&format!("  first form E F G     {}\n", list(&p.first_form)));
         render::text(&format!("  second form L M N    {}\n", list(&p.second_form)));
-        render::text(&format!("  k_max, k_min 1/mm    {}   (positive is convex)\n", list(&p.principal_per_mm)));
+        render::text(&format!(
+            "  k_max, k_min 1/mm    {}   (positive is convex)\n",
+            list(&p.principal_per_mm)
+        ));
         render::text(&format!("  direction of k_max   {}\n", list(&p.principal_directions[0])));
         render::text(&format!("  direction of k_min   {}\n", list(&p.principal_directions[1])));
     }

@@ -53,10 +53,9 @@ struct Answer {
 /// Runs the verb.
 pub fn run(path: &Path, json: bool) -> Outcome {
     let job = Job::load(path)?;
-    let table = job
-        .contact
-        .as_ref()
-        .ok_or_else(|| Failure::file(path, "strip needs a [contact] table: at = [u, v] and along or angle_deg"))?;
+    let table = job.contact.as_ref().ok_or_else(|| {
+        Failure::file(path, "strip needs a [contact] table: at = [u, v] and along or angle_deg")
+    })?;
     let cutter = job.cutter()?;
     let scallop_mm = job.tolerance()?.scallop_mm;
     let face = part::one_face(&job)?;
@@ -96,7 +95,10 @@ fn feed_line(job: &Job, table: &ContactTable) -> Result<FeedLine, Failure> {
         (Some(other), None) => {
             Err(Failure::file(&job.path, format!("[contact] along = \"{other}\" must be \"u\" or \"v\"")))
         }
-        _ => Err(Failure::file(&job.path, "[contact] needs either along = \"u\" or \"v\", or a finite angle_deg")),
+        _ => Err(Failure::file(
+            &job.path,
+            "[contact] needs either along = \"u\" or \"v\", or a finite angle_deg",
+        )),
     }
 }
 
@@ -106,7 +108,8 @@ fn answer(contact: &Contact<'_>, exact: &strip::Strip, scallop_mm: f64) -> Answe
     let part_across = contact.forms.normal_curvature(&left);
     let part_along = contact.forms.normal_curvature(&tangent);
     let section = Section { part_per_mm: part_across, tool_per_mm: q.along(&left) - part_across, scallop_mm };
-    let lengthwise = Section { part_per_mm: part_along, tool_per_mm: q.along(&tangent) - part_along, scallop_mm };
+    let lengthwise =
+        Section { part_per_mm: part_along, tool_per_mm: q.along(&tangent) - part_along, scallop_mm };
     let mut forms = BTreeMap::new();
     let mut put = |name, value: Result<f64, DomainError>, lead: Option<f64>| {
         let form = match value {
@@ -200,7 +203,10 @@ fn describe(a: &Answer, scallop_mm: f64) -> String {
     let q = &a.relative_curvature_per_mm;
     let max = q.max.map_or_else(|| "infinite (sharp edge)".into(), |m| format!("{} 1/mm", number(m, 6)));
     out.push_str(&format!("  relative curvature: {} 1/mm to {max}\n", number(q.min, 6)));
-    out.push_str(&format!("  widest strip with the feed at {:.2} deg from S_u towards S_v\n", a.widest_direction_deg));
+    out.push_str(&format!(
+        "  widest strip with the feed at {:.2} deg from S_u towards S_v\n",
+        a.widest_direction_deg
+    ));
     if let Some(f) = a.max_feed_per_tooth_mm {
         out.push_str(&format!("  longest feed per tooth at this tolerance {} mm\n", number(f, 6)));
     }

@@ -82,7 +82,15 @@ pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
             let mut t = Table::new(["worst", "mm", "x", "y", "z", "face", "block"]);
             for w in &v.worst {
                 let c = |k: usize| format!("{:.3}", w.at_mm[k]);
-                t.row([w.kind.clone(), number(w.value_mm, 4), c(0), c(1), c(2), w.face.clone(), w.block.to_string()]);
+                t.row([
+                    w.kind.clone(),
+                    number(w.value_mm, 4),
+                    c(0),
+                    c(1),
+                    c(2),
+                    w.face.clone(),
+                    w.block.to_string(),
+                ]);
             }
             render::text(&format!("\n{}", t.render()));
         }
@@ -106,11 +114,13 @@ fn meet(file: &Path, motions: &[Swept], faces: &part::JobFaces) -> Result<(), Fa
         whole = whole.union(&part::bounds(f));
     }
     let reach = whole.grown(0.5 * whole.diagonal_mm());
-    let apart = path.is_empty()
-        || (0..3).any(|k| path.min[k] > reach.max[k] || path.max[k] < reach.min[k]);
+    let apart = path.is_empty() || (0..3).any(|k| path.min[k] > reach.max[k] || path.max[k] < reach.min[k]);
     if apart {
         let show = |b: &Box3| {
-            format!("({:.1}, {:.1}, {:.1}) to ({:.1}, {:.1}, {:.1})", b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z)
+            format!(
+                "({:.1}, {:.1}, {:.1}) to ({:.1}, {:.1}, {:.1})",
+                b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z
+            )
         };
         return Err(Failure::file(
             file,

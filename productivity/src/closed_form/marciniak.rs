@@ -6,7 +6,11 @@
 use super::{DomainError, check_tolerance};
 
 fn positive(what: &'static str, got: f64) -> Result<f64, DomainError> {
-    if got > 0.0 && got.is_finite() { Ok(got) } else { Err(DomainError::Value { what, need: "positive", got }) }
+    if got > 0.0 && got.is_finite() {
+        Ok(got)
+    } else {
+        Err(DomainError::Value { what, need: "positive", got })
+    }
 }
 
 /// 2CL: a ball of radius R leaves `2 sqrt(2 h R)`. Leading order for a part that is flat across the feed.
@@ -34,7 +38,11 @@ pub fn three_axis_flat(
     let tool = lead_rad.sin().abs() / radius;
     let sum = tool + across_per_mm;
     if sum.is_nan() || sum <= 0.0 {
-        return Err(DomainError::DoesNotFit { part_per_mm: across_per_mm, tool_per_mm: tool, sum_per_mm: sum });
+        return Err(DomainError::DoesNotFit {
+            part_per_mm: across_per_mm,
+            tool_per_mm: tool,
+            sum_per_mm: sum,
+        });
     }
     Ok(2.0 * (2.0 * scallop_mm / sum).sqrt())
 }

@@ -30,7 +30,9 @@ pub enum DomainError {
         got: f64,
     },
     /// The tool is not more curved than the part is hollow: it touches along a line or digs in.
-    #[error("the tool does not fit: part {part_per_mm} 1/mm and tool {tool_per_mm} 1/mm add up to {sum_per_mm} 1/mm, not above zero")]
+    #[error(
+        "the tool does not fit: part {part_per_mm} 1/mm and tool {tool_per_mm} 1/mm add up to {sum_per_mm} 1/mm, not above zero"
+    )]
     DoesNotFit {
         /// Curvature of the part.
         part_per_mm: f64,
@@ -40,7 +42,9 @@ pub enum DomainError {
         sum_per_mm: f64,
     },
     /// The tolerance is too large for the arcs: they do not meet at that height.
-    #[error("a tolerance of {scallop_mm} mm is beyond the arcs of curvature {part_per_mm} and {tool_per_mm} 1/mm")]
+    #[error(
+        "a tolerance of {scallop_mm} mm is beyond the arcs of curvature {part_per_mm} and {tool_per_mm} 1/mm"
+    )]
     TooTall {
         /// The tolerance, mm.
         scallop_mm: f64,
@@ -50,7 +54,9 @@ pub enum DomainError {
         tool_per_mm: f64,
     },
     /// A two-contact posture needs a part that is hollow enough across the feed.
-    #[error("no two-contact posture: the part's curvature across the feed is {got_per_mm} 1/mm and must be below {need_per_mm} 1/mm")]
+    #[error(
+        "no two-contact posture: the part's curvature across the feed is {got_per_mm} 1/mm and must be below {need_per_mm} 1/mm"
+    )]
     NotHollow {
         /// Curvature across the feed.
         got_per_mm: f64,

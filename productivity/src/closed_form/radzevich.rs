@@ -117,7 +117,11 @@ pub fn leading_order(section: Section) -> Result<f64, DomainError> {
 ///
 /// # Errors
 /// [`DomainError::DoesNotFit`] where Q is not positive definite.
-pub fn leading_order_swept(relative: &osculate_geom::Relative, left: &osculate_geom::Vec3, scallop_mm: f64) -> Result<f64, DomainError> {
+pub fn leading_order_swept(
+    relative: &osculate_geom::Relative,
+    left: &osculate_geom::Vec3,
+    scallop_mm: f64,
+) -> Result<f64, DomainError> {
     check_tolerance(scallop_mm)?;
     if relative.min <= 0.0 {
         return Err(DomainError::DoesNotFit {

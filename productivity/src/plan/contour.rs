@@ -127,7 +127,8 @@ pub fn contour_2cl(task: &Task<'_>, axis: Unit3) -> Result<Passes, PlanError> {
     if out.passes.is_empty() {
         return Err(PlanError::Nothing {
             face: task.face.to_owned(),
-            why: "the face is flat across the tool axis: it has no contour lines; give another axis".to_owned(),
+            why: "the face is flat across the tool axis: it has no contour lines; give another axis"
+                .to_owned(),
         });
     }
     Ok(out)
@@ -175,7 +176,9 @@ fn field<'a>(task: &'a Task<'a>, axis: Unit3) -> Result<Field<'a>, PlanError> {
             (0..=n[1])
                 .map(|j| {
                     let at = f.uv(i, j);
-                    f.at(at).map_or((f64::NAN, f64::NAN), |(h, c, _)| (h, if surface.contains(at) { c } else { f64::NAN }))
+                    f.at(at).map_or((f64::NAN, f64::NAN), |(h, c, _)| {
+                        (h, if surface.contains(at) { c } else { f64::NAN })
+                    })
                 })
                 .collect()
         })
@@ -424,11 +427,7 @@ fn march(f: &Field<'_>, z: f64) -> Vec<(Vec<Uv>, bool)> {
 }
 
 /// Walks the links: open chains from their ends first, then what closes.
-fn chain(
-    order: &[Edge],
-    at: &HashMap<Edge, Uv>,
-    links: &HashMap<Edge, Vec<Edge>>,
-) -> Vec<(Vec<Uv>, bool)> {
+fn chain(order: &[Edge], at: &HashMap<Edge, Uv>, links: &HashMap<Edge, Vec<Edge>>) -> Vec<(Vec<Uv>, bool)> {
     let mut used: std::collections::HashSet<Edge> = std::collections::HashSet::new();
     let mut out = Vec::new();
     let degree = |e: &Edge| links.get(e).map_or(0, Vec::len);
@@ -445,8 +444,8 @@ fn chain(
             used.insert(*next);
             line.push(*next);
         }
-        let closed = line.len() > 2
-            && line.last().and_then(|e| links.get(e)).is_some_and(|l| l.contains(start));
+        let closed =
+            line.len() > 2 && line.last().and_then(|e| links.get(e)).is_some_and(|l| l.contains(start));
         let mut points: Vec<Uv> = line.iter().map(|e| at[e]).collect();
         if closed {
             points.push(points[0]);

@@ -116,8 +116,7 @@ struct Column {
 impl Column {
     /// Moves the frontier to `f`, or to the next inside stretch, or to none.
     fn advance(&mut self, f: f64, slack: f64) {
-        self.frontier =
-            self.inside.iter().find(|s| s[1] > f + slack).map(|s| s[0].max(f));
+        self.frontier = self.inside.iter().find(|s| s[1] > f + slack).map(|s| s[0].max(f));
     }
 }
 
@@ -134,7 +133,12 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
     let parameters = column_parameters(&seat, along, across)?;
     let mut columns: Vec<Column> = (0..parameters.len())
         .into_par_iter()
-        .map(|k| Column { t: parameters[k], inside: stretches(surface, along, [lo, hi], &parameters, k), frontier: None, left: 0.0 })
+        .map(|k| Column {
+            t: parameters[k],
+            inside: stretches(surface, along, [lo, hi], &parameters, k),
+            frontier: None,
+            left: 0.0,
+        })
         .collect();
     for c in &mut columns {
         c.advance(lo, slack);
@@ -177,9 +181,7 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
             }
         }
         let after: f64 = columns.iter().filter_map(|c| c.frontier).sum();
-        if open == columns.iter().filter(|c| c.frontier.is_some()).count()
-            && after - before <= slack * 1e-3
-        {
+        if open == columns.iter().filter(|c| c.frontier.is_some()).count() && after - before <= slack * 1e-3 {
             // A pass that covers nothing: the surface does not let the tool down to the design height.
             return Err(PlanError::Nothing {
                 face: task.face.to_owned(),
@@ -254,7 +256,10 @@ fn column_parameters(seat: &Seat<'_>, along: Axis, across: Interval) -> Result<V
         all.pop();
     }
     if all.is_empty() {
-        return Err(PlanError::Nothing { face: task.face.to_owned(), why: "its parameter range is empty".to_owned() });
+        return Err(PlanError::Nothing {
+            face: task.face.to_owned(),
+            why: "its parameter range is empty".to_owned(),
+        });
     }
     Ok(all)
 }
@@ -283,8 +288,7 @@ impl Cover<'_> {
     /// Standoff above the design height at column `t`, parameter `point`, of the pass at `pass`.
     fn excess(&self, column: &Column, point: f64, pass: f64) -> Result<f64, LineError> {
         let (task, t) = (self.task, column.t);
-        let line =
-            IsoLine { surface: task.surface, along: self.along, fixed: pass, reversed: self.reversed };
+        let line = IsoLine { surface: task.surface, along: self.along, fixed: pass, reversed: self.reversed };
         let (frame, speed) = line.frame(t)?;
         // The frame turns forward about b at the normal curvature along the feed.
         let h = task.design_scallop_mm(frame.turn.dot(&frame.left), column.left);
@@ -374,13 +378,15 @@ fn measure(
                 return Ok(None);
             }
             let feed = if reversed { FeedLine::IsoReversed(along) } else { FeedLine::Iso(along) };
-            let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean)
-                .map_err(|e| task.contact(e))?;
+            let contact =
+                Contact::new(task.surface, at, task.cutter, feed, task.lean).map_err(|e| task.contact(e))?;
             match strip::exact(&contact, task.tolerance.scallop_mm) {
                 Ok(s) => Ok(Some((c.t, s.width_mm))),
                 // Where a line runs into a pole, or a ripple throws the unseated tool off its own contact, there is no
                 // width; the pass itself is still good.
-                Err(StripError::Degenerate(_) | StripError::AboveTolerance { .. } | StripError::Edge(_)) => Ok(None),
+                Err(StripError::Degenerate(_) | StripError::AboveTolerance { .. } | StripError::Edge(_)) => {
+                    Ok(None)
+                }
                 Err(e) => Err(task.strip(e)),
             }
         })
@@ -433,7 +439,10 @@ fn fits(seat: &Seat<'_>, line: &IsoLine<'_>, columns: &[Column]) -> Result<(), P
             worst = Some(*e);
         }
         let stretch: f64 = (first..k)
-            .map(|j| (task.surface.point(line.uv(columns[j + 1].t)) - task.surface.point(line.uv(columns[j].t))).norm())
+            .map(|j| {
+                (task.surface.point(line.uv(columns[j + 1].t)) - task.surface.point(line.uv(columns[j].t)))
+                    .norm()
+            })
             .sum();
         if stretch > 0.5 * task.cutter.radius_mm()
             && let Some(w) = worst
@@ -457,13 +466,24 @@ fn build(
     let (along, domain) = (layout.along, surface.domain().get(layout.along));
     let neighbour = |j: Option<usize>| j.and_then(|j| layout.levels.get(j)).map(|l| l.fixed);
     // Towards a neighbour three quarters of the way; at the first and last pass the whole way to the end of the face.
-    let below = neighbour(k.checked_sub(1)).map_or(layout.across[0], |b| level.fixed - 0.75 * (level.fixed - b));
+    let below =
+        neighbour(k.checked_sub(1)).map_or(layout.across[0], |b| level.fixed - 0.75 * (level.fixed - b));
     let above = neighbour(Some(k + 1)).map_or(layout.across[1], |a| level.fixed + 0.75 * (a - level.fixed));
     let mut stretches = Vec::new();
     for k in -COVER_ROWS..=COVER_ROWS {
         let f = f64::from(k) / f64::from(COVER_ROWS);
         let reach = if k < 0 { level.fixed - below } else { above - level.fixed };
         stretches.extend(spans(surface, along, level.fixed + f * reach, 400));
+    }
+    // Lines that meet a trim at a slant come nearest to the places between passes beyond it.
+    for s in &mut stretches {
+        let over = |t: f64| {
+            let jet = surface.jet2(Uv::from_axis(along, t, level.fixed));
+            let speed = if along == Axis::U { jet.du.norm() } else { jet.dv.norm() };
+            let width = interpolate(&level.widths, t);
+            if width.is_finite() { 0.5 * width / speed.max(1e-12) } else { 0.0 }
+        };
+        *s = [(s[0] - over(s[0])).max(domain.lo), (s[1] + over(s[1])).min(domain.hi)];
     }
     let mut stretches = union(stretches, 1e-3 * domain.length());
     if level.reversed {

@@ -3,14 +3,12 @@
 //! A strategy places passes of contact points ([`Pass`]) so that the exact strips meet within the scallop tolerance;
 //! [`link`] joins passes to a [`ClPath`](osculate_tools::cl::ClPath). What a plan promises is checked elsewhere, from the NC text.
 
-
 mod contour;
 mod cover;
 mod isoparametric;
 mod link;
 mod resample;
 mod seat;
-
 
 pub use contour::contour_2cl;
 pub use isoparametric::isoparametric;
@@ -158,7 +156,9 @@ pub enum PlanError {
         why: String,
     },
     /// More passes than any sensible job has.
-    #[error("face {face}: more than {limit} passes are needed at a scallop of {scallop_mm} mm; raise scallop_mm or use a larger tool")]
+    #[error(
+        "face {face}: more than {limit} passes are needed at a scallop of {scallop_mm} mm; raise scallop_mm or use a larger tool"
+    )]
     TooManyPasses {
         /// The face.
         face: String,
@@ -175,8 +175,7 @@ const MAX_PASSES: usize = 20_000;
 impl Task<'_> {
     fn check(&self) -> Result<(), PlanError> {
         let t = &self.tolerance;
-        for (what, got) in
-            [("scallop_mm", t.scallop_mm), ("gouge_mm", t.gouge_mm), ("chord_mm", t.chord_mm)]
+        for (what, got) in [("scallop_mm", t.scallop_mm), ("gouge_mm", t.gouge_mm), ("chord_mm", t.chord_mm)]
         {
             if !(got > 0.0 && got.is_finite()) {
                 return Err(PlanError::Tolerance { what, got });

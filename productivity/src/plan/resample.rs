@@ -1,7 +1,7 @@
 //! Points along a pass: as few as hold the chord tolerance at the contact.
 
-use super::{CcPoint, Task};
 use super::seat::Seat;
+use super::{CcPoint, Task};
 use osculate_geom::line::{IsoLine, LineError};
 use osculate_geom::{Point3, Unit3};
 use osculate_tools::Pose;
@@ -158,9 +158,7 @@ fn joins(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, knots: &[Knot]) -
     let l2 = chord.norm_squared();
     knots[1..knots.len() - 1].iter().all(|k| {
         let along = if l2 > 0.0 { (k.point - a.point).dot(&chord) / l2 } else { 0.5 };
-        motion
-            .at(along.clamp(0.0, 1.0))
-            .is_some_and(|m| holds(task, &m.pose, k))
+        motion.at(along.clamp(0.0, 1.0)).is_some_and(|m| holds(task, &m.pose, k))
     })
 }
 

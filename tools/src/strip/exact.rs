@@ -39,7 +39,9 @@ pub enum StripError {
         got: f64,
     },
     /// The tool stands off by more than the tolerance at the contact itself.
-    #[error("at the contact the tool stands {standoff_mm} mm above the part, more than the tolerance {scallop_mm} mm: lower lift_mm")]
+    #[error(
+        "at the contact the tool stands {standoff_mm} mm above the part, more than the tolerance {scallop_mm} mm: lower lift_mm"
+    )]
     AboveTolerance {
         /// Standoff at the contact, mm; infinite where the tool does not pass over it.
         standoff_mm: f64,
