@@ -45,7 +45,11 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
     let plan = |text: String| {
         let path = scratch.write("job.toml", &text);
         let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-        assert!(!out.exists() || std::fs::read_dir(&out).unwrap().next().is_none(), "something was written");
+        assert_eq!(run.code, 1, "{}{}\n{text}", run.out, run.err);
+        assert!(
+            !out.exists() || std::fs::read_dir(&out).unwrap().next().is_none(),
+            "something was written: {text}"
+        );
         run
     };
     let with = |from: &str, to: &str| {
@@ -80,7 +84,8 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
         "or less",
     ]);
     // Upside down the tool would have to come through the table.
-    with("[verification]", "[setup]\nrotate_deg = [180, 0, 0]\n[verification]").refused(&["limit"]);
+    with("[verification]", "[setup]\nrotate_deg = [180, 0, 0]\n[verification]")
+        .refused(&["joint A", "range"]);
 }
 
 #[test]

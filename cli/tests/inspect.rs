@@ -1,4 +1,5 @@
 //! `inspect` and `probe` on the example parts and on built-in surfaces, against independent figures.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 use common::osculate;

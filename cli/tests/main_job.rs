@@ -68,8 +68,15 @@ fn a_plan_is_written_posted_verified_and_reported() {
         let text = std::fs::read_to_string(out.join("path.cl")).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         let goto: Vec<usize> = (0..lines.len()).filter(|k| lines[*k].starts_with("GOTO/")).collect();
-        let middle = goto[goto.len() / 2];
-        let mut numbers: Vec<f64> = lines[middle][5..].split(',').map(|x| x.parse().unwrap()).collect();
+        let parse = |line: &str| -> Vec<f64> { line[5..].split(',').map(|x| x.parse().unwrap()).collect() };
+        // One in the middle at which the ball touches: its centre stands one radius above the part.
+        let touches = |k: &usize| {
+            let n = parse(lines[*k]);
+            let c: Vec<f64> = (0..3).map(|i| n[i] + 5.0 * n[i + 3]).collect();
+            (c[2] - 0.005 * c[0] * c[0] + 0.003 * c[1] * c[1] - 5.0).abs() < 0.05
+        };
+        let middle = *goto[goto.len() / 2..].iter().find(|k| touches(k)).unwrap();
+        let mut numbers = parse(lines[middle]);
         for k in 0..3 {
             numbers[k] -= 0.03 * numbers[k + 3];
         }

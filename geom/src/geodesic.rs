@@ -19,7 +19,7 @@ fn acceleration(surface: &dyn Surface, s: GeodesicState) -> Result<Uv, Degenerat
     let (e, f, g) = (jet.du.dot(&jet.du), jet.du.dot(&jet.dv), jet.dv.dot(&jet.dv));
     let det = e * g - f * f;
     let sin_uv = (det.max(0.0) / (e * g)).sqrt();
-    if !(det > 1e-22 * e * g) {
+    if det.is_nan() || det <= 1e-22 * e * g {
         return Err(Degenerate { at: s.at, sin_uv });
     }
     let second = jet.second(s.rate);

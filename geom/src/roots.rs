@@ -65,8 +65,7 @@ pub fn bracketed(a: End, b: End, x_tol: f64, mut f: impl FnMut(f64) -> f64) -> R
     if b.f == 0.0 {
         return Ok(Root { x: b.x, residual: 0.0, error: 0.0, evaluations: 0 });
     }
-    // The negated form also refuses NaN.
-    if !(a.f.signum() * b.f.signum() < 0.0) {
+    if a.f.is_nan() || b.f.is_nan() || a.f.signum() == b.f.signum() {
         return Err(RootError::NoSignChange { lo: a.x, hi: b.x, f_lo: a.f, f_hi: b.f });
     }
     let (mut a, mut b) = (b, a);

@@ -1,5 +1,7 @@
 //! The laws of surfaces on every analytic kind, and closed forms that tie them to known numbers.
 
+#![allow(clippy::unwrap_used)]
+
 use osculate_geom::analytic::{
     Cone, Cylinder, Ellipsoid, Paraboloid, Placed, Placement, Plane, Sphere, Torus,
 };

@@ -87,7 +87,7 @@ mod tests {
         // All around a post: as it stands.
         let around: Vec<Unit3> = (0..12)
             .map(|k| {
-                let (s, c) = (f64::from(k) * 0.5236).sin_cos();
+                let (s, c) = (f64::from(k) * std::f64::consts::FRAC_PI_6).sin_cos();
                 unit(c, s, -0.2)
             })
             .collect();

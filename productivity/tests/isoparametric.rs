@@ -1,4 +1,5 @@
 //! What isoparametric plans leave on a part, judged by closed forms rather than by the planner's own reach.
+#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Paraboloid, Torus};
 use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};

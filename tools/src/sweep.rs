@@ -147,10 +147,9 @@ fn between(
         && cutter.corner_mm() == 0.0
         && p != q
         && (p == Part::Bottom || q == Part::Bottom)
+        && let Some(found) = on_sharp_edge(cutter, line, motion, [lo, hi], t_tolerance)
     {
-        if let Some(found) = on_sharp_edge(cutter, line, motion, [lo, hi], t_tolerance) {
-            return Some(found);
-        }
+        return Some(found);
     }
     let mut best: Option<Reach> = None;
     let mut see = |s: State, t: f64| {

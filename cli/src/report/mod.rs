@@ -4,6 +4,8 @@
 //! moving tool, tables, charts and findings. Scripts and data stand in the file itself; nothing is loaded from
 //! anywhere. [`svg`] makes a static picture of at most about 300 kB, which the page also shows where the browser
 //! has no WebGL. Same report, same bytes.
+// A library of views in itself: the commands of this version need not use every one.
+#![allow(dead_code, unused_imports)]
 
 mod chart;
 mod data;

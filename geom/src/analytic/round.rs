@@ -121,7 +121,7 @@ impl Cone {
         if !(radius_mm >= 0.0 && radius_mm.is_finite()) {
             return Err(BadSize { what: "radius_mm", need: "zero or positive", got: radius_mm });
         }
-        if !(half_angle_rad.abs() < FRAC_PI_2) {
+        if half_angle_rad.is_nan() || half_angle_rad.abs() >= FRAC_PI_2 {
             return Err(BadSize { what: "half_angle", need: "below 90 degrees", got: half_angle_rad });
         }
         let (sin, cos) = half_angle_rad.sin_cos();

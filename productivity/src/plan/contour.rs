@@ -190,8 +190,11 @@ fn field<'a>(task: &'a Task<'a>, axis: Unit3) -> Result<Field<'a>, PlanError> {
     Ok(f)
 }
 
+/// A share of the face, and what is the matter with it.
+type Share = (f64, &'static str);
+
 /// Stretches of level that a pass must meet for each inside node, and the shares of the face that no pass can do.
-fn intervals(f: &Field<'_>) -> Result<(Vec<[f64; 2]>, [(f64, &'static str); 2]), PlanError> {
+fn intervals(f: &Field<'_>) -> Result<(Vec<[f64; 2]>, [Share; 2]), PlanError> {
     let task = f.task;
     let domain = task.surface.domain();
     let h = task.design_scallop_mm(-1.0, 0.0);

@@ -6,23 +6,20 @@
 //! questions are asked of the true motion of the tool, so that the cusp between two passes is what they really leave,
 //! whatever the surface does between them.
 
+use super::columns::{Column, column_parameters, first_step, rough_columns, stretches};
 use super::cover::{across_range, spans, union};
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::roots::{End, bracketed};
-use osculate_geom::{Axis, Diagnostic, Interval, Surface, Uv};
+use osculate_geom::{Axis, Diagnostic, Interval, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
 use osculate_tools::{Contact, ContactError, ContactMotion, FeedLine};
 use rayon::prelude::*;
 
-/// Fewest and most columns at which spacing is computed.
-const COLUMNS: [usize; 2] = [96, 320];
 /// Rows to each side of a pass in which the stretches that it must run over are looked for.
 const COVER_ROWS: i32 = 10;
-/// Lines looked at between a column and each of its neighbours.
-const BETWEEN: i32 = 8;
 /// Strip width and undercut are computed at every so many columns of a pass.
 const WIDTH_STRIDE: usize = 4;
 
@@ -101,23 +98,6 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
         format!("{} isoparametric passes along {axis}, {:.0} mm", out.passes.len(), out.length_mm()),
     ));
     Ok(out)
-}
-
-/// One column: a parameter along the passes, the inside stretches across it, and the frontier.
-struct Column {
-    t: f64,
-    inside: Vec<[f64; 2]>,
-    /// None once the column is covered.
-    frontier: Option<f64>,
-    /// What the pass before leaves on its own line here, because the face is rough.
-    left: f64,
-}
-
-impl Column {
-    /// Moves the frontier to `f`, or to the next inside stretch, or to none.
-    fn advance(&mut self, f: f64, slack: f64) {
-        self.frontier = self.inside.iter().find(|s| s[1] > f + slack).map(|s| s[0].max(f));
-    }
 }
 
 fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
@@ -205,75 +185,6 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
     Ok(Layout { along, across: [lo, hi], levels, length_mm })
 }
 
-/// Stretches of inside across the passes that column `k` answers for: its own and those up to its neighbours, so that
-/// no corner of a trim falls between columns.
-fn stretches(
-    surface: &dyn Surface,
-    along: Axis,
-    [lo, hi]: [f64; 2],
-    parameters: &[f64],
-    k: usize,
-) -> Vec<[f64; 2]> {
-    let t = parameters[k];
-    let before = k.checked_sub(1).map_or(surface.domain().get(along).lo, |j| parameters[j]);
-    let after = parameters.get(k + 1).copied().unwrap_or(surface.domain().get(along).hi);
-    let mut all = Vec::new();
-    for i in -BETWEEN..=BETWEEN {
-        let f = f64::from(i.abs()) / f64::from(BETWEEN);
-        let to = if i < 0 { before } else { after };
-        all.extend(spans(surface, along.other(), t + (to - t) * f, 400));
-    }
-    let within = all.into_iter().map(|s| [s[0].max(lo), s[1].min(hi)]).filter(|s| s[0] < s[1]);
-    union(within.collect(), 0.0)
-}
-
-/// Parameters of the columns: where a path along three lines of the face would put its points, thinned.
-fn column_parameters(seat: &Seat<'_>, along: Axis, across: Interval) -> Result<Vec<f64>, PlanError> {
-    let task = seat.task();
-    let surface = task.surface;
-    let i = surface.domain().get(along);
-    let breaks = surface.breaks(along);
-    let mut all: Vec<f64> = (0..=COLUMNS[0]).map(|k| i.at(k as f64 / COLUMNS[0] as f64)).collect();
-    for f in [0.02, 0.5, 0.98] {
-        let line = IsoLine { surface, along, fixed: across.at(f), reversed: false };
-        for s in spans(surface, along, across.at(f), 200) {
-            if s[1] - s[0] > 1e-9 * i.length()
-                && let Ok(knots) = resample(seat, task, &line, s, &breaks)
-            {
-                all.extend(knots.iter().map(|k| k.t));
-            }
-        }
-    }
-    all.sort_by(f64::total_cmp);
-    all.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * i.length());
-    let most = COLUMNS[1];
-    if all.len() > most {
-        let n = all.len();
-        all = (0..most).map(|k| all[k * (n - 1) / (most - 1)]).collect();
-    }
-    if i.periodic {
-        // The last column would be the first again.
-        all.pop();
-    }
-    if all.is_empty() {
-        return Err(PlanError::Nothing {
-            face: task.face.to_owned(),
-            why: "its parameter range is empty".to_owned(),
-        });
-    }
-    Ok(all)
-}
-
-/// A first guess of the parameter step between passes.
-fn first_step(task: &Task<'_>, along: Axis, across: Interval) -> f64 {
-    let i = task.surface.domain().get(along);
-    let at = Uv::from_axis(along, i.at(0.5), across.at(0.5));
-    let jet = task.surface.jet2(at);
-    let speed = if along == Axis::U { jet.dv.norm() } else { jet.du.norm() };
-    let half = (2.0 * task.tolerance.scallop_mm * task.cutter.radius_mm()).sqrt();
-    (half / speed.max(1e-12)).clamp(1e-6 * across.length(), 0.2 * across.length())
-}
-
 /// The two questions of the frontier, for one pass direction.
 struct Cover<'a> {
     seat: &'a Seat<'a>,
@@ -350,15 +261,6 @@ impl Cover<'_> {
     }
 }
 
-/// What a rough face keeps at each column of a pass.
-fn rough_columns(seat: &Seat<'_>, along: Axis, fixed: f64, reversed: bool, columns: &mut [Column]) {
-    let line = IsoLine { surface: seat.task().surface, along, fixed, reversed };
-    columns.par_iter_mut().for_each(|c| {
-        // Where the pass has no frame the level itself will say so.
-        c.left = seat.left_over(&line, c.t).unwrap_or(0.0);
-    });
-}
-
 /// Exact strip widths along a level, the check that the tool fits, and the level's length.
 fn measure(
     seat: &Seat<'_>,
@@ -409,8 +311,8 @@ fn measure(
     Ok((Level { fixed, reversed, widths }, length))
 }
 
-/// Refuses a pass on which the part is too hollow for the tool over more than a stretch of half its radius. Shorter
-/// stretches are roughness, which seating deals with and verification judges.
+/// Refuses a pass on which the part is too hollow for the tool over more than half its radius or a fifth of the pass.
+/// Shorter stretches are roughness, which seating deals with and verification judges.
 fn fits(seat: &Seat<'_>, line: &IsoLine<'_>, columns: &[Column]) -> Result<(), PlanError> {
     let task = seat.task();
     let held: Vec<Option<ContactError>> = columns
@@ -428,6 +330,12 @@ fn fits(seat: &Seat<'_>, line: &IsoLine<'_>, columns: &[Column]) -> Result<(), P
         ContactError::DoesNotFit { largest_radius_mm, .. } => *largest_radius_mm,
         _ => f64::INFINITY,
     };
+    // Arc length along the columns: a stretch is long against the tool, or against a face that is smaller than it.
+    let points: Vec<_> = columns.iter().map(|c| task.surface.point(line.uv(c.t))).collect();
+    let length = |first: usize, last: usize| -> f64 {
+        points[first..=last].windows(2).map(|w| (w[1] - w[0]).norm()).sum()
+    };
+    let limit = (0.5 * task.cutter.radius_mm()).min(0.2 * length(0, points.len() - 1));
     let (mut start, mut worst): (Option<usize>, Option<ContactError>) = (None, None);
     for (k, e) in held.iter().enumerate() {
         let Some(e) = e else {
@@ -438,14 +346,8 @@ fn fits(seat: &Seat<'_>, line: &IsoLine<'_>, columns: &[Column]) -> Result<(), P
         if worst.is_none_or(|w| radius(e) < radius(&w)) {
             worst = Some(*e);
         }
-        let stretch: f64 = (first..k)
-            .map(|j| {
-                (task.surface.point(line.uv(columns[j + 1].t)) - task.surface.point(line.uv(columns[j].t)))
-                    .norm()
-            })
-            .sum();
-        if stretch > 0.5 * task.cutter.radius_mm()
-            && let Some(w) = worst
+        if let Some(w) = worst
+            && length(first, k) > limit
         {
             return Err(task.contact(w));
         }

@@ -1,0 +1,120 @@
+//! Columns across isoparametric passes: where spacing is computed, what of the face they answer for, and how far it is
+//! covered.
+
+use super::cover::{spans, union};
+use super::resample::resample;
+use super::seat::Seat;
+use super::{PlanError, Task};
+use osculate_geom::line::IsoLine;
+use osculate_geom::{Axis, Interval, Surface, Uv};
+use rayon::prelude::*;
+
+/// Fewest and most columns at which spacing is computed.
+const COLUMNS: [usize; 2] = [96, 320];
+/// Lines looked at between a column and each of its neighbours.
+const BETWEEN: i32 = 8;
+
+/// One column: a parameter along the passes, the inside stretches across it, and the frontier.
+pub(super) struct Column {
+    pub t: f64,
+    pub inside: Vec<[f64; 2]>,
+    /// None once the column is covered.
+    pub frontier: Option<f64>,
+    /// What the pass before leaves on its own line here, because the face is rough.
+    pub left: f64,
+}
+
+impl Column {
+    /// Moves the frontier to `f`, or to the next inside stretch, or to none.
+    pub fn advance(&mut self, f: f64, slack: f64) {
+        self.frontier = self.inside.iter().find(|s| s[1] > f + slack).map(|s| s[0].max(f));
+    }
+}
+
+/// Stretches of inside across the passes that column `k` answers for: its own and those up to its neighbours, so that
+/// no corner of a trim falls between columns.
+pub(super) fn stretches(
+    surface: &dyn Surface,
+    along: Axis,
+    [lo, hi]: [f64; 2],
+    parameters: &[f64],
+    k: usize,
+) -> Vec<[f64; 2]> {
+    let t = parameters[k];
+    let before = k.checked_sub(1).map_or(surface.domain().get(along).lo, |j| parameters[j]);
+    let after = parameters.get(k + 1).copied().unwrap_or(surface.domain().get(along).hi);
+    let mut all = Vec::new();
+    for i in -BETWEEN..=BETWEEN {
+        let f = f64::from(i.abs()) / f64::from(BETWEEN);
+        let to = if i < 0 { before } else { after };
+        all.extend(spans(surface, along.other(), t + (to - t) * f, 400));
+    }
+    let within = all.into_iter().map(|s| [s[0].max(lo), s[1].min(hi)]).filter(|s| s[0] < s[1]);
+    union(within.collect(), 0.0)
+}
+
+/// Parameters of the columns: where a path along three lines of the face would put its points, thinned.
+pub(super) fn column_parameters(
+    seat: &Seat<'_>,
+    along: Axis,
+    across: Interval,
+) -> Result<Vec<f64>, PlanError> {
+    let task = seat.task();
+    let surface = task.surface;
+    let i = surface.domain().get(along);
+    let breaks = surface.breaks(along);
+    let mut all: Vec<f64> = (0..=COLUMNS[0]).map(|k| i.at(k as f64 / COLUMNS[0] as f64)).collect();
+    for f in [0.02, 0.5, 0.98] {
+        let line = IsoLine { surface, along, fixed: across.at(f), reversed: false };
+        for s in spans(surface, along, across.at(f), 200) {
+            if s[1] - s[0] > 1e-9 * i.length()
+                && let Ok(knots) = resample(seat, task, &line, s, &breaks)
+            {
+                all.extend(knots.iter().map(|k| k.t));
+            }
+        }
+    }
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * i.length());
+    let most = COLUMNS[1];
+    if all.len() > most {
+        let n = all.len();
+        all = (0..most).map(|k| all[k * (n - 1) / (most - 1)]).collect();
+    }
+    if i.periodic {
+        // The last column would be the first again.
+        all.pop();
+    }
+    if all.is_empty() {
+        return Err(PlanError::Nothing {
+            face: task.face.to_owned(),
+            why: "its parameter range is empty".to_owned(),
+        });
+    }
+    Ok(all)
+}
+
+/// A first guess of the parameter step between passes.
+pub(super) fn first_step(task: &Task<'_>, along: Axis, across: Interval) -> f64 {
+    let i = task.surface.domain().get(along);
+    let at = Uv::from_axis(along, i.at(0.5), across.at(0.5));
+    let jet = task.surface.jet2(at);
+    let speed = if along == Axis::U { jet.dv.norm() } else { jet.du.norm() };
+    let half = (2.0 * task.tolerance.scallop_mm * task.cutter.radius_mm()).sqrt();
+    (half / speed.max(1e-12)).clamp(1e-6 * across.length(), 0.2 * across.length())
+}
+
+/// What a rough face keeps at each column of a pass.
+pub(super) fn rough_columns(
+    seat: &Seat<'_>,
+    along: Axis,
+    fixed: f64,
+    reversed: bool,
+    columns: &mut [Column],
+) {
+    let line = IsoLine { surface: seat.task().surface, along, fixed, reversed };
+    columns.par_iter_mut().for_each(|c| {
+        // Where the pass has no frame the level itself will say so.
+        c.left = seat.left_over(&line, c.t).unwrap_or(0.0);
+    });
+}
