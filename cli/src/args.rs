@@ -34,7 +34,7 @@ pub enum Verb {
     },
     /// Strip width at one contact: exact and every closed form that applies, side by side.
     Strip {
-        /// The job file, with a [contact] table.
+        /// The job file, with its contact table.
         job: PathBuf,
     },
     /// The main job: path, CL file, NC program, verification, report.

@@ -4,7 +4,8 @@
 //! curves; else the model-space curves are projected. Only faces of solids (186) say where the material is.
 
 use super::cards::{Cards, Entity, Param};
-use super::geometry::{Geometry, Space, Unread, kind_name};
+use super::geometry::{Geometry, Space, Unread};
+use super::names::kind_name;
 use crate::part::{Face, FaceKind, Format, Leftovers, Part};
 use crate::trim::boundary::{Boundary, Built, build};
 use crate::trim::carrier::FaceSurface;

@@ -4,8 +4,10 @@
 //! nothing about the material side: such faces have [`crate::Face::oriented`] false.
 
 mod cards;
+mod carriers;
 mod faces;
 mod geometry;
+mod names;
 
 use crate::part::Part;
 use cards::{CardFault, Cards};

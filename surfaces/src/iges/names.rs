@@ -1,0 +1,48 @@
+//! Names of IGES entities for people.
+
+/// The standard's name of an entity.
+pub(crate) fn kind_name(kind: u32, form: i32) -> String {
+    let name = match kind {
+        100 => "circular arc",
+        102 => "composite curve",
+        104 => "conic arc",
+        106 => "copious data",
+        108 => "plane",
+        110 => "line",
+        112 => "parametric spline curve",
+        114 => "parametric spline surface",
+        116 => "point",
+        118 => "ruled surface",
+        120 => "surface of revolution",
+        122 => "tabulated cylinder",
+        124 => "transformation matrix",
+        126 => "rational B-spline curve",
+        128 => "rational B-spline surface",
+        130 => "offset curve",
+        140 => "offset surface",
+        141 => "boundary",
+        142 => "curve on a parametric surface",
+        143 => "bounded surface",
+        144 => "trimmed surface",
+        150..=168 => "solid primitive",
+        180 => "boolean tree",
+        184 => "solid assembly",
+        186 => "manifold solid",
+        190 => "plane surface",
+        192 => "cylindrical surface",
+        194 => "conical surface",
+        196 => "spherical surface",
+        198 => "toroidal surface",
+        308 | 320 => "subfigure definition",
+        408 | 420 => "subfigure instance",
+        430 => "solid instance",
+        502 => "vertex list",
+        504 => "edge list",
+        508 => "loop",
+        510 => "face",
+        514 => "shell",
+        200..=299 => "annotation",
+        _ => "entity",
+    };
+    if form == 0 { format!("{kind} {name}") } else { format!("{kind} {name}, form {form}") }
+}
