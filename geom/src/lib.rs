@@ -3,7 +3,7 @@
 //! - [`Surface`] is the one view that machining code has of a part: a domain and a second-order jet.
 //! - [`Jet2::forms`] gives both fundamental forms and the curvature matrix; [`Forms::principal`] the principal
 //!   curvatures. **Curvature is positive where the body is convex**, with the normal out of the material.
-//! - [`Darboux`] is the moving frame along a line on the surface, [`line`] the lines themselves.
+//! - [`Darboux`] is the moving frame along a line on the surface, [`mod@line`] the lines themselves.
 //! - [`Relative`] is the form `Q = W_P + W_T` on which strip width and local gouging depend.
 //! - [`analytic`] has the surfaces with closed forms, [`laws`] the suite that every surface must pass.
 //!
