@@ -87,24 +87,28 @@ impl Control {
     }
 }
 
-/// The control of a job.
-pub fn control(job: &Job) -> Result<Control, Failure> {
+/// What a job without a machine is posted for: name, dialect, feed.
+const DEFAULT: [&str; 3] = ["trunnion-ac", "sinumerik", "tcp"];
+
+/// The control of a job, with a finding where the job leaves it to the program.
+pub fn control(job: &Job) -> Result<(Control, Vec<Diagnostic>), Failure> {
     let here = |f: Failure| Failure::file(&job.path, format!("[machine] {}", f.message()));
+    let [name, dialect, feed] = DEFAULT;
     let Some(m) = &job.machine else {
-        return Err(Failure::file(
-            &job.path,
-            "a [machine] table is needed: name = \"trunnion-ac\", dialect = \"sinumerik\", feed = \"tcp\"",
-        ));
+        let words = Words { name: Some(name), file: None, dialect, feed, kz_step: None };
+        let text = format!("the job names none: posted for {name}, {dialect}, feed {feed}");
+        return Ok((Control::from_words(&words)?, vec![Diagnostic::warning("machine", text)]));
     };
     let file = m.file.as_ref().map(|f| beside(&job.path, f));
-    Control::from_words(&Words {
+    let control = Control::from_words(&Words {
         name: m.name.as_deref(),
         file: file.as_deref(),
-        dialect: m.dialect.as_deref().unwrap_or("sinumerik"),
-        feed: m.feed.as_deref().unwrap_or("tcp"),
+        dialect: m.dialect.as_deref().unwrap_or(dialect),
+        feed: m.feed.as_deref().unwrap_or(feed),
         kz_step: m.kz_step,
     })
-    .map_err(here)
+    .map_err(here)?;
+    Ok((control, Vec::new()))
 }
 
 /// Where the part of a job sits on the machine, as the job says or as [`suggest`] has it.

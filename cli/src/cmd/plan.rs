@@ -87,7 +87,7 @@ struct Planned {
 /// Runs the verb.
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let job = Job::load(path)?;
-    let control = nc::control(&job)?;
+    let (control, control_notes) = nc::control(&job)?;
     let mut wall_s = WallS::default();
 
     let stage = Stage::begin("import");
@@ -122,6 +122,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let diagnostics: Vec<Diagnostic> = [
         &faces.part.diagnostics,
         &planned.passes.diagnostics,
+        &control_notes,
         &setup_notes,
         &posted.diagnostics,
         &read.diagnostics,

@@ -44,7 +44,8 @@ pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
         diagnostics.extend(cl.diagnostics);
         (Swept::along(&cl.path), "cl")
     } else {
-        let control = nc::control(&job)?;
+        let (control, notes) = nc::control(&job)?;
+        diagnostics.extend(notes);
         let (setup, notes) = nc::setup(&job, &faces)?;
         diagnostics.extend(notes);
         let read = nc::read_back(&text, &control, &setup, lenient).map_err(|e| Failure::file(file, e))?;
