@@ -5,7 +5,7 @@ use crate::point::{Axis, uv};
 use crate::surface::Surface;
 
 /// Nodes and weights of the 5-point Gauss-Legendre rule on `[0, 1]`: exact to degree 9.
-const GAUSS5: [(f64, f64); 5] = [
+pub const GAUSS5: [(f64, f64); 5] = [
     (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
     (0.5, 0.284_444_444_444_444_44),

@@ -12,7 +12,7 @@ use crate::verify::{self, Verification, Verified};
 use osculate_geom::{Axis, Box3, Diagnostic};
 use osculate_productivity::levels::{Totals, levels};
 use osculate_productivity::plan::{
-    Along, Linked, Links, Passes, PlanError, Task, contour_2cl, isoparametric, link,
+    Along, Linked, Links, Passes, PlanError, Task, contour_2cl, isoparametric, link, predicted_length_mm,
 };
 use osculate_tools::{Cutter, Lean};
 use serde::Serialize;
@@ -232,6 +232,12 @@ fn planned(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> Resu
             ));
         }
     };
+    let linked = linked(job, faces, &passes, &cutter)?;
+    Ok(Planned { passes, linked, strategy, lean })
+}
+
+/// Passes joined to a path.
+fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
     let mut obstacles = Box3::empty();
     for f in faces.faces.iter().chain(&faces.check) {
         obstacles = obstacles.union(&part::bounds(f));
@@ -250,8 +256,7 @@ fn planned(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> Resu
         feed_mm_min,
         plunge_mm_min: 0.5 * feed_mm_min,
     };
-    let linked = link(&passes.passes, &links);
-    Ok(Planned { passes, linked, strategy, lean })
+    Ok(link(&passes.passes, &links))
 }
 
 fn each_face(
@@ -293,42 +298,66 @@ fn isoparametric_passes(
         }
     };
     let plan = |task: &Task<'_>| isoparametric(task, along);
-    let leads: Vec<f64> = match job.strategy.lead_deg {
+    let mut leads: Vec<f64> = match job.strategy.lead_deg {
         AutoOr::Given(deg) => vec![deg],
         AutoOr::Auto if cutter.is_ball() => vec![BALL_LEAD_DEG],
         AutoOr::Auto => LEADS_DEG.to_vec(),
     };
-    let n = leads.len() as f64;
-    let mut best: Option<(Passes, Lean)> = None;
+    let choice = leads.len() > 1;
+    if choice {
+        leads = ranked(job, faces, cutter, &leads)?;
+    }
+    let mut best: Option<(f64, Passes, Lean)> = None;
     let mut refused: Option<Failure> = None;
-    for (k, deg) in leads.iter().enumerate() {
+    for deg in leads {
         let lean = job.lean(deg.to_radians())?;
-        let here = move |f: f64| progress((k as f64 + f) / n);
-        match each_face(job, faces, cutter, lean, &here, &plan) {
-            Ok(p) => {
-                if best.as_ref().is_none_or(|b| p.length_mm() < b.0.length_mm()) {
-                    best = Some((p, lean));
+        match each_face(job, faces, cutter, lean, progress, &plan) {
+            Ok(mut p) if choice => {
+                // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
+                let gouge = verify::coarse_gouge_mm(job, faces, &linked(job, faces, &p, cutter)?)?;
+                p.diagnostics.push(Diagnostic::note(
+                    "lead",
+                    format!(
+                        "{deg:.0} deg chosen of {LEADS_DEG:?} by predicted length and gouge ({gouge:.4} mm)"
+                    ),
+                ));
+                if gouge <= job.tolerance()?.gouge_mm {
+                    return Ok((p, lean));
+                }
+                if best.as_ref().is_none_or(|b| gouge < b.0) {
+                    best = Some((gouge, p, lean));
                 }
             }
+            Ok(p) => return Ok((p, lean)),
             Err(e) => refused = Some(e),
         }
     }
     match (best, refused) {
-        (Some((mut passes, lean)), _) => {
-            if leads.len() > 1 {
-                passes.diagnostics.push(Diagnostic::note(
-                    "lead",
-                    format!(
-                        "{:.0} deg gives the shortest path of the leads tried",
-                        lean.lead_rad.to_degrees()
-                    ),
-                ));
-            }
-            Ok((passes, lean))
-        }
+        // None is good: the least bad one goes on to verification, which says so.
+        (Some((_, passes, lean)), _) => Ok((passes, lean)),
         (None, Some(e)) => Err(e),
         (None, None) => Err(Failure::job("no lead was tried")),
     }
+}
+
+/// Leads by the length of path that they promise, shortest first.
+fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Result<Vec<f64>, Failure> {
+    let tolerance = job.tolerance()?;
+    let mut out = Vec::with_capacity(leads.len());
+    for deg in leads {
+        let lean = job.lean(deg.to_radians())?;
+        let length: f64 = faces
+            .faces
+            .iter()
+            .map(|face| {
+                let (surface, face) = (&*face.surface, face.id.as_str());
+                predicted_length_mm(&Task { surface, face, cutter, lean, tolerance, progress: &|_| {} })
+            })
+            .sum();
+        out.push((length, *deg));
+    }
+    out.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(out.into_iter().map(|o| o.1).collect())
 }
 
 fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, control: &Control) -> String {

@@ -8,12 +8,14 @@ mod contour;
 mod cover;
 mod isoparametric;
 mod link;
+mod predict;
 mod resample;
 mod seat;
 
 pub use contour::contour_2cl;
 pub use isoparametric::isoparametric;
 pub use link::{Linked, Links, link};
+pub use predict::predicted_length_mm;
 
 use osculate_geom::{Axis, Diagnostic, Point3, Surface, Unit3, Uv};
 use osculate_tools::strip::StripError;

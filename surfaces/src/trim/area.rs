@@ -5,16 +5,8 @@
 //! in the column and along its inside spans are exact up to the smoothness of the integrand.
 
 use super::region::Region;
+use osculate_geom::quadrature::GAUSS5;
 use osculate_geom::{Axis, Jet2, Surface, uv};
-
-/// Nodes and weights of the 5-point Gauss-Legendre rule on `[0, 1]`.
-const GAUSS5: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_6, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
 
 /// Nodes and weights of the 2-point rule: columns between the vertices of a fine polyline are narrow.
 const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
