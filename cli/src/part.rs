@@ -43,6 +43,8 @@ pub struct Loaded {
     pub faces: Vec<LoadedFace>,
     /// What the file has that is not used: kind, count, why.
     pub not_used: Vec<(String, usize, String)>,
+    /// The message for a file that ends too early.
+    pub truncated: Option<String>,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -76,6 +78,7 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         schema: String::new(),
         faces: vec![face],
         not_used: Vec::new(),
+        truncated: None,
         diagnostics: Vec::new(),
     })
 }
@@ -107,8 +110,21 @@ fn from_file(path: &Path) -> Result<Loaded, Failure> {
         schema: part.schema,
         faces,
         not_used: part.not_used.into_iter().map(|n| (n.kind, n.count, n.why)).collect(),
+        truncated: part.truncated.then(|| {
+            let what =
+                "is truncated: faces may be missing (inspect shows what was read); export or copy it again";
+            format!("{}: the file {what}", path.display())
+        }),
         diagnostics: part.diagnostics,
     })
+}
+
+/// The part, unless its file ends too early.
+pub fn whole(part: Loaded) -> Result<Loaded, Failure> {
+    match &part.truncated {
+        Some(message) => Err(Failure::job(message)),
+        None => Ok(part),
+    }
 }
 
 /// The part of a command line.
@@ -134,7 +150,7 @@ pub struct JobFaces {
 pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
     let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
     let mut part = match (&job.part.file, &job.part.builtin) {
-        (Some(file), _) => from_file(&beside(&job.path, file))?,
+        (Some(file), _) => whole(from_file(&beside(&job.path, file))?)?,
         (None, Some(table)) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?)?,
         (None, None) => return Err(Failure::file(&job.path, "[part] needs file or builtin")),
     };

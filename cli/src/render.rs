@@ -71,7 +71,8 @@ pub fn findings(all: &[Diagnostic]) -> String {
 /// A number with `digits` significant digits, plain where it is neither huge nor tiny.
 pub fn number(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
-        return format!("{x}");
+        // No minus before a zero.
+        return format!("{}", x + 0.0);
     }
     let exponent = x.abs().log10().floor();
     if (-5.0..7.0).contains(&exponent) {

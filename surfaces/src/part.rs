@@ -41,6 +41,8 @@ pub struct Part {
     pub faces: Vec<Face>,
     /// What the file has and the part has not, by kind.
     pub not_used: Vec<NotUsed>,
+    /// Whether the file ends before its format says it does: faces may be missing without a trace.
+    pub truncated: bool,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
 }

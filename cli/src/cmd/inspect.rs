@@ -81,7 +81,8 @@ pub fn run(args: &PartArgs, json: bool) -> Outcome {
     } else {
         render::text(&describe(&answer, &part));
     }
-    Ok(Done::Yes)
+    // What could be read is shown all the same.
+    part::whole(part).map(|_| Done::Yes)
 }
 
 fn answer(part: &Loaded) -> Answer {
@@ -93,7 +94,8 @@ fn answer(part: &Loaded) -> Answer {
         unit: part.unit.clone(),
         schema: part.schema.clone(),
         bbox_mm: corners(&whole),
-        area_mm2: faces.iter().map(|f| f.area_mm2).sum(),
+        // An empty sum is minus zero.
+        area_mm2: faces.iter().map(|f| f.area_mm2).sum::<f64>() + 0.0,
         faces,
         not_used: part
             .not_used

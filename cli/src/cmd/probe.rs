@@ -27,7 +27,7 @@ struct Answer {
 
 /// Runs the verb.
 pub fn run(args: &PartArgs, face: Option<&str>, at: &[[f64; 2]], json: bool) -> Outcome {
-    let loaded = part::load(args)?;
+    let loaded = part::whole(part::load(args)?)?;
     let face = match (face, loaded.faces.as_slice()) {
         (Some(id), _) => loaded.face(id)?,
         (None, [one]) => one,

@@ -60,6 +60,8 @@ pub(crate) struct Cards {
     /// Entities by directory number.
     pub(crate) entities: BTreeMap<i64, Entity>,
     pub(crate) diagnostics: Vec<Diagnostic>,
+    /// Whether the terminate section is missing.
+    pub(crate) truncated: bool,
 }
 
 /// Why the cards make no model.
@@ -141,7 +143,7 @@ impl Cards {
         }
         let (separators, global) = global(&global_text, &mut diagnostics);
         let entities = entities(&directory, &parameters, separators, &mut diagnostics);
-        Ok(Self { global, entities, diagnostics })
+        Ok(Self { global, entities, diagnostics, truncated: !terminated })
     }
 }
 

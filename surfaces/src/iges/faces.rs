@@ -93,6 +93,7 @@ pub(crate) fn part(mut cards: Cards) -> Part {
         schema: cards.global.version.clone(),
         faces,
         not_used: left.into_entries(),
+        truncated: cards.truncated,
         diagnostics,
     }
 }

@@ -48,6 +48,7 @@ pub(crate) fn part(mut graph: Graph) -> Part {
         schema: graph.schemas.join(", "),
         faces,
         not_used: left.into_entries(),
+        truncated: graph.truncated,
         diagnostics,
     }
 }

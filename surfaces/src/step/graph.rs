@@ -124,6 +124,8 @@ pub(crate) struct Graph {
     pub(crate) schemas: Vec<String>,
     /// What was found on the way.
     pub(crate) diagnostics: Vec<Diagnostic>,
+    /// Whether the file ends inside a record or a section; one that lacks only its last line does not count.
+    pub(crate) truncated: bool,
 }
 
 /// The missing parameter that empty slots read as.
@@ -143,6 +145,7 @@ impl Graph {
         let mut duplicates: BTreeMap<u64, usize> = BTreeMap::new();
         let mut ended = false;
         let mut truncated = false;
+        let mut in_section = true;
         loop {
             let from = lexer.at;
             match lexer.next() {
@@ -174,6 +177,7 @@ impl Graph {
                         ended = true;
                         break;
                     }
+                    in_section = word != "ENDSEC";
                     if word == "SIGNATURE" {
                         // Base 64 text, no tokens: move to its end.
                         match find(&text[lexer.at..], b"ENDSEC") {
@@ -216,6 +220,7 @@ impl Graph {
                 }
             }
         }
+        graph.truncated = truncated || (!ended && in_section);
         if truncated || !ended {
             let last = graph.records.last().map_or_else(String::new, |r| format!("#{}", r.0));
             graph.diagnostics.push(Diagnostic::loss(
