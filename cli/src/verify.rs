@@ -8,7 +8,7 @@ use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Sample, Swept, V
 use serde::Serialize;
 
 /// Most samples where the job does not say.
-const MAX_SAMPLES: usize = 400_000;
+const MAX_SAMPLES: usize = 1_000_000;
 /// Check faces are sampled this many times as coarsely: there only deep contact matters.
 const CHECK_COARSER: f64 = 4.0;
 /// Samples across the narrowest usual strip.

@@ -11,6 +11,8 @@ use rayon::prelude::*;
 
 /// Fewest and most columns at which spacing is computed.
 const COLUMNS: [usize; 2] = [96, 320];
+/// Cells along a column in which its inside is looked for: the tip of a trim may be narrow.
+const FINE: usize = 2000;
 /// Lines looked at between a column and each of its neighbours.
 const BETWEEN: i32 = 8;
 
@@ -47,7 +49,7 @@ pub(super) fn stretches(
     for i in -BETWEEN..=BETWEEN {
         let f = f64::from(i.abs()) / f64::from(BETWEEN);
         let to = if i < 0 { before } else { after };
-        all.extend(spans(surface, along.other(), t + (to - t) * f, 400));
+        all.extend(spans(surface, along.other(), t + (to - t) * f, FINE));
     }
     let within = all.into_iter().map(|s| [s[0].max(lo), s[1].min(hi)]).filter(|s| s[0] < s[1]);
     union(within.collect(), 0.0)
