@@ -1,4 +1,4 @@
-//! Second-order Taylor data of a surface at a point, and what follows from it alone.
+//! Taylor data of a surface at a point to second and third order, and what follows from it alone.
 
 use crate::forms::{Degenerate, Forms};
 use crate::point::{Point3, Unit3, Uv, Vec3};
@@ -83,5 +83,32 @@ impl Jet2 {
     #[must_use]
     pub fn second(&self, rate: Uv) -> Vec3 {
         self.duu * (rate.u * rate.u) + self.duv * (2.0 * rate.u * rate.v) + self.dvv * (rate.v * rate.v)
+    }
+}
+
+/// A point of a surface with its partial derivatives to third order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet3 {
+    /// Point and derivatives to second order.
+    pub jet2: Jet2,
+    /// S_uuu.
+    pub duuu: Vec3,
+    /// S_uuv.
+    pub duuv: Vec3,
+    /// S_uvv.
+    pub duvv: Vec3,
+    /// S_vvv.
+    pub dvvv: Vec3,
+}
+
+impl Jet3 {
+    /// The third derivative of S along a curve with parameter rate `rate` that runs straight in the parameters.
+    #[must_use]
+    pub fn third(&self, rate: Uv) -> Vec3 {
+        let (a, b) = (rate.u, rate.v);
+        self.duuu * (a * a * a)
+            + self.duuv * (3.0 * a * a * b)
+            + self.duvv * (3.0 * a * b * b)
+            + self.dvvv * (b * b * b)
     }
 }

@@ -1,6 +1,7 @@
 //! Differential geometry for multi-axis machining: no input or output, no file formats, no NURBS.
 //!
-//! - [`Surface`] is the one view that machining code has of a part: a domain and a second-order jet.
+//! - [`Surface`] is the one view that machining code has of a part: a domain, a second-order jet, and derivatives of
+//!   higher order ([`Surface::jet3`], [`Surface::taylor`]) that are exact, never differences.
 //! - [`Jet2::forms`] gives both fundamental forms and the curvature matrix; [`Forms::principal`] the principal
 //!   curvatures. **Curvature is positive where the body is convex**, with the normal out of the material.
 //! - [`Darboux`] is the moving frame along a line on the surface, [`mod@line`] the lines themselves.
@@ -30,13 +31,17 @@ mod point;
 pub mod quadrature;
 mod relative;
 pub mod roots;
+mod series;
 mod surface;
+mod taylor;
 
 pub use diagnostic::{Diagnostic, Severity};
 pub use domain::{Domain, Interval};
 pub use forms::{Degenerate, Forms, Principal, SymEigen, project_to_tangent};
 pub use frame::{Darboux, geodesic_curvature};
-pub use jet::{Jet2, Side};
+pub use jet::{Jet2, Jet3, Side};
 pub use point::{Axis, Box3, Point3, Unit3, Uv, Vec3, any_perpendicular, uv};
 pub use relative::{Relative, ToolCurvature};
+pub use series::{MAX_ORDER, Series};
 pub use surface::{Flipped, Patch, Surface};
+pub use taylor::Taylor;

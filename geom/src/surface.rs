@@ -1,12 +1,14 @@
 //! The one view of a surface that machining code has.
 
 use crate::domain::Domain;
-use crate::jet::{Jet2, Side};
+use crate::jet::{Jet2, Jet3, Side};
 use crate::point::{Axis, Point3, Uv};
+use crate::taylor::Taylor;
 
 /// A parametric surface, possibly trimmed, with a material side.
 ///
-/// `tools`, `productivity` and `postproc` see surfaces only through this trait. Two methods are required.
+/// `tools`, `productivity` and `postproc` see surfaces only through this trait. Three methods are
+/// required.
 pub trait Surface: Send + Sync {
     /// The parameter rectangle. A trimmed surface gives the rectangle of its untrimmed carrier.
     fn domain(&self) -> Domain;
@@ -14,6 +16,16 @@ pub trait Surface: Send + Sync {
     /// Point and partial derivatives to second order. Parameters outside the domain are brought in
     /// ([`Domain::bring`]) or, where the carrier extends naturally (analytic surfaces), evaluated as they are.
     fn jet2(&self, uv: Uv) -> Jet2;
+
+    /// The Taylor polynomial to `order` (at most [`MAX_ORDER`](crate::MAX_ORDER)) at the place that [`Surface::jet2`]
+    /// takes for `uv`: exact derivatives, not differences. Where a surface can give fewer orders (an offset has one
+    /// less than its base) the polynomial says so in its [`Taylor::order`], and what lies above is NaN.
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor;
+
+    /// Point and exact partial derivatives to third order; the first two orders are those of [`Surface::jet2`].
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        Jet3 { jet2: self.jet2(uv), ..self.taylor(uv, 3).jet3() }
+    }
 
     /// The point alone.
     fn point(&self, uv: Uv) -> Point3 {
@@ -46,6 +58,14 @@ impl<S: Surface> Surface for Flipped<S> {
         jet.side = jet.side.flipped();
         jet
     }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        self.0.taylor(uv, order).flipped()
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        let mut jet = self.0.jet3(uv);
+        jet.jet2.side = jet.jet2.side.flipped();
+        jet
+    }
     fn point(&self, uv: Uv) -> Point3 {
         self.0.point(uv)
     }
@@ -65,6 +85,12 @@ macro_rules! forward_surface {
             }
             fn jet2(&self, uv: Uv) -> Jet2 {
                 (**self).jet2(uv)
+            }
+            fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+                (**self).taylor(uv, order)
+            }
+            fn jet3(&self, uv: Uv) -> Jet3 {
+                (**self).jet3(uv)
             }
             fn point(&self, uv: Uv) -> Point3 {
                 (**self).point(uv)
@@ -101,6 +127,10 @@ impl<S: Surface> Surface for Patch<S> {
             jet.side = jet.side.flipped();
         }
         jet
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let t = self.surface.taylor(uv, order);
+        if self.side == Side::Against { t.flipped() } else { t }
     }
     fn point(&self, uv: Uv) -> Point3 {
         self.surface.point(uv)

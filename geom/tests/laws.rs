@@ -44,6 +44,7 @@ proptest! {
             let at = s.domain().at(fu, fv);
             // Differences over 1e-5 of a parameter: third derivatives (below 10 of the first) times 1e-10, rounding 1e-11.
             laws::jets_match_differences(&*s, at, 1e-5, 1e-8);
+            laws::taylor_matches(&*s, at, 1e-5, 1e-8);
             laws::curvature_laws(&*s, at, angle, 1e-12);
             laws::breaks_are_ordered(&*s);
         }

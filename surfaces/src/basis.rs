@@ -12,6 +12,7 @@
 //! are polar forms].
 
 use crate::knots::{Knots, MAX_DEGREE};
+use osculate_geom::MAX_ORDER;
 
 /// Room for the functions that act on one span.
 const WIDTH: usize = MAX_DEGREE + 1;
@@ -23,6 +24,14 @@ pub(crate) struct Basis {
     pub(crate) first: usize,
     /// Values, first and second derivatives.
     pub(crate) order: [[f64; WIDTH]; 3],
+}
+
+/// The basis functions that act on a span with their Taylor coefficients about one parameter.
+pub(crate) struct BasisTaylor {
+    /// First pole that acts.
+    pub(crate) first: usize,
+    /// Coefficients of order 0, 1, ...; zero above the order asked for.
+    pub(crate) order: [[f64; WIDTH]; MAX_ORDER + 1],
 }
 
 impl Knots {
@@ -91,6 +100,36 @@ impl Knots {
             [0.0; WIDTH]
         };
         Basis { first: k - p, order: [value, first, second] }
+    }
+
+    /// Taylor coefficients of the basis functions on a span about `t` to `order`: derivative k over k!.
+    pub(crate) fn basis_taylor(&self, span: usize, t: f64, order: usize) -> BasisTaylor {
+        let (k, p) = (self.knot_index(span), self.degree());
+        let highest = order.min(p).min(MAX_ORDER);
+        // Entry m: the functions of degree p - m, from which m differentiations lead to degree p.
+        let mut below = [[0.0; WIDTH]; MAX_ORDER + 1];
+        let values = self.triangle(
+            k,
+            |_| t,
+            |d, n| {
+                // Seen before the step to degree d: degree d - 1.
+                if p + 1 - d <= highest {
+                    below[p + 1 - d] = *n;
+                }
+            },
+        );
+        below[0] = values;
+        let mut factor = 1.0;
+        for (m, row) in below.iter_mut().enumerate().take(highest + 1).skip(1) {
+            factor /= m as f64;
+            for d in p - m + 1..=p {
+                *row = self.differentiate(k, d, row);
+            }
+            for x in row.iter_mut() {
+                *x *= factor;
+            }
+        }
+        BasisTaylor { first: k - p, order: below }
     }
 
     /// Values of the basis functions alone, and the first pole that acts.

@@ -36,6 +36,7 @@ mod nurbs;
 mod nurbs_curve;
 mod nurbs_edit;
 mod nurbs_eval;
+mod nurbs_taylor;
 pub mod orient;
 mod refine;
 mod ruled;

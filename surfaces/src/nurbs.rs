@@ -9,8 +9,9 @@
 use crate::closest::Index;
 use crate::knots::{KnotError, Knots, MAX_DEGREE};
 use crate::nurbs_eval::Evaluator;
+use crate::nurbs_taylor::taylor;
 use nalgebra::Vector4;
-use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Uv};
+use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Taylor, Uv};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -362,6 +363,11 @@ impl Surface for NurbsSurface {
     fn jet2(&self, uv: Uv) -> Jet2 {
         let at = self.bring(uv);
         self.piece_jet(at, self.span(at))
+    }
+
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let at = self.bring(uv);
+        taylor(&self.knots, &self.net, self.side, (at, self.span(at)), order)
     }
 
     #[inline]

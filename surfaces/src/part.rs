@@ -6,7 +6,7 @@
 use crate::trim::carrier::FaceSurface;
 use crate::trimmed::TrimmedSurface;
 use crate::{iges, step};
-use osculate_geom::{Axis, Box3, Diagnostic, Domain, Jet2, Point3, Surface, Uv};
+use osculate_geom::{Axis, Box3, Diagnostic, Domain, Jet2, Jet3, Point3, Surface, Taylor, Uv};
 use std::fmt;
 use std::sync::Arc;
 
@@ -208,6 +208,12 @@ impl Surface for Face {
     }
     fn jet2(&self, uv: Uv) -> Jet2 {
         self.surface.jet2(uv)
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        self.surface.taylor(uv, order)
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        self.surface.jet3(uv)
     }
     fn point(&self, uv: Uv) -> Point3 {
         self.surface.point(uv)

@@ -6,7 +6,7 @@
 
 use crate::trim::integrate;
 use crate::trim::region::{Chain, Known, Region};
-use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Uv, uv};
+use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, uv};
 use std::sync::Arc;
 
 /// A closed polyline in the parameter rectangle; the first point is not repeated.
@@ -349,6 +349,17 @@ impl Surface for TrimmedSurface {
         let mut jet = self.carrier.jet2(uv);
         if self.side == Side::Against {
             jet.side = jet.side.flipped();
+        }
+        jet
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let t = self.carrier.taylor(uv, order);
+        if self.side == Side::Against { t.flipped() } else { t }
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        let mut jet = self.carrier.jet3(uv);
+        if self.side == Side::Against {
+            jet.jet2.side = jet.jet2.side.flipped();
         }
         jet
     }

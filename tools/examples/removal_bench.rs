@@ -4,7 +4,9 @@
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
 
-use osculate_geom::{Domain, Interval, Jet2, Point3, Side, Surface, Unit3, Uv, Vec3, uv};
+use osculate_geom::{
+    Axis, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
+};
 use osculate_tools::removal::{Job, Limits, Swept, cut, judge, sample_surface};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 use std::error::Error;
@@ -34,6 +36,11 @@ impl Surface for Waves {
             dvv: Vec3::new(0.0, 0.0, -h * k * k * su * sv),
             side: Side::Along,
         }
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        let (u, v) = (Series::variable(Axis::U, at.u, order), Series::variable(Axis::V, at.v, order));
+        let (su, sv) = ((u * self.per_mm).sin_cos().0, (v * self.per_mm).sin_cos().0);
+        Taylor { uv: at, side: Side::Along, coordinates: [u, v, su * sv * self.height_mm] }
     }
 }
 

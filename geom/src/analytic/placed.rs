@@ -4,6 +4,7 @@ use crate::domain::Domain;
 use crate::jet::Jet2;
 use crate::point::{Axis, Point3, Unit3, Uv, Vec3, any_perpendicular};
 use crate::surface::Surface;
+use crate::taylor::Taylor;
 
 /// A right-handed orthonormal frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +81,10 @@ impl<S: Surface> Surface for Placed<S> {
             dvv: f.vector(&j.dvv),
             side: j.side,
         }
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let f = &self.placement;
+        self.surface.taylor(uv, order).mapped(|p| f.point(p), |a| f.vector(a))
     }
     fn point(&self, uv: Uv) -> Point3 {
         self.placement.point(&self.surface.point(uv))

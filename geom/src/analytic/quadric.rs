@@ -4,7 +4,9 @@ use super::{BadSize, positive};
 use crate::domain::{Domain, Interval};
 use crate::jet::{Jet2, Side};
 use crate::point::{Axis, Point3, Uv, Vec3};
+use crate::series::Series;
 use crate::surface::Surface;
+use crate::taylor::Taylor;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Ellipsoid: u = longitude angle, v = latitude angle of the unit sphere that is stretched to the semi-axes.
@@ -43,6 +45,12 @@ impl Surface for Ellipsoid {
             dvv: scale(-cv * cu, -cv * su, -sv),
             side: Side::Along,
         }
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let (su, cu) = Series::variable(Axis::U, uv.u, order).sin_cos();
+        let (sv, cv) = Series::variable(Axis::V, uv.v, order).sin_cos();
+        let a = &self.axes;
+        Taylor { uv, side: Side::Along, coordinates: [cv * cu * a.x, cv * su * a.y, sv * a.z] }
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         let i = self.domain().get(axis);
@@ -92,5 +100,9 @@ impl Surface for Paraboloid {
             dvv: Vec3::new(0.0, 0.0, 2.0 * b),
             side: Side::Along,
         }
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let (x, y) = (Series::variable(Axis::U, uv.u, order), Series::variable(Axis::V, uv.v, order));
+        Taylor { uv, side: Side::Along, coordinates: [x, y, x * x * self.a + y * y * self.b] }
     }
 }

@@ -4,7 +4,9 @@ use super::{BadSize, positive};
 use crate::domain::{Domain, Interval};
 use crate::jet::{Jet2, Side};
 use crate::point::{Axis, Point3, Uv, Vec3};
+use crate::series::Series;
 use crate::surface::Surface;
+use crate::taylor::Taylor;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Breaks of an angle: every 45 degrees, so that a few Gauss points between breaks integrate to rounding.
@@ -37,6 +39,11 @@ macro_rules! revolved {
             fn jet2(&self, uv: Uv) -> Jet2 {
                 let (r, z) = self.meridian(uv.v);
                 revolve(uv, r, z)
+            }
+            fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+                let (s, c) = Series::variable(Axis::U, uv.u, order).sin_cos();
+                let [r, z] = self.meridian_series(Series::variable(Axis::V, uv.v, order));
+                Taylor { uv, side: Side::Along, coordinates: [r * c, r * s, z] }
             }
             fn breaks(&self, axis: Axis) -> Vec<f64> {
                 match axis {
@@ -79,6 +86,10 @@ impl Surface for Plane {
             side: Side::Along,
         }
     }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let (x, y) = (Series::variable(Axis::U, uv.u, order), Series::variable(Axis::V, uv.v, order));
+        Taylor { uv, side: Side::Along, coordinates: [x, y, Series::constant(0.0, order)] }
+    }
 }
 
 /// Circular cylinder about z: u the angle, v = z.
@@ -99,6 +110,9 @@ impl Cylinder {
     }
     fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
         ([self.radius, 0.0, 0.0], [v, 1.0, 0.0])
+    }
+    fn meridian_series(&self, v: Series) -> [Series; 2] {
+        [Series::constant(self.radius, v.order()), v]
     }
 }
 revolved!(Cylinder, false);
@@ -130,6 +144,9 @@ impl Cone {
     fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
         ([self.radius + v * self.sin, self.sin, 0.0], [v * self.cos, self.cos, 0.0])
     }
+    fn meridian_series(&self, v: Series) -> [Series; 2] {
+        [Series::constant(self.radius, v.order()) + v * self.sin, v * self.cos]
+    }
 }
 revolved!(Cone, false);
 
@@ -154,6 +171,10 @@ impl Sphere {
         let (s, c) = v.sin_cos();
         let a = self.radius;
         ([a * c, -a * s, -a * c], [a * s, a * c, -a * s])
+    }
+    fn meridian_series(&self, v: Series) -> [Series; 2] {
+        let (s, c) = v.sin_cos();
+        [c * self.radius, s * self.radius]
     }
 }
 revolved!(Sphere, true);
@@ -181,6 +202,10 @@ impl Torus {
         let (s, c) = v.sin_cos();
         let a = self.minor;
         ([self.major + a * c, -a * s, -a * c], [a * s, a * c, -a * s])
+    }
+    fn meridian_series(&self, v: Series) -> [Series; 2] {
+        let (s, c) = v.sin_cos();
+        [Series::constant(self.major, v.order()) + c * self.minor, s * self.minor]
     }
 }
 revolved!(Torus, true);

@@ -35,6 +35,48 @@ pub fn jets_match_differences(surface: &dyn Surface, at: Uv, step: f64, relative
     }
 }
 
+/// The Taylor polynomial is the jet to second order, and its third and fourth order are the differences of the orders
+/// below. `step` as in [`jets_match_differences`].
+///
+/// # Panics
+/// Where a derivative disagrees by more than `relative` of the largest derivative of its order or a lower one.
+pub fn taylor_matches(surface: &dyn Surface, at: Uv, step: f64, relative: f64) {
+    let t = surface.taylor(at, 4);
+    let (jet, jet3) = (surface.jet2(at), surface.jet3(at));
+    let of_jet = [(jet.du, 1, 0), (jet.dv, 0, 1), (jet.duu, 2, 0), (jet.duv, 1, 1), (jet.dvv, 0, 2)];
+    let size = |n: usize| -> f64 {
+        (1..=n)
+            .flat_map(|n| (0..=n).map(move |j| (n - j, j)))
+            .fold(0.0, |m, (i, j)| t.derivative(i, j).norm().max(m))
+    };
+    for (want, i, j) in of_jet {
+        let off = (t.derivative(i, j) - want).norm();
+        assert!(off <= 1e-3 * relative * size(i + j), "order {i}, {j} at {at:?} against the jet: {off:.3e}");
+    }
+    assert!((t.derivative(0, 0) - jet.point.coords).norm() <= 1e-12 * (size(1) + jet.point.coords.norm()));
+    for (got, i, j) in [(jet3.duuu, 3, 0), (jet3.duuv, 2, 1), (jet3.duvv, 1, 2), (jet3.dvvv, 0, 3)] {
+        assert!((got - t.derivative(i, j)).norm() <= 1e-3 * relative * size(3), "jet3 {i}, {j} at {at:?}");
+    }
+    let up = [surface.taylor(uv(at.u + step, at.v), 3), surface.taylor(uv(at.u, at.v + step), 3)];
+    let down = [surface.taylor(uv(at.u - step, at.v), 3), surface.taylor(uv(at.u, at.v - step), 3)];
+    for n in 3..=t.order().min(4) {
+        for j in 0..=n {
+            let i = n - j;
+            // By u where there is a derivative by u to take away, and by v likewise.
+            for (axis, a, b) in [(0, i.checked_sub(1), Some(j)), (1, Some(i), j.checked_sub(1))] {
+                let (Some(a), Some(b)) = (a, b) else { continue };
+                let want = (up[axis].derivative(a, b) - down[axis].derivative(a, b)) / (2.0 * step);
+                let off = (t.derivative(i, j) - want).norm();
+                assert!(
+                    off <= relative * size(n),
+                    "order {i}, {j} at {at:?}: off by {off:.3e} of {:.3e}",
+                    size(n)
+                );
+            }
+        }
+    }
+}
+
 /// `k(d) + k(d turned by 90 degrees) = 2 H` and Euler's formula, for the direction at `angle` in the tangent frame.
 ///
 /// # Panics

@@ -73,7 +73,7 @@ pub(super) fn across_range(surface: &dyn Surface, along: Axis) -> Option<[f64; 2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use osculate_geom::{Domain, Interval, Jet2, analytic::Plane};
+    use osculate_geom::{Domain, Interval, Jet2, Taylor, analytic::Plane};
 
     /// A square with a round hole.
     struct Holed(Plane);
@@ -83,6 +83,9 @@ mod tests {
         }
         fn jet2(&self, uv: Uv) -> Jet2 {
             self.0.jet2(uv)
+        }
+        fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+            self.0.taylor(uv, order)
         }
         fn contains(&self, uv: Uv) -> bool {
             self.0.contains(uv) && (uv.u * uv.u + uv.v * uv.v) > 4.0 && uv.v.abs() < 4.0

@@ -5,7 +5,7 @@
 //! parameter. The natural normal points away from the axis (plane: +z).
 
 use osculate_geom::analytic::{BadSize, Cone, Cylinder, Placed, Placement, Plane, Sphere, Torus};
-use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, Uv, uv};
+use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, Taylor, Uv, uv};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// The kind and size of an analytic surface, in its own frame.
@@ -176,6 +176,15 @@ impl Surface for Analytic {
             Inner::Cone(s) => s.jet2(uv),
             Inner::Sphere(s) => s.jet2(uv),
             Inner::Torus(s) => s.jet2(uv),
+        }
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        match &self.inner {
+            Inner::Plane(s) => s.taylor(uv, order),
+            Inner::Cylinder(s) => s.taylor(uv, order),
+            Inner::Cone(s) => s.taylor(uv, order),
+            Inner::Sphere(s) => s.taylor(uv, order),
+            Inner::Torus(s) => s.taylor(uv, order),
         }
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {

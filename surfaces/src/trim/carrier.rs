@@ -5,7 +5,7 @@ use super::analytic::{Analytic, Shape};
 use super::foot;
 use super::region::Known;
 use crate::nurbs::NurbsSurface;
-use osculate_geom::{Axis, Box3, Domain, Jet2, Point3, Surface, Uv};
+use osculate_geom::{Axis, Box3, Domain, Jet2, Jet3, Point3, Surface, Taylor, Uv};
 use std::sync::Arc;
 
 /// The untrimmed surface of a face.
@@ -41,6 +41,12 @@ impl Surface for FaceSurface {
     }
     fn jet2(&self, uv: Uv) -> Jet2 {
         self.surface().jet2(uv)
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        self.surface().taylor(uv, order)
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        self.surface().jet3(uv)
     }
     fn point(&self, uv: Uv) -> Point3 {
         self.surface().point(uv)

@@ -1,7 +1,7 @@
 //! Samples: areas, edges, poles, trims, density.
 
 use osculate_geom::analytic::{Cone, Cylinder, Plane, Sphere, Torus};
-use osculate_geom::{Domain, Interval, Jet2, Patch, Side, Surface, Uv, uv};
+use osculate_geom::{Domain, Interval, Jet2, Patch, Side, Surface, Taylor, Uv, uv};
 use osculate_tools::removal::{Density, SamplingError, sample_surface};
 use std::f64::consts::PI;
 
@@ -22,6 +22,9 @@ impl Surface for Disc {
     }
     fn jet2(&self, at: Uv) -> Jet2 {
         self.plane.jet2(at)
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        self.plane.taylor(at, order)
     }
     fn contains(&self, at: Uv) -> bool {
         self.plane.contains(at) && (at.u - 5.0).hypot(at.v - 5.0) <= self.radius

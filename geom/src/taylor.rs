@@ -1,0 +1,84 @@
+//! The Taylor polynomial of a surface at a place, from which jets of any order are read.
+
+use crate::jet::{Jet2, Jet3, Side};
+use crate::point::{Axis, Point3, Uv, Vec3};
+use crate::series::Series;
+
+/// A surface to a given order about a place: one [`Series`] for each coordinate, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taylor {
+    /// The place.
+    pub uv: Uv,
+    /// Which way the outward normal points.
+    pub side: Side,
+    /// x, y and z over the steps of u and v from the place.
+    pub coordinates: [Series; 3],
+}
+
+impl Taylor {
+    /// Orders of derivatives that are known.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.coordinates.iter().map(Series::order).min().unwrap_or(0)
+    }
+
+    /// The derivative i times by u and j times by v; NaN above the order.
+    #[must_use]
+    pub fn derivative(&self, i: usize, j: usize) -> Vec3 {
+        Vec3::from(self.coordinates.map(|c| c.derivative(i, j)))
+    }
+
+    /// The partial derivatives by one parameter, as series one order shorter.
+    #[must_use]
+    pub fn differentiated(&self, axis: Axis) -> [Series; 3] {
+        self.coordinates.map(|c| c.differentiated(axis))
+    }
+
+    /// Point and derivatives to second order.
+    #[must_use]
+    pub fn jet2(&self) -> Jet2 {
+        Jet2 {
+            uv: self.uv,
+            point: self.derivative(0, 0).into(),
+            du: self.derivative(1, 0),
+            dv: self.derivative(0, 1),
+            duu: self.derivative(2, 0),
+            duv: self.derivative(1, 1),
+            dvv: self.derivative(0, 2),
+            side: self.side,
+        }
+    }
+
+    /// Point and derivatives to third order.
+    #[must_use]
+    pub fn jet3(&self) -> Jet3 {
+        Jet3 {
+            jet2: self.jet2(),
+            duuu: self.derivative(3, 0),
+            duuv: self.derivative(2, 1),
+            duvv: self.derivative(1, 2),
+            dvvv: self.derivative(0, 3),
+        }
+    }
+
+    /// The polynomial with its value moved to `point(value)` and every derivative mapped by the linear `vector`.
+    #[must_use]
+    pub fn mapped(&self, point: impl Fn(&Point3) -> Point3, vector: impl Fn(&Vec3) -> Vec3) -> Self {
+        let order = self.order();
+        let mut out = [Series::constant(0.0, order); 3];
+        for (axis, series) in out.iter_mut().enumerate() {
+            *series = Series::from_coefficients(order, |i, j| {
+                let c = Vec3::from(self.coordinates.map(|s| s.coefficient(i, j)));
+                if i + j == 0 { point(&c.into())[axis] } else { vector(&c)[axis] }
+            });
+        }
+        Self { coordinates: out, ..*self }
+    }
+
+    /// The same surface with the material on the other side.
+    #[must_use]
+    pub fn flipped(mut self) -> Self {
+        self.side = self.side.flipped();
+        self
+    }
+}

@@ -1,0 +1,121 @@
+//! The Taylor polynomial of a NURBS surface to any order: exact rational derivatives.
+//!
+//! Numerator and denominator are summed over the basis functions and their derivatives, about a pole near the
+//! place, and divided as power series; that is the quotient rule of [The NURBS Book, eq. 4.20] to every order.
+
+use crate::knots::Knots;
+use crate::nurbs::Net;
+use osculate_geom::{Series, Side, Taylor, Uv};
+
+/// The polynomial of the piece over the spans `span`, continued where `at` lies outside them.
+pub(crate) fn taylor(
+    knots: &[Knots; 2],
+    net: &Net,
+    side: Side,
+    place: (Uv, [usize; 2]),
+    order: usize,
+) -> Taylor {
+    let (at, span) = place;
+    let bu = knots[0].basis_taylor(span[0], at.u, order);
+    let bv = knots[1].basis_taylor(span[1], at.v, order);
+    let [p, q] = [knots[0].degree(), knots[1].degree()];
+    let pole = |i: usize, j: usize| (bu.first + i) * net.count[1] + bv.first + j;
+    let origin = net.points[pole(p.div_ceil(2), q.div_ceil(2))];
+    let weights = net.weights.as_ref().filter(|w| w.iter().any(|x| *x != w[0]));
+    // Coefficient (a, b) of the sum of f over the poles.
+    let sum = |f: &dyn Fn(usize) -> f64| {
+        Series::from_coefficients(order, |a, b| {
+            if a > p || b > q {
+                return 0.0;
+            }
+            let row = |i: usize| -> f64 { (0..=q).map(|j| bv.order[b][j] * f(pole(i, j))).sum() };
+            (0..=p).map(|i| bu.order[a][i] * row(i)).sum()
+        })
+    };
+    let mut coordinates =
+        [0, 1, 2].map(|c| sum(&|k| (net.points[k][c] - origin[c]) * weights.map_or(1.0, |w| w[k])));
+    if let Some(w) = weights {
+        let below = sum(&|k| w[k]).recip();
+        coordinates = coordinates.map(|c| c * below);
+    }
+    for (c, series) in coordinates.iter_mut().enumerate() {
+        *series = *series + Series::constant(origin[c], order);
+    }
+    Taylor { uv: at, side, coordinates }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::nurbs::{Net, NurbsSurface};
+    use osculate_geom::{Point3, Surface, Vec3, uv};
+
+    /// A bump with weights over a square of two by one spans.
+    fn bump(rational: bool) -> NurbsSurface {
+        let (nu, nv) = (5, 4);
+        let mut points = Vec::new();
+        let mut weights = Vec::new();
+        for i in 0..nu {
+            for j in 0..nv {
+                let (x, y) = (i as f64, j as f64);
+                points.push(Point3::new(10.0 * x, 10.0 * y, 3.0 * ((1.3 * x + 0.4).sin() + (0.9 * y).cos())));
+                weights.push(1.0 + 0.4 * (0.7 * x - 1.1 * y).sin());
+            }
+        }
+        let ku = vec![0.0, 0.0, 0.0, 0.0, 0.6, 1.0, 1.0, 1.0, 1.0];
+        let kv = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+        let net = Net { count: [nu, nv], points, weights: rational.then_some(weights) };
+        NurbsSurface::new([3, 3], [ku, kv], net).unwrap()
+    }
+
+    #[test]
+    fn first_orders_are_the_jet_and_third_ones_its_differences() {
+        for rational in [false, true] {
+            let s = bump(rational);
+            for at in [uv(0.2, 0.3), uv(0.85, 0.5), uv(0.61, 0.95)] {
+                let (jet, t) = (s.jet3(at), s.taylor(at, 6));
+                let pairs = [
+                    (jet.jet2.point.coords, t.derivative(0, 0)),
+                    (jet.jet2.du, t.derivative(1, 0)),
+                    (jet.jet2.dv, t.derivative(0, 1)),
+                    (jet.jet2.duu, t.derivative(2, 0)),
+                    (jet.jet2.duv, t.derivative(1, 1)),
+                    (jet.jet2.dvv, t.derivative(0, 2)),
+                ];
+                for (a, b) in pairs {
+                    // Two ways of summing some sixteen terms of size 1000.
+                    assert!((a - b).norm() < 1e-11, "{a} {b}");
+                }
+                let h = 1e-4;
+                let (up, um) = (s.jet2(uv(at.u + h, at.v)), s.jet2(uv(at.u - h, at.v)));
+                let (vp, vm) = (s.jet2(uv(at.u, at.v + h)), s.jet2(uv(at.u, at.v - h)));
+                let d = |a: Vec3, b: Vec3| (a - b) / (2.0 * h);
+                // Fifth derivatives are below 1e6, times h^2 / 6; rounding of second derivatives over h is 1e-8.
+                for (got, want) in [
+                    (jet.duuu, d(up.duu, um.duu)),
+                    (jet.duuv, d(vp.duu, vm.duu)),
+                    (jet.duuv, d(up.duv, um.duv)),
+                    (jet.duvv, d(vp.duv, vm.duv)),
+                    (jet.dvvv, d(vp.dvv, vm.dvv)),
+                ] {
+                    assert!((got - want).norm() < 2e-3, "{at:?} {rational}: {got} {want}");
+                }
+                // The polynomial itself: order 6 of a cubic is exact where there are no weights.
+                if !rational {
+                    let (x, y) = (0.1f64, -0.2f64);
+                    let mut sum = Vec3::zeros();
+                    for i in 0..=3i32 {
+                        for j in 0..=3i32 {
+                            let f = |n: i32| f64::from((1..=n).product::<i32>());
+                            let k = x.powi(i) * y.powi(j) / (f(i) * f(j));
+                            sum += t.derivative(i as usize, j as usize) * k;
+                        }
+                    }
+                    let inside = uv(at.u + x, at.v + y);
+                    if (at.u < 0.6) == (inside.u < 0.6) && inside.u < 1.0 {
+                        assert!((sum - s.point(inside).coords).norm() < 1e-12);
+                    }
+                }
+            }
+        }
+    }
+}
