@@ -1,4 +1,5 @@
-//! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy` and `cargo xtask ci`.
+//! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci` and
+//! `cargo xtask truth`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -18,7 +19,9 @@ usage: cargo xtask COMMAND
 
   test [ARGS]   every test of the workspace, doctests included; ARGS go to `cargo test`
   tidy          the rules of the workspace that neither the compiler nor clippy checks
-  ci            formatting, tidy, clippy, documentation and tests; stops at the first failure";
+  ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
+  truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
+                --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -27,6 +30,7 @@ fn main() -> ExitCode {
         ["test", rest @ ..] => test::run(rest),
         ["tidy"] => tidy::run(),
         ["ci"] => ci::run(),
+        ["truth", rest @ ..] => truth(rest),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             Ok(())
@@ -44,6 +48,12 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Runs the comparison, which lives with the readers as an example, optimised.
+fn truth(rest: &[&str]) -> Result<(), cmd::Failure> {
+    let example = ["run", "--release", "--locked", "-p", "osculate-surfaces", "--example", "truth", "--"];
+    cmd::run(cmd::cargo(&cmd::root()?, &[&example, rest].concat()))
 }
 
 fn wrong_usage(why: &str) -> ExitCode {
