@@ -1,6 +1,6 @@
 //! The one view of a surface that machining code has.
 
-use crate::domain::Domain;
+use crate::domain::{Domain, Interval};
 use crate::jet::{Jet2, Jet3, Side};
 use crate::point::{Axis, Point3, Uv};
 use crate::taylor::Taylor;
@@ -43,6 +43,54 @@ pub trait Surface: Send + Sync {
         let i = self.domain().get(axis);
         vec![i.lo, i.hi]
     }
+
+    /// Stretches inside the surface along the line on which the other parameter is `fixed`, ascending. A trimmed
+    /// surface that knows its loops answers exactly; the answer from [`contains`](Self::contains) alone misses what is
+    /// narrower than a four-hundredth of the line.
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        scanned_spans(self.domain().get(axis), &|t| self.contains(Uv::from_axis(axis, t, fixed)))
+    }
+
+    /// Places of the boundary where it turns back in u or in v, corners among them: a line between two neighbouring
+    /// ones in a parameter meets every part of the surface. Without trims the corners of the rectangle.
+    fn turns(&self) -> Vec<Uv> {
+        let d = self.domain();
+        [[d.u.lo, d.v.lo], [d.u.hi, d.v.lo], [d.u.hi, d.v.hi], [d.u.lo, d.v.hi]]
+            .into_iter()
+            .map(|[u, v]| Uv { u, v })
+            .filter(|at| self.contains(*at))
+            .collect()
+    }
+}
+
+/// Stretches of inside on a grid of cells, ends refined by bisection.
+fn scanned_spans(line: Interval, inside: &dyn Fn(f64) -> bool) -> Vec<Interval> {
+    const CELLS: usize = 400;
+    // `a` is inside, `b` is not; forty halvings exhaust what matters of a cell.
+    let edge = |mut a: f64, mut b: f64| -> f64 {
+        for _ in 0..40 {
+            let m = 0.5 * (a + b);
+            if inside(m) { a = m } else { b = m }
+        }
+        a
+    };
+    let mut out = Vec::new();
+    let mut open: Option<f64> = None;
+    let mut last = line.lo;
+    for k in 0..=CELLS {
+        let t = line.at(k as f64 / CELLS as f64);
+        match (inside(t), open) {
+            (true, None) => open = Some(if k == 0 { t } else { edge(t, last) }),
+            (false, Some(start)) => {
+                out.push(Interval::new(start, edge(last, t)));
+                open = None;
+            }
+            _ => {}
+        }
+        last = t;
+    }
+    out.extend(open.map(|start| Interval::new(start, line.hi)));
+    out
 }
 
 /// A surface with its material side turned over: the same points, the opposite outward normal.
@@ -75,6 +123,12 @@ impl<S: Surface> Surface for Flipped<S> {
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         self.0.breaks(axis)
     }
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        self.0.spans(axis, fixed)
+    }
+    fn turns(&self) -> Vec<Uv> {
+        self.0.turns()
+    }
 }
 
 macro_rules! forward_surface {
@@ -100,6 +154,12 @@ macro_rules! forward_surface {
             }
             fn breaks(&self, axis: Axis) -> Vec<f64> {
                 (**self).breaks(axis)
+            }
+            fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+                (**self).spans(axis, fixed)
+            }
+            fn turns(&self) -> Vec<Uv> {
+                (**self).turns()
             }
         }
     )*};

@@ -6,7 +6,7 @@
 use crate::trim::carrier::FaceSurface;
 use crate::trimmed::TrimmedSurface;
 use crate::{iges, step};
-use osculate_geom::{Axis, Box3, Diagnostic, Domain, Jet2, Jet3, Point3, Surface, Taylor, Uv};
+use osculate_geom::{Axis, Box3, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
 use std::fmt;
 use std::sync::Arc;
 
@@ -223,6 +223,12 @@ impl Surface for Face {
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         self.surface.breaks(axis)
+    }
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        self.surface.spans(axis, fixed)
+    }
+    fn turns(&self) -> Vec<Uv> {
+        self.surface.turns()
     }
 }
 

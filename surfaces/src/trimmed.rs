@@ -194,21 +194,6 @@ impl TrimmedSurface {
         self
     }
 
-    /// The inside intervals of the line along `axis` at the value `fixed` of the other parameter, ascending.
-    /// Empty where `fixed` is outside the rectangle.
-    #[must_use]
-    pub fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
-        let across = self.domain.get(axis.other());
-        if !across.contains(fixed) {
-            return Vec::new();
-        }
-        let along = self.domain.get(axis);
-        match &self.region {
-            None => vec![Interval::new(along.lo, along.hi)],
-            Some(r) => r.spans(axis, across.bring(fixed)),
-        }
-    }
-
     /// Integral of `f dA` over the inside, mm2 times the unit of `f`; `relative` is the accuracy aimed at.
     #[must_use]
     pub fn integrate(&self, relative: f64, f: &dyn Fn(&Jet2) -> f64) -> f64 {
@@ -375,5 +360,29 @@ impl Surface for TrimmedSurface {
         kept.extend(self.carrier.breaks(axis).into_iter().filter(|t| *t > i.lo && *t < i.hi));
         kept.push(i.hi);
         kept
+    }
+    /// Exact for the loops' polygons. Empty where `fixed` is outside the rectangle.
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        let across = self.domain.get(axis.other());
+        if !across.contains(fixed) {
+            return Vec::new();
+        }
+        let along = self.domain.get(axis);
+        match &self.region {
+            None => vec![Interval::new(along.lo, along.hi)],
+            Some(r) => r.spans(axis, across.bring(fixed)),
+        }
+    }
+    fn turns(&self) -> Vec<Uv> {
+        let turns = |points: &[Uv]| -> Vec<Uv> {
+            let n = points.len();
+            let around = |k: usize| (points[(k + n - 1) % n], points[k], points[(k + 1) % n]);
+            let back = |axis: Axis, k: usize| {
+                let (a, b, c) = around(k);
+                (b.get(axis) - a.get(axis)) * (c.get(axis) - b.get(axis)) <= 0.0
+            };
+            (0..n).filter(|k| back(Axis::U, *k) || back(Axis::V, *k)).map(|k| points[k]).collect()
+        };
+        self.loops.iter().flat_map(|l| turns(&l.points)).collect()
     }
 }

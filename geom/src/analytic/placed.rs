@@ -1,6 +1,6 @@
 //! A surface moved to another frame.
 
-use crate::domain::Domain;
+use crate::domain::{Domain, Interval};
 use crate::jet::Jet2;
 use crate::point::{Axis, Point3, Unit3, Uv, Vec3, any_perpendicular};
 use crate::surface::Surface;
@@ -94,5 +94,11 @@ impl<S: Surface> Surface for Placed<S> {
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         self.surface.breaks(axis)
+    }
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        self.surface.spans(axis, fixed)
+    }
+    fn turns(&self) -> Vec<Uv> {
+        self.surface.turns()
     }
 }

@@ -1,7 +1,7 @@
 //! Columns across isoparametric passes: where spacing is computed, what of the face they answer for, and how far it is
 //! covered.
 
-use super::cover::{spans, union};
+use super::cover::union;
 use super::resample::resample;
 use super::seat::Seat;
 use super::{PlanError, Task};
@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 /// Fewest and most columns at which spacing is computed.
 const COLUMNS: [usize; 2] = [96, 320];
-/// Cells along a column in which its inside is looked for: the tip of a trim may be narrow.
-const FINE: usize = 2000;
+/// Least length of the stretch that a turn of the boundary counts as, as a share of the covered range.
+const TIP: f64 = 1e-6;
 /// Lines looked at between a column and each of its neighbours.
 const BETWEEN: i32 = 8;
 
@@ -43,13 +43,22 @@ pub(super) fn stretches(
     k: usize,
 ) -> Vec<[f64; 2]> {
     let t = parameters[k];
-    let before = k.checked_sub(1).map_or(surface.domain().get(along).lo, |j| parameters[j]);
-    let after = parameters.get(k + 1).copied().unwrap_or(surface.domain().get(along).hi);
+    let domain = surface.domain().get(along);
+    let before = k.checked_sub(1).map_or(domain.lo, |j| parameters[j]);
+    let after = parameters.get(k + 1).copied().unwrap_or(domain.hi);
     let mut all = Vec::new();
     for i in -BETWEEN..=BETWEEN {
         let f = f64::from(i.abs()) / f64::from(BETWEEN);
         let to = if i < 0 { before } else { after };
-        all.extend(spans(surface, along.other(), t + (to - t) * f, FINE));
+        all.extend(surface.spans(along.other(), t + (to - t) * f).iter().map(|s| [s.lo, s.hi]));
+    }
+    let tip = TIP * (hi - lo);
+    for at in surface.turns() {
+        let (t, x) =
+            (domain.bring(at.get(along)), surface.domain().get(along.other()).bring(at.get(along.other())));
+        if t >= before && t <= after {
+            all.push([x - tip, x + tip]);
+        }
     }
     let within = all.into_iter().map(|s| [s[0].max(lo), s[1].min(hi)]).filter(|s| s[0] < s[1]);
     union(within.collect(), 0.0)
@@ -68,21 +77,26 @@ pub(super) fn column_parameters(
     let mut all: Vec<f64> = (0..=COLUMNS[0]).map(|k| i.at(k as f64 / COLUMNS[0] as f64)).collect();
     for f in [0.02, 0.5, 0.98] {
         let line = IsoLine { surface, along, fixed: across.at(f), reversed: false };
-        for s in spans(surface, along, across.at(f), 200) {
-            if s[1] - s[0] > 1e-9 * i.length()
-                && let Ok(knots) = resample(seat, task, &line, s, &breaks)
+        for s in surface.spans(along, across.at(f)) {
+            if s.length() > 1e-9 * i.length()
+                && let Ok(knots) = resample(seat, task, &line, [s.lo, s.hi], &breaks)
             {
                 all.extend(knots.iter().map(|k| k.t));
             }
         }
     }
+    if all.len() > COLUMNS[1] {
+        all.sort_by(f64::total_cmp);
+        let n = all.len();
+        all = (0..COLUMNS[1]).map(|k| all[k * (n - 1) / (COLUMNS[1] - 1)]).collect();
+    }
+    // A tip of the boundary is reached by a column of its own, if there are not too many to be tips.
+    let turns: Vec<f64> = surface.turns().iter().map(|at| i.bring(at.get(along))).collect();
+    if turns.len() <= COLUMNS[0] {
+        all.extend(turns);
+    }
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * i.length());
-    let most = COLUMNS[1];
-    if all.len() > most {
-        let n = all.len();
-        all = (0..most).map(|k| all[k * (n - 1) / (most - 1)]).collect();
-    }
     if i.periodic {
         // The last column would be the first again.
         all.pop();

@@ -7,7 +7,7 @@
 //! whatever the surface does between them.
 
 use super::columns::{Column, column_parameters, first_step, rough_columns, stretches};
-use super::cover::{across_range, spans, union};
+use super::cover::{across_range, union};
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
@@ -271,31 +271,34 @@ fn measure(
 ) -> Result<(Level, f64), PlanError> {
     let task = seat.task();
     let line = IsoLine { surface: task.surface, along, fixed, reversed };
-    let found: Vec<Result<Option<(f64, f64)>, PlanError>> = columns
-        .par_iter()
-        .step_by(WIDTH_STRIDE)
-        .map(|c| {
-            let at = Uv::from_axis(along, c.t, fixed);
-            if !task.surface.contains(at) {
-                return Ok(None);
+    let width = |t: f64| -> Result<Option<(f64, f64)>, PlanError> {
+        let at = Uv::from_axis(along, t, fixed);
+        if !task.surface.contains(at) {
+            return Ok(None);
+        }
+        let feed = if reversed { FeedLine::IsoReversed(along) } else { FeedLine::Iso(along) };
+        let contact =
+            Contact::new(task.surface, at, task.cutter, feed, task.lean).map_err(|e| task.contact(e))?;
+        match strip::exact(&contact, task.tolerance.scallop_mm) {
+            Ok(s) => Ok(Some((t, s.width_mm))),
+            // Where a line runs into a pole, or a ripple throws the unseated tool off its own contact, there is no
+            // width; the pass itself is still good.
+            Err(StripError::Degenerate(_) | StripError::AboveTolerance { .. } | StripError::Edge(_)) => {
+                Ok(None)
             }
-            let feed = if reversed { FeedLine::IsoReversed(along) } else { FeedLine::Iso(along) };
-            let contact =
-                Contact::new(task.surface, at, task.cutter, feed, task.lean).map_err(|e| task.contact(e))?;
-            match strip::exact(&contact, task.tolerance.scallop_mm) {
-                Ok(s) => Ok(Some((c.t, s.width_mm))),
-                // Where a line runs into a pole, or a ripple throws the unseated tool off its own contact, there is no
-                // width; the pass itself is still good.
-                Err(StripError::Degenerate(_) | StripError::AboveTolerance { .. } | StripError::Edge(_)) => {
-                    Ok(None)
-                }
-                Err(e) => Err(task.strip(e)),
-            }
-        })
-        .collect();
+            Err(e) => Err(task.strip(e)),
+        }
+    };
+    let found: Vec<_> = columns.par_iter().step_by(WIDTH_STRIDE).map(|c| width(c.t)).collect();
     let mut widths = Vec::with_capacity(found.len());
     for f in found {
         widths.extend(f?);
+    }
+    if widths.is_empty() {
+        // A pass shorter than the stride between columns.
+        for s in task.surface.spans(along, fixed) {
+            widths.extend(width(s.at(0.5))?);
+        }
     }
     fits(seat, &line, columns)?;
     let mut length = 0.0;
@@ -375,7 +378,14 @@ fn build(
     for k in -COVER_ROWS..=COVER_ROWS {
         let f = f64::from(k) / f64::from(COVER_ROWS);
         let reach = if k < 0 { level.fixed - below } else { above - level.fixed };
-        stretches.extend(spans(surface, along, level.fixed + f * reach, 400));
+        stretches.extend(surface.spans(along, level.fixed + f * reach).iter().map(|s| [s.lo, s.hi]));
+    }
+    for at in surface.turns() {
+        let x = surface.domain().get(along.other()).bring(at.get(along.other()));
+        if x >= below && x <= above {
+            let t = domain.bring(at.get(along));
+            stretches.push([t, t]);
+        }
     }
     // Lines that meet a trim at a slant come nearest to the places between passes beyond it.
     for s in &mut stretches {
