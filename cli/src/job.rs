@@ -8,8 +8,6 @@ use std::path::{Path, PathBuf};
 
 /// The format that this version reads.
 const FORMAT: u32 = 1;
-/// Length of a cutter that gives none, in diameters.
-const DEFAULT_LENGTH: f64 = 5.0;
 
 /// A job file as written.
 #[derive(Debug, Deserialize)]
@@ -97,10 +95,24 @@ pub struct LargestTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ToolTable {
-    kind: String,
-    diameter_mm: f64,
-    corner_radius_mm: Option<f64>,
-    length_mm: Option<f64>,
+    /// One of [`crate::cutter_keys::KINDS`].
+    pub kind: String,
+    /// Outer diameter; of `apt`, d.
+    pub diameter_mm: f64,
+    /// Radius of the rounded end or corner.
+    pub corner_radius_mm: Option<f64>,
+    /// From the tip to the holder.
+    pub length_mm: Option<f64>,
+    /// Of a cone, half its angle.
+    pub taper_deg: Option<f64>,
+    /// Of a cone without a ball tip.
+    pub tip_diameter_mm: Option<f64>,
+    /// Of a barrel's large arc.
+    pub barrel_radius_mm: Option<f64>,
+    /// Of `apt`: rise of the bottom.
+    pub bottom_angle_deg: Option<f64>,
+    /// Of `apt`: opening of the side.
+    pub side_angle_deg: Option<f64>,
     /// Number of teeth.
     pub teeth: Option<u32>,
     /// Holder above the cutter.
@@ -298,39 +310,7 @@ impl Job {
 
     /// The cutter's description.
     pub fn cutter_spec(&self) -> Result<CutterSpec, Failure> {
-        let t = &self.tool;
-        let length_mm = t.length_mm.unwrap_or(DEFAULT_LENGTH * t.diameter_mm);
-        let diameter_mm = t.diameter_mm;
-        let corner = |want: f64, kind: &str| match t.corner_radius_mm {
-            Some(c) if (c - want).abs() > 1e-9 * diameter_mm => Err(Failure::file(
-                &self.path,
-                format!(
-                    "[tool] corner_radius_mm = {c} does not go with kind = \"{kind}\" of diameter {diameter_mm} mm: \
-                     leave it out, make it {want}, or use kind = \"toroidal\""
-                ),
-            )),
-            _ => Ok(()),
-        };
-        match t.kind.as_str() {
-            "ball" => {
-                corner(0.5 * diameter_mm, "ball")?;
-                Ok(CutterSpec::Ball { diameter_mm, length_mm })
-            }
-            "flat" => {
-                corner(0.0, "flat")?;
-                Ok(CutterSpec::Flat { diameter_mm, length_mm })
-            }
-            "toroidal" => match t.corner_radius_mm {
-                Some(corner_radius_mm) => {
-                    Ok(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm })
-                }
-                None => Err(Failure::file(&self.path, "[tool] kind = \"toroidal\" needs corner_radius_mm")),
-            },
-            other => Err(Failure::file(
-                &self.path,
-                format!("[tool] kind = \"{other}\" is not available: use \"ball\", \"flat\" or \"toroidal\""),
-            )),
-        }
+        crate::cutter_keys::spec(&self.path, &self.tool)
     }
 
     /// The cutter.

@@ -6,6 +6,7 @@
 mod args;
 mod builtin;
 mod cmd;
+mod cutter_keys;
 mod failure;
 mod job;
 mod nc;

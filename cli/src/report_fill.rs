@@ -222,9 +222,14 @@ fn links(linked: &Linked) -> Vec<Link> {
     out
 }
 
+/// Turn of a drawn tool's outline from point to point, rad: a hundredth of a millimetre on the large arc of a barrel.
+const OUTLINE_TURN_RAD: f64 = 0.03;
+
 fn tool(job: &Job) -> Option<Tool> {
     let c = job.cutter().ok()?;
-    let kind = if c.is_ball() {
+    let kind = if !c.is_end_mill() {
+        job.tool.kind.clone()
+    } else if c.is_ball() {
         "ball".to_owned()
     } else if c.corner_mm() == 0.0 {
         "flat".to_owned()
@@ -238,7 +243,7 @@ fn tool(job: &Job) -> Option<Tool> {
         length_mm: c.length_mm(),
         flute_mm: None,
         holder: job.tool.holder.map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
-        meridian_mm: Vec::new(),
+        meridian_mm: if c.is_end_mill() { Vec::new() } else { c.outline_mm(OUTLINE_TURN_RAD) },
     })
 }
 

@@ -112,8 +112,10 @@ impl Lean {
         let axis = Unit3::new_normalize(n * c + heading * s);
         // From the axis to the corner's centre above the contact: the side of the bottom that has come down.
         let low = (heading * c - n * s) * if s < 0.0 { -1.0 } else { 1.0 };
-        let r = cutter.corner_mm();
-        let tip = frame.point + n * (r + lift_mm) - low * cutter.core_mm() - axis.into_inner() * r;
+        let arc = cutter.touching(self.lead_rad);
+        let tip = frame.point + n * (arc.radius_mm + lift_mm)
+            - low * arc.centre_rho_mm
+            - axis.into_inner() * arc.centre_z_mm;
         Pose { tip, axis }
     }
 
@@ -121,10 +123,11 @@ impl Lean {
     #[must_use]
     pub fn tool_curvature(self, cutter: &Cutter, frame: &Darboux) -> ToolCurvature {
         let s = self.lead_rad.sin().abs();
-        let r = cutter.corner_mm();
+        let arc = cutter.touching(self.lead_rad);
+        let (core, r) = (arc.centre_rho_mm, arc.radius_mm);
         let along = if r > 0.0 { 1.0 / r } else { f64::INFINITY };
         // Meusnier on the parallel circle of radius core + r sin(lead).
-        let across = if cutter.is_ball() { along } else { s / (cutter.core_mm() + r * s) };
+        let across = if core == 0.0 { along } else { s / (core + r * s) };
         ToolCurvature { along, across, direction: self.heading(frame) }
     }
 }

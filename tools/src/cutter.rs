@@ -2,65 +2,22 @@
 //!
 //! A ball, flat or toroidal cutter of outer radius R and corner radius r is the r-offset of a cylinder of radius
 //! `core = R - r` standing on the plane z = r, cut off at the length: one formula for all three kinds (ball: core = 0, flat:
-//! r = 0). Local coordinates: rho is the distance from the axis, z the height above the tip.
+//! r = 0). Cones, barrels and APT's general cutter have a [`crate::meridian`] of their own. Local coordinates: rho is the
+//! distance from the axis, z the height above the tip.
 
+use crate::make::CutterError;
+use crate::meridian::{Arc, LocalNear, Meridian, end_mill_corner};
 use crate::pose::Pose;
-use crate::spec::CutterSpec;
 use osculate_geom::{Point3, Unit3, Vec3};
-
-/// A cutter that cannot be.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum CutterError {
-    /// A length that is not positive and finite.
-    #[error("the cutter's {what} must be positive and finite, got {got}")]
-    Size {
-        /// Which length.
-        what: &'static str,
-        /// Its value, mm.
-        got: f64,
-    },
-    /// A corner radius that does not fit.
-    #[error(
-        "corner_radius_mm = {corner_mm} does not fit a cutter of radius {radius_mm} mm: it must lie between 0 and \
-         the radius (equal to it the cutter is a ball)"
-    )]
-    Corner {
-        /// The corner radius, mm.
-        corner_mm: f64,
-        /// The outer radius, mm.
-        radius_mm: f64,
-    },
-    /// A cutter shorter than its rounded end.
-    #[error("length_mm = {length_mm} is not above the corner radius {corner_mm} mm")]
-    Length {
-        /// The length, mm.
-        length_mm: f64,
-        /// The corner radius, mm.
-        corner_mm: f64,
-    },
-}
 
 /// A validated cutter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cutter {
-    radius: f64,
-    corner: f64,
-    length: f64,
-}
-
-impl TryFrom<CutterSpec> for Cutter {
-    type Error = CutterError;
-
-    fn try_from(spec: CutterSpec) -> Result<Self, CutterError> {
-        let (diameter, corner, length) = match spec {
-            CutterSpec::Ball { diameter_mm, length_mm } => (diameter_mm, 0.5 * diameter_mm, length_mm),
-            CutterSpec::Flat { diameter_mm, length_mm } => (diameter_mm, 0.0, length_mm),
-            CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm } => {
-                (diameter_mm, corner_radius_mm, length_mm)
-            }
-        };
-        Self::new(diameter, corner, length)
-    }
+    pub(crate) radius: f64,
+    pub(crate) corner: f64,
+    pub(crate) length: f64,
+    /// None for ball, flat and toroidal ends.
+    pub(crate) meridian: Option<Meridian>,
 }
 
 /// The part of the cutter's boundary that a line meets first.
@@ -142,7 +99,7 @@ fn local(pose: &Pose, p: &Point3) -> (f64, f64) {
 const MAX_CORNER_STEPS: u32 = 60;
 
 impl Cutter {
-    fn new(diameter: f64, corner: f64, length: f64) -> Result<Self, CutterError> {
+    pub(crate) fn new(diameter: f64, corner: f64, length: f64) -> Result<Self, CutterError> {
         for (what, got) in [("diameter_mm", diameter), ("length_mm", length)] {
             if !(got.is_finite() && got > 0.0) {
                 return Err(CutterError::Size { what, got });
@@ -155,7 +112,7 @@ impl Cutter {
         if length <= corner {
             return Err(CutterError::Length { length_mm: length, corner_mm: corner });
         }
-        Ok(Self { radius, corner, length })
+        Ok(Self { radius, corner, length, meridian: None })
     }
 
     /// A plain cylinder, for holders and shanks: a flat cutter of this size.
@@ -166,7 +123,7 @@ impl Cutter {
         Self::new(diameter_mm, 0.0, length_mm)
     }
 
-    /// Outer radius R, mm.
+    /// Outer radius R, mm: the greatest distance of the cutter's body from its axis.
     #[must_use]
     pub const fn radius_mm(&self) -> f64 {
         self.radius
@@ -178,10 +135,35 @@ impl Cutter {
         self.corner
     }
 
-    /// Radius of the circle of corner centres, R - r, mm.
+    /// Radius of the circle of corner centres, mm: R - r for ball, flat and toroidal ends.
     #[must_use]
     pub const fn core_mm(&self) -> f64 {
-        self.radius - self.corner
+        match &self.meridian {
+            None => self.radius - self.corner,
+            Some(m) => m.corner.centre_rho_mm,
+        }
+    }
+
+    /// Whether the cutter is a ball, flat or toroidal end, told by its radius and corner radius alone.
+    #[must_use]
+    pub const fn is_end_mill(&self) -> bool {
+        self.meridian.is_none()
+    }
+
+    pub(crate) const fn meridian(&self) -> Option<&Meridian> {
+        self.meridian.as_ref()
+    }
+
+    /// The arc of the meridian that touches a plane whose normal the axis leans away from by `lean_rad` (0: upright).
+    #[must_use]
+    pub fn touching(&self, lean_rad: f64) -> Arc {
+        match &self.meridian {
+            None => end_mill_corner(self.core_mm(), self.corner),
+            Some(m) => {
+                let (s, c) = lean_rad.abs().sin_cos();
+                m.touching([s, -c])
+            }
+        }
     }
 
     /// Length from the tip, mm.
@@ -190,10 +172,17 @@ impl Cutter {
         self.length
     }
 
-    /// Whether the end is a ball.
+    /// Points of the meridian from the tip to the length, (rho, z), mm, turning by at most `turn_rad` on arcs.
+    #[must_use]
+    pub fn outline_mm(&self, turn_rad: f64) -> Vec<[f64; 2]> {
+        let own = || Meridian::end_mill(self.radius, end_mill_corner(self.core_mm(), self.corner));
+        self.meridian.unwrap_or_else(own).outline(self.length, turn_rad)
+    }
+
+    /// Whether the cutter is a ball end.
     #[must_use]
     pub fn is_ball(&self) -> bool {
-        self.core_mm() == 0.0
+        self.meridian.is_none() && self.core_mm() == 0.0
     }
 
     /// Signed distance of a local point to the cutter, negative inside. Exact but for points above the top end,
@@ -204,6 +193,9 @@ impl Cutter {
     }
 
     fn local_endless_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
+        if let Some(m) = &self.meridian {
+            return m.near(rho_mm, z_mm).distance;
+        }
         let (x, y) = (rho_mm - self.core_mm(), self.corner - z_mm);
         (if x > 0.0 && y > 0.0 { x.hypot(y) } else { x.max(y) }) - self.corner
     }
@@ -231,6 +223,12 @@ impl Cutter {
         let rho = radial.norm();
         let out =
             if rho > 0.0 { radial / rho } else { osculate_geom::any_perpendicular(&pose.axis).into_inner() };
+        if part != Part::Top
+            && let Some(m) = &self.meridian
+        {
+            let near = m.near(rho, z);
+            return out * near.by_rho + axis * near.by_z;
+        }
         match part {
             Part::Bottom => -axis,
             Part::Top => axis,
@@ -285,6 +283,9 @@ impl Cutter {
         if lo > hi {
             return None;
         }
+        if let Some(m) = &self.meridian {
+            return self.shaped_entry(m, l, (lo, hi, part));
+        }
         if self.corner == 0.0 || part == Part::Top {
             return Some(Entry { at_mm: lo, part });
         }
@@ -317,6 +318,40 @@ impl Cutter {
         };
         // A grazing line may pass the ball above its centre: it then met the side instead, which `lo` excluded.
         (s <= hi && l.z(s) <= self.corner).then_some(Entry { at_mm: s, part: Part::Corner })
+    }
+
+    /// Entry into a body with a meridian of its own: Newton on the convex distance from the entry into the circumscribed
+    /// cylinder, which is monotone from outside.
+    fn shaped_entry(&self, m: &Meridian, l: &LocalLine, (lo, hi, first): (f64, f64, Part)) -> Option<Entry> {
+        let tol = 4.0 * f64::EPSILON * (self.radius + self.length + l.wz.abs() + l.c.sqrt());
+        let mut s = lo;
+        for _ in 0..MAX_CORNER_STEPS {
+            let (rho, z) = (l.rho(s), l.z(s));
+            let LocalNear { distance, by_rho, by_z } = m.near(rho, z);
+            if distance <= tol {
+                let part = if s == lo && first == Part::Top {
+                    Part::Top
+                } else if by_rho == 0.0 {
+                    Part::Bottom
+                } else if by_z == 0.0 {
+                    Part::Side
+                } else {
+                    Part::Corner
+                };
+                return Some(Entry { at_mm: s, part });
+            }
+            let outwards = if rho > 0.0 { (l.b + l.a * s) / rho } else { 0.0 };
+            let slope = by_rho * outwards + by_z * l.dz;
+            if slope >= 0.0 {
+                return None;
+            }
+            s -= distance / slope;
+            if s > hi {
+                return None;
+            }
+        }
+        // Grazing to within rounding: no entry that would matter.
+        None
     }
 
     /// Monotone Newton from the entry into the circumscribed cylinder.
@@ -400,10 +435,10 @@ mod tests {
         /// no sampled point of the line is inside.
         #[test]
         fn entry_is_the_first_zero_of_the_distance(
-            r in 0.0..=1.0f64, o in prop::array::uniform3(-30.0..30.0f64), d in prop::array::uniform3(-1.0..1.0f64),
+            kind in 0usize..5, r in 0.0..=1.0f64, o in prop::array::uniform3(-30.0..30.0f64), d in prop::array::uniform3(-1.0..1.0f64),
             a in prop::array::uniform3(-1.0..1.0f64)
         ) {
-            let c = cutter(20.0, 10.0 * r);
+            let c = if kind == 0 { cutter(20.0, 10.0 * r) } else { crate::make::tests::shaped()[kind - 1] };
             let (Some(direction), Some(axis)) = (Unit3::try_new(Vec3::from(d), 0.1), Unit3::try_new(Vec3::from(a), 0.1))
             else { return Ok(()) };
             let pose = Pose { tip: Point3::new(0.3, -0.2, 0.1), axis };

@@ -1,7 +1,7 @@
 //! Cutters, their contact with a surface, the strips they leave, and what is left on a part.
 //!
-//! - [`Cutter`] is a validated ball, flat or toroidal end: a convex body that can be asked for distances and for where a
-//!   line enters it. [`CutterSpec`] is its plain description.
+//! - [`Cutter`] is a validated end mill, cone, barrel or APT cutter: a convex body that can be asked for distances and for
+//!   where a line enters it. [`CutterSpec`] is its plain description.
 //! - [`Contact`] puts a cutter on a surface with [`Lean`] (lead and tilt) and a feed; [`ContactMotion`] drives it along.
 //! - [`sweep`] finds how deep a moving cutter reaches along a line; [`mod@strip`] turns that into the exact strip width.
 //! - [`removal`] judges whole paths: scallop, gouge and uncut area on sampled faces.
@@ -27,6 +27,8 @@
 pub mod cl;
 pub mod contact;
 mod cutter;
+mod make;
+pub mod meridian;
 mod pose;
 pub mod removal;
 mod spec;
@@ -34,6 +36,7 @@ pub mod strip;
 pub mod sweep;
 
 pub use contact::{Contact, ContactError, ContactMotion, FeedLine, Lean};
-pub use cutter::{Cutter, CutterError, Entry, Line, Part};
+pub use cutter::{Cutter, Entry, Line, Part};
+pub use make::CutterError;
 pub use pose::Pose;
 pub use spec::{CutterSpec, HolderSpec};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A cutter as a user writes it. All lengths mm, the diameter is the outer one.
+/// A cutter as a user writes it. All lengths mm, angles deg; the diameter is the outer one but for `apt`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub enum CutterSpec {
@@ -27,6 +27,53 @@ pub enum CutterSpec {
         /// Corner radius, less than half the diameter.
         corner_radius_mm: f64,
         /// Length from the tip to the holder.
+        length_mm: f64,
+    },
+    /// A cylinder that works with its side: the same body as a flat end.
+    Cylindrical {
+        /// Outer diameter.
+        diameter_mm: f64,
+        /// Length from the tip to the holder.
+        length_mm: f64,
+    },
+    /// A cone with a rounded end, and a cylinder above it.
+    Cone {
+        /// Diameter of the cylinder.
+        diameter_mm: f64,
+        /// Half the angle of the cone, from the axis.
+        taper_deg: f64,
+        /// Radius of the rounded end.
+        corner_radius_mm: f64,
+        /// Diameter at which the cone would meet the tip's plane without the corner; a ball end where not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        tip_diameter_mm: Option<f64>,
+        /// Length from the tip to the holder.
+        length_mm: f64,
+    },
+    /// A barrel: a ball tip that runs smoothly into a large arc, widest at the outer diameter.
+    Barrel {
+        /// Greatest diameter.
+        diameter_mm: f64,
+        /// Radius of the large arc, above half the diameter.
+        barrel_radius_mm: f64,
+        /// Radius of the tip.
+        corner_radius_mm: f64,
+        /// Length from the tip to the holder; the barrel's widest place lies below it.
+        length_mm: f64,
+    },
+    /// APT's general cutter `CUTTER/d, r, e, f, a, b, h`, its corner tangent to bottom and side.
+    Apt {
+        /// Twice the radius at which the lines of bottom and side meet, d.
+        diameter_mm: f64,
+        /// Corner radius, r.
+        corner_radius_mm: f64,
+        /// Rise of the bottom from the tip's plane, a.
+        #[serde(default)]
+        bottom_angle_deg: f64,
+        /// Opening of the side from the axis, b; negative where it closes upwards.
+        #[serde(default)]
+        side_angle_deg: f64,
+        /// Length from the tip to the holder, h.
         length_mm: f64,
     },
 }

@@ -144,6 +144,7 @@ fn between(
     t_tolerance: f64,
 ) -> Option<Reach> {
     if let (State::Hit { part: p, .. }, State::Hit { part: q, .. }) = (a, b)
+        && cutter.is_end_mill()
         && cutter.corner_mm() == 0.0
         && p != q
         && (p == Part::Bottom || q == Part::Bottom)

@@ -1,5 +1,6 @@
 //! `machines`, `dialects`, `tools`: what is built in.
 
+use crate::cutter_keys;
 use crate::failure::{Done, Failure, Outcome};
 use crate::render::{self, Table};
 use osculate_postproc::nc::Dialect;
@@ -62,18 +63,18 @@ pub fn dialects(json: bool) -> Outcome {
 
 /// Runs `tools`.
 pub fn tools(json: bool) -> Outcome {
-    let rows = [
-        ("ball", "diameter_mm, length_mm"),
-        ("flat", "diameter_mm, length_mm"),
-        ("toroidal", "diameter_mm, corner_radius_mm, length_mm"),
-    ];
+    let rows = cutter_keys::KINDS.map(|(kind, needs, may)| {
+        let optional = may.iter().copied().chain(["length_mm"]).map(|k| format!("[{k}]"));
+        let keys: Vec<String> = needs.iter().map(ToString::to_string).chain(optional).collect();
+        (kind, keys.join(", "))
+    });
     if json {
         render::json(&rows.map(|(kind, keys)| serde_json::json!({ "kind": kind, "keys": keys })))?;
         return Ok(Done::Yes);
     }
     let mut t = Table::new(["kind", "keys"]);
     for (kind, keys) in rows {
-        t.row([kind.to_owned(), keys.to_owned()]);
+        t.row([kind.to_owned(), keys]);
     }
     render::text(&format!("\n{}\n", t.render()));
     Ok(Done::Yes)

@@ -30,6 +30,16 @@ impl Body<'_> {
         let radial = from_tip - axis * along;
         let rho = radial.norm();
         let z = along - self.above_mm;
+        if let Some(meridian) = self.cutter.meridian() {
+            let near = meridian.near(rho, z);
+            let over = z - self.cutter.length_mm();
+            if over > near.distance {
+                return Near { distance: over, gradient: *axis };
+            }
+            // On the axis every radial slope up to the meridian's own is a subgradient: zero is.
+            let outwards = if rho > 0.0 { near.by_rho / rho } else { 0.0 };
+            return Near { distance: near.distance, gradient: radial * outwards + axis * near.by_z };
+        }
         let corner = self.cutter.corner_mm();
         let (x, y) = (rho - self.cutter.core_mm(), corner - z);
         let (distance, gradient) = if x > 0.0 && y > 0.0 {
@@ -62,6 +72,7 @@ mod tests {
         /// d(q) >= d(p) + g . (q - p).
         #[test]
         fn gradient_supports_the_distance(
+            kind in 0usize..4,
             r in 0.0..=1.0f64,
             p in prop::array::uniform3(-20.0..20.0f64),
             q in prop::array::uniform3(-20.0..20.0f64),
@@ -69,7 +80,23 @@ mod tests {
         ) {
             let Some(axis) = Unit3::try_new(Vec3::from(a), 0.1) else { return Ok(()) };
             let corner_radius_mm = 5.0 * r;
-            let spec = CutterSpec::Toroidal { diameter_mm: 10.0, corner_radius_mm, length_mm: 12.0 };
+            let (diameter_mm, length_mm) = (10.0, 12.0);
+            let spec = match kind {
+                0 => CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm },
+                1 => {
+                    let (taper_deg, corner_radius_mm) = (40.0, 0.2 * corner_radius_mm);
+                    CutterSpec::Cone { diameter_mm, taper_deg, corner_radius_mm, tip_diameter_mm: None, length_mm }
+                }
+                2 => {
+                    let (barrel_radius_mm, corner_radius_mm) = (10.0 + 2.0 * r, 1.0 + 3.0 * r);
+                    CutterSpec::Barrel { diameter_mm, barrel_radius_mm, corner_radius_mm, length_mm }
+                }
+                _ => {
+                    let (bottom_angle_deg, side_angle_deg) = (30.0 * r, 10.0 - 20.0 * r);
+                    let corner_radius_mm = 0.5 * corner_radius_mm;
+                    CutterSpec::Apt { diameter_mm, corner_radius_mm, bottom_angle_deg, side_angle_deg, length_mm }
+                }
+            };
             let cutter = Cutter::try_from(spec).unwrap();
             let body = Body { cutter: &cutter, above_mm: 3.0 };
             let (p, q) = (Vec3::from(p), Vec3::from(q));

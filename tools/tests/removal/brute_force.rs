@@ -1,6 +1,6 @@
 //! `cut` against the tool put at many poses of each motion.
 
-use crate::common::{ball, flat, pose, sample, through, toroidal};
+use crate::common::{ball, flat, pose, sample, shapes, through, toroidal};
 use osculate_geom::Unit3;
 use osculate_tools::removal::{Job, Sample, Swept, cut};
 use osculate_tools::{Cutter, Line, Pose};
@@ -66,15 +66,16 @@ fn check(cutter: &Cutter, motions: &[Swept], samples: &[Sample], steps: u32) -> 
 }
 
 fn tool(kind: u8) -> Cutter {
-    [ball(6.0), toroidal(8.0, 1.5), flat(5.0)][usize::from(kind)]
+    let [a, b, c, d] = shapes();
+    [ball(6.0), toroidal(8.0, 1.5), flat(5.0), a, b, c, d][usize::from(kind)]
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
-    /// Random short motions of all three cutters around random samples.
+    /// Random short motions of all kinds of cutters around random samples.
     #[test]
     fn agrees_with_many_poses(
-        kind in 0u8..3,
+        kind in 0u8..7,
         tips in prop::collection::vec(prop::array::uniform3(-2.0..2.0f64), 5),
         axes in prop::collection::vec(prop::array::uniform2(-0.6..0.6f64), 5),
         points in prop::collection::vec(prop::array::uniform5(-1.0..1.0f64), 12)
@@ -92,7 +93,7 @@ proptest! {
     /// The axis swings widely about a tip that stands still.
     #[test]
     fn swings_agree_with_many_poses(
-        kind in 0u8..3,
+        kind in 0u8..7,
         axes in prop::array::uniform2(prop::array::uniform2(-1.0..1.0f64)),
         points in prop::collection::vec(prop::array::uniform5(-1.0..1.0f64), 12)
     ) {
@@ -118,7 +119,7 @@ fn samples_of_the_comparison_are_touched() {
         (0..9).map(|k| sample([0.5 * f64::from(k) - 2.0, 0.3, 0.0], [0.1, 0.0, 1.0])).collect();
     let motions =
         through(&[pose([-1.0, 0.0, 0.2], [0.2, 0.1, 1.0]), pose([1.0, 0.5, -0.3], [-0.2, 0.0, 1.0])]);
-    for kind in 0..3 {
+    for kind in 0..7 {
         assert!(check(&tool(kind), &motions, &samples, 4000).unwrap() >= 7);
     }
 }

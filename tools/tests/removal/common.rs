@@ -17,6 +17,31 @@ pub fn flat(diameter_mm: f64) -> Cutter {
     Cutter::try_from(CutterSpec::Flat { diameter_mm, length_mm: 60.0 }).expect("a good tool")
 }
 
+/// Cones, a barrel and an APT cutter of about the size of `ball(6.0)`.
+pub fn shapes() -> [Cutter; 4] {
+    let (diameter_mm, length_mm) = (8.0, 25.0);
+    let cone = |taper_deg, corner_radius_mm, tip_diameter_mm| CutterSpec::Cone {
+        diameter_mm,
+        taper_deg,
+        corner_radius_mm,
+        tip_diameter_mm,
+        length_mm,
+    };
+    [
+        cone(10.0, 1.0, None),
+        cone(25.0, 0.0, Some(3.0)),
+        CutterSpec::Barrel { diameter_mm, barrel_radius_mm: 30.0, corner_radius_mm: 1.5, length_mm },
+        CutterSpec::Apt {
+            diameter_mm,
+            corner_radius_mm: 0.8,
+            bottom_angle_deg: 12.0,
+            side_angle_deg: -5.0,
+            length_mm,
+        },
+    ]
+    .map(|spec| Cutter::try_from(spec).expect("a good shape"))
+}
+
 pub fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose { tip: Point3::from(tip), axis: Unit3::new_normalize(Vec3::from(axis)) }
 }
