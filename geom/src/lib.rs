@@ -19,6 +19,7 @@
 //! ```
 
 pub mod analytic;
+pub mod curve;
 pub mod diagnostic;
 mod domain;
 mod forms;
@@ -33,8 +34,10 @@ mod relative;
 pub mod roots;
 mod series;
 mod surface;
+mod swept;
 mod taylor;
 
+pub use curve::{Curve, CurveJet3, CurveTaylor, Frenet, FrenetError};
 pub use diagnostic::{Diagnostic, Severity};
 pub use domain::{Domain, Interval};
 pub use forms::{Degenerate, Forms, Principal, SymEigen, project_to_tangent};
@@ -44,4 +47,5 @@ pub use point::{Axis, Box3, Point3, Unit3, Uv, Vec3, any_perpendicular, uv};
 pub use relative::{Relative, ToolCurvature};
 pub use series::{MAX_ORDER, Series};
 pub use surface::{Flipped, Patch, Surface};
+pub use swept::{Extruded, Revolved, Ruled, SweepError, TurnAxis};
 pub use taylor::Taylor;

@@ -1,11 +1,12 @@
-//! The Taylor polynomial of a NURBS surface to any order: exact rational derivatives.
+//! The Taylor polynomials of NURBS surfaces and curves to any order: exact rational derivatives.
 //!
 //! Numerator and denominator are summed over the basis functions and their derivatives, about a pole near the
 //! place, and divided as power series; that is the quotient rule of [The NURBS Book, eq. 4.20] to every order.
 
 use crate::knots::Knots;
 use crate::nurbs::Net;
-use osculate_geom::{Series, Side, Taylor, Uv};
+use crate::nurbs_curve::NurbsCurve3;
+use osculate_geom::{Curve, CurveTaylor, Interval, MAX_ORDER, Point3, Series, Side, Taylor, Uv, Vec3};
 
 /// The polynomial of the piece over the spans `span`, continued where `at` lies outside them.
 pub(crate) fn taylor(
@@ -44,10 +45,57 @@ pub(crate) fn taylor(
     Taylor { uv: at, side, coordinates }
 }
 
+/// A curve in space ends at its ends, closed or not; beyond them it stays there.
+impl Curve for NurbsCurve3 {
+    fn domain(&self) -> Interval {
+        Self::domain(self)
+    }
+
+    fn taylor(&self, t: f64, order: usize) -> CurveTaylor {
+        let t = Self::domain(self).bring(t);
+        let order = order.min(MAX_ORDER);
+        let basis = self.knots().basis_taylor(self.knots().find(t), t, order);
+        let (first, p) = (basis.first, self.degree());
+        let (poles, weights) =
+            (&self.poles()[first..=first + p], self.weights().map(|w| &w[first..=first + p]));
+        let origin = poles[p.div_ceil(2)];
+        // Coefficients of the numerator about the origin, and of the denominator.
+        let mut c = [Vec3::zeros(); MAX_ORDER + 1];
+        let mut w = [0.0; MAX_ORDER + 1];
+        for (r, pole) in poles.iter().enumerate() {
+            let weight = weights.map_or(1.0, |w| w[r]);
+            for k in 0..=order {
+                c[k] += (pole - origin) * (weight * basis.order[k][r]);
+                w[k] += weight * basis.order[k][r];
+            }
+        }
+        if weights.is_some() {
+            // C w = A, order by order.
+            for k in 0..=order {
+                for m in 1..=k {
+                    let lower = c[k - m];
+                    c[k] -= lower * w[m];
+                }
+                c[k] /= w[0];
+            }
+        }
+        CurveTaylor::from_coefficients(t, order, |k| if k == 0 { c[0] + origin.coords } else { c[k] })
+    }
+
+    fn point(&self, t: f64) -> Point3 {
+        Self::point(self, t)
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        self.knots().breaks().to_vec()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::nurbs::{Net, NurbsSurface};
-    use osculate_geom::{Point3, Surface, Vec3, uv};
+    use crate::nurbs_curve::NurbsCurve3;
+    use osculate_geom::{Curve, Point3, Surface, Vec3, uv};
 
     /// A bump with weights over a square of two by one spans.
     fn bump(rational: bool) -> NurbsSurface {
@@ -114,6 +162,28 @@ mod tests {
                     if (at.u < 0.6) == (inside.u < 0.6) && inside.u < 1.0 {
                         assert!((sum - s.point(inside).coords).norm() < 1e-12);
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_curve_is_an_isoparametric_line() {
+        for rational in [false, true] {
+            let s = bump(rational);
+            // The side v = 0: its poles are the first of every row.
+            let (net, nv) = (s.net(), s.net().count[1]);
+            let poles: Vec<Point3> = net.points.iter().step_by(nv).copied().collect();
+            let weights = net.weights.as_ref().map(|w| w.iter().step_by(nv).copied().collect());
+            let knots = s.knots(osculate_geom::Axis::U).as_slice().to_vec();
+            let c = NurbsCurve3::new(3, knots, poles, weights).unwrap();
+            for t in [0.0, 0.2, 0.6, 0.85, 1.0] {
+                let (along, side) = (Curve::taylor(&c, t, 6), s.taylor(uv(t, 0.0), 6));
+                let inherent = c.jet(t);
+                assert!((inherent.second - along.derivative(2)).norm() < 1e-11);
+                for k in 0..=6 {
+                    let size = side.derivative(k, 0).norm() + 1e3;
+                    assert!((along.derivative(k) - side.derivative(k, 0)).norm() < 1e-12 * size, "{t} {k}");
                 }
             }
         }

@@ -1,14 +1,17 @@
-//! Surfaces with closed forms: plane, cylinder, cone, sphere, torus, ellipsoid and paraboloid.
+//! Surfaces with closed forms: plane, cylinder, cone, sphere, torus, ellipsoid and paraboloid; lines and conics.
 //!
 //! Each is built in a local frame; [`Placed`] puts it anywhere. The natural normal `S_u x S_v` of every closed
 //! kind points away from the axis or centre, so material inside is [`Side::Along`](crate::Side::Along).
 
+mod conic;
 mod placed;
 mod quadric;
 mod round;
 
+pub use conic::{Conic, ConicKind, Line};
 pub use placed::{Placed, Placement};
 pub use quadric::{Ellipsoid, Paraboloid};
+pub(crate) use round::angle_breaks;
 pub use round::{Cone, Cylinder, Plane, Sphere, Torus};
 
 /// A size that makes no surface.

@@ -10,7 +10,7 @@ use crate::taylor::Taylor;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Breaks of an angle: every 45 degrees, so that a few Gauss points between breaks integrate to rounding.
-fn angle_breaks(i: Interval) -> Vec<f64> {
+pub(crate) fn angle_breaks(i: Interval) -> Vec<f64> {
     let n = ((i.length() / (TAU / 8.0)) - 1e-9).ceil().max(1.0) as usize;
     (0..=n).map(|k| i.at(k as f64 / n as f64)).collect()
 }
