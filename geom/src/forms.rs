@@ -7,7 +7,8 @@ use crate::jet::Jet2;
 use crate::point::{Unit3, Uv, Vec3, any_perpendicular, uv};
 use nalgebra::Matrix2;
 
-/// No tangent plane: the partial derivatives are parallel or vanish.
+/// No tangent plane: the partial derivatives are parallel or vanish. The surface may still have one:
+/// [`limit::forms`](crate::limit::forms) says.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the surface has no tangent plane at u = {}, v = {}: |S_u x S_v| is {sin_uv:.3e} of |S_u| |S_v|", at.u, at.v

@@ -82,3 +82,31 @@ impl Taylor {
         self
     }
 }
+
+/// Cross product of vectors of series.
+pub(crate) fn cross(a: &[Series; 3], b: &[Series; 3]) -> [Series; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The series divided by its length.
+pub(crate) fn unit(a: &[Series; 3]) -> [Series; 3] {
+    // Scaled first, so that squares neither overflow nor vanish.
+    let size = a.iter().map(|c| c.value().abs()).fold(0.0, f64::max);
+    let a = a.map(|c| c * (1.0 / size));
+    let r = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt().recip();
+    a.map(|c| c * r)
+}
+
+/// Series in steps measured in `lengths`.
+pub(crate) fn rescaled(s: &[Series; 3], lengths: [f64; 2]) -> [Series; 3] {
+    s.map(|c| {
+        Series::from_coefficients(c.order(), |i, j| {
+            c.coefficient(i, j) * lengths[0].powi(i as i32) * lengths[1].powi(j as i32)
+        })
+    })
+}
+
+/// The polynomial in steps measured in `lengths`.
+pub(crate) fn scaled(t: &Taylor, lengths: [f64; 2]) -> Taylor {
+    Taylor { coordinates: rescaled(&t.coordinates, lengths), ..*t }
+}

@@ -12,7 +12,7 @@ pub use conic::{Conic, ConicKind, Line};
 pub use placed::{Placed, Placement};
 pub use quadric::{Ellipsoid, Paraboloid};
 pub(crate) use round::angle_breaks;
-pub use round::{Cone, Cylinder, Plane, Sphere, Torus};
+pub use round::{Cone, Cylinder, Plane, Sphere, Spindle, Torus};
 
 /// A size that makes no surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

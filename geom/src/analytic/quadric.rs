@@ -26,6 +26,12 @@ impl Ellipsoid {
         }
         Ok(Self { axes: Vec3::from(semi_axes_mm) })
     }
+
+    /// Semi-axes along x, y and z, mm.
+    #[must_use]
+    pub fn semi_axes_mm(&self) -> [f64; 3] {
+        self.axes.into()
+    }
 }
 
 impl Surface for Ellipsoid {
@@ -80,6 +86,12 @@ impl Paraboloid {
         }
         let half = positive("half_size_mm", half_size_mm)?;
         Ok(Self { a: ab_per_mm[0], b: ab_per_mm[1], half })
+    }
+
+    /// The coefficients of x^2 and y^2, 1/mm.
+    #[must_use]
+    pub const fn coefficients_per_mm(&self) -> [f64; 2] {
+        [self.a, self.b]
     }
 }
 

@@ -108,6 +108,11 @@ impl Cylinder {
         let radius = positive("radius_mm", radius_mm)?;
         Ok(Self { radius, domain: Domain { u: Interval::periodic(0.0, TAU), v: z } })
     }
+    /// Radius, mm.
+    #[must_use]
+    pub const fn radius_mm(&self) -> f64 {
+        self.radius
+    }
     fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
         ([self.radius, 0.0, 0.0], [v, 1.0, 0.0])
     }
@@ -141,6 +146,16 @@ impl Cone {
         let (sin, cos) = half_angle_rad.sin_cos();
         Ok(Self { radius: radius_mm, sin, cos, domain: Domain { u: Interval::periodic(0.0, TAU), v } })
     }
+    /// Radius at z = 0, mm.
+    #[must_use]
+    pub const fn radius_mm(&self) -> f64 {
+        self.radius
+    }
+    /// Angle between axis and generator, rad.
+    #[must_use]
+    pub fn half_angle_rad(&self) -> f64 {
+        self.sin.atan2(self.cos)
+    }
     fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
         ([self.radius + v * self.sin, self.sin, 0.0], [v * self.cos, self.cos, 0.0])
     }
@@ -167,6 +182,11 @@ impl Sphere {
         let domain = Domain { u: Interval::periodic(0.0, TAU), v: Interval::new(-FRAC_PI_2, FRAC_PI_2) };
         Ok(Self { radius, domain })
     }
+    /// Radius, mm.
+    #[must_use]
+    pub const fn radius_mm(&self) -> f64 {
+        self.radius
+    }
     fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
         let (s, c) = v.sin_cos();
         let a = self.radius;
@@ -179,16 +199,29 @@ impl Sphere {
 }
 revolved!(Sphere, true);
 
+/// The parts of a spindle torus, whose tube is wider than its circle: the two meet in apexes on the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spindle {
+    /// The outer part.
+    Apple,
+    /// The part inside the apple.
+    Lemon,
+}
+
 /// Torus about z: u the angle about the axis, v the angle on the tube, 0 outermost, pi innermost.
+///
+/// Where the tube is wider than its circle the surface crosses itself on the axis, at `cos v = -major / minor`; these
+/// two apexes have no tangent plane ([`limit`](crate::limit) says by how much the normals differ).
 #[derive(Clone, Copy, Debug)]
 pub struct Torus {
     major: f64,
     minor: f64,
+    side: Side,
     domain: Domain,
 }
 
 impl Torus {
-    /// The torus with tube centres at `major_radius_mm` and tube radius `minor_radius_mm`.
+    /// The torus with tube centres at `major_radius_mm` and tube radius `minor_radius_mm`, all of it.
     ///
     /// # Errors
     /// [`BadSize`] for radii that are not positive.
@@ -196,16 +229,70 @@ impl Torus {
         let major = positive("major_radius_mm", major_radius_mm)?;
         let minor = positive("minor_radius_mm", minor_radius_mm)?;
         let domain = Domain { u: Interval::periodic(0.0, TAU), v: Interval::periodic(0.0, TAU) };
-        Ok(Self { major, minor, domain })
+        Ok(Self { major, minor, side: Side::Along, domain })
     }
+
+    /// One part of the torus whose tube is not narrower than its circle, from apex to apex. The outward normal points
+    /// out of the tube on both; on the lemon that is against `S_u x S_v`.
+    ///
+    /// # Errors
+    /// [`BadSize`] for radii that are not positive, a tube narrower than its circle, and the lemon of equal radii,
+    /// which is a point.
+    pub fn spindle(self, part: Spindle) -> Result<Self, BadSize> {
+        let ratio = self.major / self.minor;
+        let most = if part == Spindle::Lemon { 1.0f64.next_down() } else { 1.0 };
+        if ratio > most {
+            let need = if part == Spindle::Lemon { "below 1" } else { "at most 1" };
+            return Err(BadSize { what: "major over minor radius of a spindle torus", need, got: ratio });
+        }
+        let apex = (-ratio).acos();
+        let (v, side) = match part {
+            Spindle::Apple => (Interval::new(-apex, apex), Side::Along),
+            Spindle::Lemon => (Interval::new(apex, TAU - apex), Side::Against),
+        };
+        Ok(Self { side, domain: Domain { v, ..self.domain }, ..self })
+    }
+
+    /// Radius of the circle of tube centres, mm.
+    #[must_use]
+    pub const fn major_radius_mm(&self) -> f64 {
+        self.major
+    }
+
+    /// Radius of the tube, mm.
+    #[must_use]
+    pub const fn minor_radius_mm(&self) -> f64 {
+        self.minor
+    }
+
     fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
         let (s, c) = v.sin_cos();
         let a = self.minor;
-        ([self.major + a * c, -a * s, -a * c], [a * s, a * c, -a * s])
+        let r = self.major + a * c;
+        // On the axis the radius is what rounding makes of zero, and must not pass for a circle.
+        let r = if r.abs() <= 4.0 * f64::EPSILON * (self.major + a) { 0.0 } else { r };
+        ([r, -a * s, -a * c], [a * s, a * c, -a * s])
     }
     fn meridian_series(&self, v: Series) -> [Series; 2] {
         let (s, c) = v.sin_cos();
         [Series::constant(self.major, v.order()) + c * self.minor, s * self.minor]
     }
 }
-revolved!(Torus, true);
+
+impl Surface for Torus {
+    fn domain(&self) -> Domain {
+        self.domain
+    }
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        let (r, z) = self.meridian(uv.v);
+        Jet2 { side: self.side, ..revolve(uv, r, z) }
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        let (s, c) = Series::variable(Axis::U, uv.u, order).sin_cos();
+        let [r, z] = self.meridian_series(Series::variable(Axis::V, uv.v, order));
+        Taylor { uv, side: self.side, coordinates: [r * c, r * s, z] }
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        angle_breaks(self.domain.get(axis))
+    }
+}
