@@ -7,7 +7,7 @@ pub struct Root {
     pub x: f64,
     /// The function there.
     pub residual: f64,
-    /// Half the width of the last bracket.
+    /// Half the width of the last bracket, or the tolerance where the value is exactly zero.
     pub error: f64,
     /// Function evaluations.
     pub evaluations: u32,
@@ -88,7 +88,9 @@ pub fn bracketed(a: End, b: End, x_tol: f64, mut f: impl FnMut(f64) -> f64) -> R
         let width = (b.x - a.x).abs();
         let tol = x_tol.max(2.0 * f64::EPSILON * best.x.abs());
         if best.f == 0.0 || width <= 2.0 * tol {
-            return Ok(Root { x: best.x, residual: best.f, error: 0.5 * width, evaluations });
+            // A value of zero inside a wide bracket: the root is there to rounding.
+            let error = if best.f == 0.0 { tol.min(0.5 * width) } else { 0.5 * width };
+            return Ok(Root { x: best.x, residual: best.f, error, evaluations });
         }
         let margin = tol / width;
         let xi = (a.x - b.x) / (c.x - b.x);

@@ -60,7 +60,7 @@ pub struct Reach {
 
 /// What the cutter does to a line at one instant.
 #[derive(Clone, Copy)]
-enum State {
+pub(crate) enum State {
     /// Enters at `s`, which moves at `rate`, on this part of the boundary.
     Hit { s: f64, rate: f64, part: Part },
     /// Passes at some distance that changes at `rate`.
@@ -70,7 +70,7 @@ enum State {
 }
 
 impl State {
-    fn rate(self) -> f64 {
+    pub(crate) fn rate(self) -> f64 {
         match self {
             Self::Hit { rate, .. } | Self::Miss { rate } => rate,
             Self::Outside => f64::NAN,
@@ -78,7 +78,7 @@ impl State {
     }
 }
 
-fn state(cutter: &Cutter, line: &Line, motion: &impl SweptMotion, t: f64) -> State {
+pub(crate) fn state(cutter: &Cutter, line: &Line, motion: &impl SweptMotion, t: f64) -> State {
     let Some(m) = motion.at(t) else { return State::Outside };
     let velocity = |x: osculate_geom::Point3| m.tip_rate + m.turn.cross(&(x - m.pose.tip));
     match cutter.entry(&m.pose, line) {

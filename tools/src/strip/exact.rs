@@ -1,12 +1,13 @@
 //! Exact strip width at one contact.
 
 use super::ContactMotion;
+use super::local::{LocalMotion, Near, deepest};
 use crate::contact::{Contact, ContactError};
 use crate::cutter::{Cutter, Line};
 use crate::sweep::{Reach, SweptMotion, reach_from};
 use osculate_geom::geodesic::GeodesicState;
 use osculate_geom::roots::{End, RootError, bracketed};
-use osculate_geom::{Degenerate, Surface, Uv};
+use osculate_geom::{Axis, Degenerate, Surface, Uv};
 
 /// The strip left at a contact. Lengths are arc lengths on the part across the feed, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,13 +79,21 @@ pub fn standoff(
 
 /// Steps in which a side of the strip is walked before its edge is bracketed; the profile between the contact and
 /// the edge is watched for undercut at these places.
-const STEPS_PER_SIDE: f64 = 12.0;
+const STEPS_PER_SIDE: f64 = 6.0;
 /// Most steps of the walk: strips that conform far better than the leading order says are still found.
 const MAX_STEPS: u32 = 4000;
 /// Rounding in the standoff at the contact itself, relative to the tolerance.
 const CLOSED_BAND: f64 = 1e-6;
+/// Cuts of a step of the cross line over a knot: the error falls with their cube.
+const CUTS: u32 = 16;
 /// Accuracy of the strip's edge relative to the half width.
 const EDGE_TOLERANCE: f64 = 1e-13;
+
+/// Half the length of a piece of motion that is fitted at once, in leading-order half widths.
+const MOTION_PIECE: f64 = 1.0;
+/// Disagreement accepted of a fitted piece, relative to the tolerance: the strip's edge moves by half as much,
+/// relative to its width.
+const MOTION_TOLERANCE: f64 = 1e-10;
 
 /// The exact strip at a contact for the tolerance `scallop_mm`.
 ///
@@ -109,19 +118,24 @@ pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError
     let h = scallop_mm;
     // Leading-order half width where Q allows it, a fraction of the tool elsewhere.
     let half = if across.is_finite() && across > 0.0 { (2.0 * h / across).sqrt() } else { 0.1 * radius };
+    let contact_speed = speed_of_contact(&motion, t0, speed);
+    let reach = [radius, MOTION_TOLERANCE * h + 8.0 * f64::EPSILON * contact.frame.point.coords.amax()];
+    let local = LocalMotion::new(&motion, t0, MOTION_PIECE * half.min(radius) / contact_speed, reach);
     let side = Side {
         contact,
-        motion: &motion,
+        motion: &local,
         t0,
-        t_step: 0.05 * radius / speed_of_contact(&motion, t0, speed),
+        t_step: 0.05 * radius / contact_speed,
         h,
         step: (half.min(radius) / STEPS_PER_SIDE).min(4.0 * contact.step_mm()),
+        breaks: [contact.surface.breaks(Axis::U), contact.surface.breaks(Axis::V)],
     };
     let left = side.walk(1.0)?;
     let right = side.walk(-1.0)?;
     // Heights carry the rounding of coordinates; near its edge the profile rises by 2 h over the half width.
     let size = contact.frame.point.coords.amax() + radius;
-    let rounding = 4.0 * f64::EPSILON * size * (left.edge + right.edge) / (2.0 * h);
+    let height_error = 4.0 * f64::EPSILON * size + local.error_mm();
+    let rounding = height_error * (left.edge + right.edge) / (2.0 * h);
     Ok(Strip {
         width_mm: left.edge + right.edge,
         left_mm: left.edge,
@@ -144,6 +158,8 @@ struct Side<'a, M> {
     t_step: f64,
     h: f64,
     step: f64,
+    /// Where the surface is less smooth, along u and along v.
+    breaks: [Vec<f64>; 2],
 }
 
 struct HalfStrip {
@@ -154,8 +170,29 @@ struct HalfStrip {
 }
 
 impl<M: SweptMotion> Side<'_, M> {
-    fn standoff(&self, at: Uv, guess: f64) -> Result<Option<Reach>, Degenerate> {
-        standoff(self.contact.cutter, self.contact.surface, at, self.motion, guess, self.t_step)
+    fn standoff(&self, at: Uv, near: Near) -> Result<Option<(Reach, Near)>, Degenerate> {
+        let jet = self.contact.surface.jet2(at);
+        let line = Line { origin: jet.point, direction: jet.normal()? };
+        Ok(deepest(self.contact.cutter, &line, self.motion, near, self.t_step))
+    }
+
+    /// The cross line `x` further on. A step over a knot, where the line's own equation has a kink, is cut small.
+    fn advance(&self, here: &GeodesicState, x: f64) -> Result<GeodesicState, Degenerate> {
+        let surface = self.contact.surface;
+        let whole = here.step(surface, x)?;
+        let crosses = [Axis::U, Axis::V].iter().zip(&self.breaks).any(|(axis, breaks)| {
+            let (a, b) = (here.at.get(*axis), whole.at.get(*axis));
+            let (lo, hi) = (a.min(b), a.max(b));
+            breaks.get(breaks.partition_point(|t| *t <= lo)).is_some_and(|t| *t < hi)
+        });
+        if !crosses {
+            return Ok(whole);
+        }
+        let mut state = *here;
+        for _ in 0..CUTS {
+            state = state.step(surface, x / f64::from(CUTS))?;
+        }
+        Ok(state)
     }
 
     /// Walks from the contact to the left (`sign = 1`) or right until the standoff exceeds the tolerance.
@@ -164,28 +201,29 @@ impl<M: SweptMotion> Side<'_, M> {
         let domain = surface.domain();
         let direction = self.contact.frame.left.into_inner() * sign;
         let mut here = GeodesicState::start(surface, self.contact.at, &direction)?;
-        let mut t = self.t0;
+        let mut t = Near { t: self.t0, bend: None };
         let mut q = 0.0;
         let first = self.standoff(here.at, t)?;
-        let height = first.map_or(f64::INFINITY, |r| r.at_mm);
+        let height = first.map_or(f64::INFINITY, |(r, _)| r.at_mm);
+        t = first.map_or(t, |(_, near)| near);
         // A tool lifted by just the tolerance still counts: the band is closed.
         if height > self.h * (1.0 + CLOSED_BAND) {
             return Err(StripError::AboveTolerance { standoff_mm: height, scallop_mm: self.h });
         }
         let mut undercut = Undercut::new(here, t, height);
         for _ in 0..MAX_STEPS {
-            let next = here.step(surface, self.step)?;
+            let next = self.advance(&here, self.step)?;
             if !domain.contains(next.at) {
                 return self.to_domain_edge(here, q, t, undercut);
             }
             let reach = self.standoff(next.at, t)?;
             match reach {
-                Some(r) if r.at_mm <= self.h => {
-                    (t, here, q) = (r.t, next, q + self.step);
+                Some((r, near)) if r.at_mm <= self.h => {
+                    (t, here, q) = (near, next, q + self.step);
                     undercut.see(here, t, r.at_mm);
                 }
                 outside => {
-                    let f_out = outside.map_or(self.contact.cutter.radius_mm(), |r| r.at_mm - self.h);
+                    let f_out = outside.map_or(self.contact.cutter.radius_mm(), |(r, _)| r.at_mm - self.h);
                     return self.edge(here, q, t, f_out, undercut);
                 }
             }
@@ -198,15 +236,14 @@ impl<M: SweptMotion> Side<'_, M> {
         &self,
         here: GeodesicState,
         q: f64,
-        t: f64,
+        t: Near,
         f_out: f64,
         undercut: Undercut,
     ) -> Result<HalfStrip, StripError> {
-        let surface = self.contact.surface;
         let excess = |x: f64| -> f64 {
-            let Ok(s) = here.step(surface, x) else { return f64::NAN };
+            let Ok(s) = self.advance(&here, x) else { return f64::NAN };
             match self.standoff(s.at, t) {
-                Ok(Some(r)) => r.at_mm - self.h,
+                Ok(Some((r, _))) => r.at_mm - self.h,
                 Ok(None) => self.contact.cutter.radius_mm(),
                 Err(_) => f64::NAN,
             }
@@ -220,7 +257,7 @@ impl<M: SweptMotion> Side<'_, M> {
         Ok(HalfStrip {
             edge: q + root.x,
             undercut: undercut.deepest(self)?,
-            error: root.error + self.integration_error(here, root.x)?,
+            error: root.error + self.integration_error(here, q + root.x)?,
             at_edge: false,
         })
     }
@@ -230,7 +267,7 @@ impl<M: SweptMotion> Side<'_, M> {
         &self,
         here: GeodesicState,
         q: f64,
-        t: f64,
+        t: Near,
         undercut: Undercut,
     ) -> Result<HalfStrip, StripError> {
         let surface = self.contact.surface;
@@ -239,32 +276,33 @@ impl<M: SweptMotion> Side<'_, M> {
         // Bisection of a yes-or-no question to the last bits of the step.
         for _ in 0..50 {
             let mid = 0.5 * (lo + hi);
-            if domain.contains(here.step(surface, mid)?.at) { lo = mid } else { hi = mid }
+            if domain.contains(self.advance(&here, mid)?.at) { lo = mid } else { hi = mid }
         }
-        let end = here.step(surface, lo)?;
+        let end = self.advance(&here, lo)?;
         match self.standoff(end.at, t)? {
-            Some(r) if r.at_mm <= self.h => {
+            Some((r, _)) if r.at_mm <= self.h => {
                 let mut undercut = undercut;
                 undercut.lowest = undercut.lowest.min(r.at_mm);
-                let error = hi - lo + self.integration_error(here, lo)?;
+                let error = hi - lo + self.integration_error(here, q + lo)?;
                 Ok(HalfStrip { edge: q + lo, undercut: undercut.deepest(self)?, error, at_edge: true })
             }
             outside => {
-                let f_out = outside.map_or(self.contact.cutter.radius_mm(), |r| r.at_mm - self.h);
-                let shorter = Side { step: lo, contact: self.contact, motion: self.motion, ..*self };
+                let f_out = outside.map_or(self.contact.cutter.radius_mm(), |(r, _)| r.at_mm - self.h);
+                let shorter = Side { step: lo, breaks: self.breaks.clone(), ..*self };
                 shorter.edge(here, q, t, f_out, undercut)
             }
         }
     }
 
-    /// Integration error of the cross line: one step against two halves, for every step walked.
-    fn integration_error(&self, here: GeodesicState, last: f64) -> Result<f64, Degenerate> {
+    /// Integration error of the cross line after `q`: the last step whole against two halves, for every step walked.
+    fn integration_error(&self, here: GeodesicState, q: f64) -> Result<f64, Degenerate> {
         let surface = self.contact.surface;
-        let one = here.step(surface, self.step)?;
-        let two = here.step(surface, 0.5 * self.step)?.step(surface, 0.5 * self.step)?;
+        let one = self.advance(&here, self.step)?;
+        let middle = self.advance(&here, 0.5 * self.step)?;
+        let two = self.advance(&middle, 0.5 * self.step)?;
         let jet = surface.jet2(one.at);
         let off = (jet.tangent(Uv { u: one.at.u - two.at.u, v: one.at.v - two.at.v })).norm();
-        Ok(off * (1.0 + last / self.step))
+        Ok(off * (1.0 + q / self.step))
     }
 }
 
@@ -282,16 +320,16 @@ struct Undercut {
 #[derive(Clone, Copy)]
 struct Place {
     state: GeodesicState,
-    t: f64,
+    t: Near,
     height: f64,
 }
 
 impl Undercut {
-    fn new(state: GeodesicState, t: f64, height: f64) -> Self {
+    fn new(state: GeodesicState, t: Near, height: f64) -> Self {
         Self { last: [None, Some(Place { state, t, height })], lowest: height, before_lowest: None }
     }
 
-    fn see(&mut self, state: GeodesicState, t: f64, height: f64) {
+    fn see(&mut self, state: GeodesicState, t: Near, height: f64) {
         let new = Place { state, t, height };
         if let [Some(a), Some(b)] = self.last
             && b.height <= a.height
@@ -309,8 +347,8 @@ impl Undercut {
         const RATIO: f64 = 0.618_033_988_749_894_9;
         let Some(a) = self.before_lowest else { return Ok((-self.lowest).max(0.0)) };
         let height = |x: f64| -> Result<f64, Degenerate> {
-            let at = a.state.step(side.contact.surface, x)?.at;
-            Ok(side.standoff(at, a.t)?.map_or(f64::INFINITY, |r| r.at_mm))
+            let at = side.advance(&a.state, x)?.at;
+            Ok(side.standoff(at, a.t)?.map_or(f64::INFINITY, |(r, _)| r.at_mm))
         };
         let (mut lo, mut hi) = (0.0, 2.0 * side.step);
         let mut lowest = self.lowest;

@@ -7,6 +7,7 @@
 //! tolerance: the closed forms of strip width are approximations of this.
 
 mod exact;
+mod local;
 
 pub use exact::{Strip, StripError, exact, standoff};
 
