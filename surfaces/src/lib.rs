@@ -26,6 +26,7 @@ pub mod iges;
 mod mesh;
 mod part;
 pub mod step;
+mod topology;
 mod trim;
 mod trimmed;
 
@@ -43,7 +44,7 @@ mod ruled;
 
 pub use closest::{ClosestError, Foot, FootKind, closest, closest_near, closest_sampled};
 pub use knots::{KnotError, Knots, MAX_DEGREE};
-pub use mesh::{Mesh, tessellate};
+pub use mesh::{Mesh, MeshError, MeshOptions, MeshReport, PartMesh, mesh_faces, tessellate};
 pub use nurbs::{Net, NurbsError, NurbsSurface};
 pub use nurbs_curve::{CurveError, CurveJet, NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_edit::{BezierPatch, EditError};

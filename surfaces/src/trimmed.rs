@@ -4,6 +4,7 @@
 //! of times, whatever their sense. Directions that close (cylinder, closed splines) are cut to one period; loops may
 //! wrap around them.
 
+use crate::trim::edge::FaceEdge;
 use crate::trim::integrate;
 use crate::trim::region::{Chain, Known, Region};
 use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, uv};
@@ -78,6 +79,8 @@ pub struct TrimmedSurface {
     loops: Vec<Loop>,
     /// `None` where the whole rectangle counts.
     region: Option<Arc<Region>>,
+    /// The edges of the file; none for a surface that was not imported.
+    edges: Arc<[FaceEdge]>,
 }
 
 impl std::fmt::Debug for TrimmedSurface {
@@ -146,7 +149,14 @@ impl TrimmedSurface {
             let corners =
                 [domain.at(0.0, 0.0), domain.at(1.0, 0.0), domain.at(1.0, 1.0), domain.at(0.0, 1.0)];
             let rectangle = Loop { points: corners.to_vec() };
-            return Ok(Self { carrier, domain, side, loops: vec![rectangle], region: None });
+            return Ok(Self {
+                carrier,
+                domain,
+                side,
+                loops: vec![rectangle],
+                region: None,
+                edges: Arc::new([]),
+            });
         }
         let mut outlines: Vec<Loop> = region
             .outline()
@@ -160,7 +170,25 @@ impl TrimmedSurface {
         if outlines.first().is_none_or(|l| l.signed_area().abs() <= smallest) {
             return Err(TrimError::Empty { loops });
         }
-        Ok(Self { carrier, domain, side, loops: outlines, region: Some(Arc::new(region)) })
+        Ok(Self {
+            carrier,
+            domain,
+            side,
+            loops: outlines,
+            region: Some(Arc::new(region)),
+            edges: Arc::new([]),
+        })
+    }
+
+    /// The surface with the edges that its loops were made of.
+    pub(crate) fn with_edges(mut self, edges: Vec<FaceEdge>) -> Self {
+        self.edges = edges.into();
+        self
+    }
+
+    /// The edges that the loops were made of, in the file's order; none where the surface was not imported.
+    pub(crate) fn edges(&self) -> &[FaceEdge] {
+        &self.edges
     }
 
     /// The surface without its loops.

@@ -4,6 +4,7 @@ use super::assemble::{Assembled, assemble};
 use super::carrier::{Carrier, FaceSurface};
 use super::chain::{EdgeUse, join};
 use super::curve::{Curve, Piece};
+use super::edge::FaceEdge;
 use super::pull::{Tolerance, flatten, pull};
 use crate::trimmed::TrimError;
 use osculate_geom::{Box3, Point3, Side, Surface, Uv, uv};
@@ -79,6 +80,16 @@ pub(crate) fn build(
     for e in &mut edges {
         snap(&carrier, &mut e.points, tolerance.chord_mm);
     }
+    let kept = loops.iter().flatten().zip(&edges).map(|(b, e)| FaceEdge {
+        key: e.key,
+        owner: e.owner,
+        curve: match b {
+            Boundary::Space { piece, .. } => Some(piece.clone()),
+            Boundary::Parameter { .. } => None,
+        },
+        points: e.points.clone(),
+    });
+    let kept: Vec<FaceEdge> = kept.collect();
     let joined = join(&carrier, edges, tolerance.near_mm);
     let mut findings = Vec::new();
     if gap_mm > tolerance.near_mm {
@@ -88,7 +99,8 @@ pub(crate) fn build(
         findings
             .push(format!("the boundary has a gap of {:.3e} mm, closed by a straight line", joined.jump_mm));
     }
-    let assembled = assemble(&carrier, &joined, side)?;
+    let mut assembled = assemble(&carrier, &joined, side)?;
+    assembled.surface = assembled.surface.with_edges(kept);
     if !assembled.consistent {
         findings.push("the loops do not separate an inside from an outside on this surface".into());
     }

@@ -8,6 +8,7 @@ pub(crate) mod boundary;
 pub(crate) mod carrier;
 pub(crate) mod chain;
 pub(crate) mod curve;
+pub(crate) mod edge;
 mod foot;
 mod outline;
 pub(crate) mod pull;
