@@ -1,13 +1,16 @@
-//! Time of `removal::cut` on finishing passes over a bump: samples, motions, seconds.
+//! Time of `removal::cut` and of `removal::stock` on passes over waves: samples, motions, seconds, memory.
 //!
-//! `cargo run --release -p osculate-tools --example removal_bench -- 300000 30000`
+//! `cargo run --release -p osculate-tools --example removal_bench -- SAMPLES MOTIONS RAYS`, RAYS being the number of rays
+//! along each side of the stock; `1000000 100000 512` are the figures to keep: below 10 s each for the faces and below
+//! 60 s for the stock on two cores. CPU seconds are of the whole process, all threads.
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
 
 use osculate_geom::{
-    Axis, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
+    Axis, Box3, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
 };
-use osculate_tools::removal::{Job, Limits, Swept, cut, judge, sample_surface};
+use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob, Upper};
+use osculate_tools::removal::{Body, Job, Limits, Swept, cut, judge, sample_surface};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 use std::error::Error;
 use std::time::Instant;
@@ -73,10 +76,50 @@ fn passes(
     Ok(pairs.map(|(p, block)| Swept { from: p[0], to: p[1], rapid: false, block }).collect())
 }
 
+/// User CPU seconds of this process, where the system tells.
+fn cpu_s() -> f64 {
+    // Clock ticks are hundredths of a second on Linux.
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    after_name.split_whitespace().nth(11).and_then(|t| t.parse::<f64>().ok()).map_or(f64::NAN, |t| t / 100.0)
+}
+
+/// Roughing: the same passes 2 mm above the waves in a block, then over the waves themselves.
+fn roughing(waves: &Waves, cutter: &Cutter, motions: usize, rays: usize) -> Result<(), Box<dyn Error>> {
+    let mut path = passes(waves, cutter, motions / 2, true)?;
+    let raised: Vec<Swept> =
+        path.iter().map(|m| Swept { from: m.from.retracted(2.0), to: m.to.retracted(2.0), ..*m }).collect();
+    path.splice(0..0, raised);
+    let side = waves.side_mm;
+    let bounds = Box3 { min: Point3::new(0.0, 0.0, -0.5 * side), max: Point3::new(side, side, 0.5 * side) };
+    let begin = Instant::now();
+    let resolution = Resolution { cell_mm: side / rays as f64, tri: true, budget_bytes: 2 << 30 };
+    let mut stock = Stock::fill(&Blank::Box(bounds), &resolution)?.stock;
+    let filled = begin.elapsed().as_secs_f64();
+    let (begin, cpu) = (Instant::now(), cpu_s());
+    let holder = Cutter::cylinder(40.0, 60.0)?;
+    let uppers = [Upper { body: &holder, above_mm: cutter.length_mm(), kind: Body::Holder }];
+    let job = StockJob { cutter, uppers: &uppers, motions: &path, touch_mm: 1e-3 };
+    let carved = stock.carve(&job, &|_| ())?;
+    println!(
+        "stock      {:>9} rays    {:>8} motions {:>8.2} s, {:>7.2} CPU s, filled in {filled:.2} s: {:.1} mm3 taken in {} \
+         motions, {} collisions, {:.0} MB of stretches",
+        stock.rays(),
+        path.len(),
+        begin.elapsed().as_secs_f64(),
+        cpu_s() - cpu,
+        carved.volume_mm3(),
+        carved.work.len(),
+        carved.collisions.len(),
+        stock.bytes() as f64 / 1e6,
+    );
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
     let mut number = |default: usize| args.next().map_or(Ok(default), |s| s.parse());
-    let (samples, motions) = (number(300_000)?, number(30_000)?);
+    let (samples, count, rays) = (number(300_000)?, number(30_000)?, number(256)?);
     let waves = Waves { side_mm: 100.0, height_mm: 4.0, per_mm: 0.1 };
     let begin = Instant::now();
     let sampling = sample_surface(&waves, 0, 1e-3, samples)?;
@@ -88,8 +131,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, cutter, five_axis, stock_mm) in
         [("3-axis", &ball, false, 0.3), ("5-axis", &bull, true, 0.3), ("thick", &bull, true, 3.0)]
     {
-        let motions = passes(&waves, cutter, motions, five_axis)?;
-        let begin = Instant::now();
+        let motions = passes(&waves, cutter, count, five_axis)?;
+        let (begin, cpu) = (Instant::now(), cpu_s());
         let job = Job {
             cutter,
             holder: Some(&holder),
@@ -99,11 +142,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             depth_mm: 1.0,
         };
         let cuts = cut(&job, &|_| ())?;
-        let seconds = begin.elapsed().as_secs_f64();
+        let (seconds, cpu) = (begin.elapsed().as_secs_f64(), cpu_s() - cpu);
         let begin = Instant::now();
         let verdict = judge(&sampling.samples, &cuts, &Limits::new(0.02, 0.02), &sampling.density, 5.0)?;
         println!(
-            "{name:<10} {:>9} samples {:>8} motions {seconds:>8.2} s, judged in {:.2} s: \
+            "{name:<10} {:>9} samples {:>8} motions {seconds:>8.2} s, {cpu:>7.2} CPU s, judged in {:.2} s: \
              scallop {:.4} gouge {:.4} uncut {:.1} mm2",
             cuts.len(),
             motions.len(),
@@ -113,5 +156,5 @@ fn main() -> Result<(), Box<dyn Error>> {
             verdict.uncut_area_mm2,
         );
     }
-    Ok(())
+    roughing(&waves, &bull, count, rays)
 }

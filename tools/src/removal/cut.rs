@@ -2,9 +2,9 @@
 
 use super::body::Body as Moved;
 use super::cluster::{Cluster, clusters};
-use super::deepest::Passage;
+use super::deepest::{EXACT, Passage};
 use super::job::{Body, By, Cut, Job, JobError, Sample, Touch};
-use super::piece::{Approach, Passes, Piece, pieces};
+use super::piece::{Approach, FINE_MM, Passes, Piece, pieces};
 use super::target::Target;
 use super::tree::Tree;
 use crate::cutter::Line;
@@ -180,10 +180,11 @@ impl<'a> Work<'a> {
         let swept = &self.world.job.motions[piece.motion as usize];
         match approach.passes(body, &Target::segment(self.line.point(middle), &self.line.direction, radius)) {
             Passes::Clear => None,
-            Passes::Near { fine: true, .. } => {
-                Passage { body: *body, swept, piece: *piece, line: self.line }.height(height, depth)
+            Passes::Near { sagitta, .. } if sagitta <= FINE_MM => {
+                Passage { body: *body, swept, piece: *piece, line: self.line, instant: EXACT }
+                    .height(height, depth)
             }
-            Passes::Near { fine: false, .. } => piece.halves().iter().fold(None, |lower, half| {
+            Passes::Near { .. } => piece.halves().iter().fold(None, |lower, half| {
                 let height = lower.unwrap_or(height);
                 self.lowered(body, half, &Approach::new(swept, half), height).or(lower)
             }),

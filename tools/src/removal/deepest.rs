@@ -26,7 +26,7 @@ use osculate_geom::roots::{End, bracketed};
 const TOUCH: f64 = 1e-14;
 /// Accuracy of the instant of deepest reach relative to the piece. The distance is flat there; on sharp rims
 /// it is not, and this keeps the height within 1e-11 mm for motions of 10 mm.
-const INSTANT: f64 = 1e-12;
+pub(super) const EXACT: f64 = 1e-12;
 /// Newton steps on f: quadratic at a crossing, halving at a grazing double root (from 1 mm to TOUCH in 25).
 const MAX_STEPS: u32 = 60;
 
@@ -36,6 +36,8 @@ pub(super) struct Passage<'a> {
     pub swept: &'a Swept,
     pub piece: Piece,
     pub line: Line,
+    /// Accuracy of instants relative to the piece, such as [`EXACT`].
+    pub instant: f64,
 }
 
 /// D and its derivatives by instant and height.
@@ -96,7 +98,7 @@ impl Passage<'_> {
         let mut still = None;
         // The bracket is kept here as well: only its two sides make a slope of f at a kink. Where it does not
         // converge they are still an instant that happens.
-        let _ = bracketed(ends[0], ends[1], INSTANT * (hi - lo), |t| {
+        let _ = bracketed(ends[0], ends[1], self.instant * (hi - lo), |t| {
             let i = self.instant(probe, t, s);
             if i.by_t < 0.0 {
                 falling = i;
@@ -114,6 +116,34 @@ impl Passage<'_> {
         let share = rising.by_t / (rising.by_t - falling.by_t);
         let slope = share * falling.by_s + (1.0 - share) * rising.by_s;
         Lowest { value: falling.distance.min(rising.distance), slope }
+    }
+
+    /// The part of a segment of the line, heights from and to, that this passage covers, to `touch` mm of distance.
+    pub fn covered(&self, [from, to]: [f64; 2], touch: f64) -> Option<[f64; 2]> {
+        let (low, high) = (self.lowest(Probe::Height, from), self.lowest(Probe::Height, to));
+        let first = if low.value <= touch { from } else { self.crossing(low, [from, to], touch)? };
+        let last = if high.value <= touch { to } else { self.crossing(high, [to, from], touch)? };
+        (first < last).then_some([first, last])
+    }
+
+    /// Newton from outside at `start` towards `end`, monotone where f is convex.
+    fn crossing(&self, at_start: Lowest, [start, end]: [f64; 2], touch: f64) -> Option<f64> {
+        let (mut s, mut here) = (start, at_start);
+        for _ in 0..MAX_STEPS {
+            if here.slope * (end - start) >= 0.0 {
+                return None;
+            }
+            s -= here.value / here.slope;
+            if (s - start) * (s - end) > 0.0 {
+                return None;
+            }
+            here = self.lowest(Probe::Height, s);
+            if here.value <= touch {
+                return Some(s);
+            }
+        }
+        // Grazing.
+        None
     }
 
     /// The height that this passage leaves above the sample, mm, where it is lower than `current`; negative

@@ -127,6 +127,8 @@ pub enum JobError {
 pub enum Body {
     /// The cutter.
     Cutter,
+    /// The part of the tool above its cutting edges.
+    Shank,
     /// The holder.
     Holder,
 }

@@ -50,6 +50,7 @@ mod grid;
 mod job;
 mod piece;
 mod sampling;
+pub mod stock;
 mod target;
 mod tree;
 mod verdict;

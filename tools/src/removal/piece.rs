@@ -9,6 +9,7 @@
 use super::body::Body;
 use super::target::Target;
 use super::{JobError, Swept};
+use crate::pose::Pose;
 use crate::sweep::{LinearMotion, Moving, SweptMotion};
 use osculate_geom::{Point3, Unit3, Vec3};
 
@@ -18,10 +19,16 @@ const SAGITTA_MM: f64 = 5e-2;
 /// Sagitta of pieces in which the deepest instant is searched, mm. It is no error as such, but turning
 /// motions have more than one deepest instant (bottom, then rim): of two within one piece the lesser may be
 /// found, too high by about this.
-const FINE_MM: f64 = 2e-5;
+pub(super) const FINE_MM: f64 = 2e-5;
 
 /// Pose and velocity at a parameter of a motion.
+#[inline]
 pub(super) fn moving(swept: &Swept, t: f64) -> Moving {
+    if swept.from.axis == swept.to.axis {
+        let tip_rate = swept.to.tip - swept.from.tip;
+        let pose = Pose { tip: swept.from.tip + tip_rate * t, axis: swept.from.axis };
+        return Moving { pose, tip_rate, turn: Vec3::zeros() };
+    }
     LinearMotion { from: swept.from, to: swept.to }
         .at(t)
         .expect("a linear motion is defined at every parameter")
@@ -127,8 +134,8 @@ pub(super) enum Passes {
     Near {
         /// A distance that it comes to, up to the sagitta, mm.
         distance: f64,
-        /// Whether the piece is so straight, seen from the point, that its deepest instant can be searched.
-        fine: bool,
+        /// How far the piece strays from a straight motion, seen from the target, mm.
+        sagitta: f64,
     },
 }
 
@@ -162,7 +169,6 @@ impl Approach {
             let sagitta = self.turning.sagitta(self.speed, w.norm() + self.speed + target.radius);
             (sagitta, 0.5 * self.turning.rate * target.radius)
         };
-        let fine = sagitta <= FINE_MM;
         // Slack for the rounding of coordinates.
         let need = sagitta + skew + 1e-12 * (1.0 + w.amax());
         let uu = u.norm_squared();
@@ -204,7 +210,7 @@ impl Approach {
             }
             x = lowest;
         }
-        Passes::Near { distance: nearest, fine }
+        Passes::Near { distance: nearest, sagitta }
     }
 }
 

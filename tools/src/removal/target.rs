@@ -26,6 +26,13 @@ impl Target {
         }
     }
 
+    /// A box along the axes.
+    pub fn upright(centre: Point3, half: &Vec3) -> Self {
+        let half_axes =
+            [Vec3::new(half.x, 0.0, 0.0), Vec3::new(0.0, half.y, 0.0), Vec3::new(0.0, 0.0, half.z)];
+        Self { centre, half_axes, radius: half.norm() }
+    }
+
     /// The smallest box around the points with one axis along `normal` and the other two as they come.
     pub fn around(points: impl Iterator<Item = Point3> + Clone, normal: &Unit3) -> Self {
         let t = osculate_geom::any_perpendicular(normal);

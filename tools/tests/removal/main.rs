@@ -6,4 +6,5 @@ mod collisions;
 mod common;
 mod gouges;
 mod sampling;
+mod stock;
 mod verdicts;

@@ -1,0 +1,105 @@
+//! What carving found: volumes, work block by block, collisions.
+
+use crate::removal::Body;
+use osculate_geom::Point3;
+
+/// A volume seen along every direction of rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Volume {
+    /// Mean over the directions, mm3.
+    pub mm3: f64,
+    /// Range over the directions, mm3; 0 for a single one.
+    pub spread_mm3: f64,
+}
+
+impl Volume {
+    pub(super) fn of(each: impl Iterator<Item = f64>) -> Self {
+        let all: Vec<f64> = each.collect();
+        let (lo, hi) =
+            all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+        let sum = all.iter().fold(0.0, |s, x| s + x);
+        Self { mm3: sum / all.len().max(1) as f64, spread_mm3: (hi - lo).max(0.0) }
+    }
+}
+
+/// What one motion of the cutter took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Work {
+    /// Index of the motion.
+    pub motion: u32,
+    /// Its block.
+    pub block: u32,
+    /// Volume, mm3.
+    pub volume_mm3: f64,
+    /// Mean section of the chip across the tip's way, mm2: volume over its length; 0 where the tip stands still.
+    pub section_mm2: f64,
+    /// Angle around the axis over which the cutter met material, rad, in steps of a sixty-fourth of a turn.
+    pub arc_rad: f64,
+    /// Lowest and highest place on the cutter that met material, mm above the tip.
+    pub height_mm: [f64; 2],
+}
+
+/// Something that is not to cut met material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collision {
+    /// Index of the motion.
+    pub motion: u32,
+    /// Its block.
+    pub block: u32,
+    /// What met it: the cutter only in rapids.
+    pub body: Body,
+    /// Whether it was a rapid.
+    pub rapid: bool,
+    /// Volume, mm3.
+    pub volume_mm3: f64,
+    /// Longest stretch taken from a ray, mm.
+    pub deepest_mm: f64,
+    /// The middle of that stretch.
+    pub at: Point3,
+}
+
+/// What a path did to the stock.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Carved {
+    /// What cutting motions took, in the order of the path; those that took nothing are left out.
+    pub work: Vec<Work>,
+    /// What met material and is not to, in the order of the path.
+    pub collisions: Vec<Collision>,
+}
+
+impl Carved {
+    /// The whole volume that cutting motions took, mm3.
+    #[must_use]
+    pub fn volume_mm3(&self) -> f64 {
+        self.work.iter().map(|w| w.volume_mm3).fold(0.0, |a, b| a + b)
+    }
+}
+
+/// What one body of one motion took from one direction's rays in some tiles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bite {
+    pub motion: u32,
+    pub body: u8,
+    pub volume: f64,
+    /// Sixty-fourths of a turn around the axis, one bit each.
+    pub sectors: u64,
+    pub height: [f64; 2],
+    pub deepest: f64,
+    pub at: Point3,
+}
+
+impl Bite {
+    pub fn none(motion: u32, body: u8) -> Self {
+        let height = [f64::INFINITY, f64::NEG_INFINITY];
+        Self { motion, body, volume: 0.0, sectors: 0, height, deepest: 0.0, at: Point3::origin() }
+    }
+
+    pub fn merge(&mut self, other: &Self) {
+        self.volume += other.volume;
+        self.sectors |= other.sectors;
+        self.height = [self.height[0].min(other.height[0]), self.height[1].max(other.height[1])];
+        if other.deepest > self.deepest {
+            (self.deepest, self.at) = (other.deepest, other.at);
+        }
+    }
+}
