@@ -58,6 +58,8 @@ pub enum Verb {
         #[arg(long)]
         lenient: bool,
     },
+    /// Machining time of an NC program with the axes' limits.
+    Time(TimeArgs),
     /// The built-in machines.
     Machines,
     /// The built-in dialects.
@@ -103,6 +105,29 @@ pub struct PostArgs {
     /// The program to write.
     #[arg(long)]
     pub out: PathBuf,
+}
+
+/// What `time` takes.
+#[derive(Debug, Args)]
+pub struct TimeArgs {
+    /// The NC program.
+    #[arg(value_name = "NCFILE")]
+    pub file: PathBuf,
+    /// A built-in machine or the path of a machine file.
+    #[arg(long)]
+    pub machine: String,
+    /// sinumerik, heidenhain, fanuc or linuxcnc; by the file's extension where not given.
+    #[arg(long)]
+    pub dialect: Option<String>,
+    /// Where the part's origin sits from the table's reference point, mm.
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub part_zero: Option<[f64; 3]>,
+    /// From the tip to the spindle nose, mm.
+    #[arg(long)]
+    pub gauge_length_mm: Option<f64>,
+    /// Stop at the first word that is not understood instead of leaving it out with a finding.
+    #[arg(long)]
+    pub strict: bool,
 }
 
 fn numbers<const N: usize>(s: &str) -> Result<[f64; N], String> {

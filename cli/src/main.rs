@@ -34,6 +34,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
         Verb::Verify { file, job, lenient } => cmd::verify::run(file, job, *lenient, cli.json),
+        Verb::Time(args) => cmd::time::run(args, cli.json),
         Verb::Machines => cmd::list::machines(cli.json),
         Verb::Dialects => cmd::list::dialects(cli.json),
         Verb::Tools => cmd::list::tools(cli.json),

@@ -87,6 +87,27 @@ impl Control {
     }
 }
 
+/// The machine of a command line: a built-in name or a file.
+pub fn machine(word: &str) -> Result<Machine, Failure> {
+    let file = Path::new(word);
+    if !built_in_names().contains(&word) && (word.ends_with(".toml") || file.exists()) {
+        return Machine::from_toml(&read_text(file)?)
+            .map_err(|e| Failure::file(file, e.to_string().trim_end()));
+    }
+    Machine::built_in(word).map_err(Failure::job)
+}
+
+/// The language of a program: as said, or by its extension.
+pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
+    if let Some(name) = said {
+        return name.parse().map_err(Failure::job);
+    }
+    let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    Dialect::ALL.into_iter().find(|d| d.extension() == extension).ok_or_else(|| {
+        Failure::file(file, "the extension does not tell the dialect: give --dialect, one of sinumerik, heidenhain, fanuc, linuxcnc")
+    })
+}
+
 /// What a job without a machine is posted for: name, dialect, feed.
 const DEFAULT: [&str; 3] = ["trunnion-ac", "sinumerik", "tcp"];
 

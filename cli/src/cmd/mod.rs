@@ -6,4 +6,5 @@ pub mod plan;
 pub mod post;
 pub mod probe;
 pub mod strip;
+pub mod time;
 pub mod verify;

@@ -153,12 +153,7 @@ impl Machine {
             [outer, inner] => {
                 Some(TwoAxis::new(joints[outer].direction, joints[inner].direction, tool_axis)?)
             }
-            [only] => {
-                // One axis is checked as the inner one of a pair with any second axis across it.
-                let b = joints[only].direction;
-                TwoAxis::new(osculate_geom::any_perpendicular(&b), b, tool_axis)?;
-                None
-            }
+            // A single one may lie along the tool: a turntable, which then stays where it is in a posted path.
             _ => None,
         };
         Ok(Self {
@@ -335,6 +330,9 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
 
 fn check_control(control: &ControlSpec) -> Result<(), MachineError> {
     positive("the control", "largest_feed", control.largest_feed)?;
+    if let Some(v) = control.max_path_velocity_mm_s {
+        positive("the control", "max_path_velocity_mm_s", v)?;
+    }
     if let FeedReading::Arc { radius_mm } = control.feed_reading {
         positive("the control", "feed_reading.radius_mm", radius_mm)?;
     }

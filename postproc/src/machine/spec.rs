@@ -122,6 +122,9 @@ pub struct ControlSpec {
     /// Largest F that the control's format takes, in mm/min or 1/min.
     #[serde(default = "default_largest_feed")]
     pub largest_feed: f64,
+    /// Greatest speed of the tool along the path, whatever the joints can do; absent: no such limit.
+    #[serde(default)]
+    pub max_path_velocity_mm_s: Option<f64>,
     /// LinuxCNC's kinematics switch, where this machine has one.
     pub linuxcnc_tcp: Option<TcpWords>,
 }

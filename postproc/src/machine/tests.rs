@@ -218,6 +218,7 @@ fn random_machine() -> impl Strategy<Value = Machine> {
             let control = ControlSpec {
                 feed_reading: FeedReading::Linear,
                 largest_feed: 1e5,
+                max_path_velocity_mm_s: None,
                 linuxcnc_tcp: Some(TcpWords { on: "M428".into(), off: "M429".into() }),
             };
             let spec = MachineSpec {

@@ -1,105 +1,202 @@
-//! A model of the control: blocks in, moves of the tool out.
+//! A model of the control: blocks in, moves out, a line at a time.
 //!
-//! Modal words, units, the tool-centre-point switch, declarations of what F is read over. What is not understood is
-//! refused or, if asked so, left out and reported; see [`super::readback`].
+//! [`super::codes`] knows what the words mean; here lines become moves. What is not understood is refused or, if
+//! asked so, left out and reported; see [`super::readback`].
 
-use osculate_geom::{Diagnostic, Unit3};
-use osculate_tools::Pose;
-use osculate_tools::cl::Motion;
+use std::collections::BTreeSet;
+
+use osculate_geom::Diagnostic;
 
 use super::Dialect;
-use super::readback::{ReadBack, ReadBlock, ReadError, ReadMove, ReadOptions};
-use super::state::{FeedReading, Group, Known, State};
+use super::event::{Event, FeedNow, Frame, Moved, Sink};
+use super::readback::ReadError;
+use super::state::{FeedReading, Known, State};
 use super::token::{BadWord, Manner, Word, words};
 use super::way::{Arc, ArcWords, Way};
 use crate::feed::Step;
 use crate::machine::{JointValues, Machine, nearest_turn};
-use crate::motion::rapid_time_min;
+use crate::motion::linuxcnc::PathControl;
 use crate::setup::Setup;
 
+/// Losses that are listed one by one; further ones are counted.
+const LISTED: usize = 10_000;
+
 /// The control, its machine, and what has come out so far.
-pub(super) struct Interpreter<'a> {
-    dialect: Dialect,
-    machine: &'a Machine,
-    setup: &'a Setup,
-    options: &'a ReadOptions,
-    state: State,
-    out: ReadBack,
+pub(super) struct Interpreter<'a, S> {
+    pub(super) dialect: Dialect,
+    pub(super) machine: &'a Machine,
+    pub(super) setup: &'a Setup,
+    strict: bool,
+    pub(super) state: State,
+    pub sink: S,
+    pub diagnostics: Vec<Diagnostic>,
+    pub spindle_rpm: Option<f64>,
+    unlisted: usize,
+    /// The sink knows where the machine stands.
+    placed: bool,
 }
 
 /// What one line asks for, once all its words are seen.
 #[derive(Default)]
-struct Asked {
+pub(super) struct Asked {
     /// Axis words.
-    axes: Vec<(String, f64, Manner)>,
+    pub axes: Vec<(String, f64, Manner)>,
     /// Positions are the machine's own.
-    machine_frame: bool,
+    pub machine_frame: bool,
+    /// G4.
+    pub dwell: bool,
     /// A word that makes the axis words of the line something other than a move.
-    other_use: bool,
-    klartext_move: bool,
-    rapid_once: bool,
+    pub other_use: bool,
+    pub klartext_move: bool,
+    pub rapid_once: bool,
     /// I, J, K and R (or CR), mm.
-    centre: [Option<f64>; 3],
-    radius: Option<f64>,
-    end: bool,
+    pub centre: [Option<f64>; 3],
+    pub radius: Option<f64>,
+    /// A3, B3, C3.
+    pub vector: [Option<f64>; 3],
+    /// F, P, Q, L, S in the program's units.
+    pub f: Option<f64>,
+    pub p: Option<f64>,
+    pub q: Option<f64>,
+    pub l: Option<f64>,
+    /// A path control word of this line.
+    pub path: Option<PathWord>,
+    pub end: bool,
 }
 
-impl<'a> Interpreter<'a> {
-    pub fn new(dialect: Dialect, machine: &'a Machine, setup: &'a Setup, options: &'a ReadOptions) -> Self {
-        Self { dialect, machine, setup, options, state: State::new(), out: ReadBack::default() }
+/// Names of the axes in a text.
+pub(super) fn named<'t>(lines: impl Iterator<Item = &'t str>, dialect: Dialect) -> BTreeSet<String> {
+    let mut named = BTreeSet::new();
+    for line in lines {
+        note_names(line, dialect, &mut named);
+    }
+    named
+}
+
+/// Adds the names of the axes in a line.
+pub(super) fn note_names(line: &str, dialect: Dialect, named: &mut BTreeSet<String>) {
+    for word in words(line, dialect).unwrap_or_default() {
+        match word {
+            Word::Address { name, .. } if !named.contains(&name) => {
+                named.insert(name);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl<'a, S: Sink> Interpreter<'a, S> {
+    pub fn new(dialect: Dialect, frame: Frame<'a>, strict: bool, sink: S) -> Self {
+        Self {
+            dialect,
+            machine: frame.machine,
+            setup: frame.setup,
+            strict,
+            state: State::new(),
+            sink,
+            diagnostics: Vec::new(),
+            spindle_rpm: None,
+            unlisted: 0,
+            placed: false,
+        }
     }
 
-    /// Works through a whole text.
-    pub fn run(mut self, text: &str) -> Result<ReadBack, ReadError> {
-        self.rest_unnamed(text);
-        for (number, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-            let number = number + 1;
-            match words(line, self.dialect) {
-                Ok(words) => {
-                    if self.line(number, &words)? {
-                        break;
-                    }
-                }
-                Err(BadWord(text)) if self.options.strict => {
-                    return Err(ReadError::Syntax { line: number, text });
-                }
-                Err(BadWord(text)) => self.lost(number, &text),
+    /// Works through one line, counted from 1; true at the end of the program.
+    pub fn text_line(&mut self, number: usize, line: &str) -> Result<bool, ReadError> {
+        let line = if number == 1 { line.trim_start_matches('\u{feff}') } else { line };
+        match words(line, self.dialect) {
+            Ok(words) => self.line(number, &words),
+            Err(BadWord(text)) if self.strict => Err(ReadError::Syntax { line: number, text }),
+            Err(BadWord(text)) => {
+                self.lost(number, &text);
+                Ok(false)
             }
         }
-        Ok(self.out)
+    }
+
+    /// The end of the text: what was only counted is said.
+    pub fn end(&mut self) {
+        self.tell(&Event::Halt);
+        if self.unlisted > 0 {
+            let text = format!("{} more words are not interpreted", self.unlisted);
+            self.diagnostics.push(Diagnostic::loss("program", text));
+        }
     }
 
     /// An axis that the text never names stays where it is; it is taken to be at zero, and the reader says so.
-    fn rest_unnamed(&mut self, text: &str) {
-        let mut named = std::collections::BTreeSet::new();
-        for word in text.lines().filter_map(|l| words(l, self.dialect).ok()).flatten() {
-            if let Word::Address { name, .. } = word {
-                named.insert(name);
-            }
-        }
-        let mut rest = |slot: &mut Option<f64>, place: usize| {
+    pub fn rest_unnamed(&mut self, named: &BTreeSet<String>) {
+        let vector = ["A3", "B3", "C3"].iter().any(|n| named.contains(*n));
+        let mut rest = |slot: &mut Option<f64>, place: usize, rotary: bool| {
             let letter = &self.machine.joints()[place].letter;
-            if !named.contains(letter) {
+            if !(named.contains(letter) || rotary && vector) {
                 *slot = Some(0.0);
                 let text = format!("axis {letter} is never named: it is taken to stand at zero");
-                self.out.diagnostics.push(Diagnostic::warning("program", text));
+                self.diagnostics.push(Diagnostic::warning("program", text));
             }
         };
         for (slot, place) in self.state.rotary.iter_mut().zip(self.machine.rotary()) {
-            rest(slot, *place);
+            rest(slot, *place, true);
         }
         for (slot, place) in self.state.linear.iter_mut().zip(self.machine.linear()) {
-            rest(slot, place);
+            rest(slot, place, false);
         }
     }
 
-    fn lost(&mut self, line: usize, word: &str) {
-        let text = format!("{word} is not interpreted and may change the tool's way");
-        self.out.diagnostics.push(Diagnostic::loss(format!("line {line}"), text));
+    pub(super) fn tell(&mut self, event: &Event<'_>) {
+        let frame = Frame { machine: self.machine, setup: self.setup };
+        self.sink.take(frame, event);
     }
 
-    fn refuse(&mut self, line: usize, word: &str) -> Result<(), ReadError> {
-        if self.options.strict {
+    pub(super) fn lost(&mut self, line: usize, word: &str) {
+        if self.diagnostics.len() >= LISTED {
+            self.unlisted += 1;
+            return;
+        }
+        let text = format!("{word} is not interpreted and may change the tool's way");
+        self.diagnostics.push(Diagnostic::loss(format!("line {line}"), text));
+    }
+
+    /// An error where the reader is strict, else a loss.
+    fn or_lost(&mut self, error: ReadError, line: usize, what: &str) -> Result<(), ReadError> {
+        if self.strict {
+            return Err(error);
+        }
+        self.lost(line, what);
+        Ok(())
+    }
+
+    /// F, dwells and path control of a line, once all its words are seen.
+    fn settle(&mut self, asked: &Asked) {
+        if asked.dwell {
+            let min = match (self.dialect, asked.p, asked.f) {
+                // Fanuc's P counts milliseconds.
+                (Dialect::Fanuc, Some(p), _) => p / 60_000.0,
+                (_, Some(s), _) | (Dialect::Sinumerik, None, Some(s)) => s / 60.0,
+                _ => asked.axes.iter().find(|a| a.0 == "X" || a.0 == "U").map_or(0.0, |a| a.1 / 60.0),
+            };
+            if min.is_finite() && min > 0.0 {
+                self.tell(&Event::Dwell(min));
+            }
+            return;
+        }
+        if let Some(f) = asked.f {
+            self.state.feed = Some(f);
+            self.state.feed_unit_mm = self.state.unit_mm;
+        }
+        if let Some(path) = asked.path {
+            let unit = self.state.unit_mm;
+            let tolerance_mm = asked.p.unwrap_or(0.0).max(0.0) * unit;
+            let join_mm = asked.q.map_or(tolerance_mm, |q| q.max(0.0) * unit);
+            self.tell(&Event::Path(match path {
+                PathWord::ExactPath => PathControl::ExactPath,
+                PathWord::ExactStop => PathControl::ExactStop,
+                PathWord::Blend => PathControl::Blend { tolerance_mm, join_mm },
+            }));
+        }
+    }
+
+    pub(super) fn refuse(&mut self, line: usize, word: &str) -> Result<(), ReadError> {
+        if self.strict {
             return Err(ReadError::Word { line, word: word.into() });
         }
         self.lost(line, word);
@@ -113,10 +210,10 @@ impl<'a> Interpreter<'a> {
             match word {
                 Word::G(code) => self.g(line, *code, &mut asked)?,
                 Word::M(code) => self.m(line, *code, &mut asked)?,
-                Word::F(f) => self.state.feed = Some(*f),
+                Word::F(f) => asked.f = Some(*f),
                 Word::S(s) => {
                     self.state.speed = Some(*s);
-                    self.out.spindle_rpm = self.out.spindle_rpm.or(Some(*s));
+                    self.spindle_rpm = self.spindle_rpm.or(Some(*s));
                 }
                 Word::Address { name, value, manner } => {
                     self.address(line, name, (*value, *manner), &mut asked)?
@@ -124,142 +221,16 @@ impl<'a> Interpreter<'a> {
                 Word::Name { name, arguments } => self.name(line, name, arguments, &mut asked)?,
             }
         }
+        self.settle(&asked);
         let circles = self.state.clockwise.is_some() && asked.centre.iter().any(Option::is_some);
-        if (circles || !asked.axes.is_empty()) && !asked.other_use {
+        let turns = asked.vector.iter().any(Option::is_some);
+        if (circles || turns || !asked.axes.is_empty()) && !(asked.other_use || asked.dwell) {
             self.go(line, &asked)?;
         }
+        if asked.end {
+            self.tell(&Event::Halt);
+        }
         Ok(asked.end)
-    }
-
-    fn g(&mut self, line: usize, code: i64, asked: &mut Asked) -> Result<(), ReadError> {
-        let s = &mut self.state;
-        match code {
-            0 | 10 => {
-                s.rapid = Some(code == 0);
-                s.clockwise = None;
-            }
-            20 | 30 => {
-                s.rapid = Some(false);
-                s.clockwise = Some(code == 20);
-            }
-            170 => s.plane = ["X", "Y"],
-            180 => s.plane = ["Z", "X"],
-            190 => s.plane = ["Y", "Z"],
-            // A dwell's words are times.
-            40 => asked.other_use = true,
-            200 | 700 | 7000 => s.unit_mm = 25.4,
-            210 | 710 | 7100 => s.unit_mm = 1.0,
-            900 => s.absolute = true,
-            910 => s.absolute = false,
-            930 => self.reading(FeedReading::Inverse),
-            940 => self.reading(FeedReading::PerMinute),
-            950 => self.reading(FeedReading::PerTurn),
-            434 => s.switch_tcp(true, self.machine, self.setup),
-            490 | 430 => s.switch_tcp(false, self.machine, self.setup),
-            530 if self.dialect != Dialect::Sinumerik => asked.machine_frame = true,
-            // Planes, compensations off, offsets, path modes, exact stop.
-            90 | 400 | 540 | 600 | 601 | 610 | 640 | 641..=645 | 800 | 6010 | 6020 => {}
-            _ => return self.refuse(line, &format!("G{}", code as f64 / 10.0)),
-        }
-        Ok(())
-    }
-
-    /// Switching between G93, G94 and G95 makes the control forget F.
-    fn reading(&mut self, reading: FeedReading) {
-        if self.state.reading != reading {
-            self.state.reading = reading;
-            self.state.feed = None;
-        }
-    }
-
-    fn m(&mut self, line: usize, code: i64, asked: &mut Asked) -> Result<(), ReadError> {
-        let word = format!("M{code}");
-        if let Some(switch) =
-            self.machine.control().linuxcnc_tcp.as_ref().filter(|_| self.dialect == Dialect::LinuxCnc)
-        {
-            for (name, on) in [(&switch.on, true), (&switch.off, false)] {
-                if *name == word {
-                    self.state.switch_tcp(on, self.machine, self.setup);
-                    return Ok(());
-                }
-            }
-        }
-        match (code, self.dialect) {
-            (2 | 17 | 30, _) => asked.end = true,
-            (0 | 1 | 3..=9, _) | (126, Dialect::Heidenhain) => {}
-            (91, Dialect::Heidenhain) => asked.machine_frame = true,
-            (128, Dialect::Heidenhain) => self.state.switch_tcp(true, self.machine, self.setup),
-            (129, Dialect::Heidenhain) => self.state.switch_tcp(false, self.machine, self.setup),
-            _ => return self.refuse(line, &word),
-        }
-        Ok(())
-    }
-
-    fn address(
-        &mut self,
-        line: usize,
-        name: &str,
-        given: (f64, Manner),
-        asked: &mut Asked,
-    ) -> Result<(), ReadError> {
-        let is_axis = self.machine.joint_named(name).is_some() || matches!(name, "X" | "Y" | "Z");
-        if is_axis {
-            asked.axes.push((name.to_string(), given.0, given.1));
-            return Ok(());
-        }
-        if let Some(letter) = name.strip_prefix("FGREF[").and_then(|n| n.strip_suffix(']')) {
-            if self.machine.joint_named(letter).is_none() {
-                return self.refuse(line, name);
-            }
-            let group = self.state.group.get_or_insert_with(Group::default);
-            if group.radius_mm.is_some_and(|r| (r - given.0).abs() > 1e-9 * r) {
-                return self.refuse(line, "FGREF with different radii");
-            }
-            group.radius_mm = Some(given.0);
-            return Ok(());
-        }
-        match name {
-            "I" => asked.centre[0] = Some(given.0 * self.state.unit_mm),
-            "J" => asked.centre[1] = Some(given.0 * self.state.unit_mm),
-            "K" => asked.centre[2] = Some(given.0 * self.state.unit_mm),
-            "R" | "CR" => asked.radius = Some(given.0 * self.state.unit_mm),
-            "N" | "O" | "T" | "D" | "H" | "P" | "Q" | "L" => {}
-            _ => return self.refuse(line, name),
-        }
-        Ok(())
-    }
-
-    fn name(&mut self, line: usize, name: &str, arguments: &str, asked: &mut Asked) -> Result<(), ReadError> {
-        let klartext = self.dialect == Dialect::Heidenhain;
-        match name {
-            "TRAORI" => self.state.switch_tcp(true, self.machine, self.setup),
-            "TRAFOOF" => self.state.switch_tcp(false, self.machine, self.setup),
-            "SUPA" => asked.machine_frame = true,
-            "FGROUP" => {
-                let letters =
-                    arguments.split(',').map(|l| l.trim().to_ascii_uppercase()).filter(|l| !l.is_empty());
-                let group = self.state.group.get_or_insert_with(Group::default);
-                group.letters = letters.collect();
-                if group.letters.is_empty() {
-                    self.state.group = None;
-                }
-            }
-            "ORIMKS" | "ORIAXES" | "MSG" | "FNORM" | "FFWON" | "FFWOF" | "SOFT" | "BRISK" | "COMPOF"
-            | "T" => {}
-            "L" if klartext => asked.klartext_move = true,
-            "R0" | "TOOL" if klartext => {}
-            "FMAX" if klartext => asked.rapid_once = true,
-            "FUNCTION" if klartext && arguments == "RESET TCPM" => {
-                self.state.switch_tcp(false, self.machine, self.setup);
-            }
-            "FUNCTION" if klartext && arguments.starts_with("TCPM F TCP AXIS POS PATHCTRL AXIS") => {
-                self.state.switch_tcp(true, self.machine, self.setup);
-            }
-            "BEGIN" if klartext => self.state.unit_mm = if arguments.ends_with("INCH") { 25.4 } else { 1.0 },
-            "END" if klartext => asked.end = true,
-            _ => return self.refuse(line, format!("{name} {arguments}").trim()),
-        }
-        Ok(())
     }
 
     fn go(&mut self, line: usize, asked: &Asked) -> Result<(), ReadError> {
@@ -279,20 +250,31 @@ impl<'a> Interpreter<'a> {
             return Ok(());
         }
         let Some(known) = self.state.known(self.machine) else { return Ok(()) };
-        let to = known.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
+        let joints = known.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
         let rapid = match self.state.rapid {
             Some(rapid) => rapid,
-            None => return Err(ReadError::NoFeed { line, what: "G0 or G1 before it" }),
+            None => {
+                let error = ReadError::NoFeed { line, what: "G0 or G1 before it" };
+                self.or_lost(error, line, "a move before any G0 or G1")?;
+                true
+            }
         };
-        let Some(from) = before else {
-            self.first(line, &known, &to);
+        let Some(from) = before.filter(|_| self.placed) else {
+            self.placed = true;
+            self.tell(&Event::Placed { line, known, joints });
             return Ok(());
         };
         let arc = match self.state.clockwise.filter(|_| self.dialect != Dialect::Heidenhain) {
-            Some(clockwise) => Some(self.arc(line, &from, &known, (clockwise, asked))?),
+            Some(clockwise) => match self.arc(line, &from, &known, (clockwise, asked)) {
+                Ok(arc) => Some(arc),
+                Err(error) => {
+                    self.or_lost(error, line, "an arc whose ends lie on no common circle (taken as a line)")?;
+                    None
+                }
+            },
             None => None,
         };
-        self.moved(line, &Way { from, to: known, arc }, (to, rapid))
+        self.moved(line, &Way { from, to: known, arc }, (joints, rapid))
     }
 
     fn arc(&self, line: usize, from: &Known, to: &Known, asked: (bool, &Asked)) -> Result<Arc, ReadError> {
@@ -310,6 +292,11 @@ impl<'a> Interpreter<'a> {
             return Err(ReadError::Word { line, word: "an arc without centre or radius".into() });
         }
         Arc::new(from, to, &words).map_err(|off_mm| ReadError::Arc { line, off_mm })
+    }
+
+    fn lost_increment(&mut self, line: usize, name: &str) -> Result<(), ReadError> {
+        let error = ReadError::Increment { line, axis: name.into() };
+        self.or_lost(error, line, &format!("an increment of {name} from an unknown place"))
     }
 
     /// Names of the linear words now in force, by slot.
@@ -338,7 +325,7 @@ impl<'a> Interpreter<'a> {
             let endless = self.machine.joints()[place].is_endless();
             let before = s.rotary[slot];
             s.rotary[slot] = Some(match (incremental, before) {
-                (true, None) => return Err(ReadError::Increment { line, axis: name.into() }),
+                (true, None) => return self.lost_increment(line, name),
                 (true, Some(b)) => b + angle,
                 (false, Some(b))
                     if manner == Manner::Shortest || (endless && self.dialect != Dialect::LinuxCnc) =>
@@ -355,73 +342,60 @@ impl<'a> Interpreter<'a> {
         let mm = value * s.unit_mm;
         s.linear[slot] = match (machine_frame, incremental, s.linear[slot]) {
             (true, ..) => None,
-            (false, true, None) => return Err(ReadError::Increment { line, axis: name.into() }),
+            (false, true, None) => return self.lost_increment(line, name),
             (false, true, Some(before)) => Some(before + mm),
             (false, false, _) => Some(mm),
         };
         Ok(())
     }
 
-    fn first(&mut self, line: usize, known: &Known, joints: &JointValues) {
-        let pose = self.pose(known);
-        self.out.moves.push(ReadMove { pose, motion: Motion::Rapid, line, time_min: 0.0 });
-        let (from, to) = (*joints, *joints);
-        self.out.blocks.push(ReadBlock { line, from, to, rapid: true, time_min: 0.0, tip_length_mm: 0.0 });
-    }
-
-    fn moved(&mut self, line: usize, way: &Way, end: (JointValues, bool)) -> Result<(), ReadError> {
-        let (joints, rapid) = end;
-        let before = way.from.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
+    /// A move along a way; nothing where it leads nowhere.
+    pub(super) fn moved(
+        &mut self,
+        line: usize,
+        way: &Way,
+        end: (JointValues, bool),
+    ) -> Result<(), ReadError> {
+        let (to, mut rapid) = end;
+        let from = way.from.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
         let step = way.step();
         if step == Step::default() {
             return Ok(());
         }
-        let time_min = if rapid {
-            rapid_time_min(self.machine, &before, &joints).0
-        } else {
-            let what = match (self.state.feed, self.state.reading) {
-                (Some(_), FeedReading::PerTurn) => "S",
-                _ => "an F above zero",
-            };
-            let t = self.state.duration_min(self.machine, &step);
-            t.ok_or(ReadError::NoFeed { line, what })?
-        };
-        if self.state.reading == FeedReading::Inverse {
+        let mut time_min = 0.0;
+        if !rapid {
+            match self.state.duration_min(self.machine, &step) {
+                Some(t) => time_min = t,
+                None => {
+                    let what = match (self.state.feed, self.state.reading) {
+                        (Some(_), FeedReading::PerTurn) => "S",
+                        _ => "an F above zero",
+                    };
+                    let error = ReadError::NoFeed { line, what };
+                    self.or_lost(error, line, &format!("a feed move without {what} (taken as rapid)"))?;
+                    rapid = true;
+                }
+            }
+        }
+        let s = &self.state;
+        let (reading, unit_mm, speed_rpm) = (s.reading, s.feed_unit_mm, s.speed);
+        let feed = s.feed.filter(|_| !rapid).map(|value| FeedNow { reading, value, unit_mm, speed_rpm });
+        if reading == FeedReading::Inverse && !rapid {
             // G93's F holds for its own block.
             self.state.feed = None;
         }
-        let poses = way.densified(&|k| self.pose(k), [self.options.tip_tol_mm, self.options.axis_tol_rad]);
-        let mut tip_length_mm = 0.0;
-        let mut at = self.pose(&way.from).tip;
-        for (_, pose) in &poses {
-            tip_length_mm += (pose.tip - at).norm();
-            at = pose.tip;
-        }
-        let motion = match (rapid, self.state.feed) {
-            (true, _) => Motion::Rapid,
-            (false, Some(f)) if tip_length_mm == 0.0 => Motion::Feed(f),
-            (false, _) if tip_length_mm == 0.0 => Motion::Feed(1.0 / time_min),
-            (false, _) => Motion::Feed(tip_length_mm / time_min),
-        };
-        let mut t0 = 0.0;
-        for (t, pose) in poses {
-            self.out.moves.push(ReadMove { pose, motion, line, time_min: time_min * (t - t0) });
-            t0 = t;
-        }
-        self.out.blocks.push(ReadBlock { line, from: before, to: joints, rapid, time_min, tip_length_mm });
+        self.tell(&Event::Moved(&Moved { line, way: *way, from, to, rapid, feed, time_min }));
         Ok(())
     }
+}
 
-    fn pose(&self, known: &Known) -> Pose {
-        if !known.tcp {
-            let joints = known.joints(self.machine, self.setup).unwrap_or_default();
-            return self.machine.forward(&joints, self.setup);
-        }
-        let axis = self.machine.axis_at(&known.rotary);
-        let back = self.setup.part_zero.rotation.inverse();
-        Pose {
-            tip: self.setup.from_program(&known.linear.into()),
-            axis: Unit3::new_normalize(back * axis.into_inner()),
-        }
-    }
+/// A word that says how the control goes from block to block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PathWord {
+    /// G61, G60.
+    ExactPath,
+    /// G61.1, G9.
+    ExactStop,
+    /// G64 and its like.
+    Blend,
 }

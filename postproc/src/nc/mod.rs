@@ -1,6 +1,8 @@
 //! NC programs: dialect-free moves, their wording in each dialect, and the way back.
 
 pub mod block;
+mod codes;
+mod event;
 mod fanuc;
 mod heidenhain;
 mod interpret;
@@ -10,6 +12,7 @@ pub mod number;
 pub mod readback;
 mod sinumerik;
 mod state;
+pub mod timing;
 mod token;
 mod way;
 

@@ -10,9 +10,11 @@ use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 
 use super::Dialect;
-use super::interpret::Interpreter;
+use super::event::{Event, Frame, Moved, Sink};
+use super::interpret::{Interpreter, named};
+use super::state::FeedReading;
 use crate::machine::{JointValues, Machine};
-use crate::motion::TimedMove;
+use crate::motion::{TimedMove, rapid_time_min};
 use crate::setup::{Setup, SetupError};
 
 /// How a text is to be read.
@@ -187,9 +189,76 @@ pub fn read(
             return Err(ReadError::Tolerance { what, value });
         }
     }
-    let out = Interpreter::new(dialect, machine, setup, options).run(text)?;
+    let frame = Frame { machine, setup };
+    let collect = Collect { out: ReadBack::default(), tolerance: [options.tip_tol_mm, options.axis_tol_rad] };
+    let mut control = Interpreter::new(dialect, frame, options.strict, collect);
+    control.rest_unnamed(&named(text.lines(), dialect));
+    for (number, line) in text.lines().enumerate() {
+        if control.text_line(number + 1, line)? {
+            break;
+        }
+    }
+    control.end();
+    let mut out = control.sink.out;
+    out.spindle_rpm = control.spindle_rpm;
+    out.diagnostics = control.diagnostics;
     if out.moves.is_empty() {
         return Err(ReadError::NoMoves { lines: text.lines().count(), machine: machine.name().into() });
     }
     Ok(out)
+}
+
+/// Collects everything.
+struct Collect {
+    out: ReadBack,
+    tolerance: [f64; 2],
+}
+
+impl Sink for Collect {
+    fn take(&mut self, frame: Frame<'_>, event: &Event<'_>) {
+        match *event {
+            Event::Placed { line, known, joints } => {
+                let (from, to) = (joints, joints);
+                let pose = frame.pose(&known);
+                self.out.moves.push(ReadMove { pose, motion: Motion::Rapid, line, time_min: 0.0 });
+                let first = ReadBlock { line, from, to, rapid: true, time_min: 0.0, tip_length_mm: 0.0 };
+                self.out.blocks.push(first);
+            }
+            Event::Moved(m) => self.moved(frame, m),
+            Event::Dwell(_) | Event::Path(_) | Event::Halt => {}
+        }
+    }
+}
+
+impl Collect {
+    fn moved(&mut self, frame: Frame<'_>, m: &Moved) {
+        let time_min = if m.rapid { rapid_time_min(frame.machine, &m.from, &m.to).0 } else { m.time_min };
+        let poses = m.way.densified(&|k| frame.pose(k), self.tolerance);
+        let mut tip_length_mm = 0.0;
+        let mut at = frame.pose(&m.way.from).tip;
+        for (_, pose) in &poses {
+            tip_length_mm += (pose.tip - at).norm();
+            at = pose.tip;
+        }
+        let per_minute = m.feed.filter(|f| f.reading == FeedReading::PerMinute);
+        let motion = match (m.rapid, per_minute) {
+            (true, _) => Motion::Rapid,
+            (false, Some(f)) if tip_length_mm == 0.0 => Motion::Feed(f.value),
+            (false, _) if tip_length_mm == 0.0 => Motion::Feed(1.0 / time_min),
+            (false, _) => Motion::Feed(tip_length_mm / time_min),
+        };
+        let mut t0 = 0.0;
+        for (t, pose) in poses {
+            self.out.moves.push(ReadMove { pose, motion, line: m.line, time_min: time_min * (t - t0) });
+            t0 = t;
+        }
+        self.out.blocks.push(ReadBlock {
+            line: m.line,
+            from: m.from,
+            to: m.to,
+            rapid: m.rapid,
+            time_min,
+            tip_length_mm,
+        });
+    }
 }

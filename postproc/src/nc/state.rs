@@ -37,6 +37,8 @@ pub(super) struct State {
     pub plane: [&'static str; 2],
     pub reading: FeedReading,
     pub feed: Option<f64>,
+    /// mm per unit of length when F was said: a change of units leaves it alone.
+    pub feed_unit_mm: f64,
     pub speed: Option<f64>,
     pub tcp: bool,
     /// Programmed positions: linear in mm (in chain order, or X Y Z with tool-centre-point control), rotary in rad.
@@ -63,6 +65,7 @@ impl State {
             plane: ["X", "Y"],
             reading: FeedReading::PerMinute,
             feed: None,
+            feed_unit_mm: 1.0,
             speed: None,
             tcp: false,
             linear: [None; 3],
@@ -118,14 +121,25 @@ impl State {
         }
     }
 
+    /// What F is fed along, in the program's unit of length, or degrees where only rotary axes count.
+    fn path_over(&self, machine: &Machine, step: &Step) -> f64 {
+        let metric = self.metric(machine);
+        let degrees = match metric {
+            PathMetric::Linear => step.linear_mm == 0.0,
+            PathMetric::RotaryOnly => step.rotary_rad != [0.0; 2],
+            PathMetric::Arc { .. } => false,
+        };
+        metric.length(step) / if degrees { 1.0 } else { self.feed_unit_mm }
+    }
+
     /// Duration of a feed move, min; `None` where F or S is not known.
     pub fn duration_min(&self, machine: &Machine, step: &Step) -> Option<f64> {
         let feed = self.feed.filter(|f| *f > 0.0)?;
         match self.reading {
             FeedReading::Inverse => Some(1.0 / feed),
-            FeedReading::PerMinute => Some(self.metric(machine).length(step) / feed),
+            FeedReading::PerMinute => Some(self.path_over(machine, step) / feed),
             FeedReading::PerTurn => {
-                Some(self.metric(machine).length(step) / (feed * self.speed.filter(|s| *s > 0.0)?))
+                Some(self.path_over(machine, step) / (feed * self.speed.filter(|s| *s > 0.0)?))
             }
         }
     }

@@ -10,6 +10,11 @@
 //! `2 sqrt(w / j)`; speeding up and slowing down cover `w` times that time; the rest runs at w = v. Where the distance
 //! is too short for v, the peak speed follows from a quadratic or a cube root.
 
+pub mod linuxcnc;
+mod lookahead;
+
+pub use lookahead::{LookAhead, Stretch};
+
 use std::collections::BTreeMap;
 
 use crate::feed::capped_duration;
@@ -70,6 +75,8 @@ pub struct ProgramTime {
     pub cutting_min: f64,
     /// Rapid moves, min.
     pub rapid_min: f64,
+    /// Dwells, min.
+    pub dwell_min: f64,
     /// Per joint letter, how many moves it made longer than F asks (or, rapid, how many it bounds).
     pub limited_by: BTreeMap<String, usize>,
 }
@@ -78,7 +85,7 @@ impl ProgramTime {
     /// All of it, min.
     #[must_use]
     pub fn time_min(&self) -> f64 {
-        self.cutting_min + self.rapid_min
+        self.cutting_min + self.rapid_min + self.dwell_min
     }
 }
 

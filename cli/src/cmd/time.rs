@@ -1,0 +1,86 @@
+//! `time`: how long a machine takes over an NC program, from its text, read as a stream.
+
+use crate::args::TimeArgs;
+use crate::failure::{Done, Failure, Outcome};
+use crate::nc;
+use crate::render::{self, Table};
+use osculate_geom::Vec3;
+use osculate_postproc::Setup;
+use osculate_postproc::nc::timing::{Clock, Names};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+#[derive(Serialize)]
+struct Answer {
+    time_min: f64,
+    cutting_min: f64,
+    rapid_min: f64,
+    dwell_min: f64,
+    limited_by: BTreeMap<String, usize>,
+    diagnostics: Vec<String>,
+}
+
+/// Runs the verb.
+pub fn run(args: &TimeArgs, json: bool) -> Outcome {
+    let machine = nc::machine(&args.machine)?;
+    let dialect = nc::dialect_of(args.dialect.as_deref(), &args.file)?;
+    let setup =
+        Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), args.gauge_length_mm.unwrap_or(0.0));
+    let file = &args.file;
+    let mut names = Names::new(dialect);
+    each_line(file, |line| {
+        names.line(line);
+        Ok(())
+    })?;
+    let here = |e| Failure::file(file, e);
+    let mut clock = Clock::new(&names, &machine, &setup, args.strict).map_err(here)?;
+    each_line(file, |line| clock.line(line).map_err(here))?;
+    let timed = clock.finish();
+    let t = &timed.time;
+    let answer = Answer {
+        time_min: t.time_min(),
+        cutting_min: t.cutting_min,
+        rapid_min: t.rapid_min,
+        dwell_min: t.dwell_min,
+        limited_by: t.limited_by.clone(),
+        diagnostics: timed.diagnostics.iter().map(ToString::to_string).collect(),
+    };
+    if json {
+        render::json(&answer)?;
+        return Ok(Done::Yes);
+    }
+    let mut table = Table::new(["time", "min", "s"]);
+    for (name, min) in [
+        ("feed moves", t.cutting_min),
+        ("rapid moves", t.rapid_min),
+        ("dwells", t.dwell_min),
+        ("all", t.time_min()),
+    ] {
+        table.row([name.into(), format!("{min:.4}"), format!("{:.2}", 60.0 * min)]);
+    }
+    render::text(&format!("\n{}\n", table.render()));
+    for (joint, count) in &t.limited_by {
+        render::text(&format!("  {joint} makes {count} moves slower than F asks\n"));
+    }
+    if !timed.diagnostics.is_empty() {
+        render::text(&format!("\n{}", render::findings(&timed.diagnostics)));
+    }
+    render::text("\n");
+    Ok(Done::Yes)
+}
+
+/// Reads a file line by line; bytes that are no UTF-8 come as replacement characters, as in comments of old programs.
+fn each_line(file: &Path, mut line: impl FnMut(&str) -> Result<(), Failure>) -> Result<(), Failure> {
+    let fail = |e: std::io::Error| Failure::file(file, format!("cannot be read: {e}"));
+    let mut reader = BufReader::new(std::fs::File::open(file).map_err(fail)?);
+    let mut bytes = Vec::new();
+    loop {
+        bytes.clear();
+        if reader.read_until(b'\n', &mut bytes).map_err(fail)? == 0 {
+            return Ok(());
+        }
+        line(String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']))?;
+    }
+}

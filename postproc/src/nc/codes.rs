@@ -1,0 +1,163 @@
+//! What the words of the dialects mean to the control.
+
+use super::Dialect;
+use super::event::{Event, Sink};
+use super::interpret::{Asked, Interpreter, PathWord};
+use super::readback::ReadError;
+use super::state::{FeedReading, Group};
+use super::token::Manner;
+
+impl<S: Sink> Interpreter<'_, S> {
+    fn switch(&mut self, on: bool) {
+        if self.state.tcp != on {
+            self.state.switch_tcp(on, self.machine, self.setup);
+            self.tell(&Event::Halt);
+        }
+    }
+
+    pub(super) fn g(&mut self, line: usize, code: i64, asked: &mut Asked) -> Result<(), ReadError> {
+        let s = &mut self.state;
+        match code {
+            0 | 10 => {
+                s.rapid = Some(code == 0);
+                s.clockwise = None;
+            }
+            20 | 30 => {
+                s.rapid = Some(false);
+                s.clockwise = Some(code == 20);
+            }
+            170 => s.plane = ["X", "Y"],
+            180 => s.plane = ["Z", "X"],
+            190 => s.plane = ["Y", "Z"],
+            // A dwell's words are times.
+            40 => asked.dwell = true,
+            200 | 700 | 7000 => s.unit_mm = 25.4,
+            210 | 710 | 7100 => s.unit_mm = 1.0,
+            900 => s.absolute = true,
+            910 => s.absolute = false,
+            930 => self.reading(FeedReading::Inverse),
+            940 => self.reading(FeedReading::PerMinute),
+            950 => self.reading(FeedReading::PerTurn),
+            434 => self.switch(true),
+            490 | 430 => self.switch(false),
+            530 if self.dialect != Dialect::Sinumerik => asked.machine_frame = true,
+            // Planes, compensations off, offsets, path modes, exact stop.
+            600 | 610 => asked.path = Some(PathWord::ExactPath),
+            90 | 611 | 601 => asked.path = Some(PathWord::ExactStop),
+            640..=645 => asked.path = Some(PathWord::Blend),
+            400 | 540..=590 | 800 | 6010 | 6020 => {}
+            _ => return self.refuse(line, &format!("G{}", code as f64 / 10.0)),
+        }
+        Ok(())
+    }
+
+    /// Switching between G93, G94 and G95 makes the control forget F.
+    fn reading(&mut self, reading: FeedReading) {
+        if self.state.reading != reading {
+            self.state.reading = reading;
+            self.state.feed = None;
+        }
+    }
+
+    pub(super) fn m(&mut self, line: usize, code: i64, asked: &mut Asked) -> Result<(), ReadError> {
+        let word = format!("M{code}");
+        if let Some(switch) =
+            self.machine.control().linuxcnc_tcp.as_ref().filter(|_| self.dialect == Dialect::LinuxCnc)
+        {
+            for (name, on) in [(&switch.on, true), (&switch.off, false)] {
+                if *name == word {
+                    self.switch(on);
+                    return Ok(());
+                }
+            }
+        }
+        match (code, self.dialect) {
+            (2 | 17 | 30, _) => asked.end = true,
+            (0 | 1 | 6, _) => self.tell(&Event::Halt),
+            (3..=5 | 7..=9, _) | (126 | 127, Dialect::Heidenhain) => {}
+            // Outputs switched along with the motion.
+            (62..=65, Dialect::LinuxCnc) => {}
+            (91, Dialect::Heidenhain) => asked.machine_frame = true,
+            (128, Dialect::Heidenhain) => self.switch(true),
+            (129, Dialect::Heidenhain) => self.switch(false),
+            _ => return self.refuse(line, &word),
+        }
+        Ok(())
+    }
+
+    pub(super) fn address(
+        &mut self,
+        line: usize,
+        name: &str,
+        given: (f64, Manner),
+        asked: &mut Asked,
+    ) -> Result<(), ReadError> {
+        let is_axis = self.machine.joint_named(name).is_some() || matches!(name, "X" | "Y" | "Z");
+        if is_axis {
+            asked.axes.push((name.to_string(), given.0, given.1));
+            return Ok(());
+        }
+        if let Some(letter) = name.strip_prefix("FGREF[").and_then(|n| n.strip_suffix(']')) {
+            if self.machine.joint_named(letter).is_none() {
+                return self.refuse(line, name);
+            }
+            let group = self.state.group.get_or_insert_with(Group::default);
+            if group.radius_mm.is_some_and(|r| (r - given.0).abs() > 1e-9 * r) {
+                return self.refuse(line, "FGREF with different radii");
+            }
+            group.radius_mm = Some(given.0);
+            return Ok(());
+        }
+        match name {
+            "I" => asked.centre[0] = Some(given.0 * self.state.unit_mm),
+            "J" => asked.centre[1] = Some(given.0 * self.state.unit_mm),
+            "K" => asked.centre[2] = Some(given.0 * self.state.unit_mm),
+            "R" | "CR" => asked.radius = Some(given.0 * self.state.unit_mm),
+            "P" => asked.p = Some(given.0),
+            "Q" => asked.q = Some(given.0),
+            "L" => asked.l = Some(given.0),
+            "N" | "O" | "T" | "D" | "H" => {}
+            _ => return self.refuse(line, name),
+        }
+        Ok(())
+    }
+
+    pub(super) fn name(
+        &mut self,
+        line: usize,
+        name: &str,
+        arguments: &str,
+        asked: &mut Asked,
+    ) -> Result<(), ReadError> {
+        let klartext = self.dialect == Dialect::Heidenhain;
+        match name {
+            "TRAORI" => self.switch(true),
+            "TRAFOOF" => self.switch(false),
+            "SUPA" => asked.machine_frame = true,
+            "FGROUP" => {
+                let letters =
+                    arguments.split(',').map(|l| l.trim().to_ascii_uppercase()).filter(|l| !l.is_empty());
+                let group = self.state.group.get_or_insert_with(Group::default);
+                group.letters = letters.collect();
+                if group.letters.is_empty() {
+                    self.state.group = None;
+                }
+            }
+            "ORIMKS" | "ORIAXES" | "MSG" | "FNORM" | "FFWON" | "FFWOF" | "SOFT" | "BRISK" | "COMPOF"
+            | "T" => {}
+            "L" if klartext => asked.klartext_move = true,
+            "R0" | "TOOL" if klartext => {}
+            "FMAX" if klartext => asked.rapid_once = true,
+            "FUNCTION" if klartext && arguments == "RESET TCPM" => {
+                self.switch(false);
+            }
+            "FUNCTION" if klartext && arguments.starts_with("TCPM F TCP AXIS POS PATHCTRL AXIS") => {
+                self.switch(true);
+            }
+            "BEGIN" if klartext => self.state.unit_mm = if arguments.ends_with("INCH") { 25.4 } else { 1.0 },
+            "END" if klartext => asked.end = true,
+            _ => return self.refuse(line, format!("{name} {arguments}").trim()),
+        }
+        Ok(())
+    }
+}

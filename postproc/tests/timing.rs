@@ -1,0 +1,94 @@
+//! The time model against programs timed on a real controller (LinuxCNC 2.9, see `data/timing/NOTICE`).
+
+use osculate_postproc::nc::timing::time;
+use osculate_postproc::{Dialect, Machine, Setup};
+
+/// Limits of one kind of axis.
+#[derive(Clone, Copy)]
+struct Axis {
+    velocity: f64,
+    acceleration: f64,
+}
+
+fn machine(linear: Axis, rotary: Axis, cap_mm_s: f64) -> Machine {
+    let mut text = format!(
+        "format = 1\nname = \"timed\"\n[control]\nfeed_reading = {{ kind = \"linear\" }}\n\
+         max_path_velocity_mm_s = {cap_mm_s}\n"
+    );
+    for (letter, direction) in [("C", "[0, 0, 1]"), ("A", "[1, 0, 0]")] {
+        text.push_str(&format!(
+            "[[joint]]\nkind = \"rotary\"\nletter = \"{letter}\"\nside = \"table\"\ndirection = {direction}\n\
+             max_velocity_deg_s = {:?}\nmax_acceleration_deg_s2 = {:?}\n",
+            rotary.velocity, rotary.acceleration
+        ));
+    }
+    for (letter, direction) in [("X", "[1, 0, 0]"), ("Y", "[0, 1, 0]"), ("Z", "[0, 0, 1]")] {
+        text.push_str(&format!(
+            "[[joint]]\nkind = \"linear\"\nletter = \"{letter}\"\nside = \"head\"\ndirection = {direction}\n\
+             max_velocity_mm_s = {:?}\nmax_acceleration_mm_s2 = {:?}\n",
+            linear.velocity, linear.acceleration
+        ));
+    }
+    Machine::from_toml(&text).expect("the text above is a machine")
+}
+
+fn fast() -> Machine {
+    let linear = Axis { velocity: 500.0, acceleration: 5000.0 };
+    machine(linear, Axis { velocity: 600.0, acceleration: 20_000.0 }, 866.0)
+}
+
+fn slow() -> Machine {
+    let linear = Axis { velocity: 20.0, acceleration: 300.0 };
+    machine(linear, Axis { velocity: 30.0, acceleration: 300.0 }, 35.0)
+}
+
+fn cutting_s(machine: &Machine, text: &str) -> f64 {
+    let timed = time(text, Dialect::LinuxCnc, machine, &Setup::default(), true);
+    60.0 * timed.expect("the programs are LinuxCNC's").time.cutting_min
+}
+
+/// Within 1 % of what the controller took; 5 % is asked for.
+fn check(machine: &Machine, text: &str, name: &str, measured_s: f64) {
+    let ours = cutting_s(machine, text);
+    assert!(
+        (ours / measured_s - 1.0).abs() < 0.01,
+        "{name}: {ours:.3} s, the controller took {measured_s} s"
+    );
+}
+
+macro_rules! program {
+    ($name:literal) => {
+        ($name, include_str!(concat!("data/timing/", $name)))
+    };
+}
+
+#[test]
+fn ellipse_in_every_feed_mode() {
+    // Seconds at F0 = 60 and at F0 = 100; the files carry 60. Inverse time scales like F.
+    let measured = [
+        (program!("ell_none.ngc"), 58.25, 34.85),
+        (program!("ell_KF.ngc"), 45.90, 27.47),
+        (program!("ell_G93.ngc"), 45.90, 27.47),
+        (program!("ell_KV.ngc"), 10.13, 6.82),
+        (program!("ell_dpm.ngc"), 10.53, 7.05),
+    ];
+    let machine = fast();
+    for ((name, text), at_60, at_100) in measured {
+        check(&machine, text, name, at_60);
+        let faster = text.lines().map(|line| match line.split_once(" F") {
+            Some((words, f)) => format!("{words} F{:.4}\n", f.trim().parse::<f64>().unwrap() * 100.0 / 60.0),
+            None => format!("{line}\n"),
+        });
+        check(&machine, &faster.collect::<String>(), name, at_100);
+    }
+}
+
+#[test]
+fn sculpted_waves() {
+    let machine = slow();
+    for ((name, text), measured) in
+        [(program!("sculpt_3axis_F1200.ngc"), 6.92), (program!("sculpt_5axis_g94_F600.ngc"), 19.72)]
+    {
+        check(&machine, text, name, measured);
+    }
+}
