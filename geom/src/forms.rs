@@ -22,7 +22,7 @@ pub struct Degenerate {
 
 /// Smallest sine of the angle between S_u and S_v that still counts as a tangent plane. Below it the normal keeps
 /// fewer than five of double precision's sixteen digits.
-const MIN_SIN_UV: f64 = 1e-11;
+pub(crate) const MIN_SIN_UV: f64 = 1e-11;
 
 /// Both fundamental forms at a point, in the parameter basis and in an orthonormal tangent frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,13 +44,15 @@ impl Forms {
         let (su, sv) = (jet.du, jet.dv);
         let cross = su.cross(&sv);
         let (a, b) = (su.norm(), sv.norm());
-        let sin_uv = if a > 0.0 && b > 0.0 { cross.norm() / (a * b) } else { 0.0 };
+        let area = cross.norm();
+        let sin_uv = if a > 0.0 && b > 0.0 { area / (a * b) } else { 0.0 };
         // The negated comparison also catches NaN.
         if !(sin_uv > MIN_SIN_UV && sin_uv.is_finite()) {
             return Err(Degenerate { at: jet.uv, sin_uv });
         }
-        let normal = Unit3::new_normalize(cross * jet.side.sign());
-        let e1 = Unit3::new_normalize(su);
+        // One division each: the lengths are known and not zero.
+        let normal = Unit3::new_unchecked(cross * (jet.side.sign() / area));
+        let e1 = Unit3::new_unchecked(su * (1.0 / a));
         let e2 = Unit3::new_unchecked(normal.cross(&e1));
         // S_u = a e1, S_v = p e1 + q e2. The second derivatives' normal parts, carried over to the frame, give W
         // without the cancellation of H^2 - K.
@@ -73,7 +75,8 @@ impl Forms {
     pub fn principal(&self) -> Principal {
         let eig = SymEigen::of(&self.curvature);
         let dir = |c: [f64; 2]| {
-            Unit3::new_normalize(self.frame[0].into_inner() * c[0] + self.frame[1].into_inner() * c[1])
+            // Unit to rounding: both are perpendicular unit vectors, and so is c.
+            Unit3::new_unchecked(self.frame[0].into_inner() * c[0] + self.frame[1].into_inner() * c[1])
         };
         Principal { k_max: eig.max, k_min: eig.min, d_max: dir(eig.d_max), d_min: dir(eig.d_min) }
     }
@@ -143,7 +146,7 @@ pub struct Principal {
     pub d_min: Unit3,
 }
 
-/// Eigenvalues and unit eigenvectors of a symmetric 2x2 matrix, by `hypot`: no cancellation near equal eigenvalues.
+/// Eigenvalues and unit eigenvectors of a symmetric 2x2 matrix, without cancellation near equal eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymEigen {
     /// Larger eigenvalue.
@@ -163,12 +166,25 @@ impl SymEigen {
         let (a, b, c) = (m[(0, 0)], m[(0, 1)], m[(1, 1)]);
         let mean = 0.5 * (a + c);
         let half = 0.5 * (a - c);
-        let radius = half.hypot(b);
-        // Twice the angle of d_max has cosine half/radius and sine b/radius.
-        let angle = if radius > 0.0 { 0.5 * b.atan2(half) } else { 0.0 };
-        let (s, co) = angle.sin_cos();
+        let radius = length(half, b);
+        // Twice the angle of d_max has cosine half/radius and sine b/radius. The larger of the angle's own
+        // cosine and sine comes from a sum without cancellation, the other one from sin 2x = 2 sin x cos x.
+        let (s, co) = if radius > 0.0 {
+            let large = (0.5 * (1.0 + (half / radius).abs())).sqrt();
+            let small = 0.5 * b / (radius * large);
+            if half >= 0.0 { (small, large) } else { (large.copysign(b), small.abs()) }
+        } else {
+            (0.0, 1.0)
+        };
         Self { max: mean + radius, min: mean - radius, d_max: [co, s], d_min: [-s, co] }
     }
+}
+
+/// `sqrt(x^2 + y^2)`, by `hypot` only where the squares leave the number range: it costs as much as all the rest.
+#[inline]
+fn length(x: f64, y: f64) -> f64 {
+    let square = x * x + y * y;
+    if square > 1e-280 && square < 1e280 { square.sqrt() } else { x.hypot(y) }
 }
 
 /// The unit tangent nearest to `wanted`, or any tangent where `wanted` is along the normal.

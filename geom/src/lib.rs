@@ -6,6 +6,7 @@
 //!   curvatures. **Curvature is positive where the body is convex**, with the normal out of the material.
 //! - [`Darboux`] is the moving frame along a line on the surface, [`mod@line`] the lines themselves.
 //! - [`Relative`] is the form `Q = W_P + W_T` on which strip width and local gouging depend.
+//! - [`batch`] holds jets and curvatures of many places as a structure of arrays.
 //! - [`analytic`] has the surfaces with closed forms, [`laws`] the suite that every surface must pass.
 //!
 //! Lengths are millimetres, angles radians.
@@ -19,6 +20,7 @@
 //! ```
 
 pub mod analytic;
+pub mod batch;
 pub mod curve;
 pub mod diagnostic;
 mod domain;
@@ -26,6 +28,7 @@ mod forms;
 mod frame;
 pub mod geodesic;
 mod jet;
+pub mod lanes;
 pub mod laws;
 pub mod limit;
 pub mod line;

@@ -40,6 +40,27 @@ fn main() {
     for (name, s) in [("polynomial", common::reference(false)), ("rational", common::reference(true))] {
         let at = places();
         let mut jets = Vec::with_capacity(PLACES);
+        let mut blocks = Vec::new();
+        let mut curvatures = Vec::new();
+        let piece = |p: &Uv| (p.u * 7.0) as usize * 7 + (p.v * 7.0) as usize;
+        let mut ordered = at.clone();
+        ordered.sort_by_key(piece);
+        time(&format!("{name}: jet blocks, random"), PLACES, || {
+            s.jets_into(&at, &mut blocks);
+            black_box(&blocks);
+        });
+        time(&format!("{name}: jet blocks, ordered"), PLACES, || {
+            s.jets_into(&ordered, &mut blocks);
+            black_box(&blocks);
+        });
+        time(&format!("{name}: curvature blocks, ordered"), PLACES, || {
+            s.curvatures_into(&ordered, &mut curvatures);
+            black_box(&curvatures);
+        });
+        time(&format!("{name}: curvature blocks, random"), PLACES, || {
+            s.curvatures_into(&at, &mut curvatures);
+            black_box(&curvatures);
+        });
         time(&format!("{name}: point"), PLACES, || {
             at.iter().for_each(|p| {
                 black_box(s.point(*p));

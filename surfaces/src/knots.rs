@@ -77,6 +77,56 @@ pub struct Knots {
     spans: Vec<usize>,
     /// Distinct knots of the domain: `spans` is where they stand.
     breaks: Vec<f64>,
+    /// Where to look for a parameter's span.
+    lookup: Lookup,
+}
+
+/// A table of equal buckets over the domain, so that a span is found without a search.
+#[derive(Clone, Debug, PartialEq)]
+struct Lookup {
+    /// Buckets per parameter.
+    scale: f64,
+    /// For each bucket the last span that begins in an earlier one.
+    first: Vec<u32>,
+    /// For each span where the next one begins, infinity for the last.
+    next: Vec<f64>,
+    /// No bucket has more than one break.
+    single: bool,
+}
+
+/// Buckets for each span: with evenly spaced knots at most one begins in a bucket.
+const BUCKETS: usize = 4;
+
+/// Most buckets: 16 kB.
+const MAX_BUCKETS: usize = 4096;
+
+impl Lookup {
+    fn new(breaks: &[f64]) -> Self {
+        let spans = breaks.len() - 1;
+        let lo = breaks[0];
+        let count = (BUCKETS * spans).min(MAX_BUCKETS);
+        let scale = count as f64 / (breaks[spans] - lo);
+        // A domain too short for that ends in one bucket and a walk.
+        let scale = if scale.is_finite() { scale } else { 0.0 };
+        let mut first = vec![0; count];
+        let (mut single, mut last) = (true, 0);
+        for (span, t) in breaks[..spans].iter().enumerate() {
+            // The very expression that finds a bucket: it grows with t, so that a parameter in a later bucket
+            // is above this break.
+            let bucket = (((t - lo) * scale) as usize).min(count - 1);
+            // The first break is no step, so that another one may share its bucket.
+            single &= span < 2 || bucket > last;
+            last = bucket;
+            if let Some(f) = first.get_mut(bucket + 1) {
+                *f = span as u32;
+            }
+        }
+        for k in 1..count {
+            first[k] = first[k].max(first[k - 1]);
+        }
+        let next = breaks[1..spans].iter().copied().chain([f64::INFINITY]).collect();
+        Self { scale, first, next, single }
+    }
 }
 
 impl Knots {
@@ -158,9 +208,15 @@ impl Knots {
     /// The span that holds `t`, counted between [`Knots::breaks`]: at a break the one to its right, outside
     /// the domain the first or last.
     #[must_use]
+    #[inline(always)]
     pub fn find(&self, t: f64) -> usize {
-        let inner = &self.breaks[1..self.spans.len()];
-        inner.partition_point(|b| *b <= t)
+        let table = &self.lookup;
+        // Negative numbers and NaN become bucket 0.
+        let bucket = (((t - self.breaks[0]) * table.scale) as usize).min(table.first.len() - 1);
+        let span = table.first[bucket] as usize;
+        // Without a branch: the comparison is a coin toss for random parameters.
+        let span = span + usize::from(table.next[span] <= t);
+        if table.single { span } else { span + table.next[span..].iter().take_while(|b| **b <= t).count() }
     }
 
     /// Index of the first of the `degree + 1` poles that act on a span.
@@ -196,8 +252,9 @@ impl Knots {
     /// A knot vector that is known to be in order.
     pub(crate) fn with_spans(degree: usize, knots: Vec<f64>, poles: usize) -> Self {
         let spans: Vec<usize> = (degree..poles).filter(|k| knots[*k] < knots[*k + 1]).collect();
-        let breaks = spans.iter().map(|k| knots[*k]).chain([knots[poles]]).collect();
-        Self { degree, knots, spans, breaks }
+        let breaks: Vec<f64> = spans.iter().map(|k| knots[*k]).chain([knots[poles]]).collect();
+        let lookup = Lookup::new(&breaks);
+        Self { degree, knots, spans, breaks, lookup }
     }
 }
 

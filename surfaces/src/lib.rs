@@ -34,11 +34,14 @@ mod basis;
 mod closest;
 mod knots;
 mod nurbs;
+mod nurbs_batch;
 mod nurbs_curve;
 mod nurbs_edit;
 mod nurbs_eval;
+mod nurbs_pieces;
 mod nurbs_taylor;
 pub mod orient;
+mod quad;
 mod refine;
 mod ruled;
 

@@ -8,10 +8,12 @@
 
 use crate::closest::Index;
 use crate::knots::{KnotError, Knots, MAX_DEGREE};
-use crate::nurbs_eval::Evaluator;
+use crate::nurbs_eval::{Evaluator, piece_orders};
+use crate::nurbs_pieces::{Orders, Pieces};
 use crate::nurbs_taylor::taylor;
+use crate::quad;
 use nalgebra::Vector4;
-use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Taylor, Uv};
+use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Taylor, Uv, Vec3};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -299,11 +301,6 @@ impl NurbsSurface {
         }
     }
 
-    /// Jets at many parameters, appended to `out` in their order; each is [`Surface::jet2`] to the bit.
-    pub fn jet2_batch(&self, at: &[Uv], out: &mut Vec<Jet2>) {
-        out.extend(at.iter().map(|uv| self.jet2(*uv)));
-    }
-
     /// Pole (i, j) in homogeneous coordinates `(w x, w y, w z, w)`.
     pub(crate) fn homogeneous(&self, i: usize, j: usize) -> Vector4<f64> {
         let at = i * self.net.count[1] + j;
@@ -313,7 +310,7 @@ impl NurbsSurface {
     }
 
     /// The spans that hold parameters of the domain.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn span(&self, at: Uv) -> [usize; 2] {
         [self.knots[0].find(at.u), self.knots[1].find(at.v)]
     }
@@ -321,8 +318,15 @@ impl NurbsSurface {
     /// The jet of one piece: at the piece's upper ends that of the piece, not of the next one.
     #[inline]
     pub(crate) fn piece_jet(&self, at: Uv, span: [usize; 2]) -> Jet2 {
-        let [point, du, dv, duu, duv, dvv] = self.evaluator.jet(&self.knots, &self.net, at, span);
-        Jet2 { uv: at, point: point.into(), du, dv, duu, duv, dvv, side: self.side }
+        match self.evaluator.pieces() {
+            Some(pieces) => quad::run(PieceJet { pieces, at, span, side: self.side }),
+            None => jet_of(at, Evaluator::direct(&self.knots, &self.net, at, span), self.side),
+        }
+    }
+
+    /// The precomputed pieces, where there are any.
+    pub(crate) const fn pieces(&self) -> Option<&Pieces> {
+        self.evaluator.pieces()
     }
 
     /// What the search for closest points needs, built on first use.
@@ -336,10 +340,50 @@ impl NurbsSurface {
     }
 
     /// The parameters inside the domain that stand for `at`. Inside, nothing is rounded.
-    #[inline]
-    fn bring(&self, at: Uv) -> Uv {
+    #[inline(always)]
+    pub(crate) fn bring(&self, at: Uv) -> Uv {
         let d = &self.domain;
         if at.u >= d.u.lo && at.u <= d.u.hi && at.v >= d.v.lo && at.v <= d.v.hi { at } else { d.bring(at) }
+    }
+}
+
+/// A jet from its parts.
+#[inline(always)]
+fn jet_of(at: Uv, [point, du, dv, duu, duv, dvv]: Orders<Vec3>, side: Side) -> Jet2 {
+    Jet2 { uv: at, point: point.into(), du, dv, duu, duv, dvv, side }
+}
+
+/// The jet at a place of a known piece.
+struct PieceJet<'a> {
+    pieces: &'a Pieces,
+    at: Uv,
+    span: [usize; 2],
+    side: Side,
+}
+
+impl quad::Over for PieceJet<'_> {
+    type Output = Jet2;
+
+    #[inline(always)]
+    fn run<Q: quad::Quad>(self, q: Q) -> Jet2 {
+        jet_of(self.at, piece_orders(q, self.pieces, self.at, self.span), self.side)
+    }
+}
+
+/// The jet at any place.
+struct JetAt<'a> {
+    surface: &'a NurbsSurface,
+    pieces: &'a Pieces,
+    at: Uv,
+}
+
+impl quad::Over for JetAt<'_> {
+    type Output = Jet2;
+
+    #[inline(always)]
+    fn run<Q: quad::Quad>(self, q: Q) -> Jet2 {
+        let at = self.surface.bring(self.at);
+        jet_of(at, piece_orders(q, self.pieces, at, self.surface.span(at)), self.surface.side)
     }
 }
 
@@ -361,6 +405,9 @@ impl Surface for NurbsSurface {
 
     #[inline]
     fn jet2(&self, uv: Uv) -> Jet2 {
+        if let Some(pieces) = self.evaluator.pieces() {
+            return quad::run(JetAt { surface: self, pieces, at: uv });
+        }
         let at = self.bring(uv);
         self.piece_jet(at, self.span(at))
     }

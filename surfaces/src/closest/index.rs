@@ -13,7 +13,7 @@
 
 use super::bounds::{Bounds, bounds, moved};
 use crate::nurbs::NurbsSurface;
-use crate::nurbs_eval::piece_powers;
+use crate::nurbs_pieces::piece_powers;
 use nalgebra::Vector4;
 use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Uv, Vec3, uv};
 

@@ -1,0 +1,329 @@
+//! Precomputed polynomial pieces of a surface and the kernel that evaluates them.
+//!
+//! On the rectangle between neighbouring knots numerator and denominator are polynomials in x and y, which run
+//! over `[-1, 1]`. A jet is Horner's rule with two derivatives in y on every row and in x on the results:
+//!
+//! ```text
+//! r0 <- r0 t + k,  r1 <- r1 t + r0,  r2 <- r2 t + r1        p, p', p'' / 2
+//! ```
+//!
+//! The kernel is written once over [`Lanes`]: over the four components of one place, or over eight places of
+//! one component. Every lane does the same operations in the same order, so that both give the same bits.
+
+use crate::knots::Knots;
+use crate::nurbs::Net;
+use crate::quad::Quad;
+use nalgebra::Vector4;
+use osculate_geom::Point3;
+use osculate_geom::lanes::Lanes;
+
+/// Room for a piece's coefficients: 8 bytes each, 64 MiB in all, 130 thousand bicubic pieces. A surface with
+/// more is evaluated by the direct sum.
+pub(crate) const MAX_COEFFICIENTS: usize = 8 << 20;
+
+/// Rounding of a derivative, in units of the sum of its terms.
+pub(crate) const NOISE: f64 = 4.0 * f64::EPSILON;
+
+/// Value, first derivatives by u and v, second ones by uu, uv and vv.
+pub(crate) type Orders<T> = [T; 6];
+
+/// One span along one axis: its ends and the reciprocal of its length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    pub(crate) lo: f64,
+    pub(crate) hi: f64,
+    rate: f64,
+}
+
+impl Frame {
+    /// The place of t, from -1 to 1 (exactly there at the ends).
+    #[inline(always)]
+    pub(crate) fn local<const N: usize>(&self, t: Lanes<N>) -> Lanes<N> {
+        ((t - Lanes::splat(self.lo)) - (Lanes::splat(self.hi) - t)) * Lanes::splat(self.rate)
+    }
+
+    /// The rate of that place by t.
+    #[inline(always)]
+    pub(crate) fn slope(&self) -> f64 {
+        2.0 * self.rate
+    }
+}
+
+/// Polynomial coefficients of every piece.
+#[derive(Clone)]
+pub(crate) struct Pieces {
+    /// Coefficients a piece has along u and v.
+    terms: [usize; 2],
+    /// Spans along u and v.
+    frames: [Vec<Frame>; 2],
+    /// Whether the fourth component is a weight; zero otherwise.
+    pub(crate) rational: bool,
+    /// Piece after piece, v fastest: the place that its coefficients are relative to, and what rounding makes
+    /// of derivatives by x and y that are zero.
+    heads: Vec<[f64; 4]>,
+    /// Piece after piece: `x^a y^b` at `a * terms[1] + b`, components x, y, z, w.
+    coefficients: Vec<[f64; 4]>,
+}
+
+/// One piece, ready to evaluate.
+#[derive(Clone, Copy)]
+pub(crate) struct Piece<'a> {
+    pub(crate) frames: [&'a Frame; 2],
+    pub(crate) terms: [usize; 2],
+    pub(crate) origin: [f64; 3],
+    pub(crate) noise: f64,
+    pub(crate) coefficients: &'a [[f64; 4]],
+}
+
+impl Pieces {
+    pub(crate) fn new(knots: &[Knots; 2], net: &Net, rational: bool) -> Self {
+        let powers =
+            [0, 1].map(|a| (0..knots[a].span_count()).map(|s| knots[a].span_powers(s)).collect::<Vec<_>>());
+        let frames = [0, 1].map(|a: usize| {
+            let ends = knots[a].breaks().windows(2);
+            ends.map(|w| Frame { lo: w[0], hi: w[1], rate: 1.0 / (w[1] - w[0]) }).collect()
+        });
+        let mut pieces = Self {
+            terms: [knots[0].degree() + 1, knots[1].degree() + 1],
+            frames,
+            rational,
+            heads: Vec::new(),
+            coefficients: Vec::new(),
+        };
+        // Equal weights divide out.
+        let plain = Net { count: net.count, points: net.points.clone(), weights: None };
+        let net = if rational { net } else { &plain };
+        for (su, pu) in powers[0].iter().enumerate() {
+            for (sv, pv) in powers[1].iter().enumerate() {
+                let (origin, sums) = piece_powers(knots, net, [su, sv], [pu, pv]);
+                // Terms x^a y^b at 1, times the powers that derivatives bring down; the constant term only
+                // counts through the weights' derivatives.
+                let n = pieces.terms[1];
+                let sum: f64 =
+                    sums.iter().enumerate().map(|(k, c)| (k / n + k % n) as f64 * c.xyz().norm()).sum();
+                let least = sums[0].w - sums[1..].iter().map(|c| c.w.abs()).sum::<f64>();
+                let noise = NOISE * sum / least.max(0.25 * sums[0].w);
+                pieces.heads.push([origin.x, origin.y, origin.z, noise]);
+                let weight = |w: f64| if rational { w } else { 0.0 };
+                pieces.coefficients.extend(sums.iter().map(|s| [s.x, s.y, s.z, weight(s.w)]));
+            }
+        }
+        pieces
+    }
+
+    /// Number of pieces.
+    pub(crate) fn count(&self) -> usize {
+        self.heads.len()
+    }
+
+    /// The number of the piece over two spans.
+    #[inline(always)]
+    pub(crate) fn number(&self, span: [usize; 2]) -> usize {
+        span[0] * self.frames[1].len() + span[1]
+    }
+
+    /// The spans of a piece.
+    #[inline(always)]
+    pub(crate) fn spans(&self, number: usize) -> [usize; 2] {
+        [number / self.frames[1].len(), number % self.frames[1].len()]
+    }
+
+    /// Lower ends of two spans, and what parameters of the spans are below: their upper ends, which belong to
+    /// the next span except at the end of the domain.
+    #[inline(always)]
+    pub(crate) fn ends(&self, span: [usize; 2]) -> [[f64; 2]; 2] {
+        [0, 1].map(|a| {
+            let f = &self.frames[a][span[a]];
+            [f.lo, if span[a] + 1 == self.frames[a].len() { f.hi.next_up() } else { f.hi }]
+        })
+    }
+
+    /// The piece over two spans.
+    #[inline(always)]
+    pub(crate) fn piece(&self, span: [usize; 2]) -> Piece<'_> {
+        let number = self.number(span);
+        let size = self.terms[0] * self.terms[1];
+        let [x, y, z, noise] = self.heads[number];
+        Piece {
+            frames: [&self.frames[0][span[0]], &self.frames[1][span[1]]],
+            terms: self.terms,
+            origin: [x, y, z],
+            noise,
+            coefficients: &self.coefficients[number * size..][..size],
+        }
+    }
+}
+
+impl Piece<'_> {
+    /// Value and derivatives by u and v of all components at one place, relative to the origin.
+    #[inline(always)]
+    pub(crate) fn orders<Q: Quad>(&self, q: Q, u: f64, v: f64) -> Orders<Q::V> {
+        let x = q.splat(self.frames[0].local(Lanes([u])).0[0]);
+        let y = q.splat(self.frames[1].local(Lanes([v])).0[0]);
+        let (step_x, step_y) = (|s, r| q.add(q.mul(s, x), r), |s, r| q.add(q.mul(s, y), r));
+        let k = |i: usize| q.load(&self.coefficients[i]);
+        let zero = q.splat(0.0);
+        // A known count lets the compiler unroll the commonest case.
+        let mut orders = match self.coefficients.as_chunks::<16>().0 {
+            [sixteen] if self.terms == [4, 4] => {
+                horner([4, 4], |i| q.load(&sixteen[i]), step_x, step_y, zero)
+            }
+            _ => horner(self.terms, k, step_x, step_y, zero),
+        };
+        for (order, rate) in orders[1..].iter_mut().zip(self.rates()) {
+            *order = q.mul(*order, q.splat(rate));
+        }
+        orders
+    }
+
+    /// The same for one component of N places.
+    #[inline(always)]
+    pub(crate) fn lanes<const N: usize>(
+        &self,
+        component: usize,
+        x: Lanes<N>,
+        y: Lanes<N>,
+    ) -> Orders<Lanes<N>> {
+        let k = |i: usize| Lanes::splat(self.coefficients[i][component]);
+        let (step_x, step_y) = (|s, r| s * x + r, |s, r| s * y + r);
+        let zero = Lanes::default();
+        let mut orders = match self.coefficients.as_chunks::<16>().0 {
+            [sixteen] if self.terms == [4, 4] => {
+                horner([4, 4], |i| Lanes::splat(sixteen[i][component]), step_x, step_y, zero)
+            }
+            _ => horner(self.terms, k, step_x, step_y, zero),
+        };
+        for (order, rate) in orders[1..].iter_mut().zip(self.rates()) {
+            *order = *order * Lanes::splat(rate);
+        }
+        orders
+    }
+
+    /// What turns derivatives by x and y (second ones halved) into those by u and v.
+    #[inline(always)]
+    fn rates(&self) -> [f64; 5] {
+        let [rx, ry] = [self.frames[0].slope(), self.frames[1].slope()];
+        [rx, ry, 2.0 * (rx * rx), rx * ry, 2.0 * (ry * ry)]
+    }
+
+    /// The value of all components at one place, relative to the origin.
+    #[inline(always)]
+    pub(crate) fn value(&self, u: f64, v: f64) -> Lanes<4> {
+        let x = self.frames[0].local(Lanes::<1>::splat(u)).0[0];
+        let y = Lanes::splat(self.frames[1].local(Lanes::<1>::splat(v)).0[0]);
+        let row = |terms: usize, a: usize| {
+            let row = &self.coefficients[a * terms..][..terms];
+            let top = Lanes(row[terms - 1]);
+            row[..terms - 1].iter().rev().fold(top, |sum, k| sum * y + Lanes(*k))
+        };
+        let x = Lanes::splat(x);
+        let along = |n: usize, m: usize| (0..n - 1).rev().fold(row(m, n - 1), |sum, a| sum * x + row(m, a));
+        match self.terms {
+            [4, 4] => along(4, 4),
+            [n, m] => along(n, m),
+        }
+    }
+
+    /// Squares below which the first derivatives by u and v are rounding alone.
+    #[inline(always)]
+    pub(crate) fn silent(&self) -> [f64; 2] {
+        [0, 1].map(|a| {
+            let x = self.noise * self.frames[a].slope();
+            x * x
+        })
+    }
+}
+
+/// Horner's rule with two derivatives, the second one halved: `k(i)` is the coefficient of power i.
+///
+/// The first steps leave out what would be added to zero.
+#[inline(always)]
+fn taylor<V: Copy>(terms: usize, k: impl Fn(usize) -> V, step: impl Fn(V, V) -> V, zero: V) -> [V; 3] {
+    let mut r0 = k(terms - 1);
+    if terms == 1 {
+        return [r0, zero, zero];
+    }
+    let mut r1 = r0;
+    r0 = step(r0, k(terms - 2));
+    if terms == 2 {
+        return [r0, r1, zero];
+    }
+    let mut r2 = r1;
+    r1 = step(r1, r0);
+    r0 = step(r0, k(terms - 3));
+    for i in (0..terms - 3).rev() {
+        r2 = step(r2, r1);
+        r1 = step(r1, r0);
+        r0 = step(r0, k(i));
+    }
+    [r0, r1, r2]
+}
+
+/// Value and derivatives of a polynomial piece by x and y, second ones by xx and yy halved.
+#[inline(always)]
+fn horner<V: Copy>(
+    [n, m]: [usize; 2],
+    k: impl Fn(usize) -> V,
+    step_x: impl Fn(V, V) -> V,
+    step_y: impl Fn(V, V) -> V,
+    zero: V,
+) -> Orders<V> {
+    let row = |a: usize| taylor(m, |b| k(a * m + b), &step_y, zero);
+    let x = step_x;
+    let [mut s0, mut s2, mut s5] = row(n - 1);
+    let (mut s1, mut s3, mut s4) = (zero, zero, zero);
+    if n > 1 {
+        let r = row(n - 2);
+        (s1, s4) = (s0, s2);
+        (s0, s2, s5) = (x(s0, r[0]), x(s2, r[1]), x(s5, r[2]));
+    }
+    if n > 2 {
+        let r = row(n - 3);
+        s3 = s1;
+        (s1, s4) = (x(s1, s0), x(s4, s2));
+        (s0, s2, s5) = (x(s0, r[0]), x(s2, r[1]), x(s5, r[2]));
+        for a in (0..n - 3).rev() {
+            let r = row(a);
+            s3 = x(s3, s1);
+            (s1, s4) = (x(s1, s0), x(s4, s2));
+            (s0, s2, s5) = (x(s0, r[0]), x(s2, r[1]), x(s5, r[2]));
+        }
+    }
+    [s0, s1, s2, s3, s4, s5]
+}
+
+/// Coefficients of one piece about `origin`, `(w (P - origin), w)` in powers of x and y, v fastest. The
+/// weights are those of `net`, or 1.
+pub(crate) fn piece_powers(
+    knots: &[Knots; 2],
+    net: &Net,
+    span: [usize; 2],
+    powers: [&[Vec<f64>]; 2],
+) -> (Point3, Vec<Vector4<f64>>) {
+    let first = [knots[0].first_pole(span[0]), knots[1].first_pole(span[1])];
+    let [nu, nv] = [powers[0].len(), powers[1].len()];
+    let at = |i: usize, j: usize| (first[0] + i) * net.count[1] + first[1] + j;
+    let origin = net.points[at(nu / 2, nv / 2)];
+    let pole = |i: usize, j: usize| {
+        let w = net.weights.as_ref().map_or(1.0, |w| w[at(i, j)]);
+        let d = (net.points[at(i, j)] - origin) * w;
+        Vector4::new(d.x, d.y, d.z, w)
+    };
+    let mut sums = vec![Vector4::zeros(); nu * nv];
+    for i in 0..nu {
+        // The row of poles along v, in powers of y.
+        let mut row = vec![Vector4::zeros(); nv];
+        for (j, polynomial) in powers[1].iter().enumerate() {
+            let p = pole(i, j);
+            for (c, sum) in polynomial.iter().zip(&mut row) {
+                *sum += p * *c;
+            }
+        }
+        for (a, c) in powers[0][i].iter().enumerate() {
+            for (b, r) in row.iter().enumerate() {
+                sums[a * nv + b] += r * *c;
+            }
+        }
+    }
+    (origin, sums)
+}
