@@ -33,6 +33,7 @@ pub mod laws;
 pub mod limit;
 pub mod line;
 pub mod offset;
+pub mod ode;
 mod point;
 pub mod quadrature;
 mod relative;
