@@ -22,7 +22,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod gallery;
 pub mod iges;
+pub mod lines;
 mod mesh;
 mod part;
 pub mod step;

@@ -127,3 +127,27 @@ pub fn any_surface() -> impl Strategy<Value = NurbsSurface> {
         },
     )
 }
+
+/// The Bezier patch of the given degree over the square of half side `half` about the origin whose height over
+/// u = x, v = y is `f`, a polynomial of at most that degree in each.
+pub fn bezier_graph(half: f64, degree: usize, f: impl Fn(f64, f64) -> f64) -> NurbsSurface {
+    let n = degree + 1;
+    let node = |k: usize| k as f64 / degree as f64;
+    let binomial = |k: usize| (0..k).fold(1.0, |b, i| b * (degree - i) as f64 / (i + 1) as f64);
+    let bernstein = |k: usize, t: f64| binomial(k) * t.powi(k as i32) * (1.0 - t).powi((degree - k) as i32);
+    let matrix = nalgebra::DMatrix::from_fn(n, n, |i, k| bernstein(k, node(i)));
+    let at = |k: usize| half * (2.0 * node(k) - 1.0);
+    let values = nalgebra::DMatrix::from_fn(n, n, |i, j| f(at(i), at(j)));
+    let lu = matrix.lu();
+    let rows = lu.solve(&values).unwrap();
+    let heights = lu.solve(&rows.transpose()).unwrap().transpose();
+    let points = (0..n * n).map(|k| Point3::new(at(k / n), at(k % n), heights[(k / n, k % n)])).collect();
+    let knots = [vec![-half; n], vec![half; n]].concat();
+    NurbsSurface::new([degree; 2], [knots.clone(), knots], Net { count: [n, n], points, weights: None })
+        .unwrap()
+}
+
+/// A bicubic [`bezier_graph`].
+pub fn graph(half: f64, f: impl Fn(f64, f64) -> f64) -> NurbsSurface {
+    bezier_graph(half, 3, f)
+}

@@ -1,0 +1,84 @@
+//! Scalar fields over a face whose contours are drawn.
+
+use super::course::Family;
+use super::third::forms_rate;
+use osculate_geom::{Surface, Unit3, Uv, Vec3};
+
+/// A field's value at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldSample {
+    /// The value.
+    pub value: f64,
+    /// Derivatives by u and v, where they are known.
+    pub gradient: Option<[f64; 2]>,
+    /// For a field that is defined up to its sign only: the direction with which the sign turns over.
+    pub sense: Option<Vec3>,
+}
+
+/// A scalar field over a surface.
+pub trait ScalarField: Sync {
+    /// The field at a point; `None` where it is not defined (no tangent plane).
+    fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample>;
+}
+
+/// The height along an axis, mm from the frame's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Height {
+    /// The direction: the tool axis of machining with a fixed axis.
+    pub axis: Unit3,
+}
+
+impl ScalarField for Height {
+    fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample> {
+        let jet = surface.jet2(at);
+        let gradient = Some([jet.du.dot(&self.axis), jet.dv.dot(&self.axis)]);
+        Some(FieldSample { value: jet.point.coords.dot(&self.axis), gradient, sense: None })
+    }
+}
+
+/// The square of the difference of the principal curvatures, `(k_1 - k_2)^2`, 1/mm2: smooth at umbilics, where the
+/// difference itself has a cone. The contour of the difference at D is this field's at D squared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CurvatureDifference;
+
+impl ScalarField for CurvatureDifference {
+    fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample> {
+        let (value, gradient) = forms_rate(surface, at).ok()?.difference_squared();
+        finite(value, gradient, None)
+    }
+}
+
+/// The Gaussian curvature, 1/mm2; zero on parabolic lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gauss;
+
+impl ScalarField for Gauss {
+    fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample> {
+        let (value, gradient) = forms_rate(surface, at).ok()?.gauss();
+        finite(value, gradient, None)
+    }
+}
+
+/// The derivative of a principal curvature along its own line of curvature, 1/mm2; zero on ridges. Its sign turns
+/// over with the direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extremality {
+    /// Which principal curvature.
+    pub family: Family,
+}
+
+impl ScalarField for Extremality {
+    fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample> {
+        let rate = forms_rate(surface, at).ok()?;
+        let p = rate.forms.principal();
+        let (k, d) = self.family.of(&p);
+        let along = rate.forms.rate(&surface.jet2(at), &d);
+        let value = rate.extremality(along, k);
+        value.is_finite().then(|| FieldSample { value, gradient: None, sense: Some(d.into_inner()) })
+    }
+}
+
+fn finite(value: f64, gradient: [f64; 2], sense: Option<Vec3>) -> Option<FieldSample> {
+    let good = value.is_finite() && gradient.iter().all(|g| g.is_finite());
+    good.then_some(FieldSample { value, gradient: Some(gradient), sense })
+}

@@ -1,0 +1,38 @@
+//! Characteristic lines over a face: what tells a person how a surface wants to be machined [M86].
+//!
+//! - A [`Chart`] is a face prepared for the search: cells of a stated size over its parameters, poles, scale.
+//! - [`umbilics`] finds where both principal curvatures agree, with index and type, and checks the sum of the indices
+//!   against the rotation of the curvature directions along the boundary.
+//! - [`contours`] draws all lines on which a [`ScalarField`] has given values: heights along an axis
+//!   ([`Height`]), the difference of the principal curvatures ([`CurvatureDifference`]), zero Gaussian curvature
+//!   ([`Gauss`]), ridges ([`Extremality`]). [`critical_points`] finds minima, maxima and saddles.
+//! - [`trace`] follows a [`Course`] from a point: lines of curvature, gradient lines, asymptotic lines; [`cover`]
+//!   spreads such lines evenly over the face.
+//!
+//! Curvature is positive where the body is convex. Lines are polylines of points on the surface with their
+//! parameters; [`LineTolerance`] says how close.
+
+mod chart;
+mod contour;
+mod course;
+mod cover;
+mod critical;
+mod field;
+mod ridge;
+mod stitch;
+mod third;
+mod trace;
+mod umbilic;
+mod web;
+mod zeros;
+
+pub use chart::{Chart, ChartError, LineTolerance, Pole};
+pub use contour::{Contour, Contours, contours};
+pub use course::{Course, Family};
+pub use cover::{Cover, cover};
+pub use critical::{Critical, CriticalKind, CriticalPoints, critical_points};
+pub use field::{CurvatureDifference, Extremality, FieldSample, Gauss, Height, ScalarField};
+pub use ridge::{Ridge, ridges};
+pub use third::{FormsRate, forms_rate};
+pub use trace::{LineEnd, LinePoint, SurfacePolyline, TraceStops, curvature_line, trace};
+pub use umbilic::{Umbilic, UmbilicKind, UmbilicLine, Umbilics, umbilics};
