@@ -96,9 +96,7 @@ impl<const N: usize> OdeStep<N> {
     pub fn at(&self, t: f64) -> [f64; N] {
         let r = 1.0 - t;
         let d = &self.dense;
-        std::array::from_fn(|c| {
-            self.start[c] + t * (d[0][c] + r * (d[1][c] + t * (d[2][c] + r * d[3][c])))
-        })
+        std::array::from_fn(|c| self.start[c] + t * (d[0][c] + r * (d[1][c] + t * (d[2][c] + r * d[3][c]))))
     }
 }
 

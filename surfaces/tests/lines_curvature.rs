@@ -1,5 +1,7 @@
 //! Umbilics and lines of curvature against closed forms: ellipsoid, monkey saddle, Enneper, surfaces of revolution.
 
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
 mod common;
 
 use common::graph;

@@ -72,6 +72,8 @@ pub struct Pole {
 /// A face with its cells.
 pub struct Chart<'a> {
     surface: &'a dyn Surface,
+    /// The surface's rectangle.
+    whole: Domain,
     /// The rectangle searched: the surface's, less the poles' rings.
     domain: Domain,
     /// Cell borders along u and along v, ascending, both ends included.
@@ -139,7 +141,7 @@ impl<'a> Chart<'a> {
             }
         }
         let lines = [Axis::U, Axis::V].map(|axis| cell_borders(surface, &domain, axis, tolerance.cell_mm));
-        Ok(Self { surface, domain, lines, poles, size_mm, tolerance })
+        Ok(Self { surface, whole: surface.domain(), domain, lines, poles, size_mm, tolerance })
     }
 
     /// The face.
@@ -201,6 +203,18 @@ impl<'a> Chart<'a> {
         longest
     }
 
+    /// The parameters brought into the surface's rectangle, the poles' rings included.
+    #[must_use]
+    pub fn bring(&self, at: Uv) -> Uv {
+        self.whole.bring(at)
+    }
+
+    /// The surface's rectangle, the poles' rings included.
+    #[must_use]
+    pub const fn whole(&self) -> &Domain {
+        &self.whole
+    }
+
     /// The way from `a` to `b`, the shorter one where a parameter closes.
     #[must_use]
     pub fn between(&self, a: Uv, b: Uv) -> Uv {
@@ -215,7 +229,7 @@ impl<'a> Chart<'a> {
     #[must_use]
     pub fn towards(&self, a: Uv, b: Uv, t: f64) -> Uv {
         let d = self.between(a, b);
-        self.domain.bring(uv(a.u + t * d.u, a.v + t * d.v))
+        self.bring(uv(a.u + t * d.u, a.v + t * d.v))
     }
 
     /// Half the sides of the cell that holds `at`.

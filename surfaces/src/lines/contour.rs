@@ -168,7 +168,7 @@ impl Level<'_> {
             if !(step.u.is_finite() && step.v.is_finite()) {
                 return None;
             }
-            at = self.chart.domain().bring(uv(at.u + step.u, at.v + step.v));
+            at = self.chart.bring(uv(at.u + step.u, at.v + step.v));
             let size = jet.tangent(step).norm();
             if size > reach_mm || (surface.point(at) - origin).norm() > reach_mm {
                 return None;
@@ -222,8 +222,11 @@ impl Level<'_> {
     fn joined_at_poles(&self, mut lines: Vec<(Vec<LinePoint>, bool)>) -> Vec<(Vec<LinePoint>, bool)> {
         for pole in self.chart.poles() {
             let i = self.chart.domain().get(pole.axis);
-            let (ring, slack) = (if pole.high { i.hi } else { i.lo }, 1e-9 * i.length());
-            let on_ring = |p: &LinePoint| (p.at.get(pole.axis) - ring).abs() <= slack;
+            let slack = 1e-9 * i.length();
+            let on_ring = |p: &LinePoint| {
+                let t = p.at.get(pole.axis);
+                if pole.high { t >= i.hi - slack } else { t <= i.lo + slack }
+            };
             // Ends on the ring in its order: line, and whether the end is its last point.
             let mut ends: Vec<(f64, usize, bool)> = Vec::new();
             for (k, (points, closed)) in lines.iter().enumerate() {

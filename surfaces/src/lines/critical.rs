@@ -153,9 +153,10 @@ fn describe_pole(chart: &Chart, field: &dyn ScalarField, pole: &Pole) -> Option<
     let mean = |v: &[f64]| v.iter().sum::<f64>() / AROUND as f64;
     // A field that needs a tangent plane has no value at the pole: extrapolated from both rings, whose means differ
     // by the square of their widths.
-    let value = match field.sample(surface, pole.at) {
-        Some(s) => s.value,
-        None => (4.0 * mean(&near) - mean(&far)) / 3.0,
+    let value = if field.holds_at_poles() {
+        field.sample(surface, pole.at)?.value
+    } else {
+        (4.0 * mean(&near) - mean(&far)) / 3.0
     };
     let rises: Vec<f64> = far.iter().map(|v| v - value).collect();
     let size = rises.iter().fold(0.0_f64, |m, r| m.max(r.abs()));

@@ -19,6 +19,11 @@ pub struct FieldSample {
 pub trait ScalarField: Sync {
     /// The field at a point; `None` where it is not defined (no tangent plane).
     fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample>;
+
+    /// Whether the field has its digits at the poles of the parametrisation too: it needs no tangent plane.
+    fn holds_at_poles(&self) -> bool {
+        false
+    }
 }
 
 /// The height along an axis, mm from the frame's origin.
@@ -33,6 +38,9 @@ impl ScalarField for Height {
         let jet = surface.jet2(at);
         let gradient = Some([jet.du.dot(&self.axis), jet.dv.dot(&self.axis)]);
         Some(FieldSample { value: jet.point.coords.dot(&self.axis), gradient, sense: None })
+    }
+    fn holds_at_poles(&self) -> bool {
+        true
     }
 }
 

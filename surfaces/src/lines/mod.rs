@@ -1,4 +1,4 @@
-//! Characteristic lines over a face: what tells a person how a surface wants to be machined [M86].
+//! Characteristic lines over a face: what tells a person how a surface wants to be machined, after M86.
 //!
 //! - A [`Chart`] is a face prepared for the search: cells of a stated size over its parameters, poles, scale.
 //! - [`umbilics`] finds where both principal curvatures agree, with index and type, and checks the sum of the indices

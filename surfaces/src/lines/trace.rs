@@ -110,7 +110,7 @@ pub(crate) fn trace_while(
     stops: &TraceStops,
     free: &dyn Fn(&Point3, f64) -> bool,
 ) -> SurfacePolyline {
-    let at = chart.domain().bring(at);
+    let at = chart.bring(at);
     let start = LinePoint { at, point: chart.surface().point(at) };
     if !chart.surface().contains(at) {
         return SurfacePolyline { points: vec![start], ends: [LineEnd::Trim; 2] };
@@ -256,14 +256,14 @@ impl Follower<'_> {
 
     fn place(&self, step: &OdeStep<2>, t: f64) -> LinePoint {
         let [u, v] = if t == 1.0 { step.end } else { step.at(t) };
-        let at = self.chart.domain().bring(uv(u, v));
+        let at = self.chart.bring(uv(u, v));
         LinePoint { at, point: self.chart.surface().point(at) }
     }
 
     /// Whether the step is still on the face.
     fn is_on(&self, step: &OdeStep<2>, t: f64) -> bool {
         let [u, v] = step.at(t);
-        let d = self.chart.domain();
+        let d = self.chart.whole();
         let within = |i: &osculate_geom::Interval, x: f64| i.periodic || (x >= i.lo && x <= i.hi);
         within(&d.u, u) && within(&d.v, v) && self.chart.surface().contains(uv(u, v))
     }
@@ -285,7 +285,7 @@ impl Follower<'_> {
     /// What lies beyond the face at a place off it.
     fn beyond(&self, step: &OdeStep<2>, t: f64) -> LineEnd {
         let [u, v] = step.at(t);
-        let d = self.chart.domain();
+        let d = self.chart.whole();
         let off = |i: &osculate_geom::Interval, x: f64| !i.periodic && (x < i.lo || x > i.hi);
         if off(&d.u, u) || off(&d.v, v) { LineEnd::Border } else { LineEnd::Trim }
     }

@@ -67,12 +67,12 @@ impl Web {
     }
 
     fn grid(chart: &Chart, field: &dyn ScalarField) -> Self {
-        let [us, vs] = [chart.borders(Axis::U), chart.borders(Axis::V)];
+        let [us, vs] = [Axis::U, Axis::V].map(|axis| rows(chart, field, axis));
         let closes = [chart.domain().u.periodic, chart.domain().v.periodic];
         let (nu, nv) = (us.len() - 1, vs.len() - 1);
         // Where a parameter closes, the last border is the first.
         let (mu, mv) = (nu + usize::from(!closes[0]), nv + usize::from(!closes[1]));
-        let at: Vec<Uv> = (0..mu).flat_map(|i| (0..mv).map(move |j| uv(us[i], vs[j]))).collect();
+        let at: Vec<Uv> = (0..mu * mv).map(|k| uv(us[k / mv], vs[k % mv])).collect();
         let samples = at.par_iter().map(|p| field.sample(chart.surface(), *p)).collect();
         let vertex = |i: usize, j: usize| ((i % mu) * mv + j % mv) as u32;
         let mut triangles = Vec::with_capacity(2 * nu * nv);
@@ -216,6 +216,24 @@ impl Web {
         self.triangles = triangles;
         fresh
     }
+}
+
+/// Borders of the cells along one parameter, with one row more in the ring around a pole where the field has digits
+/// there.
+fn rows(chart: &Chart, field: &dyn ScalarField, axis: Axis) -> Vec<f64> {
+    /// Where the row is, as a part of the parameter's range: a ring around nothing that matters.
+    const INNERMOST: f64 = 1e-7;
+    let mut rows = chart.borders(axis).to_vec();
+    let whole = chart.whole().get(axis);
+    if field.holds_at_poles() {
+        if chart.pole(axis, false).is_some() {
+            rows.insert(0, whole.at(INNERMOST));
+        }
+        if chart.pole(axis, true).is_some() {
+            rows.push(whole.at(1.0 - INNERMOST));
+        }
+    }
+    rows
 }
 
 /// Whether a level lies strictly between `lo` and `hi`; never where `lo >= hi`.
