@@ -233,7 +233,9 @@ fn same_kind(ours: FaceKind, theirs: &str) -> bool {
         "Cone" => ours == FaceKind::Cone,
         "Sphere" => ours == FaceKind::Sphere,
         "Torus" => ours == FaceKind::Torus,
-        "BSplineSurface" | "BezierSurface" => matches!(ours, FaceKind::Bspline | FaceKind::Bezier),
+        "BSplineSurface" | "BezierSurface" => {
+            matches!(ours, FaceKind::Bspline | FaceKind::Bezier | FaceKind::Ruled)
+        }
         "SurfaceOfRevolution" => ours == FaceKind::Revolution,
         "SurfaceOfExtrusion" => ours == FaceKind::Extrusion,
         "OffsetSurface" => ours == FaceKind::Offset,

@@ -5,9 +5,22 @@
 
 mod cards;
 mod carriers;
+mod compressed;
+mod conic;
+mod curves;
+mod directory;
 mod faces;
 mod geometry;
+mod global;
+mod import;
+mod join;
+mod links;
+mod loops;
 mod names;
+mod parametric;
+mod params;
+mod pcurves;
+mod tree;
 
 use crate::part::Part;
 use cards::{CardFault, Cards};
@@ -48,7 +61,7 @@ const LOOK_AT: usize = 200;
 /// Whether the bytes have the cards of an IGES file near their start.
 pub(crate) fn looks_like(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(LOOK_AT * 82)];
-    let found: Vec<u8> = cards::cards(head).into_iter().filter_map(cards::section).collect();
+    let found: Vec<u8> = cards::cards(head).filter_map(|c| cards::section(&c.1)).collect();
     matches!(found.first(), Some(b'S' | b'G')) || found.contains(&b'G')
 }
 
@@ -58,12 +71,12 @@ pub(crate) fn looks_like(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`IgesError`] for bytes that are no IGES file or lack a section.
 pub fn read(bytes: &[u8]) -> Result<Part, IgesError> {
-    let lines = cards::cards(bytes).len();
+    let lines = cards::cards(bytes).count();
     if !looks_like(bytes) {
         return Err(IgesError::NotIges { searched: lines.min(LOOK_AT) });
     }
     match Cards::read(bytes) {
-        Ok(cards) => Ok(faces::part(cards)),
+        Ok(cards) => Ok(import::part(cards)),
         Err(CardFault::NoDirectory) => Err(IgesError::NoDirectory { lines }),
         Err(CardFault::NoParameters) => Err(IgesError::NoParameters { lines }),
     }

@@ -252,7 +252,11 @@ impl Curve for Piece {
         [0.0, 1.0]
     }
     fn locate(&self, p: &Point3) -> f64 {
-        let t = self.curve.locate(p);
+        let mut t = self.curve.locate(p);
+        if let Some(period) = self.curve.period() {
+            // Of all turns the one nearest to the middle of the piece.
+            t += ((0.5 * (self.ends[0] + self.ends[1]) - t) / period).round() * period;
+        }
         ((t - self.ends[0]) / (self.ends[1] - self.ends[0])).clamp(0.0, 1.0)
     }
     fn breaks(&self) -> Vec<f64> {
@@ -341,6 +345,11 @@ mod tests {
         let long = Piece::between(circle.clone(), ends, false, 1e-9).unwrap();
         assert!((long.point(0.5) - at(TAU / 2.0)).norm() < 1e-12);
         assert!((long.point(0.0) - ends[0]).norm() < 1e-12 && (long.point(1.0) - ends[1]).norm() < 1e-12);
+        // A point on the piece is found on it, whatever turn the circle counts it in.
+        for f in [0.1, 0.5, 0.9] {
+            assert!((long.locate(&long.point(f)) - f).abs() < 1e-12);
+            assert!((short.locate(&short.point(f)) - f).abs() < 1e-12);
+        }
         // Equal ends: the full turn.
         let full = Piece::between(circle, [at(1.0), at(1.0)], true, 1e-9).unwrap();
         assert!((full.point(0.5) - at(1.0 + TAU / 2.0)).norm() < 1e-12);

@@ -36,7 +36,7 @@ impl Spline {
         NurbsCurve3::new(degree, knots, poles, weights).map(Self::from_curve)
     }
 
-    fn from_curve(curve: NurbsCurve3) -> Self {
+    pub(crate) fn from_curve(curve: NurbsCurve3) -> Self {
         let size = Box3::around(curve.poles()).diagonal_mm();
         let d = curve.domain();
         let closed = (curve.point(d.lo) - curve.point(d.hi)).norm() <= SAME_POINT * size;
