@@ -118,6 +118,41 @@ pub fn output(mut command: Command) -> Result<String, Failure> {
     String::from_utf8(answer.stdout).map_err(|why| Failure::Answer { line, why: why.to_string() })
 }
 
+/// As [`output`], with its standard error as the command has it.
+pub fn output_quietly(mut command: Command) -> Result<String, Failure> {
+    let line = line(&command);
+    let answer = match command.output() {
+        Err(why) => return Err(Failure::Start { line, why }),
+        Ok(answer) => answer,
+    };
+    if !answer.status.success() {
+        let said = String::from_utf8_lossy(&answer.stderr);
+        eprintln!("{}", said.trim_end());
+        return Err(Failure::Status { line, status: answer.status });
+    }
+    String::from_utf8(answer.stdout).map_err(|why| Failure::Answer { line, why: why.to_string() })
+}
+
+/// As [`output`], of a command that reads the text.
+pub fn output_of(mut command: Command, input: &str) -> Result<String, Failure> {
+    use std::io::Write;
+    let said = line(&command);
+    command.stdin(std::process::Stdio::piped()).stdout(std::process::Stdio::piped());
+    let start = |why| Failure::Start { line: said.clone(), why };
+    let mut child = command.spawn().map_err(start)?;
+    let pipe = child.stdin.take();
+    // A thread of its own writes, so that neither pipe fills up while the other one waits.
+    let answer = std::thread::scope(|scope| {
+        scope.spawn(|| pipe.map(|mut pipe| pipe.write_all(input.as_bytes())));
+        child.wait_with_output()
+    });
+    let answer = answer.map_err(start)?;
+    if !answer.status.success() {
+        return Err(Failure::Status { line: said, status: answer.status });
+    }
+    String::from_utf8(answer.stdout).map_err(|why| Failure::Answer { line: said, why: why.to_string() })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

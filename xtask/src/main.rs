@@ -8,6 +8,7 @@
 
 mod ci;
 mod cmd;
+mod interop;
 mod test;
 mod tidy;
 
@@ -19,6 +20,8 @@ usage: cargo xtask COMMAND
 
   test [ARGS]   every test of the workspace, doctests included; ARGS go to `cargo test`
   tidy          the rules of the workspace that neither the compiler nor clippy checks
+  interop linuxcnc
+                LinuxCNC's interpreter and kinematics, and pygcode, on our programs (Debian: apt-get, dpkg, gcc, pip)
   ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -30,6 +33,7 @@ fn main() -> ExitCode {
         ["test", rest @ ..] => test::run(rest),
         ["tidy"] => tidy::run(),
         ["ci"] => ci::run(),
+        ["interop", "linuxcnc"] => interop::linuxcnc(),
         ["truth", rest @ ..] => truth(rest),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");

@@ -1,7 +1,7 @@
 //! Machine files that come with the library.
 
 /// Name and text, in the order in which they are listed.
-const FILES: [(&str, &str); 8] = [
+const FILES: [(&str, &str); 9] = [
     ("3-axis", include_str!("../../machines/3-axis.toml")),
     ("trunnion-ac", include_str!("../../machines/trunnion-ac.toml")),
     ("trunnion-bc", include_str!("../../machines/trunnion-bc.toml")),
@@ -10,6 +10,7 @@ const FILES: [(&str, &str); 8] = [
     ("head-ca", include_str!("../../machines/head-ca.toml")),
     ("head-b-table-c", include_str!("../../machines/head-b-table-c.toml")),
     ("nutated-b-table-c", include_str!("../../machines/nutated-b-table-c.toml")),
+    ("mill-turn-xyzc", include_str!("../../machines/mill-turn-xyzc.toml")),
 ];
 
 /// The names that [`super::Machine::built_in`] takes.

@@ -1,6 +1,8 @@
 //! Paths and comparisons that several tests share.
 #![allow(dead_code)]
 
+pub mod blade;
+
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};

@@ -1,0 +1,76 @@
+//! Real paths there and back: CL, NC, CL for every dialect, machine and feed mode that go together.
+
+mod common;
+
+use common::{angle, blade};
+use osculate_geom::Vec3;
+use osculate_postproc::readback::{ReadBack, ReadOptions, read};
+use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, built_in_names, post};
+use osculate_tools::cl::ClPath;
+
+/// Half a count of 1e-4 on three axes, and on two rotary ones at the given distance of the tip from their axes.
+fn rounding_mm(reach_mm: f64) -> f64 {
+    0.5e-4 * 3f64.sqrt() + reach_mm * 2.0 * 0.5e-4f64.to_radians()
+}
+
+/// Every CL point is met within the output resolution, in order.
+fn meets(path: &ClPath, back: &ReadBack, reach_mm: f64, name: &str) {
+    let mut at = 0;
+    for (i, m) in path.moves.iter().enumerate() {
+        let hit = back.moves[at..].iter().position(|r| {
+            (r.pose.tip - m.pose.tip).norm() <= rounding_mm(reach_mm)
+                && angle(&r.pose.axis, &m.pose.axis) <= 2.0 * 0.5e-4f64.to_radians()
+        });
+        at += hit.unwrap_or_else(|| panic!("{name}: CL point {i} is not met after move {at}"));
+    }
+}
+
+#[test]
+fn blade_paths_come_back() {
+    let modes = [
+        FeedMode::Tcp,
+        FeedMode::None,
+        FeedMode::Kf,
+        FeedMode::Kv { fgref_mm: None },
+        FeedMode::Kz { step_mm_min: 200.0, fgref_mm: None },
+        FeedMode::RotaryOnly,
+        FeedMode::InverseTime,
+    ];
+    let five = blade::five_axis();
+    let turned = [("turned", blade::mill_turn(1, 500.0))];
+    let setup = Setup::at(Vec3::new(5.0, -3.0, 40.0), 80.0);
+    let mut done = 0;
+    for name in built_in_names() {
+        let machine = Machine::built_in(name).unwrap();
+        let paths: &[(&str, ClPath)] = match machine.rotary().len() {
+            2 => &five,
+            1 => &turned,
+            _ => continue,
+        };
+        for dialect in Dialect::ALL {
+            for feed in modes {
+                for (path_name, path) in paths {
+                    let what = format!("{name}, {dialect}, {feed:?}, {path_name}");
+                    let posted = match post(path, &machine, &setup, &PostOptions::new(dialect, feed)) {
+                        Ok(posted) => posted,
+                        // What a control does not have is refused with a word on it, never left out.
+                        Err(e) => {
+                            let said = e.to_string();
+                            let tcp = feed == FeedMode::Tcp && dialect == Dialect::LinuxCnc;
+                            let inverse = feed == FeedMode::InverseTime && dialect == Dialect::Heidenhain;
+                            assert!(tcp && said.contains("linuxcnc_tcp") || inverse, "{what}: {said}");
+                            continue;
+                        }
+                    };
+                    let back = read(&posted.text, dialect, &machine, &setup, &ReadOptions::default());
+                    let back = back.unwrap_or_else(|e| panic!("{what}: {e}"));
+                    assert!(back.diagnostics.is_empty(), "{what}: {:?}", back.diagnostics);
+                    // The blade is 75 mm high; heads add gauge length and pivot.
+                    meets(path, &back, 400.0, &what);
+                    done += 1;
+                }
+            }
+        }
+    }
+    assert!(done > 500, "{done} programs");
+}
