@@ -146,6 +146,15 @@ pub struct Principal {
     pub d_min: Unit3,
 }
 
+impl Principal {
+    /// Normal curvature at an angle from `d_max`, 1/mm, by Euler's formula `k_max cos^2 + k_min sin^2` [R97, eq. 47].
+    #[must_use]
+    pub fn euler(&self, angle_rad: f64) -> f64 {
+        let (s, c) = angle_rad.sin_cos();
+        self.k_max * c * c + self.k_min * s * s
+    }
+}
+
 /// Eigenvalues and unit eigenvectors of a symmetric 2x2 matrix, without cancellation near equal eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymEigen {

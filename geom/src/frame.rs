@@ -64,3 +64,32 @@ pub fn geodesic_curvature(jet: &Jet2, rate: Uv, acceleration: Uv) -> Result<f64,
     let speed = d1.norm();
     Ok(n.cross(&d1).dot(&d2) / (speed * speed * speed))
 }
+
+/// What a surface makes of a line on it, at a point.
+///
+/// The line's own curvature and torsion in space follow: `k^2 = normal^2 + geodesic^2`, and its torsion is
+/// `d theta / ds - torsion`, theta the angle that its principal normal turns about the tangent against the surface's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineCurvature {
+    /// Normal curvature along the line, 1/mm, convex positive.
+    pub normal_per_mm: f64,
+    /// Geodesic curvature, 1/mm, positive where the line bends to the left.
+    pub geodesic_per_mm: f64,
+    /// Geodesic torsion, 1/mm: the component of W between the tangent and `n x t`; zero on a line of curvature.
+    pub torsion_per_mm: f64,
+}
+
+/// Normal curvature, geodesic curvature and geodesic torsion of the line with parameter rate `rate` and parameter
+/// acceleration `acceleration`.
+///
+/// # Errors
+/// [`Degenerate`] without a tangent plane.
+pub fn line_curvature(jet: &Jet2, rate: Uv, acceleration: Uv) -> Result<LineCurvature, Degenerate> {
+    let forms = jet.forms()?;
+    let tangent = jet.tangent(rate);
+    Ok(LineCurvature {
+        normal_per_mm: forms.normal_curvature(&tangent),
+        geodesic_per_mm: geodesic_curvature(jet, rate, acceleration)?,
+        torsion_per_mm: forms.geodesic_torsion(&tangent),
+    })
+}

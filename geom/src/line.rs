@@ -1,9 +1,11 @@
 //! Lines on a surface that a tool can be driven along: isoparametric lines and geodesics.
 
+use crate::curve::{Curve, CurveTaylor};
+use crate::domain::Interval;
 use crate::forms::Degenerate;
 use crate::frame::{Darboux, geodesic_curvature};
 use crate::geodesic::GeodesicState;
-use crate::point::{Axis, Uv, Vec3, uv};
+use crate::point::{Axis, Point3, Uv, Vec3, uv};
 use crate::surface::Surface;
 
 /// Why a line has no frame at a parameter.
@@ -47,6 +49,26 @@ impl IsoLine<'_> {
     #[must_use]
     pub fn uv(&self, t: f64) -> Uv {
         Uv::from_axis(self.along, t, self.fixed)
+    }
+}
+
+/// The line as a curve in space, always from low to high parameter.
+impl Curve for IsoLine<'_> {
+    fn domain(&self) -> Interval {
+        self.surface.domain().get(self.along)
+    }
+    fn taylor(&self, t: f64, order: usize) -> CurveTaylor {
+        let all = self.surface.taylor(self.uv(t), order);
+        CurveTaylor::from_derivatives(t, all.order(), |k| match self.along {
+            Axis::U => all.derivative(k, 0),
+            Axis::V => all.derivative(0, k),
+        })
+    }
+    fn point(&self, t: f64) -> Point3 {
+        self.surface.point(self.uv(t))
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.surface.breaks(self.along)
     }
 }
 
@@ -110,5 +132,42 @@ impl SurfaceLine for GeodesicLine<'_> {
         let jet = self.surface.jet2(s.at);
         let direction = jet.tangent(s.rate);
         Ok((Darboux::new(&jet, &direction, 0.0)?, direction.norm()))
+    }
+}
+
+/// Where a path in the parameters is, and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathState {
+    /// Parameters.
+    pub at: Uv,
+    /// Their rate by the line's parameter.
+    pub rate: Uv,
+    /// Their acceleration by the line's parameter.
+    pub acceleration: Uv,
+}
+
+/// Any line on a surface, given as a path in its parameters.
+pub struct PathLine<'a, F> {
+    /// The surface.
+    pub surface: &'a dyn Surface,
+    /// The path with two derivatives.
+    pub path: F,
+}
+
+impl<F: Fn(f64) -> PathState + Sync> SurfaceLine for PathLine<'_, F> {
+    fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError> {
+        let s = (self.path)(t);
+        if !self.surface.domain().contains(s.at) {
+            return Err(LineError::Outside { at: s.at });
+        }
+        let jet = self.surface.jet2(s.at);
+        let forms = jet.forms()?;
+        let direction = jet.tangent(s.rate);
+        let speed = direction.norm();
+        if !(speed > 0.0 && speed.is_finite()) {
+            return Err(LineError::Degenerate(Degenerate { at: s.at, sin_uv: 0.0 }));
+        }
+        let k_g = geodesic_curvature(&jet, s.rate, s.acceleration)?;
+        Ok((Darboux::with_forms(&jet, &forms, &direction, k_g), speed))
     }
 }
