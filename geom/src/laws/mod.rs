@@ -3,6 +3,12 @@
 //! Each function panics with the place and the numbers where a law is broken, so that a test or a property test
 //! can call it directly.
 
+mod suite;
+mod wrappers;
+
+pub use suite::{Accuracy, Kind, Sample, inside, suite, total_curvature};
+pub use wrappers::{Reversed, Swapped};
+
 use crate::point::{Axis, Uv, uv};
 use crate::surface::Surface;
 
