@@ -8,8 +8,7 @@
 //!
 //! Tools are exact and so are the motions ([`crate::sweep::LinearMotion`]), but for 2e-5 mm where a turning
 //! tool is deepest twice within a small stretch. What is approximate is that the part is looked at in
-//! samples:
-//! [`Density::bound`] says what can hide between them.
+//! samples: [`hidden()`] bounds what can hide between them cell by cell, [`Density::bound`] quickly and loosely.
 //!
 //! What a single height per normal cannot say: an island that a tool leaves hanging above the height it cut
 //! is not seen, and the layer of stock is taken to be as high everywhere.
@@ -42,11 +41,13 @@
 //! ```
 
 mod body;
+mod boundary;
 mod cluster;
 mod cut;
 mod deepest;
 mod density;
 mod grid;
+mod hidden;
 mod job;
 mod piece;
 mod sampling;
@@ -55,8 +56,10 @@ mod target;
 mod tree;
 mod verdict;
 
+pub use boundary::sample_boundary;
 pub use cut::cut;
 pub use density::{Density, Hidden};
+pub use hidden::{DIVISIONS, hidden};
 pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
-pub use sampling::{Sampling, SamplingError, sample_surface};
+pub use sampling::{Patch, Sampling, SamplingError, sample_surface};
 pub use verdict::{Bin, JudgeError, Kind, Limits, Verdict, Worst, judge};

@@ -5,7 +5,7 @@
 //! around it; cells of a row meet half way between samples, rows half way between rows. Where the rectangle
 //! has an edge, samples lie on it. Cells that a trim crosses are divided further: the part inside gives the
 //! area, and where the cell's own sample is outside one is put on the trim. A strip of the face narrower than
-//! half a spacing may be missed.
+//! half a spacing may be missed by this: [`sample_boundary`] puts samples on the trims themselves.
 
 use super::density::Density;
 use super::grid::{Cell, Table, normal, weight};
@@ -18,12 +18,27 @@ use rayon::prelude::*;
 pub struct Sampling {
     /// The samples, row by row.
     pub samples: Vec<Sample>,
+    /// The cell of each sample.
+    pub patches: Vec<Patch>,
     /// The spacing used, larger than asked for where `max_samples` required it, and the part's curvature.
     pub density: Density,
     /// Area of all cells, mm2: what the samples' areas add up to.
     pub area_mm2: f64,
     /// Area of cells without a tangent plane anywhere, mm2, which no sample stands for.
     pub lost_area_mm2: f64,
+}
+
+/// The part of a surface that a sample looks after.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// Range of u.
+    pub u: [f64; 2],
+    /// Range of v.
+    pub v: [f64; 2],
+    /// Greatest concave normal curvature at the sample, 1/mm, as a positive number.
+    pub concave_per_mm: f64,
+    /// Greatest convex normal curvature at the sample, 1/mm.
+    pub convex_per_mm: f64,
 }
 
 /// A sampling that cannot be made.
@@ -131,7 +146,7 @@ struct Grid<'a> {
 /// A sample, or the area that has none.
 struct Owned {
     sample: Option<Sample>,
-    convex: f64,
+    patch: Patch,
     area: f64,
 }
 
@@ -174,16 +189,18 @@ impl Grid<'_> {
             .collect();
         let mut out = Sampling {
             samples: Vec::with_capacity(owned.iter().map(Vec::len).sum()),
+            patches: Vec::with_capacity(owned.iter().map(Vec::len).sum()),
             density: Density { spacing_mm: self.spacing, convex_per_mm: 0.0 },
             area_mm2: 0.0,
             lost_area_mm2: 0.0,
         };
         for one in owned.into_iter().flatten() {
-            out.density.convex_per_mm = out.density.convex_per_mm.max(one.convex);
+            out.density.convex_per_mm = out.density.convex_per_mm.max(one.patch.convex_per_mm);
             match one.sample {
                 Some(sample) => {
                     out.area_mm2 += one.area;
                     out.samples.push(sample);
+                    out.patches.push(one.patch);
                 }
                 None => out.lost_area_mm2 += one.area,
             }
@@ -228,12 +245,19 @@ impl Grid<'_> {
             let jet = self.surface.jet2(p);
             jet.forms().ok().map(|forms| (p, jet.point, forms))
         });
+        let flat = Patch { u: [u.lo, u.hi], v: [v.lo, v.hi], concave_per_mm: 0.0, convex_per_mm: 0.0 };
         let Some((uv, point, forms)) = regular else {
-            return Some(Owned { sample: None, convex: 0.0, area });
+            return Some(Owned { sample: None, patch: flat, area });
         };
         let sample =
             Sample { point, normal: forms.normal, face: self.face, uv, area_mm2: area, check_only: false };
-        Some(Owned { sample: Some(sample), convex: forms.principal().k_max.max(0.0), area })
+        let principal = forms.principal();
+        let patch = Patch {
+            concave_per_mm: (-principal.k_min).max(0.0),
+            convex_per_mm: principal.k_max.max(0.0),
+            ..flat
+        };
+        Some(Owned { sample: Some(sample), patch, area })
     }
 
     /// The part of a cell that lies on the face, where a trim crosses it.

@@ -5,6 +5,8 @@ mod closed_forms;
 mod collisions;
 mod common;
 mod gouges;
+mod hidden;
+mod rasters;
 mod sampling;
 mod stock;
 mod verdicts;

@@ -1,0 +1,60 @@
+//! Samples on the trims of a face, and on the corners of its trims.
+//!
+//! A narrow tip of a trimmed face may lie between the samples of a grid. Its outline does not: it is walked at half the
+//! spacing, and every corner of it gets a sample of its own. Samples on an outline stand for no area.
+
+use super::job::Sample;
+use osculate_geom::{Surface, Uv, uv};
+
+/// An outline turning by more than this, rad, from one chord to the next has a corner there: polylines of smooth
+/// curves turn by less.
+const CORNER_RAD: f64 = 0.3;
+
+/// Samples along a closed polyline of parameters, at most half of `spacing_mm` apart.
+///
+/// Where the surface has no tangent plane there is no sample.
+#[must_use]
+pub fn sample_boundary(surface: &dyn Surface, outline: &[Uv], face: u32, spacing_mm: f64) -> Vec<Sample> {
+    let mut out = Vec::new();
+    let count = outline.len();
+    if count < 2 || spacing_mm.is_nan() || spacing_mm <= 0.0 {
+        return out;
+    }
+    let mut see = |at: Uv| {
+        let jet = surface.jet2(at);
+        if let Ok(normal) = jet.normal()
+            && jet.point.iter().all(|x| x.is_finite())
+        {
+            out.push(Sample { point: jet.point, normal, face, uv: at, area_mm2: 0.0, check_only: false });
+        }
+    };
+    let points: Vec<_> = outline.iter().map(|at| surface.point(*at)).collect();
+    let step = 0.5 * spacing_mm;
+    // Way since the last sample.
+    let mut since = f64::INFINITY;
+    for k in 0..count {
+        let (before, next) = ((k + count - 1) % count, (k + 1) % count);
+        let (a, b) = (points[k] - points[before], points[next] - points[k]);
+        let length = b.norm();
+        if a.angle(&b) > CORNER_RAD || since >= step {
+            see(outline[k]);
+            since = 0.0;
+        }
+        if !length.is_finite() || length == 0.0 {
+            continue;
+        }
+        // Long chords in between; chords of more than a million steps belong to no part.
+        let parts = ((since + length) / step).floor().min(1e6);
+        for i in 0..parts as u32 {
+            let f = ((f64::from(i) + 1.0) * step - since) / length;
+            if f < 1.0 {
+                see(uv(
+                    outline[k].u + f * (outline[next].u - outline[k].u),
+                    outline[k].v + f * (outline[next].v - outline[k].v),
+                ));
+            }
+        }
+        since = (since + length) - parts * step;
+    }
+    out
+}

@@ -1,0 +1,196 @@
+//! What can hide between samples, cell by cell.
+//!
+//! Over the cell of a sample take the lines along the sample's normal n. Seen along n, the lower side of one straight
+//! motion's swept body is a convex function F of the place x across, and what stands above the part is F(x) - z(x), z
+//! being the part's own height along n. On a convex part -z is convex too; on a concave one of curvature k it lies above
+//! its chords by at most `k r^2 / 2`, r half the diagonal of the cell. A convex function is greatest at the corners of the
+//! cell. The true height is the least over all motions, so that any one of them gives a bound, and so does any mixture of
+//! two: at a cusp one of them rises where the other falls, and their mean is level:
+//!
+//! `height <= min over motions i, j of max over corners c of (h_i(c) + h_j(c)) / 2 + k r^2 / 2`.
+//!
+//! At a cusp this is above the truth by a term in r^2 only, where one motion alone has one in r. The motions tried are the
+//! one that cut the sample and the lowest of those that come near the cell. Cells whose bound is above what the samples have shown are divided, parts that lie
+//! outside the trims left aside, up to [`DIVISIONS`] times. Heights along the cell's own normals are lower than along n by
+//! a factor within `1 / (1 - k r)`, which is put on top. The bound holds to leading order in the curvature's change over a
+//! cell and in the sagitta of turning motions.
+//!
+//! *Gouges.* At the bottom of a gouge the standoff is level: a sample r away is deeper by less than `K r^2 / 2` only, K the
+//! relative curvature, with the curvature at each sample and the size of its own cell.
+
+use super::body::Body;
+use super::cluster::clusters;
+use super::deepest::Passage;
+use super::density::Hidden;
+use super::job::{Cut, Job, JobError};
+use super::piece::{Approach, Passes, Piece, pieces};
+use super::sampling::Patch;
+use super::target::Target;
+use super::tree::Tree;
+use crate::cutter::Line;
+use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
+use rayon::prelude::*;
+
+/// How often a cell is halved in both directions.
+pub const DIVISIONS: u32 = 3;
+/// Motions around a cell that are tried.
+const MOST_MOTIONS: usize = 8;
+/// Accuracy of the instant, of the motion: an instant that is off gives a bound that is higher.
+const INSTANT: f64 = 1e-7;
+
+/// Bounds on what may hide between samples on the faces of a job, in the order of the samples.
+///
+/// `surfaces` are the faces by number, `patches` the cells of the job's samples; samples without a cell (on a trim) have
+/// none of their own and are left aside, as are those that nothing cut and those above `uncut_mm`. `tool_radius_mm` is the
+/// tool's effective radius for the gouge bound, see [`Density::bound`](super::Density::bound).
+///
+/// # Errors
+/// [`JobError`] for samples that are not finite.
+pub fn hidden(
+    surfaces: &[&dyn Surface],
+    job: &Job<'_>,
+    (patches, cuts): (&[Option<Patch>], &[Cut]),
+    uncut_mm: f64,
+    tool_radius_mm: f64,
+) -> Result<Hidden, JobError> {
+    let judged = |k: usize| {
+        let (s, c) = (&job.samples[k], &cuts[k]);
+        !s.check_only && c.by.is_some() && c.standoff_mm <= uncut_mm
+    };
+    let seen = (0..cuts.len()).filter(|k| judged(*k)).map(|k| cuts[k].standoff_mm).fold(0.0, f64::max);
+    let body = Body { cutter: job.cutter, above_mm: 0.0 };
+    let pieces = pieces(job.motions, job.cutter.length_mm().hypot(job.cutter.radius_mm()))?;
+    let world =
+        World { job, body, tree: Tree::new(job.motions, &pieces, job.cutter.radius_mm()), pieces, seen };
+    let found: Vec<[f64; 2]> = clusters(job.samples)?
+        .par_iter()
+        .map(|group| {
+            let mut bounds = [seen, 0.0];
+            for k in &group.members {
+                let k = *k as usize;
+                let (Some(patch), true) = (patches.get(k).copied().flatten(), judged(k)) else { continue };
+                let surface = surfaces[job.samples[k].face as usize];
+                let cell = Cell { surface, world: &world, own: cuts[k].by.map_or(0, |by| by.motion) };
+                let (height, radius) = cell.bound(&patch, &mut None, DIVISIONS);
+                let level = 0.5 * (1.0 / tool_radius_mm + patch.convex_per_mm) * radius * radius;
+                bounds = [bounds[0].max(height), bounds[1].max(level)];
+            }
+            bounds
+        })
+        .collect();
+    let most = |i: usize| found.iter().map(|b| b[i]).fold(0.0, f64::max);
+    Ok(Hidden { scallop_mm: (most(0) - seen).max(0.0), gouge_mm: most(1) })
+}
+
+struct World<'a> {
+    job: &'a Job<'a>,
+    body: Body<'a>,
+    tree: Tree,
+    pieces: Vec<Piece>,
+    /// The highest standoff at a sample: bounds below need not be sharper.
+    seen: f64,
+}
+
+struct Cell<'a> {
+    surface: &'a dyn Surface,
+    world: &'a World<'a>,
+    /// The motion that cut the sample.
+    own: u32,
+}
+
+impl Cell<'_> {
+    /// Bound on the heights over a patch and the radius of the patch; `near` keeps the motions around, once looked for.
+    fn bound(&self, patch: &Patch, near: &mut Option<Vec<u32>>, divisions: u32) -> (f64, f64) {
+        let seen = self.world.seen;
+        let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
+        let middle = uv(0.5 * (u0 + u1), 0.5 * (v0 + v1));
+        let jet = self.surface.jet2(middle);
+        let corners = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)];
+        let points = corners.map(|c| self.surface.point(c));
+        let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
+        let Ok(normal) = jet.normal() else { return (seen, radius) };
+        let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
+        let slack = 0.5 * patch.concave_per_mm * radius * radius;
+        let scale = 1.0 / (1.0 - bend.min(0.5));
+        let upper = |heights: f64| (heights + slack) * scale;
+        let at = |motion: u32| points.map(|p| self.height(motion, p, normal));
+        let top = |h: [f64; 4]| h.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mine = at(self.own);
+        let mut best = upper(top(mine));
+        if best <= seen {
+            return (best, radius);
+        }
+        let mut all = vec![mine];
+        let around = near
+            .get_or_insert_with(|| self.around(points, jet.point, normal, best.min(self.world.job.stock_mm)));
+        for motion in around.iter().filter(|m| **m != self.own) {
+            let other = at(*motion);
+            best = best.min(upper(top(other)));
+            for one in &all {
+                best = best.min(upper(top(std::array::from_fn(|c| 0.5 * (one[c] + other[c])))));
+            }
+            if best <= seen {
+                return (best, radius);
+            }
+            all.push(other);
+        }
+        if divisions == 0 {
+            return (best, radius);
+        }
+        let mut divided = 0.0f64;
+        for (u, v) in [
+            ([u0, middle.u], [v0, middle.v]),
+            ([middle.u, u1], [v0, middle.v]),
+            ([u0, middle.u], [middle.v, v1]),
+            ([middle.u, u1], [middle.v, v1]),
+        ] {
+            let part = Patch { u, v, ..*patch };
+            if self.on_face(&part) {
+                divided = divided.max(self.bound(&part, near, divisions - 1).0);
+            }
+        }
+        (best.min(divided), radius)
+    }
+
+    /// The motions of the cutter that leave least above the middle of a cell, of those that come near what is up to
+    /// `height` above it.
+    fn around(&self, corners: [Point3; 4], middle: Point3, normal: Unit3, height: f64) -> Vec<u32> {
+        let World { job, body, tree, pieces, .. } = self.world;
+        let raised = normal.into_inner() * height;
+        let target = Target::around(corners.into_iter().flat_map(|p| [p, p + raised]), &normal);
+        let mut found = Vec::new();
+        tree.near(std::slice::from_ref(body), &target, |k, body, _| {
+            let piece = &pieces[k as usize];
+            let swept = &job.motions[piece.motion as usize];
+            if !swept.rapid && Approach::new(swept, piece).passes(body, &target) != Passes::Clear {
+                found.push(piece.motion);
+            }
+        });
+        found.sort_unstable();
+        found.dedup();
+        let mut ranked: Vec<(f64, u32)> =
+            found.into_iter().map(|m| (self.height(m, middle, normal), m)).collect();
+        ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        ranked.truncate(MOST_MOTIONS);
+        ranked.into_iter().map(|r| r.1).collect()
+    }
+
+    /// Whether a raster of places of a patch meets the face.
+    fn on_face(&self, patch: &Patch) -> bool {
+        const RASTER: u32 = 4;
+        let at =
+            |range: [f64; 2], k: u32| range[0] + (range[1] - range[0]) * f64::from(k) / f64::from(RASTER);
+        let place = |k: u32| -> Uv { uv(at(patch.u, k % (RASTER + 1)), at(patch.v, k / (RASTER + 1))) };
+        (0..(RASTER + 1) * (RASTER + 1)).any(|k| self.surface.contains(place(k)))
+    }
+
+    /// What one motion leaves above a point along a direction; infinite where it misses.
+    fn height(&self, motion: u32, origin: Point3, direction: Unit3) -> f64 {
+        let World { job, body, .. } = self.world;
+        let swept = &job.motions[motion as usize];
+        let piece = Piece { motion, range: [0.0, 1.0] };
+        let line = Line { origin, direction };
+        let passage = Passage { body: *body, swept, piece, line, instant: INSTANT };
+        passage.height(f64::INFINITY, job.depth_mm).unwrap_or(f64::INFINITY)
+    }
+}
