@@ -21,6 +21,9 @@ mod parametric;
 mod params;
 mod pcurves;
 mod tree;
+mod write;
+
+pub use write::{IgesOptions, IgesWriteError, write};
 
 use crate::part::Part;
 use cards::{CardFault, Cards};

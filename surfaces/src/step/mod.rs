@@ -8,6 +8,9 @@ mod geometry;
 mod graph;
 mod lexer;
 mod units;
+mod write;
+
+pub use write::{StepOptions, StepWriteError, write};
 
 use crate::part::Part;
 

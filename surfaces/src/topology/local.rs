@@ -2,6 +2,7 @@
 
 use super::chart::{Chart, Wrapped};
 use super::course::{Course, Spacing};
+use super::isoline;
 use crate::part::Face;
 use osculate_geom::{Point3, Surface, Uv};
 use std::sync::Arc;
@@ -52,6 +53,13 @@ impl LocalEdge {
 /// The edges of a face.
 pub(crate) fn edges(face: &Face, chart: &Chart) -> Vec<LocalEdge> {
     let wrapped: Arc<dyn Surface> = Arc::new(Wrapped::new(face, chart));
+    let line = |points: &[Uv]| {
+        let straight = isoline::ends_if_straight(points);
+        match straight.and_then(|[a, b]| isoline::between(&face.carrier, a, b)) {
+            Some(piece) => Course::Space(piece),
+            None => Course::OnSurface { surface: wrapped.clone(), points: points.to_vec() },
+        }
+    };
     let own = face.surface.edges();
     if !own.is_empty() {
         return own
@@ -60,7 +68,7 @@ pub(crate) fn edges(face: &Face, chart: &Chart) -> Vec<LocalEdge> {
             .map(|e| {
                 let course = match &e.curve {
                     Some(piece) => Course::Space(piece.clone()),
-                    None => Course::OnSurface { surface: wrapped.clone(), points: e.points.clone() },
+                    None => line(&e.points),
                 };
                 LocalEdge::new(e.key, e.owner, course, e.points.clone(), chart.size_mm)
             })
@@ -69,7 +77,7 @@ pub(crate) fn edges(face: &Face, chart: &Chart) -> Vec<LocalEdge> {
     let mut out = Vec::new();
     for (owner, l) in face.surface.loops().iter().enumerate() {
         for points in stretches(chart, &l.points) {
-            let course = Course::OnSurface { surface: wrapped.clone(), points: points.clone() };
+            let course = line(&points);
             out.push(LocalEdge::new(None, owner, course, points, chart.size_mm));
         }
     }

@@ -111,7 +111,12 @@ pub(crate) fn build(made: Vec<(Chart, Vec<LocalEdge>)>, size_mm: f64, join_mm: f
             uses[*k].edge = Some(edges.len());
             uses[*k].forward = *forward;
         }
-        edges.push(Edge { course: flat[first].1.course.clone(), vertices: uses[first].vertices });
+        edges.push(Edge {
+            course: flat[first].1.course.clone(),
+            vertices: uses[first].vertices,
+            uses: g.members.iter().map(|m| flat[m.0].0).collect(),
+            length_mm: flat[first].1.length_mm,
+        });
     }
     let mut rest = uses.into_iter();
     let faces = made

@@ -5,14 +5,21 @@
 //! its uses. Vertices come from the order of edges in loops, so that no tolerance decides on them where the file
 //! is sound.
 
+mod bodies;
 mod chart;
 mod course;
+mod isoline;
 mod local;
+mod loops;
 mod matching;
+mod way;
 
+pub(crate) use bodies::bodies;
 pub(crate) use chart::{Chart, Wrapped};
 pub(crate) use course::{Course, Follower, Spacing, on_polyline};
 pub(crate) use local::LocalEdge;
+pub(crate) use loops::{Step, loops, natural_loops, outward};
+pub(crate) use way::{Along, Way, as_spline, way};
 
 use crate::part::Face;
 use osculate_geom::{Box3, Point3};
@@ -23,6 +30,10 @@ pub(crate) struct Edge {
     pub(crate) course: Course,
     /// Vertex numbers at start and end.
     pub(crate) vertices: [usize; 2],
+    /// The faces that use it, one entry a use.
+    pub(crate) uses: Vec<usize>,
+    /// Length, mm.
+    pub(crate) length_mm: f64,
 }
 
 /// A face's use of an edge.

@@ -7,6 +7,63 @@ use osculate_geom::{Point3, Vec3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// What a curve is, parameter included, for writers.
+#[derive(Clone, Debug)]
+pub(crate) enum Form {
+    /// A straight line.
+    Line(Line),
+    /// An ellipse or circle.
+    Ellipse(Ellipse),
+    /// A parabola or a hyperbola.
+    Open(OpenConic),
+    /// Straight pieces.
+    Polyline(Polyline),
+    /// A spline.
+    Spline(super::spline::Spline),
+}
+
+impl Form {
+    /// The image under a motion; `None` where an ellipse would lose its axes or a spline leaves the range of numbers.
+    fn moved(self, motion: &Motion) -> Option<Self> {
+        let turned = |frame: &Placement| -> Option<(Placement, f64)> {
+            let [x, y] = [frame.x, frame.y].map(|d| motion.linear * d.into_inner());
+            let scale = x.norm();
+            // A rotation, a reflection or a uniform scaling keeps lengths equal and right angles right.
+            let kept = (y.norm() - scale).abs() <= 1e-9 * scale && x.dot(&y).abs() <= 1e-9 * scale * scale;
+            let z = osculate_geom::Unit3::try_new(x.cross(&y), 0.0)?;
+            kept.then(|| (Placement::new(motion.point(&frame.origin), z, Some(x)), scale))
+        };
+        Some(match self {
+            Self::Line(l) => Self::Line(Line {
+                origin: motion.point(&l.origin),
+                direction: motion.linear * l.direction,
+                range: l.range,
+            }),
+            Self::Ellipse(e) => {
+                let (frame, scale) = turned(&e.frame)?;
+                Self::Ellipse(Ellipse { frame, semi_axes: e.semi_axes.map(|a| a * scale), range: e.range })
+            }
+            Self::Open(c) => {
+                let (frame, scale) = turned(&c.frame)?;
+                let kind = match c.kind {
+                    OpenKind::Parabola { focal_mm } if (scale - 1.0).abs() <= 1e-12 => {
+                        OpenKind::Parabola { focal_mm }
+                    }
+                    OpenKind::Parabola { .. } => return None,
+                    OpenKind::Hyperbola { semi_axes_mm } => {
+                        OpenKind::Hyperbola { semi_axes_mm: semi_axes_mm.map(|a| a * scale) }
+                    }
+                };
+                Self::Open(OpenConic { frame, kind })
+            }
+            Self::Polyline(p) => {
+                Self::Polyline(Polyline { points: p.points.iter().map(|q| motion.point(q)).collect() })
+            }
+            Self::Spline(s) => Self::Spline(s.mapped(motion).ok()?),
+        })
+    }
+}
+
 /// A curve in space.
 pub(crate) trait Curve: Send + Sync {
     /// The point at a parameter; closed curves accept parameters beyond their range.
@@ -26,6 +83,11 @@ pub(crate) trait Curve: Send + Sync {
     /// Parameters strictly within `range` between which the curve is smooth.
     fn breaks(&self) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// The closed form with the same parameter, where there is one.
+    fn form(&self) -> Option<Form> {
+        None
     }
 }
 
@@ -48,6 +110,9 @@ impl Line {
 }
 
 impl Curve for Line {
+    fn form(&self) -> Option<Form> {
+        Some(Form::Line(*self))
+    }
     fn point(&self, t: f64) -> Point3 {
         self.origin + self.direction * t
     }
@@ -72,6 +137,9 @@ pub(crate) struct Ellipse {
 }
 
 impl Curve for Ellipse {
+    fn form(&self) -> Option<Form> {
+        Some(Form::Ellipse(*self))
+    }
     fn point(&self, t: f64) -> Point3 {
         let (s, c) = t.sin_cos();
         self.frame.point(&Point3::new(self.semi_axes[0] * c, self.semi_axes[1] * s, 0.0))
@@ -129,6 +197,9 @@ pub(crate) struct OpenConic {
 }
 
 impl Curve for OpenConic {
+    fn form(&self) -> Option<Form> {
+        Some(Form::Open(*self))
+    }
     fn point(&self, t: f64) -> Point3 {
         let (x, y) = match self.kind {
             OpenKind::Parabola { focal_mm } => (focal_mm * t * t, 2.0 * focal_mm * t),
@@ -157,6 +228,9 @@ pub(crate) struct Polyline {
 }
 
 impl Curve for Polyline {
+    fn form(&self) -> Option<Form> {
+        Some(Form::Polyline(self.clone()))
+    }
     fn point(&self, t: f64) -> Point3 {
         let last = self.points.len() - 1;
         let k = (t.max(0.0) as usize).min(last.saturating_sub(1));
@@ -311,6 +385,9 @@ impl Motion {
 }
 
 impl Curve for Moved {
+    fn form(&self) -> Option<Form> {
+        self.curve.form()?.moved(&self.motion)
+    }
     fn point(&self, t: f64) -> Point3 {
         self.motion.point(&self.curve.point(t))
     }

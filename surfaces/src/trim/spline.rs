@@ -3,7 +3,7 @@
 //! Conics become rational quadratics ([Piegl & Tiller, The NURBS Book, 7.3]), so that every generatrix can be swept
 //! to a spline surface.
 
-use super::curve::{Curve, Motion};
+use super::curve::{Curve, Form, Motion};
 use crate::nurbs_curve::{CurveError, NurbsCurve3};
 use osculate_geom::{Box3, Point3, Vec3};
 use std::f64::consts::FRAC_PI_2;
@@ -108,6 +108,9 @@ impl Spline {
 }
 
 impl Curve for Spline {
+    fn form(&self) -> Option<Form> {
+        Some(Form::Spline(self.clone()))
+    }
     fn point(&self, t: f64) -> Point3 {
         let [lo, hi] = self.range();
         if self.closed && !(t >= lo && t <= hi) {

@@ -1,0 +1,149 @@
+//! Writing STEP: AP214 boundary representations of faces.
+//!
+//! Surfaces with closed forms are written as such, splines as B-splines (rational ones as complex records), edges along
+//! the curves of the file that they came from. Faces whose shared edges close a body become a solid, others an open
+//! shell. Numbers are written with as many digits as it takes to read the same number back.
+//!
+//! Source: ISO 10303-21 (form), ISO 10303-42 (geometry and topology), ISO 10303-214 (product structure).
+
+mod curves;
+mod records;
+mod shells;
+mod surfaces;
+
+use crate::part::Face;
+use crate::topology::{Along, Step, Topology, loops, outward, way};
+use osculate_geom::{Point3, Side};
+use records::{Records, text};
+
+/// What a file says about itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StepOptions {
+    /// Name of the product.
+    pub name: String,
+    /// Date and time as ISO 8601 writes them, empty for none: the same faces then give the same bytes.
+    pub timestamp: String,
+}
+
+impl Default for StepOptions {
+    fn default() -> Self {
+        Self { name: "part".to_owned(), timestamp: String::new() }
+    }
+}
+
+/// Why faces cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StepWriteError {
+    /// Nothing to write.
+    #[error("there is no face to write")]
+    NoFaces,
+    /// A face with a boundary that is not made of edges.
+    #[error("{face} has no boundary that could be written: its loops have no edge of any length")]
+    NoBoundary {
+        /// The face's id.
+        face: String,
+    },
+}
+
+/// Vertices are at the ends of their edges to at least this part of the part's size.
+const ACCURACY: f64 = 1e-7;
+
+/// Writes faces as a STEP file, lengths in millimetres.
+///
+/// # Errors
+/// [`StepWriteError`].
+pub fn write(faces: &[Face], options: &StepOptions) -> Result<String, StepWriteError> {
+    if faces.is_empty() {
+        return Err(StepWriteError::NoFaces);
+    }
+    let topology = Topology::new(faces, None);
+    let mut out = Records::new();
+    let vertices: Vec<usize> = topology
+        .vertices
+        .iter()
+        .map(|p| {
+            let point = out.point(p);
+            out.add(format!("VERTEX_POINT('',#{point})"))
+        })
+        .collect();
+    let edges: Vec<usize> = topology
+        .edges
+        .iter()
+        .map(|e| {
+            let way = way(&e.course, e.length_mm);
+            let curve = curves::curve(&mut out, &way);
+            let [a, b] = e.vertices.map(|k| vertices[k]);
+            let sense = flag(way.forward());
+            out.add(format!("EDGE_CURVE('',#{a},#{b},#{curve},{sense})"))
+        })
+        .collect();
+    let mut written = Vec::with_capacity(faces.len());
+    for (face, of) in faces.iter().zip(&topology.faces) {
+        let mut bounds = Vec::new();
+        let walks = loops(face, of);
+        let bare = walks.is_empty();
+        for walk in walks {
+            let bound = edge_loop(&mut out, &walk, &edges);
+            bounds.push(out.add(format!("FACE_BOUND('',#{bound},.T.)")));
+        }
+        if bare {
+            // A whole sphere or torus: a loop of one point stands for no boundary.
+            if of.chart.closes == [false, false] {
+                return Err(StepWriteError::NoBoundary { face: face.id.clone() });
+            }
+            let at = osculate_geom::Surface::point(&*face.surface, of.chart.domain.at(0.0, 0.0));
+            let point = out.point(&at);
+            let vertex = out.add(format!("VERTEX_POINT('',#{point})"));
+            let bound = out.add(format!("VERTEX_LOOP('',#{vertex})"));
+            bounds.push(out.add(format!("FACE_BOUND('',#{bound},.T.)")));
+        }
+        let surface = surfaces::surface(&mut out, face);
+        let same = flag(outward(face) == Side::Along);
+        let bounds = list(&bounds);
+        written.push(out.add(format!("ADVANCED_FACE({},{bounds},#{surface},{same})", text(&face.name))));
+    }
+    let items = shells::items(&mut out, faces, &topology, &written);
+    let accuracy_mm = accuracy(&topology).max(ACCURACY * topology.size_mm);
+    shells::product(&mut out, options, &items, accuracy_mm);
+    Ok(out.file(options))
+}
+
+fn edge_loop(out: &mut Records, walk: &[Step], edges: &[usize]) -> usize {
+    let uses: Vec<usize> = walk
+        .iter()
+        .map(|s| out.add(format!("ORIENTED_EDGE('',*,*,#{},{})", edges[s.edge], flag(s.forward))))
+        .collect();
+    out.add(format!("EDGE_LOOP('',{})", list(&uses)))
+}
+
+/// The largest distance of a vertex from the end of an edge that it belongs to, mm.
+fn accuracy(topology: &Topology) -> f64 {
+    let gap = |p: Point3, k: usize| (p - topology.vertices[k]).norm();
+    topology
+        .edges
+        .iter()
+        .flat_map(|e| [gap(e.course.point(0.0), e.vertices[0]), gap(e.course.point(1.0), e.vertices[1])])
+        .fold(0.0, f64::max)
+}
+
+const fn flag(value: bool) -> &'static str {
+    if value { ".T." } else { ".F." }
+}
+
+/// References in brackets.
+fn list(ids: &[usize]) -> String {
+    let each: Vec<String> = ids.iter().map(|k| format!("#{k}")).collect();
+    format!("({})", each.join(","))
+}
+
+/// Whether a way ends where it begins, for the flag that nobody may rely on.
+fn closes(way: &Along) -> &'static str {
+    match way {
+        Along::Spline(s) => {
+            let (d, poles) = (s.domain(), s.poles());
+            let size = osculate_geom::Box3::around(poles).diagonal_mm();
+            flag((s.point(d.lo) - s.point(d.hi)).norm() <= 1e-9 * size)
+        }
+        _ => ".U.",
+    }
+}

@@ -1,0 +1,179 @@
+//! The curve under an edge for writers: the file's own where it has a closed form, the parameter line where the surface
+//! has one there, else a cubic spline through dense points.
+
+use super::course::{Course, Spacing};
+use crate::nurbs_curve::NurbsCurve3;
+use crate::trim::curve::{Curve, Ellipse, Form, Line, OpenConic, OpenKind, Piece};
+use crate::trim::spline::Spline;
+use osculate_geom::{Interval, Point3, Vec3};
+
+/// What an edge runs along.
+#[derive(Clone, Debug)]
+pub(crate) enum Along {
+    /// A straight line.
+    Line(Line),
+    /// A circle or an ellipse.
+    Ellipse(Ellipse),
+    /// A parabola or a hyperbola.
+    Open(OpenConic),
+    /// Straight pieces between points.
+    Polyline(Vec<Point3>),
+    /// A spline, with clamped knots, exactly as long as the edge.
+    Spline(NurbsCurve3),
+}
+
+/// A curve, and the parameters at which the edge begins and ends.
+#[derive(Clone, Debug)]
+pub(crate) struct Way {
+    pub(crate) along: Along,
+    pub(crate) ends: [f64; 2],
+}
+
+/// Chords of the points that a spline is put through, as a part of its length: the spline is then within 1e-10 of its
+/// length from a smooth course.
+const FIT_CHORD: f64 = 1e-5;
+
+/// Chords that meet at a greater angle than this are a corner, rad.
+const CORNER: f64 = 0.2;
+
+/// The way of a course of this length.
+pub(crate) fn way(course: &Course, length_mm: f64) -> Way {
+    let exact = match course {
+        Course::Space(piece) => of_piece(piece),
+        Course::OnSurface { .. } => None,
+    };
+    exact.unwrap_or_else(|| fitted(course, length_mm))
+}
+
+fn of_piece(piece: &Piece) -> Option<Way> {
+    let [a, b] = piece.ends;
+    let (lo, hi) = (a.min(b), a.max(b));
+    let along = match piece.curve.form()? {
+        Form::Line(l) => Along::Line(l),
+        Form::Ellipse(e) => Along::Ellipse(e),
+        Form::Open(c) => Along::Open(c),
+        Form::Polyline(p) => {
+            let inner = p.points.iter().enumerate().filter(|(k, _)| *k as f64 > lo && (*k as f64) < hi);
+            let mut points = vec![p.point(lo)];
+            points.extend(inner.map(|e| *e.1));
+            points.push(p.point(hi));
+            let ends =
+                if a <= b { [0.0, points.len() as f64 - 1.0] } else { [points.len() as f64 - 1.0, 0.0] };
+            return Some(Way { along: Along::Polyline(points), ends });
+        }
+        Form::Spline(s) => {
+            let d = s.curve().domain();
+            // Across the seam of a closed spline the two parts make no single piece of it.
+            if lo < d.lo - 1e-12 * d.length() || hi > d.hi + 1e-12 * d.length() {
+                return None;
+            }
+            let part = s.curve().restricted(Interval::new(lo.max(d.lo), hi.min(d.hi))).ok()?;
+            let d = part.domain();
+            let ends = if a <= b { [d.lo, d.hi] } else { [d.hi, d.lo] };
+            return Some(Way { along: Along::Spline(part), ends });
+        }
+    };
+    Some(Way { along, ends: [a, b] })
+}
+
+/// A cubic spline with continuous tangents through dense points of a course; corners stay corners.
+fn fitted(course: &Course, length_mm: f64) -> Way {
+    let spacing = Spacing { chord_mm: FIT_CHORD * length_mm, length_mm: 0.05 * length_mm };
+    let mut points: Vec<Point3> = course.samples(spacing).into_iter().map(|s| s.1).collect();
+    points.dedup();
+    if points.len() < 2 {
+        points = vec![course.point(0.0), course.point(1.0)];
+    }
+    let n = points.len();
+    let mut t = vec![0.0];
+    for w in points.windows(2) {
+        t.push(t[t.len() - 1] + (w[1] - w[0]).norm().max(f64::MIN_POSITIVE));
+    }
+    let slope = |k: usize| (points[k + 1] - points[k]) / (t[k + 1] - t[k]);
+    let corner: Vec<bool> =
+        (0..n).map(|k| k > 0 && k + 1 < n && slope(k - 1).angle(&slope(k)) > CORNER).collect();
+    // The parabola through three points; at ends and corners that of the side.
+    let inner = |k: usize| {
+        let (h0, h1) = (t[k] - t[k - 1], t[k + 1] - t[k]);
+        (slope(k - 1) * h1 + slope(k) * h0) / (h0 + h1)
+    };
+    let one_sided = |k: usize, near: Vec3, next: usize| {
+        let usable = next > 0 && next + 1 < n && !corner[next];
+        if usable { near * 2.0 - inner(next) } else { near }
+            .try_normalize(0.0)
+            .unwrap_or_else(|| near.try_normalize(0.0).unwrap_or_else(|| points[k].coords))
+    };
+    let after = |k: usize| if k > 0 && !corner[k] { inner(k) } else { one_sided(k, slope(k), k + 1) };
+    let before =
+        |k: usize| if k + 1 < n && !corner[k] { inner(k) } else { one_sided(k, slope(k - 1), k - 1) };
+    let mut knots = vec![0.0; 4];
+    let mut poles = vec![points[0]];
+    for k in 0..n - 1 {
+        let third = (t[k + 1] - t[k]) / 3.0;
+        poles.push(points[k] + after(k) * third);
+        poles.push(points[k + 1] - before(k + 1) * third);
+        let last = k + 2 == n;
+        if last || corner[k + 1] {
+            poles.push(points[k + 1]);
+        }
+        let times = if last { 4 } else { 2 + usize::from(corner[k + 1]) };
+        knots.extend(std::iter::repeat_n(t[k + 1], times));
+    }
+    let straight = || {
+        let line = Line::segment(points[0], points[n - 1]);
+        Way { along: Along::Line(line), ends: [0.0, 1.0] }
+    };
+    match NurbsCurve3::new(3, knots, poles, None) {
+        Ok(curve) => Way { along: Along::Spline(curve), ends: [0.0, t[n - 1]] },
+        // Points so near to each other that their distances vanish in rounding: a line is as good.
+        Err(_) => straight(),
+    }
+}
+
+impl Way {
+    /// Whether the edge runs along its curve's own sense.
+    pub(crate) fn forward(&self) -> bool {
+        self.ends[0] <= self.ends[1]
+    }
+
+    /// The way as a spline in its own sense; `None` for a piece of a hyperbola, which a writer of splines has to fit.
+    pub(crate) fn spline(&self) -> Option<NurbsCurve3> {
+        let [a, b] = self.ends;
+        let made = match &self.along {
+            Along::Line(l) => {
+                let poles = vec![l.point(a), l.point(b)];
+                NurbsCurve3::new(1, vec![0.0, 0.0, 1.0, 1.0], poles, None).ok()?
+            }
+            Along::Ellipse(e) => {
+                let x = e.frame.x.into_inner() * e.semi_axes[0];
+                let y = e.frame.y.into_inner() * e.semi_axes[1];
+                Spline::arc(e.frame.origin, x, y, [a, b]).ok()?.curve().clone()
+            }
+            Along::Open(c) => match c.kind {
+                OpenKind::Parabola { focal_mm } => {
+                    let local = |x: f64, y: f64| c.frame.point(&Point3::new(focal_mm * x, focal_mm * y, 0.0));
+                    let poles = vec![local(a * a, 2.0 * a), local(a * b, a + b), local(b * b, 2.0 * b)];
+                    NurbsCurve3::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], poles, None).ok()?
+                }
+                OpenKind::Hyperbola { .. } => return None,
+            },
+            Along::Polyline(points) => {
+                let s = Spline::polyline(points.clone()).ok()?.curve().clone();
+                if self.forward() { s } else { s.reversed() }
+            }
+            Along::Spline(s) => {
+                if self.forward() {
+                    s.clone()
+                } else {
+                    s.reversed()
+                }
+            }
+        };
+        Some(made)
+    }
+}
+
+/// The way of a course as a spline whatever it runs along.
+pub(crate) fn as_spline(course: &Course, length_mm: f64) -> Option<NurbsCurve3> {
+    way(course, length_mm).spline().or_else(|| fitted(course, length_mm).spline())
+}
