@@ -24,7 +24,7 @@ use crate::limit;
 use crate::point::{Axis, Point3, Uv, Vec3, uv};
 use crate::series::{MAX_ORDER, Series};
 use crate::surface::Surface;
-use crate::taylor::Taylor;
+use crate::taylor::{Taylor, cross};
 
 /// Why there is no offset, or none without a cusp at a place.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -153,8 +153,8 @@ impl<S: Surface> Offset<S> {
         let mut jet = Jet2 {
             uv: j.uv,
             point: j.point + n * d,
-            du: j.du + eu * d,
-            dv: j.dv + ev * d,
+            du: sum(&j.du, &(eu * d)),
+            dv: sum(&j.dv, &(ev * d)),
             duu: j.duu + second(&nuu, u, u) * d,
             duv: j.duv + second(&nuv, u, v) * d,
             dvv: j.dvv + second(&nvv, v, v) * d,
@@ -176,7 +176,8 @@ impl<S: Surface> Surface for Offset<S> {
         self.jet_from(&self.base.jet3(uv)).unwrap_or_else(|| self.taylor(uv, 2).jet2())
     }
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        let order = order.min(MAX_ORDER - 1);
+        // Which way the normal runs at a pole takes more than the point.
+        let (asked, order) = (order, order.clamp(3, MAX_ORDER - 1));
         let base = self.base.taylor(uv, order);
         let d = self.distance_mm;
         let Some(n) = limit::normal_series(&self.base, uv, order) else {
@@ -184,13 +185,9 @@ impl<S: Surface> Surface for Offset<S> {
             return Taylor { coordinates: [unknown; 3], ..base };
         };
         let coordinates = [0, 1, 2].map(|k| base.coordinates[k] + n[k] * d);
-        let mut t = Taylor { coordinates, ..base };
-        let (du, dv) = (t.derivative(1, 0), t.derivative(0, 1));
-        let n0 = Vec3::from(n.map(|c| c.value()));
-        if du.cross(&dv).dot(&n0) * t.side.sign() < 0.0 {
-            t = t.flipped();
-        }
-        t
+        let t = Taylor { coordinates, ..base };
+        let side = if turned_over(&base, &t) { t.side.flipped() } else { t.side };
+        Taylor { side, coordinates: t.coordinates.map(|c| c.truncated(asked)), ..t }
     }
     fn point(&self, uv: Uv) -> Point3 {
         let jet = self.base.jet2(uv);
@@ -205,6 +202,28 @@ impl<S: Surface> Surface for Offset<S> {
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         self.base.breaks(axis)
     }
+}
+
+/// Whether S_u x S_v of the offset points against that of its base: by the first coefficient of the base's that does not
+/// vanish, which at a pole is not the value.
+fn turned_over(base: &Taylor, offset: &Taylor) -> bool {
+    let both = [base, offset].map(|t| cross(&t.differentiated(Axis::U), &t.differentiated(Axis::V)));
+    let order = both[1][0].order();
+    let at = |s: &[Series; 3], i: usize, j: usize| Vec3::from([0, 1, 2].map(|k| s[k].coefficient(i, j)));
+    let all = || (0..=order).flat_map(|n| (0..=n).map(move |j| (n - j, j)));
+    let largest = all().map(|(i, j)| at(&both[0], i, j).norm()).fold(0.0, f64::max);
+    // Coefficients of rounding are far below, those of the shape not.
+    let first = all().find(|(i, j)| at(&both[0], *i, *j).norm() > 1e-11 * largest);
+    first.is_some_and(|(i, j)| at(&both[0], i, j).dot(&at(&both[1], i, j)) < 0.0)
+}
+
+/// A sum that is zero where it is all rounding: on a cusp along a parameter line S_u vanishes, and what rounding leaves of it
+/// must not pass for a tangent.
+fn sum(a: &Vec3, b: &Vec3) -> Vec3 {
+    let sum = a + b;
+    // A normal's derivative carries some ten roundings.
+    let noise = 32.0 * f64::EPSILON * (a.norm() + b.norm());
+    if sum.norm() <= noise { Vec3::zeros() } else { sum }
 }
 
 /// The distances by which a surface can be offset without a cusp.
