@@ -3,7 +3,9 @@
 use osculate_geom::Diagnostic;
 use osculate_tools::cl::{ClPath, Motion};
 
-use crate::feed::{FeedMode, PathMetric, Step, capped_duration, duration_min, inverse_time_per_min};
+use crate::feed::{
+    FeedMode, PathMetric, Step, capped_duration, duration_min, fastest_durations_min, inverse_time_per_min,
+};
 use crate::joint_path::{JointBlock, JointPath};
 use crate::machine::Machine;
 use crate::motion::rapid_time_min;
@@ -130,7 +132,7 @@ pub fn post(
         linuxcnc_tcp: machine.control().linuxcnc_tcp.clone(),
         tool_number: options.tool_number,
         spindle_rpm,
-        feed_word: feed_word(options.feed),
+        feed_word: feed_word(options, machine),
         blend_mm: options.solve.tip_tol_mm,
         linear_names: if tcp {
             ["X", "Y", "Z"].map(String::from)
@@ -171,7 +173,11 @@ fn check(path: &ClPath, options: &PostOptions) -> Result<(), PostError> {
         FeedMode::Kz { step_mm_min, .. } => Some(step_mm_min),
         _ => None,
     };
-    for (what, value) in [("fgref_mm", radius), ("step_mm_min", step)] {
+    let tip = match options.feed {
+        FeedMode::Fastest { tip_mm_min } => tip_mm_min,
+        _ => None,
+    };
+    for (what, value) in [("fgref_mm", radius), ("step_mm_min", step), ("tip_mm_min", tip)] {
         if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
             return Err(PostError::Feed { what, value });
         }
@@ -182,9 +188,10 @@ fn check(path: &ClPath, options: &PostOptions) -> Result<(), PostError> {
     }
 }
 
-fn feed_word(mode: FeedMode) -> FeedWord {
-    match mode {
+fn feed_word(options: &PostOptions, machine: &Machine) -> FeedWord {
+    match options.feed {
         FeedMode::InverseTime => FeedWord::Inverse,
+        FeedMode::Fastest { .. } => FeedWord::PerMinute(Some(machine.control().feed_reading.into())),
         mode => FeedWord::PerMinute(mode.metric()),
     }
 }
@@ -234,7 +241,12 @@ impl<'a> Draft<'a> {
         let mut carried_mm = 0.0;
         let mut last: Option<(NcMove, &JointBlock)> = None;
         let mut risen: Option<f64> = None;
-        for block in &path.blocks {
+        let fastest = match self.options.feed {
+            FeedMode::Fastest { tip_mm_min } => fastest_durations_min(self.machine, path, tip_mm_min),
+            _ => Vec::new(),
+        };
+        let mut carried_min = 0.0;
+        for (place, block) in path.blocks.iter().enumerate() {
             let mut m = self.rounded(block)?;
             let Some((before, from)) = last else {
                 moves.push(m);
@@ -243,6 +255,7 @@ impl<'a> Draft<'a> {
             };
             if m.linear == before.linear && m.rotary == before.rotary {
                 carried_mm += if m.rapid { 0.0 } else { block.tip_length_mm };
+                carried_min += fastest.get(place).copied().unwrap_or(0.0);
                 continue;
             }
             match block.motion {
@@ -252,12 +265,11 @@ impl<'a> Draft<'a> {
                 }
                 Motion::Feed(wanted) => {
                     let length = block.tip_length_mm + carried_mm;
-                    let capped = capped_duration(
-                        self.machine,
-                        &from.joints,
-                        &block.joints,
-                        duration_min(length, wanted),
-                    );
+                    let asked_min = match fastest.get(place) {
+                        Some(t) => t + carried_min,
+                        None => duration_min(length, wanted),
+                    };
+                    let capped = capped_duration(self.machine, &from.joints, &block.joints, asked_min);
                     if let Some(place) = capped.joint {
                         self.slowed[place] += 1;
                     }
@@ -273,6 +285,7 @@ impl<'a> Draft<'a> {
                 }
             }
             carried_mm = 0.0;
+            carried_min = 0.0;
             moves.push(m);
             last = Some((m, block));
         }
@@ -308,8 +321,9 @@ impl<'a> Draft<'a> {
             // The tip's feed is F itself, whatever rounding does to the length.
             FeedMode::Tcp if !slowed && step.linear_mm > 0.0 => wanted,
             mode => {
-                let metric = mode.metric().unwrap_or(PathMetric::Linear);
-                let f = metric.length(step) / duration_min;
+                // The fastest program is written over whatever the control reads.
+                let own = PathMetric::from(self.machine.control().feed_reading);
+                let f = mode.metric().unwrap_or(own).length(step) / duration_min;
                 match mode {
                     FeedMode::Kz { step_mm_min, .. } => {
                         let f = risen.map_or(f, |b| f.min(b + step_mm_min));

@@ -23,6 +23,7 @@ usage: cargo xtask COMMAND
   interop linuxcnc
                 LinuxCNC's interpreter and kinematics, and pygcode, on our programs (Debian: apt-get, dpkg, gcc, pip)
   ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
+  papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
 
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         ["ci"] => ci::run(),
         ["interop", "linuxcnc"] => interop::linuxcnc(),
         ["truth", rest @ ..] => truth(rest),
+        ["papers", "z17"] => z17(),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             Ok(())
@@ -58,6 +60,12 @@ fn main() -> ExitCode {
 fn truth(rest: &[&str]) -> Result<(), cmd::Failure> {
     let example = ["run", "--release", "--locked", "-p", "osculate-surfaces", "--example", "truth", "--"];
     cmd::run(cmd::cargo(&cmd::root()?, &[&example, rest].concat()))
+}
+
+/// Runs the study of feed modes, an example of the postprocessor.
+fn z17() -> Result<(), cmd::Failure> {
+    let example = ["run", "--locked", "-p", "osculate-postproc", "--example", "z17", "--", "docs/papers"];
+    cmd::run(cmd::cargo(&cmd::root()?, &example))
 }
 
 fn wrong_usage(why: &str) -> ExitCode {

@@ -34,6 +34,11 @@ pub enum FeedMode {
     RotaryOnly,
     /// G93: F is one over the duration in minutes.
     InverseTime,
+    /// As fast as the joints can follow, over what the control reads F over.
+    Fastest {
+        /// Greatest feed of the tip, mm/min; absent: the joints alone decide.
+        tip_mm_min: Option<f64>,
+    },
 }
 
 impl FeedMode {
@@ -46,7 +51,7 @@ impl FeedMode {
                 Some(PathMetric::Arc { radius_mm: fgref_mm.unwrap_or(DEGREE_AS_MM) })
             }
             Self::RotaryOnly => Some(PathMetric::RotaryOnly),
-            Self::None | Self::InverseTime => None,
+            Self::None | Self::InverseTime | Self::Fastest { .. } => None,
         }
     }
 }

@@ -65,6 +65,28 @@ pub struct Stretch {
     time_s: f64,
     /// Blocks that each joint made longer than F asks.
     slowed: [usize; MAX_JOINTS],
+    /// Time of every block, s, where it is asked for.
+    each_s: Option<Vec<f64>>,
+}
+
+/// Time of every block of a path, s, as fast as the joints' speeds and accelerations and the corners allow, or as
+/// slow as `wanted_s` of a block asks; `None` is a stop without a block. A block that rests takes what it asks.
+#[must_use]
+pub fn block_times_s(
+    machine: &Machine,
+    control: &LookAhead,
+    blocks: impl IntoIterator<Item = Option<(JointValues, JointValues, f64)>>,
+) -> Vec<f64> {
+    let mut stretch = Stretch::new(machine, control);
+    stretch.each_s = Some(Vec::new());
+    for block in blocks {
+        match block {
+            Some((from, to, wanted_s)) => stretch.block(&from, &to, wanted_s),
+            None => stretch.stop(),
+        }
+    }
+    stretch.stop();
+    stretch.each_s.unwrap_or_default()
 }
 
 impl Stretch {
@@ -89,6 +111,7 @@ impl Stretch {
             single: None,
             time_s: 0.0,
             slowed: [0; MAX_JOINTS],
+            each_s: None,
         }
     }
 
@@ -114,7 +137,11 @@ impl Stretch {
         }
         let sigma = square.sqrt();
         if sigma == 0.0 {
-            self.time_s += wanted_s;
+            // It rests: what came before has its time first.
+            if self.each_s.is_some() {
+                self.stop();
+            }
+            self.spend(wanted_s);
             return;
         }
         let (moved, mut acceleration) = (tangent, f64::INFINITY);
@@ -152,7 +179,8 @@ impl Stretch {
         }
         if let Some((moved, wanted_s)) = self.single.take() {
             self.pieces.clear();
-            self.time_s += self.alone_s(&moved, wanted_s);
+            let alone_s = self.alone_s(&moved, wanted_s);
+            self.spend(alone_s);
         } else {
             self.run(self.pieces.len());
             self.time_s += self.jerk_s;
@@ -160,6 +188,13 @@ impl Stretch {
         self.moving = false;
         self.last = None;
         self.speed = 0.0;
+    }
+
+    fn spend(&mut self, time_s: f64) {
+        self.time_s += time_s;
+        if let Some(each) = &mut self.each_s {
+            each.push(time_s);
+        }
     }
 
     /// A single block from rest to rest: every joint moves along with the slowest one, none faster than F asks.
@@ -201,7 +236,11 @@ impl Stretch {
             let out = out.min(reach);
             let peak = (a * p.sigma + 0.5 * (v * v + out * out)).sqrt().min(p.fastest).max(v.max(out));
             let ramps = (2.0 * peak * peak - v * v - out * out) / (2.0 * a);
-            self.time_s += (2.0 * peak - v - out) / a + (p.sigma - ramps).max(0.0) / peak;
+            let time_s = (2.0 * peak - v - out) / a + (p.sigma - ramps).max(0.0) / peak;
+            self.time_s += time_s;
+            if let Some(each) = &mut self.each_s {
+                each.push(time_s);
+            }
             self.speed = out;
         }
         self.pieces.drain(..count);

@@ -13,7 +13,7 @@
 pub mod linuxcnc;
 mod lookahead;
 
-pub use lookahead::{LookAhead, Stretch};
+pub use lookahead::{LookAhead, Stretch, block_times_s};
 
 use std::collections::BTreeMap;
 
