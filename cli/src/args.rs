@@ -90,7 +90,7 @@ pub struct PostArgs {
     /// sinumerik, heidenhain, fanuc or linuxcnc.
     #[arg(long)]
     pub dialect: String,
-    /// tcp, none, kv, kf, kz or inverse_time.
+    /// tcp, none, kv, kf, kz, inverse_time, rotary (deg/min over the rotary axes) or fastest (as the joints allow).
     #[arg(long, default_value = "tcp")]
     pub feed: String,
     /// The largest rise of F from block to block, for --feed kz, mm/min.

@@ -70,9 +70,12 @@ impl Control {
             "kv" => FeedMode::Kv { fgref_mm: None },
             "kz" => FeedMode::Kz { step_mm_min: kz, fgref_mm: None },
             "inverse_time" => FeedMode::InverseTime,
+            "rotary" => FeedMode::RotaryOnly,
+            "fastest" => FeedMode::Fastest { tip_mm_min: None },
             other => {
                 return Err(Failure::job(format!(
-                    "feed = \"{other}\" is no feed mode; there are tcp, none, kv, kf, kz, inverse_time"
+                    "feed = \"{other}\" is no feed mode; there are tcp, none, kv, kf, kz, inverse_time, \
+                     rotary, fastest"
                 )));
             }
         };

@@ -16,6 +16,15 @@ fn peak_mb() -> f64 {
     line.split_whitespace().next().and_then(|n| n.parse::<f64>().ok()).unwrap_or(f64::NAN) / 1024.0
 }
 
+/// CPU seconds of all threads so far, where the system tells (in hundredths).
+fn cpu_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after = stat.rsplit(')').next().unwrap_or_default();
+    // utime and stime are the 14th and 15th field of the line, the 12th and 13th behind the name.
+    let ticks: f64 = after.split_whitespace().skip(11).take(2).filter_map(|t| t.parse::<f64>().ok()).sum();
+    ticks / 100.0
+}
+
 fn main() {
     let blocks: u32 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(1_000_000);
     let mut cl = String::from("UNITS/MM\nSPINDL/8000,RPM\nRAPID\nGOTO/0,0,10,0,0.3,1\nFEDRAT/2000,MMPM\n");
@@ -41,22 +50,24 @@ fn main() {
     for (dialect, feed) in
         [(Dialect::Sinumerik, FeedMode::Kv { fgref_mm: None }), (Dialect::Sinumerik, FeedMode::Tcp)]
     {
-        let start = Instant::now();
+        let (start, cpu) = (Instant::now(), cpu_s());
         let path = cldata::read(&cl).expect("CL").path;
         let read_s = start.elapsed().as_secs_f64();
         let posted = post(&path, &machine, &setup, &PostOptions::new(dialect, feed)).expect("posts");
         let post_s = start.elapsed().as_secs_f64();
         let n = posted.summary.blocks;
         println!(
-            "{dialect} {feed:?}: {n} blocks, CL read in {read_s:.2} s, posted after {post_s:.2} s, peak {:.0} MB",
+            "{dialect} {feed:?}: {n} blocks, CL read in {read_s:.2} s, posted after {post_s:.2} s (CPU {:.2} s), peak {:.0} MB",
+            cpu_s() - cpu,
             peak_mb()
         );
-        let start = Instant::now();
+        let (start, cpu) = (Instant::now(), cpu_s());
         let timed = time(&posted.text, dialect, &machine, &setup, true).expect("reads");
         println!(
-            "  time {:.2} min in {:.2} s, peak {:.0} MB",
+            "  time {:.2} min in {:.2} s (CPU {:.2} s), peak {:.0} MB",
             timed.time.time_min(),
             start.elapsed().as_secs_f64(),
+            cpu_s() - cpu,
             peak_mb()
         );
     }

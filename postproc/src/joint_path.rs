@@ -58,3 +58,17 @@ pub struct JointPath {
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
 }
+
+impl JointPath {
+    /// Goes on with another piece of the same path.
+    pub(crate) fn append(&mut self, mut piece: Self) {
+        self.blocks.append(&mut piece.blocks);
+        self.diagnostics.append(&mut piece.diagnostics);
+        let (s, p) = (&mut self.summary, piece.summary);
+        s.inserted_points += p.inserted_points;
+        s.rewinds += p.rewinds;
+        s.singular_mm += p.singular_mm;
+        s.tip_error_mm = s.tip_error_mm.max(p.tip_error_mm);
+        s.axis_error_rad = s.axis_error_rad.max(p.axis_error_rad);
+    }
+}

@@ -4,6 +4,8 @@
 //! joints linearly instead; with tool-centre-point control it keeps the tip on the line and only the axis strays.
 //! A block is accepted where neither the tip nor the axis strays by more than its tolerance at seven inner points and
 //! the end. The deviation of one block is close to a parabola, so the inner points see at least 98 % of its height.
+//! Short blocks are looked at in the middle and at the end only: where rotary joints turn by less than [`SHORT_RAD`]
+//! and a quarter of the tolerance is used there, a curve with four times as much elsewhere does not exist.
 
 use osculate_geom::{Unit3, any_perpendicular};
 use osculate_tools::{Pose, cl::Motion};
@@ -18,6 +20,9 @@ const LARGEST_ROTARY_STEP_RAD: f64 = 0.5 * std::f64::consts::PI;
 
 /// Parts per block at which the deviation is looked at.
 const PARTS: u32 = 8;
+
+/// Blocks that turn by less than this are parabolas to a part in a hundred, rad.
+const SHORT_RAD: f64 = 0.1;
 
 /// Halvings after which a block counts as a jump: 2^-24 of a CL move is far below any resolution.
 const MOST_HALVINGS: u32 = 24;
@@ -149,9 +154,24 @@ impl Liner<'_> {
     }
 
     fn stray(&self, line: &Line, a: (f64, JointValues), b: (f64, JointValues)) -> Stray {
+        let (qa, qb) = (self.machine.rotary_of(&a.1), self.machine.rotary_of(&b.1));
+        let short = (0..2).all(|k| (qb[k] - qa[k]).abs() < SHORT_RAD);
+        if short {
+            let worst = self.stray_at(line, (a, b), &[0.5, 1.0]);
+            let o = self.options;
+            if worst.tip_mm <= 0.25 * o.tip_tol_mm && worst.axis_rad <= 0.25 * o.axis_tol_rad {
+                return worst;
+            }
+        }
+        let parts: [f64; PARTS as usize] = std::array::from_fn(|k| (k + 1) as f64 / f64::from(PARTS));
+        self.stray_at(line, (a, b), &parts)
+    }
+
+    /// The worst at these shares of the block.
+    fn stray_at(&self, line: &Line, ends: ((f64, JointValues), (f64, JointValues)), shares: &[f64]) -> Stray {
+        let (a, b) = ends;
         let mut worst = Stray::default();
-        for k in 1..=PARTS {
-            let s = f64::from(k) / f64::from(PARTS);
+        for &s in shares {
             let want = pose_between(&line.from.pose, &line.to.pose, a.0 + (b.0 - a.0) * s);
             let mut q = a.1;
             for (i, v) in q.iter_mut().enumerate() {

@@ -111,26 +111,32 @@ fn cheapest(machine: &Machine, nodes: &[Node], regular: &[usize], cone_rad: f64)
         START_COST * (q[0].abs() + q[1].abs())
     };
     let mut cost: Vec<f64> = nodes[regular[0]].states.iter().map(start).collect();
-    let mut from: Vec<Vec<usize>> = Vec::with_capacity(regular.len());
+    let mut next: Vec<f64> = Vec::with_capacity(cost.len());
+    // Where each state comes from, all nodes in one list.
+    let mut from: Vec<usize> = Vec::with_capacity(2 * regular.len());
+    let mut starts: Vec<usize> = Vec::with_capacity(regular.len());
     for pair in regular.windows(2) {
         let step = Step::between(machine, nodes, pair[0], pair[1], cone_rad);
         let before = &nodes[pair[0]].states;
-        let (next, back): (Vec<f64>, Vec<usize>) = nodes[pair[1]]
-            .states
-            .iter()
-            .map(|to| {
-                let totals = before.iter().zip(&cost).map(|(s, c)| c + step.cost_s(machine, s, to));
-                let best = totals.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-                best.map_or((f64::INFINITY, 0), |(i, c)| (c, i))
-            })
-            .unzip();
-        cost = next;
-        from.push(back);
+        starts.push(from.len());
+        next.clear();
+        for to in &nodes[pair[1]].states {
+            let mut best = (f64::INFINITY, 0);
+            for (i, (s, c)) in before.iter().zip(&cost).enumerate() {
+                let total = c + step.cost_s(machine, s, to);
+                if total < best.0 {
+                    best = (total, i);
+                }
+            }
+            next.push(best.0);
+            from.push(best.1);
+        }
+        std::mem::swap(&mut cost, &mut next);
     }
     let mut at = cost.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
     let mut states = vec![nodes[regular[regular.len() - 1]].states[at]];
-    for (slot, back) in from.iter().enumerate().rev() {
-        at = back[at];
+    for (slot, start) in starts.iter().enumerate().rev() {
+        at = from[start + at];
         states.push(nodes[regular[slot]].states[at]);
     }
     states.reverse();

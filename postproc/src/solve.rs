@@ -9,6 +9,7 @@
 use osculate_geom::{Diagnostic, Point3};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::{Pose, cl::ClMove};
+use rayon::prelude::*;
 
 use crate::joint_path::{BlockKind, JointBlock, JointPath};
 use crate::linearize::{Label, Liner, Placed, pose_between};
@@ -145,6 +146,9 @@ pub enum SolveError {
     },
 }
 
+/// CL moves that are worth a thread of their own.
+const LEAST_SHARE: usize = 2048;
+
 impl SolveError {
     pub(crate) fn unreachable(index: usize, pose: &Pose, e: AxisUnreachable) -> Self {
         let axis = [pose.axis.x, pose.axis.y, pose.axis.z];
@@ -185,29 +189,66 @@ impl Machine {
         if path.moves.is_empty() {
             return Err(SolveError::Empty);
         }
-        let mut nodes = Vec::with_capacity(path.moves.len());
-        for (index, m) in path.moves.iter().enumerate() {
-            nodes.push(node(self, setup, options, index, m)?);
-        }
+        // In parallel, merged in order: the first error is that of the first move that has one.
+        let nodes: Vec<Result<Node, SolveError>> = path
+            .moves
+            .par_iter()
+            .enumerate()
+            .with_min_len(LEAST_SHARE)
+            .map(|(index, m)| node(self, setup, options, index, m))
+            .collect();
+        let nodes = nodes.into_iter().collect::<Result<Vec<Node>, _>>()?;
         let choices = sequence::choose(self, &nodes, options.singular_cone_rad);
         let mut liner = Liner { machine: self, setup, options, path: JointPath::default() };
-        let mut at = start(&mut liner, &path.moves[0], &choices[0])?;
-        for (index, pair) in path.moves.windows(2).enumerate() {
-            let (index, m) = (index + 1, &pair[1]);
-            let joints = liner.checked(&choices[index].rotary_rad, &m.pose, index)?;
-            let to = Placed { pose: m.pose, joints };
-            let label = Label { motion: m.motion, source: index, kind: BlockKind::Point };
-            if choices[index].rewind {
-                at = rewind(&mut liner, &at, &to, &choices[index], &label)?;
-            }
-            let turns = angle_between(&at.pose.axis, &m.pose.axis) > 1e-9;
-            if turns && m.motion != Motion::Rapid && (nodes[index - 1].singular || nodes[index].singular) {
-                liner.path.summary.singular_mm += (m.pose.tip - at.pose.tip).norm();
-            }
-            liner.line(&at, &to, &label)?;
-            at = to;
+        start(&mut liner, &path.moves[0], &choices[0])?;
+        let run = Run { path, nodes: &nodes, choices: &choices };
+        // Every move depends on the choices at its two ends alone; pieces are put together in order.
+        let indices: Vec<usize> = (1..path.moves.len()).collect();
+        let pieces: Vec<Result<JointPath, SolveError>> = indices
+            .par_chunks(LEAST_SHARE)
+            .map(|part| {
+                let mut liner = Liner { machine: self, setup, options, path: JointPath::default() };
+                liner.path.blocks.reserve(part.len());
+                for &index in part {
+                    run.move_to(&mut liner, index)?;
+                }
+                Ok(liner.path)
+            })
+            .collect();
+        for piece in pieces {
+            liner.path.append(piece?);
         }
         Ok(liner.path)
+    }
+}
+
+/// A path with everything chosen.
+struct Run<'a> {
+    path: &'a ClPath,
+    nodes: &'a [Node],
+    choices: &'a [Choice],
+}
+
+impl Run<'_> {
+    /// The blocks of one CL move.
+    fn move_to(&self, liner: &mut Liner, index: usize) -> Result<(), SolveError> {
+        let (before, m) = (&self.path.moves[index - 1], &self.path.moves[index]);
+        let placed = |liner: &Liner, index: usize, m: &ClMove| {
+            let joints = liner.checked(&self.choices[index].rotary_rad, &m.pose, index)?;
+            Ok::<_, SolveError>(Placed { pose: m.pose, joints })
+        };
+        let mut at = placed(liner, index - 1, before)?;
+        let to = placed(liner, index, m)?;
+        let label = Label { motion: m.motion, source: index, kind: BlockKind::Point };
+        if self.choices[index].rewind {
+            at = rewind(liner, &at, &to, &self.choices[index], &label)?;
+        }
+        let turns = angle_between(&at.pose.axis, &m.pose.axis) > 1e-9;
+        let singular = self.nodes[index - 1].singular || self.nodes[index].singular;
+        if turns && m.motion != Motion::Rapid && singular {
+            liner.path.summary.singular_mm += (m.pose.tip - at.pose.tip).norm();
+        }
+        liner.line(&at, &to, &label)
     }
 }
 
@@ -292,7 +333,7 @@ fn node(
     }
 }
 
-fn start(liner: &mut Liner, first: &ClMove, choice: &Choice) -> Result<Placed, SolveError> {
+fn start(liner: &mut Liner, first: &ClMove, choice: &Choice) -> Result<(), SolveError> {
     let joints = liner.checked(&choice.rotary_rad, &first.pose, 0)?;
     if first.motion != Motion::Rapid {
         let text = "the first CL move leads from an unknown place and is run as a rapid move";
@@ -306,7 +347,7 @@ fn start(liner: &mut Liner, first: &ClMove, choice: &Choice) -> Result<Placed, S
         tip_length_mm: 0.0,
         kind: BlockKind::Point,
     });
-    Ok(Placed { pose: first.pose, joints })
+    Ok(())
 }
 
 /// Leaves the part, changes turn or branch, returns; afterwards the tool stands at a point of the move from `at` to

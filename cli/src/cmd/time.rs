@@ -29,7 +29,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     let setup =
         Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), args.gauge_length_mm.unwrap_or(0.0));
     let file = &args.file;
-    let mut names = Names::new(dialect);
+    let mut names = Names::new(dialect, &machine);
     each_line(file, |line| {
         names.line(line);
         Ok(())

@@ -12,7 +12,7 @@ use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 
 use super::cutter::{self, Found};
-use super::statement::{Statement, statements};
+use super::statement::{Item, Statement, items};
 
 /// A path and what was noticed on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,12 +161,19 @@ pub fn read(text: &str) -> Result<ClData, ClReadError> {
         in_cycle: false,
         others: BTreeMap::new(),
     };
-    for s in statements(text) {
-        r.statement(&s)?;
-        if s.word == "FINI" {
-            break;
+    items(text, |item| match item {
+        Item::Goto { line, numbers: n, count } => {
+            if count == 6 {
+                r.axis = unit(line, Vec3::new(n[3], n[4], n[5]))?;
+            }
+            r.arrive(line, Point3::new(n[0], n[1], n[2]) * r.unit_mm)?;
+            Ok(false)
         }
-    }
+        Item::Other(s) => {
+            r.statement(&s)?;
+            Ok(s.word == "FINI")
+        }
+    })?;
     if r.path.moves.is_empty() {
         return Err(ClReadError::NoPoints { lines: text.lines().count() });
     }
@@ -211,7 +218,7 @@ impl Reader {
             [_, _, _, _, _, _] => self.axis = axis(s, &n[3..])?,
             _ => return Err(count(s, n.len(), "3 (tip) or 6 (tip and axis)")),
         }
-        self.arrive(s, Point3::new(n[0], n[1], n[2]) * self.unit_mm)
+        self.arrive(s.line, Point3::new(n[0], n[1], n[2]) * self.unit_mm)
     }
 
     fn delta(&mut self, s: &Statement) -> Result<(), ClReadError> {
@@ -222,22 +229,22 @@ impl Reader {
             [x, y, z] => Vec3::new(x, y, z),
             _ => return Err(count(s, n.len(), "1 (along the axis) or 3")),
         };
-        self.arrive(s, from + by * self.unit_mm)
+        self.arrive(s.line, from + by * self.unit_mm)
     }
 
-    fn arrive(&mut self, s: &Statement, tip: Point3) -> Result<(), ClReadError> {
+    fn arrive(&mut self, line: usize, tip: Point3) -> Result<(), ClReadError> {
         let first = self.path.moves.is_empty();
         let motion = match (self.rapid, self.feed_mm_min) {
             (true, _) => Motion::Rapid,
             (false, _) if first => {
                 let text = "the first point comes without RAPID: it leads from an unknown place and is taken as rapid";
-                self.note(s.line, text);
+                self.note(line, text);
                 Motion::Rapid
             }
             (false, Some(f)) => Motion::Feed(f),
             // The cycle says how a hole is made; it is reported as not interpreted, its points are kept.
             (false, None) if self.in_cycle => Motion::Rapid,
-            (false, None) => return Err(ClReadError::NoFeed { line: s.line }),
+            (false, None) => return Err(ClReadError::NoFeed { line }),
         };
         self.rapid = false;
         self.tip = Some(tip);
@@ -417,7 +424,10 @@ fn count(s: &Statement, got: usize, need: &'static str) -> ClReadError {
 
 fn axis(s: &Statement, n: &[f64]) -> Result<Unit3, ClReadError> {
     let [x, y, z] = *n else { return Err(count(s, n.len(), "3 for an axis")) };
-    let v = Vec3::new(x, y, z);
+    unit(s.line, Vec3::new(x, y, z))
+}
+
+fn unit(line: usize, v: Vec3) -> Result<Unit3, ClReadError> {
     // A direction given with any sensible digits is far longer than this.
-    Unit3::try_new(v, 1e-6).ok_or(ClReadError::ZeroAxis { line: s.line, length: v.norm() })
+    Unit3::try_new(v, 1e-6).ok_or(ClReadError::ZeroAxis { line, length: v.norm() })
 }

@@ -14,11 +14,34 @@ pub(super) struct Statement {
 /// Words whose text is free: they are never split, continued or put into upper case by rule.
 const FREE_TEXT: [&str; 6] = ["PARTNO", "PPRINT", "INSERT", "TPRINT", "OPNAME", "REMARK"];
 
-/// All statements of the text.
-pub(super) fn statements(text: &str) -> Vec<Statement> {
-    let mut found = Vec::new();
+/// A statement, or the numbers of a plain `GOTO/` line, of which long files consist.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Item {
+    Goto { line: usize, numbers: [f64; 6], count: usize },
+    Other(Statement),
+}
+
+/// A line `GOTO/` with three or six numbers and nothing else.
+fn plain_goto(line: &str) -> Option<([f64; 6], usize)> {
+    let mut numbers = [0.0; 6];
+    let mut count = 0;
+    for field in line.strip_prefix("GOTO/")?.split(',') {
+        *numbers.get_mut(count)? = field.trim().parse().ok().filter(|v: &f64| v.is_finite())?;
+        count += 1;
+    }
+    (count == 3 || count == 6).then_some((numbers, count))
+}
+
+/// All statements of the text, one after the other, until `take` says that it has enough.
+pub(super) fn items<E>(text: &str, mut take: impl FnMut(Item) -> Result<bool, E>) -> Result<(), E> {
     let mut pending: Option<(usize, String)> = None;
     for (number, raw) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        if let (None, Some((numbers, count))) = (&pending, plain_goto(raw)) {
+            if take(Item::Goto { line: number + 1, numbers, count })? {
+                return Ok(());
+            }
+            continue;
+        }
         let free = pending.is_none() && is_free(raw);
         let line = if free { raw } else { raw.find("$$").map_or(raw, |at| &raw[..at]) };
         let line = line.trim();
@@ -29,12 +52,16 @@ pub(super) fn statements(text: &str) -> Vec<Statement> {
             continue;
         }
         joined.push_str(line);
-        push(&mut found, start, &joined);
+        if let Some(statement) = statement(start, &joined)
+            && take(Item::Other(statement))?
+        {
+            return Ok(());
+        }
     }
-    if let Some((start, joined)) = pending {
-        push(&mut found, start, &joined);
+    if let Some(last) = pending.and_then(|(start, joined)| statement(start, &joined)) {
+        take(Item::Other(last))?;
     }
-    found
+    Ok(())
 }
 
 fn is_free(line: &str) -> bool {
@@ -42,10 +69,10 @@ fn is_free(line: &str) -> bool {
     FREE_TEXT.contains(&word.to_ascii_uppercase().as_str())
 }
 
-fn push(found: &mut Vec<Statement>, line: usize, text: &str) {
+fn statement(line: usize, text: &str) -> Option<Statement> {
     let text = text.trim();
     if text.is_empty() {
-        return;
+        return None;
     }
     let (word, rest) = match text.split_once('/') {
         Some((word, rest)) if !is_free(text) => (word, Some(rest)),
@@ -56,7 +83,7 @@ fn push(found: &mut Vec<Statement>, line: usize, text: &str) {
     let fields = rest.filter(|r| !r.trim().is_empty());
     let fields =
         fields.map_or_else(Vec::new, |r| r.split(',').map(|f| f.trim().to_ascii_uppercase()).collect());
-    found.push(Statement { line, word, fields });
+    Some(Statement { line, word, fields })
 }
 
 #[cfg(test)]
@@ -67,7 +94,14 @@ mod tests {
     fn comments_continuations_case_and_blanks() {
         let text =
             "$$ nothing\npartno a / b $$ stays\nGoto  / 1., 2 $\n  ,3 $$ end\n\nFEDRAT/ 10,mmpm\nRAPID\n";
-        let all = statements(text);
+        let mut all = Vec::new();
+        let keep = |item| {
+            if let Item::Other(s) = item {
+                all.push(s);
+            }
+            Ok::<bool, ()>(false)
+        };
+        assert_eq!(items(text, keep), Ok(()));
         let words: Vec<_> = all.iter().map(|s| (s.line, s.word.as_str(), s.fields.join(";"))).collect();
         assert_eq!(
             words,

@@ -15,7 +15,6 @@ use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::Pose;
 
 use super::spec::CarriedSide;
-use super::two_axis::rotate;
 
 /// The most joints a chain may have: three linear and two rotary.
 pub const MAX_JOINTS: usize = 5;
@@ -121,7 +120,9 @@ impl Frame {
 
     fn rotated(self, axis: &Unit3, point: &Point3, angle_rad: f64) -> Self {
         let at = self.shifted(&point.coords);
-        let columns = [Vec3::x(), Vec3::y(), Vec3::z()].map(|e| at.turn(&rotate(axis, angle_rad, &e)));
+        let (s, c) = angle_rad.sin_cos();
+        let columns = [Vec3::x(), Vec3::y(), Vec3::z()]
+            .map(|e| at.turn(&(e * c + axis.cross(&e) * s + axis.into_inner() * (axis.dot(&e) * (1.0 - c)))));
         Self { columns, origin: at.origin }.shifted(&(-point.coords))
     }
 }

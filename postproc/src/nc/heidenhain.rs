@@ -11,13 +11,16 @@ use super::number;
 
 const WORDING: Wording = Wording { rapid: "L", feed: "L", modal: false, axis, rotary };
 
-fn axis(name: &str, counts: i64) -> String {
-    let sign = if counts < 0 { "" } else { "+" };
-    format!("{name}{sign}{}", number::fixed(counts))
+fn axis(text: &mut String, name: &str, counts: i64) {
+    text.push_str(name);
+    if counts >= 0 {
+        text.push('+');
+    }
+    number::push_fixed(text, counts);
 }
 
-fn rotary(name: &RotaryName, counts: i64) -> String {
-    axis(&name.letter, if name.endless { in_turn(counts) } else { counts })
+fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
+    axis(text, &name.letter, if name.endless { in_turn(counts) } else { counts });
 }
 
 pub(super) fn write(program: &Program) -> Result<String, WriteError> {
@@ -41,19 +44,24 @@ pub(super) fn write(program: &Program) -> Result<String, WriteError> {
     if program.spindle_rpm.is_some() {
         text.line("M3");
     }
-    let mut modal = Modal::default();
+    let mut modal = Modal::new(program);
     if let Some((first, rest)) = program.moves.split_first() {
         approach(&mut text, &mut modal, program, first, &[Which::Rotary]);
         if program.tcp {
             text.line("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS");
         }
         approach(&mut text, &mut modal, program, first, &[Which::Across, Which::Along]);
+        let mut words = String::new();
         for m in rest {
-            let words = modal.block(program, &WORDING, m);
+            words.clear();
+            modal.block(program, &WORDING, m, &mut words);
             if words.is_empty() {
                 continue;
             }
-            text.line(&if m.rapid { format!("{words} FMAX") } else { words });
+            if m.rapid {
+                words.push_str(" FMAX");
+            }
+            text.line(&words[1..]);
         }
     }
     text.line("M5");
@@ -80,7 +88,10 @@ struct Numbered {
 
 impl Numbered {
     fn line(&mut self, words: &str) {
-        self.text.push_str(&format!("{} {words}\n", self.next));
+        number::push_whole(&mut self.text, self.next);
+        self.text.push(' ');
+        self.text.push_str(words);
+        self.text.push('\n');
         self.next += 1;
     }
 }

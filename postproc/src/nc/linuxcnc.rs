@@ -12,8 +12,8 @@ use super::number;
 
 const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
 
-fn rotary(name: &RotaryName, counts: i64) -> String {
-    plain(&name.letter, counts)
+fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
+    plain(text, &name.letter, counts);
 }
 
 pub(super) fn write(program: &Program) -> Result<String, WriteError> {
@@ -45,7 +45,7 @@ pub(super) fn write(program: &Program) -> Result<String, WriteError> {
     if let Some(rpm) = program.spindle_rpm {
         line(&format!("S{} M3", number::feed(rpm)));
     }
-    let mut modal = Modal::default();
+    let mut modal = Modal::new(program);
     if let Some((first, rest)) = program.moves.split_first() {
         modal.approach(program, &WORDING, first, &[Which::Rotary]).iter().for_each(|l| line(l));
         if let (true, Some(words)) = (program.tcp, switch) {
@@ -55,10 +55,12 @@ pub(super) fn write(program: &Program) -> Result<String, WriteError> {
         if program.feed_word == FeedWord::Inverse {
             line("G93");
         }
+        let mut words = String::new();
         for m in rest {
-            let words = modal.block(program, &WORDING, m);
+            words.clear();
+            modal.block(program, &WORDING, m, &mut words);
             if !words.is_empty() {
-                line(&words);
+                line(&words[1..]);
             }
         }
     }

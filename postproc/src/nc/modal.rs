@@ -12,9 +12,9 @@ pub(super) struct Wording {
     /// The two words above hold until changed.
     pub modal: bool,
     /// A position word.
-    pub axis: fn(name: &str, counts: i64) -> String,
+    pub axis: fn(text: &mut String, name: &str, counts: i64),
     /// A rotary position word.
-    pub rotary: fn(name: &RotaryName, counts: i64) -> String,
+    pub rotary: fn(text: &mut String, name: &RotaryName, counts: i64),
 }
 
 /// What is in force.
@@ -23,17 +23,27 @@ pub(super) struct Modal {
     rapid: Option<bool>,
     linear: [Option<i64>; 3],
     rotary: [Option<i64>; 2],
-    feed: Option<String>,
+    feed: String,
+    spare: String,
+    /// Linear and rotary words in the order of their names.
+    order: ([usize; 3], Vec<usize>),
 }
 
 impl Modal {
-    /// Words of the axes that change to `m`, linear ones in the order of their names, then rotary ones likewise.
-    pub fn axes(&mut self, program: &Program, wording: &Wording, m: &NcMove, which: Which) -> Vec<String> {
-        let mut words = Vec::new();
+    /// Nothing is in force.
+    pub fn new(program: &Program) -> Self {
+        let mut linear = [0, 1, 2];
+        linear.sort_by_key(|&i| &program.linear_names[i]);
+        let mut rotary: Vec<usize> = (0..program.rotary_names.len()).collect();
+        rotary.sort_by_key(|&i| &program.rotary_names[i].letter);
+        Self { order: (linear, rotary), ..Self::default() }
+    }
+
+    /// Adds the words of the axes that change to `m`, linear ones in the order of their names, then rotary ones.
+    fn axes(&mut self, program: &Program, wording: &Wording, m: &NcMove, out: (Which, &mut String)) {
+        let (which, text) = out;
         if which != Which::Rotary {
-            let mut order = [0, 1, 2];
-            order.sort_by_key(|&i| &program.linear_names[i]);
-            for i in order {
+            for i in self.order.0 {
                 let name = &program.linear_names[i];
                 let skipped = match which {
                     Which::Across => name == "Z",
@@ -42,43 +52,55 @@ impl Modal {
                 };
                 if !skipped && self.linear[i] != Some(m.linear[i]) {
                     self.linear[i] = Some(m.linear[i]);
-                    words.push((wording.axis)(name, m.linear[i]));
+                    text.push(' ');
+                    (wording.axis)(text, name, m.linear[i]);
                 }
             }
         }
         if matches!(which, Which::All | Which::Rotary) {
-            let mut order: Vec<usize> = (0..program.rotary_names.len()).collect();
-            order.sort_by_key(|&i| &program.rotary_names[i].letter);
-            for i in order {
+            for &i in &self.order.1 {
                 if self.rotary[i] != Some(m.rotary[i]) {
                     self.rotary[i] = Some(m.rotary[i]);
-                    words.push((wording.rotary)(&program.rotary_names[i], m.rotary[i]));
+                    text.push(' ');
+                    (wording.rotary)(text, &program.rotary_names[i], m.rotary[i]);
                 }
             }
         }
-        words
     }
 
-    /// One whole move; empty where nothing moves.
-    pub fn block(&mut self, program: &Program, wording: &Wording, m: &NcMove) -> String {
-        let axes = self.axes(program, wording, m, Which::All);
-        if axes.is_empty() {
-            return String::new();
+    fn motion(&mut self, wording: &Wording, rapid: bool, text: &mut String) {
+        if self.rapid != Some(rapid) || !wording.modal {
+            text.push_str(if rapid { wording.rapid } else { wording.feed });
+            self.rapid = Some(rapid);
         }
-        let mut words = Vec::new();
-        if self.rapid != Some(m.rapid) || !wording.modal {
-            words.push(if m.rapid { wording.rapid } else { wording.feed }.to_string());
-            self.rapid = Some(m.rapid);
+    }
+
+    /// Adds one whole move with a blank before every word; nothing where nothing moves.
+    pub fn block(&mut self, program: &Program, wording: &Wording, m: &NcMove, text: &mut String) {
+        let start = text.len();
+        let before = self.rapid;
+        text.push(' ');
+        self.motion(wording, m.rapid, text);
+        let words = text.len();
+        if words == start + 1 {
+            text.truncate(start);
         }
-        words.extend(axes);
+        let words = text.len();
+        self.axes(program, wording, m, (Which::All, text));
+        if text.len() == words {
+            self.rapid = before;
+            text.truncate(start);
+            return;
+        }
         if !m.rapid {
-            let feed = number::feed(m.feed);
-            if program.feed_word == FeedWord::Inverse || self.feed.as_ref() != Some(&feed) {
-                words.push(format!("F{feed}"));
-                self.feed = Some(feed);
+            self.spare.clear();
+            number::push_feed(&mut self.spare, m.feed);
+            if program.feed_word == FeedWord::Inverse || self.feed != self.spare {
+                text.push_str(" F");
+                text.push_str(&self.spare);
+                std::mem::swap(&mut self.feed, &mut self.spare);
             }
         }
-        words.join(" ")
     }
 
     /// Blocks that reach the first pose from above: rotary axes, then across the spindle, then along it.
@@ -91,24 +113,22 @@ impl Modal {
     ) -> Vec<String> {
         let mut lines = Vec::new();
         for part in which {
-            let axes = self.axes(program, wording, m, *part);
+            let mut axes = String::new();
+            self.axes(program, wording, m, (*part, &mut axes));
             if axes.is_empty() {
                 continue;
             }
-            let mut words = Vec::new();
-            if self.rapid != Some(true) || !wording.modal {
-                words.push(wording.rapid.to_string());
-                self.rapid = Some(true);
-            }
-            words.extend(axes);
-            lines.push(words.join(" "));
+            let mut line = String::new();
+            self.motion(wording, true, &mut line);
+            line.push_str(&axes);
+            lines.push(line.trim_start().to_string());
         }
         lines
     }
 
     /// F must be said again.
     pub fn forget_feed(&mut self) {
-        self.feed = None;
+        self.feed.clear();
     }
 }
 
@@ -126,9 +146,12 @@ pub(super) enum Which {
 }
 
 /// `X1.0000`, or `CA1=1.0000` where the name ends with a digit.
-pub(super) fn plain(name: &str, counts: i64) -> String {
-    let equals = if name.len() > 1 { "=" } else { "" };
-    format!("{name}{equals}{}", number::fixed(counts))
+pub(super) fn plain(text: &mut String, name: &str, counts: i64) {
+    text.push_str(name);
+    if name.len() > 1 {
+        text.push('=');
+    }
+    number::push_fixed(text, counts);
 }
 
 /// Position of an endless axis inside one turn.

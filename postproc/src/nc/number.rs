@@ -30,9 +30,44 @@ pub fn value(counts: i64) -> f64 {
 /// Fixed decimals.
 #[must_use]
 pub fn fixed(counts: i64) -> String {
-    let sign = if counts < 0 { "-" } else { "" };
-    let (whole, part) = (counts.unsigned_abs() / 10_000, counts.unsigned_abs() % 10_000);
-    format!("{sign}{whole}.{part:0DECIMALS$}")
+    let mut text = String::new();
+    push_fixed(&mut text, counts);
+    text
+}
+
+/// Adds a position with fixed decimals.
+pub fn push_fixed(text: &mut String, counts: i64) {
+    if counts < 0 {
+        text.push('-');
+    }
+    push_decimal(text, counts.unsigned_abs(), DECIMALS);
+}
+
+/// `digits` with the point before the last `decimals` of them.
+fn push_decimal(text: &mut String, digits: u64, decimals: usize) {
+    // 20 digits are all of u64, and 17 decimals are the most that are asked for.
+    let mut buffer = [b'0'; 40];
+    let mut at = buffer.len();
+    let (mut rest, mut count) = (digits, 0);
+    loop {
+        at -= 1;
+        buffer[at] = b'0' + u8::try_from(rest % 10).unwrap_or_default();
+        rest /= 10;
+        count += 1;
+        if count == decimals {
+            at -= 1;
+            buffer[at] = b'.';
+        }
+        if rest == 0 && count > decimals {
+            break;
+        }
+    }
+    text.extend(buffer[at..].iter().map(|b| char::from(*b)));
+}
+
+/// Adds a whole number.
+pub fn push_whole(text: &mut String, value: u64) {
+    push_decimal(text, value, 0);
 }
 
 /// Digits that an F word carries at least.
@@ -41,14 +76,36 @@ const FEED_DIGITS: i32 = 7;
 /// F with seven digits, without trailing zeros. A positive feed never becomes zero.
 #[must_use]
 pub fn feed(value: f64) -> String {
+    let mut text = String::new();
+    push_feed(&mut text, value);
+    text
+}
+
+/// Adds F with seven digits, without trailing zeros.
+pub fn push_feed(text: &mut String, value: f64) {
     // Digits before the point; zero or negative below 1. The cast saturates, and the count is clamped below.
     #[allow(clippy::cast_possible_truncation)]
     let whole_digits = value.log10().floor() as i32 + 1;
     // 15 decimals still tell 1e-9 from zero; no block takes longer than that.
     let decimals = usize::try_from((FEED_DIGITS - whole_digits).clamp(0, 15)).unwrap_or_default();
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+    let scaled = value * POWERS[decimals];
+    let start = text.len();
+    // Where the scaled value is a whole number that u64 and f64 hold exactly, it is written digit by digit.
+    if (0.5..9e15).contains(&scaled) {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        push_decimal(text, scaled.round() as u64, decimals);
+    } else {
+        text.push_str(&format!("{value:.decimals$}"));
+    }
+    if text[start..].contains('.') {
+        let kept = text[start..].trim_end_matches('0').trim_end_matches('.').len();
+        text.truncate(start + kept);
+    }
 }
+
+/// Powers of ten, all exact in f64.
+const POWERS: [f64; 16] =
+    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 
 #[cfg(test)]
 mod tests {

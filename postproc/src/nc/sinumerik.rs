@@ -14,11 +14,14 @@ use crate::feed::PathMetric;
 
 const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
 
-fn rotary(name: &RotaryName, counts: i64) -> String {
+fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     if name.endless {
-        format!("{}=DC({})", name.letter, number::fixed(in_turn(counts)))
+        text.push_str(&name.letter);
+        text.push_str("=DC(");
+        number::push_fixed(text, in_turn(counts));
+        text.push(')');
     } else {
-        plain(&name.letter, counts)
+        plain(text, &name.letter, counts);
     }
 }
 
@@ -38,7 +41,7 @@ pub(super) fn write(program: &Program) -> String {
     if let Some(rpm) = program.spindle_rpm {
         text.line(&format!("S{} M3", number::feed(rpm)));
     }
-    let mut modal = Modal::default();
+    let mut modal = Modal::new(program);
     if let Some((first, rest)) = program.moves.split_first() {
         for line in modal.approach(program, &WORDING, first, &[Which::Rotary]) {
             text.line(&line);
@@ -103,10 +106,12 @@ fn feed_head(text: &mut Numbered, program: &Program) {
 
 fn moves(text: &mut Numbered, modal: &mut Modal, program: &Program, rest: &[NcMove]) {
     modal.forget_feed();
+    let mut words = String::new();
     for m in rest {
-        let line = modal.block(program, &WORDING, m);
-        if !line.is_empty() {
-            text.line(&line);
+        words.clear();
+        modal.block(program, &WORDING, m, &mut words);
+        if !words.is_empty() {
+            text.line(&words[1..]);
         }
     }
 }
@@ -118,7 +123,11 @@ struct Numbered {
 
 impl Numbered {
     fn line(&mut self, words: &str) {
-        self.text.push_str(&format!("N{} {words}\n", self.next));
+        self.text.push('N');
+        number::push_whole(&mut self.text, self.next);
+        self.text.push(' ');
+        self.text.push_str(words);
+        self.text.push('\n');
         self.next += 10;
     }
 }

@@ -21,18 +21,24 @@ use std::collections::BTreeSet;
 pub struct Names {
     dialect: Dialect,
     all: BTreeSet<String>,
+    /// Axes of the machine that no line has named yet.
+    missing: Vec<String>,
 }
 
 impl Names {
     /// Before the first line.
     #[must_use]
-    pub const fn new(dialect: Dialect) -> Self {
-        Self { dialect, all: BTreeSet::new() }
+    pub fn new(dialect: Dialect, machine: &Machine) -> Self {
+        let missing = machine.joints().iter().map(|j| j.letter.clone()).collect();
+        Self { dialect, all: BTreeSet::new(), missing }
     }
 
     /// One line.
     pub fn line(&mut self, line: &str) {
-        note_names(line, self.dialect, &mut self.all);
+        if !self.missing.is_empty() {
+            note_names(line, self.dialect, &mut self.all);
+            self.missing.retain(|letter| !self.all.contains(letter));
+        }
     }
 }
 
@@ -121,7 +127,7 @@ pub fn time(
     setup: &Setup,
     strict: bool,
 ) -> Result<Timed, ReadError> {
-    let mut names = Names::new(dialect);
+    let mut names = Names::new(dialect, machine);
     text.lines().for_each(|l| names.line(l));
     let mut clock = Clock::new(&names, machine, setup, strict)?;
     for line in text.lines() {

@@ -59,13 +59,12 @@ pub(super) fn words(line: &str, dialect: Dialect) -> Result<Vec<Word>, BadWord> 
         return klartext(line);
     }
     let line = if dialect == Dialect::Sinumerik { line.split(';').next().unwrap_or_default() } else { line };
-    let text: Vec<char> = line.chars().collect();
-    let mut scan = Scan { text: &text, at: 0, round_comments: dialect != Dialect::Sinumerik };
-    let mut words = Vec::new();
+    let mut scan = Scan { text: line, at: 0, round_comments: dialect != Dialect::Sinumerik };
+    let mut words = Vec::with_capacity(8);
     // A slash marks an optional block, which is run unless a switch is set.
     if scan.peek() == Some('/') || scan.peek() == Some('%') {
         scan.at += 1;
-        if text[0] == '%' {
+        if line.starts_with('%') {
             return Ok(words);
         }
     }
@@ -76,27 +75,35 @@ pub(super) fn words(line: &str, dialect: Dialect) -> Result<Vec<Word>, BadWord> 
 }
 
 struct Scan<'a> {
-    text: &'a [char],
+    text: &'a str,
+    /// In bytes.
     at: usize,
     round_comments: bool,
 }
 
 impl Scan<'_> {
     fn peek(&self) -> Option<char> {
-        self.text.get(self.at).copied()
+        match self.text.as_bytes().get(self.at)? {
+            b if b.is_ascii() => Some(char::from(*b)),
+            _ => self.text.get(self.at..)?.chars().next(),
+        }
+    }
+
+    fn bad(&self, from: usize) -> BadWord {
+        BadWord(self.text[from..].chars().take(24).collect())
     }
 
     fn rest(&self) -> String {
-        self.text[self.at..].iter().take(24).collect()
+        self.text[self.at..].chars().take(24).collect()
     }
 
     fn blanks(&mut self) {
         loop {
             match self.peek() {
-                Some(c) if c.is_whitespace() => self.at += 1,
+                Some(c) if c.is_whitespace() => self.at += c.len_utf8(),
                 Some('(') if self.round_comments => {
                     // An open comment is left in place, where it is no word.
-                    let Some(end) = self.text[self.at..].iter().position(|c| *c == ')') else { return };
+                    let Some(end) = self.text[self.at..].find(')') else { return };
                     self.at += end + 1;
                 }
                 Some(';') if self.round_comments => self.at = self.text.len(),
@@ -105,12 +112,12 @@ impl Scan<'_> {
         }
     }
 
-    fn while_is(&mut self, keep: impl Fn(char) -> bool) -> String {
+    fn while_is(&mut self, keep: impl Fn(char) -> bool) -> &str {
         let start = self.at;
-        while self.peek().is_some_and(&keep) {
-            self.at += 1;
+        while let Some(c) = self.peek().filter(|c| keep(*c)) {
+            self.at += c.len_utf8();
         }
-        self.text[start..self.at].iter().collect()
+        &self.text[start..self.at]
     }
 
     fn number(&mut self) -> Option<f64> {
@@ -120,8 +127,7 @@ impl Scan<'_> {
             self.at += 1;
         }
         self.while_is(|c| c.is_ascii_digit() || c == '.');
-        let text: String = self.text[start..self.at].iter().collect();
-        let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
+        let value = self.text[start..self.at].parse::<f64>().ok().filter(|v| v.is_finite());
         if value.is_none() {
             self.at = start;
         }
@@ -134,22 +140,23 @@ impl Scan<'_> {
         if !first.is_ascii_alphabetic() && first != '_' {
             return Err(BadWord(self.rest()));
         }
-        let bad = BadWord(self.rest());
+        let from = self.at;
         let mut name = self.while_is(|c| c.is_ascii_alphabetic() || c == '_').to_ascii_uppercase();
         if name.len() == 1 {
             let start = self.at;
             if let Some(value) = self.number() {
-                let digits: String = self.text[start..self.at].iter().collect();
+                let digits = &self.text[start..self.at];
                 // `A3=`, `C1=`: the digits belong to the name.
                 if self.peek() == Some('=') && digits.chars().all(|c| c.is_ascii_digit()) {
-                    name.push_str(&digits);
+                    name.push_str(digits);
                     self.at += 1;
                     return self.assigned(name).map(Some);
                 }
                 return Ok(Some(lettered(&name, value)));
             }
         } else {
-            name.push_str(&self.while_is(|c| c.is_ascii_alphanumeric() || c == '_').to_ascii_uppercase());
+            let rest = self.while_is(|c| c.is_ascii_alphanumeric() || c == '_').to_ascii_uppercase();
+            name.push_str(&rest);
         }
         self.blanks_only();
         match self.peek() {
@@ -158,7 +165,7 @@ impl Scan<'_> {
                 self.assigned(name).map(Some)
             }
             Some('[') if name.len() > 1 => {
-                let inside = self.enclosed('[', ']').ok_or(bad)?;
+                let inside = self.enclosed('[', ']').ok_or_else(|| self.bad(from))?;
                 name = format!("{name}[{}]", inside.trim().to_ascii_uppercase());
                 self.blanks_only();
                 if self.peek() == Some('=') {
@@ -168,10 +175,10 @@ impl Scan<'_> {
                 Ok(Some(Word::Name { name, arguments: String::new() }))
             }
             Some('(') if !self.round_comments => {
-                let arguments = self.enclosed('(', ')').ok_or(bad)?;
+                let arguments = self.enclosed('(', ')').ok_or_else(|| self.bad(from))?;
                 Ok(Some(Word::Name { name, arguments }))
             }
-            _ if name.len() == 1 => Err(bad),
+            _ if name.len() == 1 => Err(self.bad(from)),
             _ => Ok(Some(Word::Name { name, arguments: String::new() })),
         }
     }
@@ -185,7 +192,7 @@ impl Scan<'_> {
         let start = self.at + 1;
         let (mut depth, mut quoted) = (0, false);
         while let Some(c) = self.peek() {
-            self.at += 1;
+            self.at += c.len_utf8();
             if c == '"' {
                 quoted = !quoted;
             } else if !quoted && c == open {
@@ -193,7 +200,7 @@ impl Scan<'_> {
             } else if !quoted && c == close {
                 depth -= 1;
                 if depth == 0 {
-                    return Some(self.text[start..self.at - 1].iter().collect());
+                    return Some(self.text[start..self.at - 1].to_string());
                 }
             }
         }
@@ -212,7 +219,7 @@ impl Scan<'_> {
         let bad = BadWord(format!("{name}={}", self.rest()));
         if self.peek() == Some('"') {
             self.at += 1;
-            let text = self.while_is(|c| c != '"');
+            let text = self.while_is(|c| c != '"').to_string();
             self.while_is(|c| c == '"');
             return Ok(Word::Name { name, arguments: text });
         }
