@@ -33,7 +33,7 @@ pub struct LoadedFace {
 
 /// A part ready for work.
 pub struct Loaded {
-    /// `step`, `iges` or `builtin`.
+    /// `step`, `iges`, `patches` or `builtin`.
     pub format: &'static str,
     /// The file's unit.
     pub unit: String,
@@ -89,6 +89,7 @@ fn from_file(path: &Path) -> Result<Loaded, Failure> {
     let format = match part.format {
         osculate_surfaces::Format::Step => "step",
         osculate_surfaces::Format::Iges => "iges",
+        osculate_surfaces::Format::Patches => "patches",
     };
     let faces = part
         .faces

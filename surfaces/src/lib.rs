@@ -27,6 +27,7 @@ pub mod iges;
 pub mod lines;
 mod mesh;
 mod part;
+pub mod patches;
 pub mod step;
 mod topology;
 mod trim;

@@ -5,7 +5,7 @@
 
 use crate::trim::carrier::FaceSurface;
 use crate::trimmed::TrimmedSurface;
-use crate::{iges, step};
+use crate::{iges, patches, step};
 use osculate_geom::{Axis, Box3, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
 use std::fmt;
 use std::sync::Arc;
@@ -15,8 +15,10 @@ use std::sync::Arc;
 pub enum Format {
     /// ISO 10303-21.
     Step,
-    /// IGES, fixed ASCII form.
+    /// IGES, both ASCII forms.
     Iges,
+    /// Bezier patches as text.
+    Patches,
 }
 
 impl fmt::Display for Format {
@@ -24,6 +26,7 @@ impl fmt::Display for Format {
         f.write_str(match self {
             Self::Step => "STEP",
             Self::Iges => "IGES",
+            Self::Patches => "Bezier patches",
         })
     }
 }
@@ -113,7 +116,8 @@ pub struct Face {
     pub id: String,
     /// The face's name in the file, empty where it has none.
     pub name: String,
-    /// STEP: the instance number of the face. IGES: the sequence number of its directory entry.
+    /// STEP: the instance number of the face. IGES: the sequence number of its directory entry. Text: the line that it
+    /// begins in.
     pub entity: u64,
     /// What the file says its surface is.
     pub kind: FaceKind,
@@ -252,10 +256,10 @@ pub enum ImportError {
     /// Nothing to read.
     #[error("the file is empty")]
     Empty,
-    /// Neither format.
+    /// None of the formats.
     #[error(
-        "not a STEP or IGES file: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
-         in column 73 of its lines"
+        "no format that is read: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
+         in column 73 of its lines, a set of Bezier patches begins with their number and a line of vertex numbers"
     )]
     Unknown {
         /// The first characters.
@@ -267,6 +271,9 @@ pub enum ImportError {
     /// An IGES file that cannot be read.
     #[error(transparent)]
     Iges(#[from] iges::IgesError),
+    /// Bezier patches that cannot be read.
+    #[error("Bezier patches: {0}")]
+    Patches(#[from] patches::PatchesError),
 }
 
 /// The format of a file, by its first lines.
@@ -276,12 +283,14 @@ pub fn detect(bytes: &[u8]) -> Option<Format> {
         Some(Format::Step)
     } else if iges::looks_like(bytes) {
         Some(Format::Iges)
+    } else if patches::looks_like(bytes) {
+        Some(Format::Patches)
     } else {
         None
     }
 }
 
-/// Reads a STEP or IGES file.
+/// Reads a file of any format that [`detect`] knows.
 ///
 /// # Errors
 /// [`ImportError`] where the bytes are neither, or nothing of them can be read.
@@ -292,6 +301,7 @@ pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
     match detect(bytes) {
         Some(Format::Step) => Ok(step::read(bytes)?),
         Some(Format::Iges) => Ok(iges::read(bytes)?),
+        Some(Format::Patches) => Ok(patches::read(bytes)?),
         None => {
             let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
             Err(ImportError::Unknown { begin })

@@ -9,7 +9,7 @@ use super::params::{Params, Parsed, Separators, parse};
 use osculate_geom::Diagnostic;
 use rayon::prelude::*;
 use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// A directory entry with its parameters.
 #[derive(Clone, Debug)]
@@ -135,8 +135,12 @@ fn fields(first: &Line<'_>, second: &[u8]) -> Option<Fields> {
 }
 
 /// Whether the cards' own numbers are to be believed: at least as many parameter data point back to them as to
-/// the places of the entries.
+/// the places of the entries, and most of the numbers occur once.
 fn numbers_hold(entries: &[Option<Fields>], backs: &[Option<i64>], by_number: &HashMap<i64, usize>) -> bool {
+    let sequences: BTreeSet<i64> = entries.iter().flatten().filter_map(|e| e.sequence).collect();
+    if 2 * sequences.len() <= entries.len() && entries.len() > 1 {
+        return false;
+    }
     let (mut named, mut placed) = (0_usize, 0_usize);
     for (k, entry) in entries.iter().enumerate() {
         let Some(e) = entry else { continue };

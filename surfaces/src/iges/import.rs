@@ -108,19 +108,22 @@ fn made(cards: &Cards, number: usize, de: i64, placed: &Placed) -> Outcome {
     }
 }
 
-/// The name of an entity: of a name property (406, form 15) behind its parameters, else its label.
+/// The name of an entity: of a name property behind its parameters, else its label.
 fn name(cards: &Cards, e: &Entity) -> String {
-    let properties = || {
-        let own = own_parameters(e)?;
-        let groups = e.params.number(own).unwrap_or(0.0).max(0.0) as usize;
-        let at = own.checked_add(groups)?.checked_add(1)?;
-        let count = e.params.number(at)?.max(0.0) as usize;
-        (at + 1..e.params.len()).take(count).find_map(|k| {
-            let property = cards.entities.get(&(e.params.number(k)?.abs() as i64))?;
-            (property.kind == 406 && property.form == 15).then(|| property.params.text(1))?
-        })
-    };
-    properties().map_or_else(|| e.label.clone(), |t| t.trim().to_owned())
+    let property = name_property(cards, e).and_then(|de| cards.entities.get(&de)?.params.text(1));
+    property.map_or_else(|| e.label.clone(), |t| t.trim().to_owned())
+}
+
+/// Directory number of the name property (406, form 15) that stands behind an entity's own parameters.
+fn name_property(cards: &Cards, e: &Entity) -> Option<i64> {
+    let own = own_parameters(e)?;
+    let groups = e.params.number(own).unwrap_or(0.0).max(0.0) as usize;
+    let at = own.checked_add(groups)?.checked_add(1)?;
+    let count = e.params.number(at)?.max(0.0) as usize;
+    (at + 1..e.params.len()).take(count).find_map(|k| {
+        let de = e.params.number(k)?.abs() as i64;
+        cards.entities.get(&de).is_some_and(|p| p.kind == 406 && p.form == 15).then_some(de)
+    })
 }
 
 /// Says how the model was put together.
@@ -241,6 +244,7 @@ impl Left {
             }
             // Colours and names.
             next.push(-e.color);
+            next.extend(name_property(cards, e));
             pending.extend(next.into_iter().filter(|p| *p > 0 && used.insert(*p)));
         }
         for (de, e) in &cards.entities {

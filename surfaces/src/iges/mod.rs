@@ -1,7 +1,14 @@
-//! IGES files (5.3 and its forerunners, fixed ASCII form): trimmed, bounded and free surfaces, and faces of solids.
+//! IGES files (5.3 and its forerunners, both ASCII forms): trimmed, bounded and free surfaces, and faces of solids, in
+//! every place that groups and instances put them.
 //!
-//! `cards` takes the sections apart, `geometry` makes curves and surfaces, `faces` the faces. IGES trims say
-//! nothing about the material side: such faces have [`crate::Face::oriented`] false.
+//! The text: `cards` takes the sections apart, `params` reads free text, `global` the global section, `directory` and
+//! `compressed` the entities of the two forms. The model: `links` says what an entity is made of, `tree` goes from the
+//! roots to placed faces. The geometry: `geometry` follows pointers and transforms; `curves`, `conic`, `parametric` and
+//! `join` make curves, `carriers` surfaces, `pcurves` and `loops` boundaries, `faces` faces. `import` puts the part
+//! together and says what was left out.
+//!
+//! IGES trims say nothing about the material side: such faces have [`crate::Face::oriented`] false; only faces of
+//! solids know it.
 
 mod cards;
 mod carriers;
@@ -33,13 +40,15 @@ use cards::{CardFault, Cards};
 pub enum IgesError {
     /// No cards.
     #[error(
-        "no IGES file in fixed ASCII form: none of the first {searched} lines has a section letter in column 73; \
-         compressed and binary forms are not read"
+        "no IGES file in an ASCII form: none of the first {searched} lines has a section letter in column 73"
     )]
     NotIges {
         /// Lines searched.
         searched: usize,
     },
+    /// The binary form.
+    #[error("the binary form of IGES is not read; export the part in the ASCII form, or as STEP")]
+    Binary,
     /// Truncated before the directory.
     #[error(
         "the IGES file has no directory entry section among its {lines} lines: it is truncated; export it again"
@@ -65,7 +74,7 @@ const LOOK_AT: usize = 200;
 pub(crate) fn looks_like(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(LOOK_AT * 82)];
     let found: Vec<u8> = cards::cards(head).filter_map(|c| cards::section(&c.1)).collect();
-    matches!(found.first(), Some(b'S' | b'G')) || found.contains(&b'G')
+    matches!(found.first(), Some(b'S' | b'G' | b'B' | b'C')) || found.contains(&b'G')
 }
 
 /// Reads an IGES file. Damage is reported in [`Part::diagnostics`] and what cannot become a face in
@@ -77,6 +86,10 @@ pub fn read(bytes: &[u8]) -> Result<Part, IgesError> {
     let lines = cards::cards(bytes).count();
     if !looks_like(bytes) {
         return Err(IgesError::NotIges { searched: lines.min(LOOK_AT) });
+    }
+    // The flag section of the binary form.
+    if cards::cards(bytes).next().is_some_and(|c| cards::section(&c.1) == Some(b'B')) {
+        return Err(IgesError::Binary);
     }
     match Cards::read(bytes) {
         Ok(cards) => Ok(import::part(cards)),

@@ -18,8 +18,8 @@ const FACES: [u32; 15] = [108, 114, 118, 120, 122, 128, 140, 143, 144, 190, 192,
 /// Groups and instances within each other at most.
 const MAX_DEPTH: usize = 64;
 
-/// Placed faces at most; a part of a million faces is a lie about instances.
-const MAX_PLACED: usize = 200_000;
+/// Placed faces at most; instances of instances reach any number.
+const MAX_PLACED: usize = 50_000;
 
 /// Visits of groups, shells and instances at most, those that lead nowhere included.
 const MAX_VISITS: usize = 2_000_000;
