@@ -122,9 +122,9 @@ struct Normal {
 
 /// Length of the span that holds `t`: what a step is compared with.
 fn span(breaks: &[f64], t: f64) -> f64 {
-    let k = breaks.partition_point(|b| *b <= t).clamp(1, breaks.len() - 1);
-    let length = breaks[k] - breaks[k - 1];
-    if length.is_finite() { length } else { 1.0 }
+    let k = breaks.partition_point(|b| *b <= t).min(breaks.len().saturating_sub(1)).max(1);
+    let length = breaks.get(k).map_or(1.0, |hi| hi - breaks[k - 1]);
+    if length > 0.0 && length.is_finite() { length } else { 1.0 }
 }
 
 /// The places and directions from which one parameter can be looked at.
@@ -144,10 +144,25 @@ fn ways(i: Interval, breaks: &[f64], t: f64) -> Vec<(f64, f64)> {
     }
 }
 
-fn views(surface: &dyn Surface, at: Uv) -> Vec<View> {
-    let d = surface.domain();
-    let us = ways(d.u, &surface.breaks(Axis::U), at.u);
-    let vs = ways(d.v, &surface.breaks(Axis::V), at.v);
+/// A surface with its breaks at hand.
+struct Known<'a> {
+    surface: &'a dyn Surface,
+    breaks: [Vec<f64>; 2],
+}
+
+impl<'a> Known<'a> {
+    fn new(surface: &'a dyn Surface) -> Self {
+        Self { surface, breaks: [surface.breaks(Axis::U), surface.breaks(Axis::V)] }
+    }
+    fn lengths(&self, at: Uv) -> [f64; 2] {
+        [span(&self.breaks[0], at.u), span(&self.breaks[1], at.v)]
+    }
+}
+
+fn views(known: &Known<'_>, at: Uv) -> Vec<View> {
+    let d = known.surface.domain();
+    let us = ways(d.u, &known.breaks[0], at.u);
+    let vs = ways(d.v, &known.breaks[1], at.v);
     us.iter().flat_map(|u| vs.iter().map(|v| View { at: uv(u.0, v.0), toward: [u.1, v.1] })).collect()
 }
 
@@ -180,14 +195,13 @@ fn divided(s: &[Series; 3], [a, b]: [usize; 2]) -> [Series; 3] {
 }
 
 /// The polynomial at a view with both steps measured in spans.
-fn local(surface: &dyn Surface, view: View) -> Taylor {
-    let lengths = [span(&surface.breaks(Axis::U), view.at.u), span(&surface.breaks(Axis::V), view.at.v)];
-    scaled(&surface.taylor(view.at, MAX_ORDER), lengths)
+fn local(known: &Known<'_>, view: View) -> Taylor {
+    scaled(&known.surface.taylor(view.at, MAX_ORDER), known.lengths(view.at))
 }
 
 /// The normal on one side of a place.
-fn one_sided(surface: &dyn Surface, view: View) -> Result<Normal, LimitError> {
-    let taylor = local(surface, view);
+fn one_sided(known: &Known<'_>, view: View) -> Result<Normal, LimitError> {
+    let taylor = local(known, view);
     let (su, sv) = (taylor.differentiated(Axis::U), taylor.differentiated(Axis::V));
     let n = cross(&su, &sv);
     let size = largest(&su) * largest(&sv);
@@ -253,23 +267,23 @@ fn collapsed(taylor: &Taylor, axis: Axis) -> bool {
 
 /// Views of the same point in space: those at the place, and where a parameter line through it is a point, those along
 /// all of that line. True where there is such a line.
-fn all_views(surface: &dyn Surface, at: Uv) -> (Vec<View>, bool) {
+fn all_views(known: &Known<'_>, at: Uv) -> (Vec<View>, bool) {
     /// Looked at per span of a collapsed side, its ends included: limits that agree at five places of a rational
     /// quadratic or cubic agree.
     const PER_SPAN: usize = 5;
-    let mut all = views(surface, at);
+    let mut all = views(known, at);
     let mut point = false;
     for axis in [Axis::U, Axis::V] {
-        if !all.iter().any(|v| collapsed(&local(surface, *v), axis)) {
+        if !all.iter().any(|v| collapsed(&local(known, *v), axis)) {
             continue;
         }
         point = true;
         let across = at.get(axis.other());
-        for w in surface.breaks(axis).windows(2).filter(|w| (w[1] - w[0]).is_finite()) {
+        for w in known.breaks[axis as usize].windows(2).filter(|w| (w[1] - w[0]).is_finite()) {
             for k in 0..PER_SPAN {
                 let t = w[0] + (w[1] - w[0]) * k as f64 / (PER_SPAN - 1) as f64;
                 let t = if k + 1 == PER_SPAN { w[1].next_down() } else { t };
-                all.extend(views(surface, Uv::from_axis(axis, t, across)));
+                all.extend(views(known, Uv::from_axis(axis, t, across)));
             }
         }
     }
@@ -287,10 +301,11 @@ fn common_normal(
     at: Uv,
     tolerance: &Tolerance,
 ) -> Result<(Vec<(View, Normal)>, Unit3), LimitError> {
-    let (all, point) = all_views(surface, at);
+    let known = Known::new(surface);
+    let (all, point) = all_views(&known, at);
     let mut seen = Vec::with_capacity(all.len());
     for view in all {
-        seen.push((view, one_sided(surface, view)?));
+        seen.push((view, one_sided(&known, view)?));
     }
     let first = value(&seen[0].1.normal);
     let spread_rad = widest(seen.iter().map(|s| value(&s.1.normal)));
@@ -411,8 +426,9 @@ pub struct SideNormal {
 /// [`LimitError::Undetermined`] where a side has none.
 pub fn sides(surface: &dyn Surface, at: Uv, tolerance: &Tolerance) -> Result<Vec<SideNormal>, LimitError> {
     let mut found: Vec<SideNormal> = Vec::new();
-    for view in views(surface, at) {
-        let normal = value(&one_sided(surface, view)?.normal);
+    let known = Known::new(surface);
+    for view in views(&known, at) {
+        let normal = value(&one_sided(&known, view)?.normal);
         if found.iter().all(|f| angle_rad(&f.normal, &normal) > tolerance.angle_rad) {
             found.push(SideNormal { toward: view.toward, normal });
         }
@@ -428,9 +444,10 @@ pub(crate) fn normal_series(surface: &dyn Surface, at: Uv, order: usize) -> Opti
         let sign = if t.side == Side::Along { 1.0 } else { -1.0 };
         return Some(unit(&n).map(|c| c * sign));
     }
-    let view = *views(surface, at).first()?;
-    let lengths = [span(&surface.breaks(Axis::U), view.at.u), span(&surface.breaks(Axis::V), view.at.v)];
-    let found = one_sided(surface, view).ok()?;
+    let known = Known::new(surface);
+    let view = *views(&known, at).first()?;
+    let lengths = known.lengths(view.at);
+    let found = one_sided(&known, view).ok()?;
     let back = lengths.map(|l| 1.0 / l);
     Some(crate::taylor::rescaled(&found.normal, back).map(|c| c.truncated(order)))
 }

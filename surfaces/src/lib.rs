@@ -35,6 +35,7 @@ mod trimmed;
 
 mod basis;
 mod closest;
+mod convert;
 mod knots;
 mod nurbs;
 mod nurbs_batch;
@@ -49,6 +50,7 @@ mod refine;
 mod ruled;
 
 pub use closest::{ClosestError, Foot, FootKind, closest, closest_near, closest_sampled};
+pub use convert::{ConvertError, CurveToNurbs, ToNurbs};
 pub use knots::{KnotError, Knots, MAX_DEGREE};
 pub use mesh::{Mesh, MeshError, MeshOptions, MeshReport, PartMesh, mesh_faces, tessellate};
 pub use nurbs::{Net, NurbsError, NurbsSurface};

@@ -15,6 +15,15 @@ pub(crate) fn angle_breaks(i: Interval) -> Vec<f64> {
     (0..=n).map(|k| i.at(k as f64 / n as f64)).collect()
 }
 
+/// `range` when its ends are numbers in order; they may be infinite.
+fn upwards(what: &'static str, range: Interval) -> Result<Interval, BadSize> {
+    if range.lo <= range.hi {
+        Ok(range)
+    } else {
+        Err(BadSize { what, need: "a range from low to high", got: range.length() })
+    }
+}
+
 /// Point and derivatives of a meridian `(r, z)(v)` turned about z by u.
 fn revolve(uv: Uv, r: [f64; 3], z: [f64; 3]) -> Jet2 {
     let (s, c) = uv.u.sin_cos();
@@ -103,10 +112,10 @@ impl Cylinder {
     /// The cylinder of `radius_mm` between `z.lo` and `z.hi`.
     ///
     /// # Errors
-    /// [`BadSize`] for a radius that is not positive.
+    /// [`BadSize`] for a radius that is not positive and a range that is not in order.
     pub fn new(radius_mm: f64, z: Interval) -> Result<Self, BadSize> {
         let radius = positive("radius_mm", radius_mm)?;
-        Ok(Self { radius, domain: Domain { u: Interval::periodic(0.0, TAU), v: z } })
+        Ok(Self { radius, domain: Domain { u: Interval::periodic(0.0, TAU), v: upwards("z", z)? } })
     }
     /// Radius, mm.
     #[must_use]
@@ -135,7 +144,8 @@ impl Cone {
     /// The cone whose radius at z = 0 is `radius_mm` and grows with z at `half_angle_rad`.
     ///
     /// # Errors
-    /// [`BadSize`] for a negative radius or a half angle that is not strictly between -90 and 90 degrees.
+    /// [`BadSize`] for a negative radius, a half angle that is not strictly between -90 and 90 degrees, and a range that is
+    /// not in order.
     pub fn new(radius_mm: f64, half_angle_rad: f64, v: Interval) -> Result<Self, BadSize> {
         if !(radius_mm >= 0.0 && radius_mm.is_finite()) {
             return Err(BadSize { what: "radius_mm", need: "zero or positive", got: radius_mm });
@@ -144,6 +154,7 @@ impl Cone {
             return Err(BadSize { what: "half_angle", need: "below 90 degrees", got: half_angle_rad });
         }
         let (sin, cos) = half_angle_rad.sin_cos();
+        let v = upwards("v", v)?;
         Ok(Self { radius: radius_mm, sin, cos, domain: Domain { u: Interval::periodic(0.0, TAU), v } })
     }
     /// Radius at z = 0, mm.
