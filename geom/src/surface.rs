@@ -188,6 +188,13 @@ impl<S: Surface> Surface for Patch<S> {
         }
         jet
     }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        let mut jet = self.surface.jet3(uv);
+        if self.side == Side::Against {
+            jet.jet2.side = jet.jet2.side.flipped();
+        }
+        jet
+    }
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {
         let t = self.surface.taylor(uv, order);
         if self.side == Side::Against { t.flipped() } else { t }

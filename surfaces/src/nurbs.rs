@@ -10,10 +10,10 @@ use crate::closest::Index;
 use crate::knots::{KnotError, Knots, MAX_DEGREE};
 use crate::nurbs_eval::{Evaluator, piece_orders};
 use crate::nurbs_pieces::{Orders, Pieces};
-use crate::nurbs_taylor::taylor;
+use crate::nurbs_taylor::{taylor, third};
 use crate::quad;
 use nalgebra::Vector4;
-use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Side, Surface, Taylor, Uv, Vec3};
+use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, Vec3};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -410,6 +410,13 @@ impl Surface for NurbsSurface {
         }
         let at = self.bring(uv);
         self.piece_jet(at, self.span(at))
+    }
+
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        let at = self.bring(uv);
+        let span = self.span(at);
+        let [duuu, duuv, duvv, dvvv] = third(&self.knots, &self.net, at, span);
+        Jet3 { jet2: self.piece_jet(at, span), duuu, duuv, duvv, dvvv }
     }
 
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {

@@ -6,6 +6,7 @@
 use crate::knots::Knots;
 use crate::nurbs::Net;
 use crate::nurbs_curve::NurbsCurve3;
+use nalgebra::Vector4;
 use osculate_geom::{Curve, CurveTaylor, Interval, MAX_ORDER, Point3, Series, Side, Taylor, Uv, Vec3};
 
 /// The polynomial of the piece over the spans `span`, continued where `at` lies outside them.
@@ -43,6 +44,55 @@ pub(crate) fn taylor(
         *series = *series + Series::constant(origin[c], order);
     }
     Taylor { uv: at, side, coordinates }
+}
+
+/// S_uuu, S_uuv, S_uvv and S_vvv on the piece over the spans `span`: as [`taylor`] has them, without its generality.
+pub(crate) fn third(knots: &[Knots; 2], net: &Net, at: Uv, span: [usize; 2]) -> [Vec3; 4] {
+    let bu = knots[0].basis_taylor(span[0], at.u, 3);
+    let bv = knots[1].basis_taylor(span[1], at.v, 3);
+    let [p, q] = [knots[0].degree(), knots[1].degree()];
+    let row_of = |i: usize| (bu.first + i) * net.count[1] + bv.first;
+    let origin = net.points[row_of(p.div_ceil(2)) + q.div_ceil(2)];
+    let weights = net.weights.as_ref().filter(|w| w.iter().any(|x| *x != w[0]));
+    // Coefficients of x^a y^b of the numerator about the origin, and of the denominator.
+    let mut sums = [[Vector4::zeros(); 4]; 4];
+    for i in 0..=p {
+        let mut row = [Vector4::zeros(); 4];
+        for j in 0..=q {
+            let k = row_of(i) + j;
+            let w = weights.map_or(1.0, |w| w[k]);
+            let d = (net.points[k] - origin) * w;
+            let pole = Vector4::new(d.x, d.y, d.z, w);
+            for (sum, order) in row.iter_mut().zip(&bv.order) {
+                *sum += pole * order[j];
+            }
+        }
+        for (a, along) in sums.iter_mut().enumerate() {
+            for (sum, r) in along[..4 - a].iter_mut().zip(&row) {
+                *sum += r * bu.order[a][i];
+            }
+        }
+    }
+    let mut s = [[Vec3::zeros(); 4]; 4];
+    for n in 0..4 {
+        for b in 0..=n {
+            let a = n - b;
+            let mut rest = sums[a][b].xyz();
+            if weights.is_some() {
+                // S w = A: what the lower orders leave.
+                for (i, low) in s[..=a].iter().enumerate() {
+                    for (j, c) in low[..=b].iter().enumerate() {
+                        if i + j < n {
+                            rest -= c * sums[a - i][b - j].w;
+                        }
+                    }
+                }
+                rest /= sums[0][0].w;
+            }
+            s[a][b] = rest;
+        }
+    }
+    [s[3][0] * 6.0, s[2][1] * 2.0, s[1][2] * 2.0, s[0][3] * 6.0]
 }
 
 /// A curve in space ends at its ends, closed or not; beyond them it stays there.

@@ -1,7 +1,7 @@
 //! A surface moved to another frame.
 
 use crate::domain::{Domain, Interval};
-use crate::jet::Jet2;
+use crate::jet::{Jet2, Jet3};
 use crate::point::{Axis, Point3, Unit3, Uv, Vec3, any_perpendicular};
 use crate::surface::Surface;
 use crate::taylor::Taylor;
@@ -47,6 +47,20 @@ impl Placement {
         self.origin + self.vector(&p.coords)
     }
 
+    /// A local jet in world coordinates.
+    fn jet2(&self, j: &Jet2) -> Jet2 {
+        Jet2 {
+            uv: j.uv,
+            point: self.point(&j.point),
+            du: self.vector(&j.du),
+            dv: self.vector(&j.dv),
+            duu: self.vector(&j.duu),
+            duv: self.vector(&j.duv),
+            dvv: self.vector(&j.dvv),
+            side: j.side,
+        }
+    }
+
     /// A world point in local coordinates.
     #[must_use]
     pub fn local(&self, p: &Point3) -> Point3 {
@@ -69,17 +83,16 @@ impl<S: Surface> Surface for Placed<S> {
         self.surface.domain()
     }
     fn jet2(&self, uv: Uv) -> Jet2 {
-        let j = self.surface.jet2(uv);
-        let f = &self.placement;
-        Jet2 {
-            uv: j.uv,
-            point: f.point(&j.point),
-            du: f.vector(&j.du),
-            dv: f.vector(&j.dv),
-            duu: f.vector(&j.duu),
-            duv: f.vector(&j.duv),
-            dvv: f.vector(&j.dvv),
-            side: j.side,
+        self.placement.jet2(&self.surface.jet2(uv))
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        let (j, f) = (self.surface.jet3(uv), &self.placement);
+        Jet3 {
+            jet2: f.jet2(&j.jet2),
+            duuu: f.vector(&j.duuu),
+            duuv: f.vector(&j.duuv),
+            duvv: f.vector(&j.duvv),
+            dvvv: f.vector(&j.dvvv),
         }
     }
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {

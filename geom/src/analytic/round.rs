@@ -2,7 +2,7 @@
 
 use super::{BadSize, positive};
 use crate::domain::{Domain, Interval};
-use crate::jet::{Jet2, Side};
+use crate::jet::{Jet2, Jet3, Side};
 use crate::point::{Axis, Point3, Uv, Vec3};
 use crate::series::Series;
 use crate::surface::Surface;
@@ -25,9 +25,9 @@ fn upwards(what: &'static str, range: Interval) -> Result<Interval, BadSize> {
 }
 
 /// Point and derivatives of a meridian `(r, z)(v)` turned about z by u.
-fn revolve(uv: Uv, r: [f64; 3], z: [f64; 3]) -> Jet2 {
+fn revolve(uv: Uv, r: [f64; 4], z: [f64; 4]) -> Jet3 {
     let (s, c) = uv.u.sin_cos();
-    Jet2 {
+    let jet2 = Jet2 {
         uv,
         point: Point3::new(r[0] * c, r[0] * s, z[0]),
         du: Vec3::new(-r[0] * s, r[0] * c, 0.0),
@@ -36,6 +36,13 @@ fn revolve(uv: Uv, r: [f64; 3], z: [f64; 3]) -> Jet2 {
         duv: Vec3::new(-r[1] * s, r[1] * c, 0.0),
         dvv: Vec3::new(r[2] * c, r[2] * s, z[2]),
         side: Side::Along,
+    };
+    Jet3 {
+        jet2,
+        duuu: Vec3::new(r[0] * s, -r[0] * c, 0.0),
+        duuv: Vec3::new(-r[1] * c, -r[1] * s, 0.0),
+        duvv: Vec3::new(-r[2] * s, r[2] * c, 0.0),
+        dvvv: Vec3::new(r[3] * c, r[3] * s, z[3]),
     }
 }
 
@@ -46,6 +53,9 @@ macro_rules! revolved {
                 self.domain
             }
             fn jet2(&self, uv: Uv) -> Jet2 {
+                self.jet3(uv).jet2
+            }
+            fn jet3(&self, uv: Uv) -> Jet3 {
                 let (r, z) = self.meridian(uv.v);
                 revolve(uv, r, z)
             }
@@ -122,8 +132,8 @@ impl Cylinder {
     pub const fn radius_mm(&self) -> f64 {
         self.radius
     }
-    fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
-        ([self.radius, 0.0, 0.0], [v, 1.0, 0.0])
+    fn meridian(&self, v: f64) -> ([f64; 4], [f64; 4]) {
+        ([self.radius, 0.0, 0.0, 0.0], [v, 1.0, 0.0, 0.0])
     }
     fn meridian_series(&self, v: Series) -> [Series; 2] {
         [Series::constant(self.radius, v.order()), v]
@@ -167,8 +177,8 @@ impl Cone {
     pub fn half_angle_rad(&self) -> f64 {
         self.sin.atan2(self.cos)
     }
-    fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
-        ([self.radius + v * self.sin, self.sin, 0.0], [v * self.cos, self.cos, 0.0])
+    fn meridian(&self, v: f64) -> ([f64; 4], [f64; 4]) {
+        ([self.radius + v * self.sin, self.sin, 0.0, 0.0], [v * self.cos, self.cos, 0.0, 0.0])
     }
     fn meridian_series(&self, v: Series) -> [Series; 2] {
         [Series::constant(self.radius, v.order()) + v * self.sin, v * self.cos]
@@ -198,10 +208,10 @@ impl Sphere {
     pub const fn radius_mm(&self) -> f64 {
         self.radius
     }
-    fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
+    fn meridian(&self, v: f64) -> ([f64; 4], [f64; 4]) {
         let (s, c) = v.sin_cos();
         let a = self.radius;
-        ([a * c, -a * s, -a * c], [a * s, a * c, -a * s])
+        ([a * c, -a * s, -a * c, a * s], [a * s, a * c, -a * s, -a * c])
     }
     fn meridian_series(&self, v: Series) -> [Series; 2] {
         let (s, c) = v.sin_cos();
@@ -276,13 +286,13 @@ impl Torus {
         self.minor
     }
 
-    fn meridian(&self, v: f64) -> ([f64; 3], [f64; 3]) {
+    fn meridian(&self, v: f64) -> ([f64; 4], [f64; 4]) {
         let (s, c) = v.sin_cos();
         let a = self.minor;
         let r = self.major + a * c;
         // On the axis the radius is what rounding makes of zero, and must not pass for a circle.
         let r = if r.abs() <= 4.0 * f64::EPSILON * (self.major + a) { 0.0 } else { r };
-        ([r, -a * s, -a * c], [a * s, a * c, -a * s])
+        ([r, -a * s, -a * c, a * s], [a * s, a * c, -a * s, -a * c])
     }
     fn meridian_series(&self, v: Series) -> [Series; 2] {
         let (s, c) = v.sin_cos();
@@ -295,8 +305,13 @@ impl Surface for Torus {
         self.domain
     }
     fn jet2(&self, uv: Uv) -> Jet2 {
+        self.jet3(uv).jet2
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
         let (r, z) = self.meridian(uv.v);
-        Jet2 { side: self.side, ..revolve(uv, r, z) }
+        let mut jet = revolve(uv, r, z);
+        jet.jet2.side = self.side;
+        jet
     }
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {
         let (s, c) = Series::variable(Axis::U, uv.u, order).sin_cos();

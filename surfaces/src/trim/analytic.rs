@@ -5,7 +5,7 @@
 //! parameter. The natural normal points away from the axis (plane: +z).
 
 use osculate_geom::analytic::{BadSize, Cone, Cylinder, Placed, Placement, Plane, Sphere, Torus};
-use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, Taylor, Uv, uv};
+use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv, uv};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// The kind and size of an analytic surface, in its own frame.
@@ -176,6 +176,15 @@ impl Surface for Analytic {
             Inner::Cone(s) => s.jet2(uv),
             Inner::Sphere(s) => s.jet2(uv),
             Inner::Torus(s) => s.jet2(uv),
+        }
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        match &self.inner {
+            Inner::Plane(s) => s.jet3(uv),
+            Inner::Cylinder(s) => s.jet3(uv),
+            Inner::Cone(s) => s.jet3(uv),
+            Inner::Sphere(s) => s.jet3(uv),
+            Inner::Torus(s) => s.jet3(uv),
         }
     }
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {
