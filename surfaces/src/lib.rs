@@ -56,7 +56,7 @@ pub use mesh::{Mesh, MeshError, MeshOptions, MeshReport, PartMesh, mesh_faces, t
 pub use nurbs::{Net, NurbsError, NurbsSurface};
 pub use nurbs_curve::{CurveError, CurveJet, NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use nurbs_edit::{BezierPatch, EditError};
-pub use part::{CurvatureRange, Face, FaceKind, Format, ImportError, NotUsed, Part, detect, read};
+pub use part::{Colour, CurvatureRange, Face, FaceKind, Format, ImportError, NotUsed, Part, detect, read};
 pub use ruled::{RuledError, ruled};
 pub use trim::analytic::{Analytic, Shape};
 pub use trim::carrier::FaceSurface;

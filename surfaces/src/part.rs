@@ -4,6 +4,7 @@
 //! file says is a [`Diagnostic`].
 
 use crate::trim::carrier::FaceSurface;
+use crate::trim::curve::Motion;
 use crate::trimmed::TrimmedSurface;
 use crate::{iges, patches, step};
 use osculate_geom::{Axis, Box3, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
@@ -36,6 +37,8 @@ impl fmt::Display for Format {
 pub struct Part {
     /// The format it came from.
     pub format: Format,
+    /// The largest uncertainty of length that the file states, mm: points nearer than this mean one.
+    pub uncertainty_mm: Option<f64>,
     /// Name of the file's length unit, as the file says it; several differing ones joined with `, `.
     pub unit: String,
     /// Schema (STEP) or version (IGES) as the file says it.
@@ -59,6 +62,38 @@ pub struct NotUsed {
     pub count: usize,
     /// Why.
     pub why: String,
+    /// Lines of the file on which the first ones stand, where the format has lines.
+    pub lines: Vec<usize>,
+}
+
+/// A colour, each part from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Colour {
+    /// Red.
+    pub red: f64,
+    /// Green.
+    pub green: f64,
+    /// Blue.
+    pub blue: f64,
+}
+
+/// Why a face cannot be put into its place.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum PlaceError {
+    /// The motion scales or mirrors.
+    #[error(
+        "its place scales lengths by {scale} (negative: mirrors them), which its surface does not follow"
+    )]
+    Scaled {
+        /// Factor of lengths.
+        scale: f64,
+    },
+    /// The motion distorts.
+    #[error("its place distorts it")]
+    Distorted,
+    /// Coordinates leave the range of numbers.
+    #[error("its place leaves the range of numbers")]
+    Far,
 }
 
 /// The kind of surface that a file gave for a face.
@@ -116,6 +151,10 @@ pub struct Face {
     pub id: String,
     /// The face's name in the file, empty where it has none.
     pub name: String,
+    /// The product that it belongs to, empty where the file names none.
+    pub product: String,
+    /// Its colour, or its solid's.
+    pub colour: Option<Colour>,
     /// STEP: the instance number of the face. IGES: the sequence number of its directory entry. Text: the line that it
     /// begins in.
     pub entity: u64,
@@ -196,6 +235,24 @@ impl Face {
             });
         }
         range
+    }
+
+    /// The face at a place: edges are shared with the other faces of the same place number.
+    pub(crate) fn placed(&self, motion: Option<&Motion>, place: u64) -> Result<Self, PlaceError> {
+        let mut face = self.clone();
+        let edges = self.surface.edges().iter().map(|e| e.placed(motion, place)).collect();
+        let Some(motion) = motion else {
+            face.surface = Arc::new(TrimmedSurface::clone(&self.surface).with_edges(edges));
+            return Ok(face);
+        };
+        let scale = motion.scale().ok_or(PlaceError::Distorted)?;
+        face.carrier = self.carrier.moved(motion, scale)?;
+        let mut surface = self.surface.on(face.carrier.shared()).with_edges(edges);
+        if scale < 0.0 {
+            surface = surface.flipped();
+        }
+        face.surface = Arc::new(surface);
+        Ok(face)
     }
 
     /// The face with the material on the other side.
@@ -316,16 +373,33 @@ pub(crate) struct Leftovers {
 }
 
 impl Leftovers {
-    /// Counts one more.
-    pub(crate) fn add(&mut self, kind: &str, why: &str) {
-        self.add_many(kind, 1, why);
-    }
+    /// Lines that are kept of each kind.
+    pub(crate) const LINES: usize = 8;
 
     /// Counts several.
     pub(crate) fn add_many(&mut self, kind: &str, count: usize, why: &str) {
+        self.add_lines(kind, count, why, &[]);
+    }
+
+    /// Counts one more, on a line.
+    pub(crate) fn add_at(&mut self, kind: &str, why: &str, line: usize) {
+        self.add_lines(kind, 1, why, &[line]);
+    }
+
+    /// Counts several, the first ones on these lines.
+    pub(crate) fn add_lines(&mut self, kind: &str, count: usize, why: &str, lines: &[usize]) {
         match self.entries.iter_mut().find(|e| e.kind == kind && e.why == why) {
-            Some(e) => e.count += count,
-            None => self.entries.push(NotUsed { kind: kind.to_owned(), count, why: why.to_owned() }),
+            Some(e) => {
+                e.count += count;
+                let room = Self::LINES.saturating_sub(e.lines.len());
+                e.lines.extend(lines.iter().take(room));
+            }
+            None => self.entries.push(NotUsed {
+                kind: kind.to_owned(),
+                count,
+                why: why.to_owned(),
+                lines: lines.to_vec(),
+            }),
         }
     }
 

@@ -191,6 +191,11 @@ impl TrimmedSurface {
         &self.edges
     }
 
+    /// The same trims and side on a carrier with the same parameters.
+    pub(crate) fn on(&self, carrier: Arc<dyn Surface>) -> Self {
+        Self { carrier, ..self.clone() }
+    }
+
     /// The surface without its loops.
     #[must_use]
     pub fn carrier(&self) -> &Arc<dyn Surface> {

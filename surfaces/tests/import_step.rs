@@ -291,12 +291,12 @@ fn what_cannot_be_read_is_told() {
         ));
         let part = step::read(text.as_bytes()).unwrap();
         assert!(part.faces.is_empty());
-        assert_eq!(part.not_used.len(), 1);
+        assert_eq!((part.not_used[0].count, part.not_used[0].lines.len()), (1, 1));
         (part.not_used[0].kind.clone(), notes(&part))
     };
-    let (kind, text) = face("#119=PLANE('',#7);#120=OFFSET_SURFACE('',#119,1.,.F.);");
-    assert_eq!(kind, "OFFSET_SURFACE");
-    assert!(text.contains("F1 (#402)") && text.contains("not read"), "{text}");
+    let (kind, text) = face("#120=BLENDED_SURFACE('',#7);");
+    assert_eq!(kind, "BLENDED_SURFACE");
+    assert!(text.contains("F1 (#402, line 44)") && text.contains("not read"), "{text}");
     // A missing record, a cycle, counts that lie, a surface that is none.
     assert!(face("").1.contains("#120 is not defined"));
     let loop_ = "#119=RECTANGULAR_TRIMMED_SURFACE('',#120,0.,1.,0.,1.,.T.,.T.);\
@@ -321,23 +321,6 @@ fn what_cannot_be_read_is_told() {
     // A plane without any boundary is unlimited.
     let text = file("#120=PLANE('',#7);#402=ADVANCED_FACE('',(),#120,.T.);");
     assert!(notes(&step::read(text.as_bytes()).unwrap()).contains("unlimited"));
-}
-
-#[test]
-fn moved_instances_are_told_and_resting_ones_are_not() {
-    let placed = |x: f64| {
-        let text = file(&format!(
-            "#20=CARTESIAN_POINT('',({x:?},0.,0.));#21=AXIS2_PLACEMENT_3D('',#20,#4,#5);\
-             #22=ITEM_DEFINED_TRANSFORMATION('','',#7,#21);\
-             #23=(REPRESENTATION_RELATIONSHIP('','',#30,#31)REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#22)\
-             SHAPE_REPRESENTATION_RELATIONSHIP());"
-        ));
-        step::read(text.as_bytes()).unwrap()
-    };
-    assert!(placed(0.0).not_used.is_empty());
-    let moved = placed(4.0);
-    assert_eq!((moved.not_used[0].kind.as_str(), moved.not_used[0].count), ("placed instance", 1));
-    assert!(notes(&moved).contains("1 instances"));
 }
 
 #[test]

@@ -26,6 +26,8 @@ pub struct Shape {
     pub area_tol_mm2: f64,
     /// Lower corner, then upper corner.
     pub bbox_mm: Option<[f64; 6]>,
+    /// Whether the box is around curves and points too that belong to no face.
+    pub more_in_box: bool,
 }
 
 /// One face.
@@ -87,6 +89,7 @@ fn reference(json: &Value) -> Reference {
         faces,
         area_mm2: number(&json["area"]),
         area_tol_mm2: number(&json["area_tol"]),
+        more_in_box: json["edges"]["not_on_face"].as_u64().unwrap_or(0) > 0,
         bbox_mm: numbers(&json["bbox"]).and_then(|b| b.try_into().ok()),
     })
 }

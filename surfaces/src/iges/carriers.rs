@@ -291,6 +291,10 @@ fn shape_times(shape: Shape, factor: f64) -> Shape {
             major_radius_mm: major_radius_mm * factor,
             minor_radius_mm: minor_radius_mm * factor,
         },
+        Shape::Lemon { major_radius_mm, minor_radius_mm } => Shape::Lemon {
+            major_radius_mm: major_radius_mm * factor,
+            minor_radius_mm: minor_radius_mm * factor,
+        },
     }
 }
 

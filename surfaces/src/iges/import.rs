@@ -66,6 +66,7 @@ pub(crate) fn part(mut cards: Cards) -> Part {
     left.unused(&cards, &tree);
     Part {
         format: Format::Iges,
+        uncertainty_mm: None,
         unit: cards.global.unit_name.clone(),
         schema: cards.global.version.clone(),
         faces,
@@ -89,6 +90,8 @@ fn made(cards: &Cards, number: usize, de: i64, placed: &Placed) -> Outcome {
             let face = Face {
                 id: label,
                 name: entity.map_or_else(String::new, |e| name(cards, e)),
+                product: String::new(),
+                colour: None,
                 entity: de as u64,
                 kind,
                 oriented: placed.side.is_some(),

@@ -4,51 +4,91 @@
 //! an oriented shell that is reversed turns its faces over again. Seen along the normal a loop has the face on its
 //! left, a bound whose orientation is false is walked backwards.
 
+use super::colour::colours;
 use super::geometry::{Geometry, Unread};
-use super::graph::{Graph, Record, Value, arg};
-use super::units::{Contexts, Units, is_face};
-use crate::part::{Face, Format, Leftovers, Part};
-use crate::trim::boundary::{Boundary, build};
+use super::graph::{Args, Graph, Record, arg};
+use super::structure::is_face;
+use super::units::Contexts;
+use super::unused;
+use super::walk::{Occurrence, occurrences};
+use crate::part::{Face, FaceKind, Format, Leftovers, Part, PlaceError};
+use crate::trim::boundary::{Boundary, Built, build};
 use crate::trim::curve::{Curve, Line, Piece};
-use osculate_geom::{Box3, Diagnostic, Point3, Side};
-use std::collections::BTreeSet;
+use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface};
+use rayon::prelude::*;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Builds the part of a record graph.
-pub(crate) fn part(mut graph: Graph) -> Part {
+pub(crate) fn part(mut graph: Graph<'_>) -> Part {
     let mut diagnostics = std::mem::take(&mut graph.diagnostics);
-    let contexts = Contexts::read(&graph);
-    let mut left = Leftovers::default();
-    let turned = reversed_faces(&graph);
-    let mut faces = Vec::new();
-    let list: Vec<&(u64, Record)> = graph.records.iter().filter(|r| is_face(&r.1)).collect();
-    if contexts.names().is_empty() && !list.is_empty() {
+    let graph = &graph;
+    let contexts = Contexts::read(graph);
+    let found = occurrences(graph, &contexts, &mut diagnostics);
+    if contexts.names().is_empty() && !found.faces.is_empty() {
         diagnostics.push(Diagnostic::warning("", "the file states no length unit; millimetres are assumed"));
     }
-    for (number, (id, record)) in list.into_iter().enumerate() {
-        let geometry = Geometry { graph: &graph, units: contexts.of(*id) };
+    let colours = colours(graph);
+    // Every face once in its own coordinates, however often it is placed.
+    let mut index: HashMap<(u64, bool, Option<usize>), usize> = HashMap::new();
+    let mut own: Vec<&Occurrence> = Vec::new();
+    for o in &found.faces {
+        index.entry((o.face, o.turned, o.context)).or_insert_with(|| {
+            own.push(o);
+            own.len() - 1
+        });
+    }
+    let read: Vec<Result<Made, FaceError>> = own
+        .par_iter()
+        .map(|o| {
+            let geometry = Geometry { graph, units: contexts.units(o.context) };
+            face(&geometry, o)
+        })
+        .collect();
+    let mut left = Leftovers::default();
+    let mut told = vec![false; read.len()];
+    let mut faces = Vec::with_capacity(found.faces.len());
+    for (number, o) in found.faces.iter().enumerate() {
         let label = format!("F{}", number + 1);
-        match face(&geometry, *id, record, turned.contains(id), &label) {
-            Ok((face, findings)) => {
-                let place = format!("{label} (#{id})");
-                diagnostics.extend(findings.into_iter().map(|f| Diagnostic::warning(&place, f)));
+        let Some(k) = index.get(&(o.face, o.turned, o.context)).copied() else { continue };
+        let first = !std::mem::replace(&mut told[k], true);
+        let place = || format!("{label} ({})", graph.place(o.face));
+        let placed = match &read[k] {
+            Ok(made) => {
+                if first {
+                    diagnostics.extend(made.findings.iter().map(|f| Diagnostic::warning(place(), f.clone())));
+                }
+                made.face
+                    .placed(o.motion.as_ref(), o.place as u64)
+                    .map_err(|why| FaceError::Placed(why).to_string())
+            }
+            Err(why) => Err(why.to_string()),
+        };
+        match placed {
+            Ok(mut face) => {
+                face.id = label;
+                face.product = o.product.to_string();
+                face.colour = colours.get(&o.face).or_else(|| colours.get(&o.item?)).copied();
                 faces.push(face);
             }
             Err(why) => {
-                let kind = surface_kind(&graph, record);
-                diagnostics.push(Diagnostic::loss(format!("{label} (#{id})"), format!("{kind}: {why}")));
-                left.add(&kind, reason(&why));
+                let record = graph.peek(o.face);
+                let kind = record.map_or_else(|| "face".to_owned(), |r| surface_kind(graph, &r));
+                diagnostics.push(Diagnostic::loss(place(), format!("{kind}: {why}")));
+                let line = record.map_or(0, |r| graph.line(r.at()));
+                left.add_at(&kind, read[k].as_ref().err().map_or("it cannot be placed", reason), line);
             }
         }
     }
-    leftovers(&graph, &mut left, &mut diagnostics);
+    unused::leftovers(graph, &mut left);
     Part {
         format: Format::Step,
         unit: contexts.names(),
+        uncertainty_mm: contexts.uncertainty_mm(),
         schema: graph.schemas.join(", "),
         faces,
         not_used: left.into_entries(),
-        truncated: graph.truncated,
+        truncated: graph.truncated || found.cut_short,
         diagnostics,
     }
 }
@@ -60,12 +100,17 @@ fn reason(why: &FaceError) -> &'static str {
         FaceError::Unread(Unread::Missing { .. }) => "it refers to a record that is not in the file",
         FaceError::Unread(Unread::Malformed { .. }) => "its parameters make no surface or curve",
         FaceError::Trim(_) => "its loops limit no part of its surface",
+        FaceError::Placed(_) => "it cannot be placed",
     }
 }
 
 /// The keyword of a face's surface.
-fn surface_kind(graph: &Graph, face: &Record) -> String {
-    let surface = face.parts.iter().find_map(|p| arg(&p.1, 2).reference()).and_then(|s| graph.get(s));
+fn surface_kind(graph: &Graph<'_>, face: &Record<'_>) -> String {
+    let surface = if is_face(face) {
+        face.all_args().find_map(|a| arg(&a, 2).reference()).and_then(|s| graph.get(s))
+    } else {
+        Some(*face)
+    };
     let Some(surface) = surface else { return "face without surface".into() };
     // Of a complex record the part that tells most.
     let known = ["B_SPLINE_SURFACE_WITH_KNOTS", "RATIONAL_B_SPLINE_SURFACE", "B_SPLINE_SURFACE"];
@@ -78,30 +123,32 @@ enum FaceError {
     Unread(#[from] Unread),
     #[error(transparent)]
     Trim(#[from] crate::trimmed::TrimError),
+    #[error(transparent)]
+    Placed(PlaceError),
+}
+
+/// A face in its own coordinates, and what its boundary gave reason to say.
+struct Made {
+    face: Face,
+    findings: Vec<String>,
 }
 
 /// Vertices nearer than this fraction of the face's size are one: writers keep seven digits or more.
 const SAME_VERTEX: f64 = 1e-6;
 
-fn face(
-    geometry: &Geometry<'_>,
-    id: u64,
-    record: &Record,
-    turned: bool,
-    label: &str,
-) -> Result<(Face, Vec<String>), FaceError> {
-    let args = record
-        .part("ADVANCED_FACE")
-        .filter(|a| !a.is_empty())
-        .or_else(|| record.part("FACE_SURFACE").filter(|a| !a.is_empty()))
-        .unwrap_or_default();
+fn face(geometry: &Geometry<'_>, occurrence: &Occurrence) -> Result<Made, FaceError> {
+    let id = occurrence.face;
+    let record = geometry.graph.get(id).ok_or(Unread::Missing { id })?;
+    let Some((_, args)) = record.any(&["ADVANCED_FACE", "FACE_SURFACE"]) else {
+        return free_surface(geometry, occurrence);
+    };
     // A complex record has the name and bounds elsewhere; only the simple form occurs in files.
-    let surface_id = arg(args, 2)
+    let surface_id = arg(&args, 2)
         .reference()
         .ok_or_else(|| Unread::Malformed { id, what: "a face without a reference to its surface".into() })?;
-    let same_sense = arg(args, 3).flag().unwrap_or(true);
+    let same_sense = arg(&args, 3).flag().unwrap_or(true);
     let mut loops: Vec<Vec<Edge>> = Vec::new();
-    for bound in arg(args, 1).list().iter().filter_map(Value::reference) {
+    for bound in arg(&args, 1).list().references() {
         loops.extend(bound_edges(geometry, bound)?);
     }
     let reach: Vec<Point3> =
@@ -119,18 +166,98 @@ fn face(
             if along { directed.collect() } else { directed.rev().collect() }
         })
         .collect();
-    let side = if along != turned { Side::Along } else { Side::Against };
+    let side = if along != occurrence.turned { Side::Along } else { Side::Against };
     let built = build(carried.surface, &bounds, side, true)?;
+    Ok(made(occurrence, arg(&args, 0).text(), carried.kind, built))
+}
+
+fn made(occurrence: &Occurrence, name: String, kind: FaceKind, built: Built) -> Made {
     let face = Face {
-        id: label.to_owned(),
-        name: arg(args, 0).text().to_owned(),
-        entity: id,
-        kind: carried.kind,
+        id: String::new(),
+        name,
+        product: String::new(),
+        colour: None,
+        entity: occurrence.face,
+        kind,
         oriented: true,
         carrier: built.assembled.carrier,
         surface: Arc::new(built.assembled.surface),
     };
-    Ok((face, built.findings))
+    Made { face, findings: built.findings }
+}
+
+/// A bounded surface of a geometric set as a face; nothing says where its material is.
+fn free_surface(geometry: &Geometry<'_>, occurrence: &Occurrence) -> Result<Made, FaceError> {
+    let id = occurrence.face;
+    let record = geometry.graph.get(id).ok_or(Unread::Missing { id })?;
+    let loops = if let Some(args) = record.part("CURVE_BOUNDED_SURFACE") {
+        let curves = arg(&args, 2).list().references();
+        curves.map(|c| boundary_curve(geometry, c)).collect::<Result<Vec<_>, _>>()?
+    } else if let Some(args) = record.part("RECTANGULAR_TRIMMED_SURFACE") {
+        vec![rectangle(geometry, id, &args)?]
+    } else {
+        Vec::new()
+    };
+    let carried = geometry.surface(id, &[], 0)?;
+    let built = build(carried.surface, &loops, Side::Along, false)?;
+    let mut made = made(occurrence, String::new(), carried.kind, built);
+    made.face.oriented = false;
+    Ok(made)
+}
+
+/// The pieces of a boundary curve of a CURVE_BOUNDED_SURFACE.
+fn boundary_curve(geometry: &Geometry<'_>, id: u64) -> Result<Vec<Boundary>, Unread> {
+    let record = geometry.record(id)?;
+    let kinds = [
+        "BOUNDARY_CURVE",
+        "OUTER_BOUNDARY_CURVE",
+        "COMPOSITE_CURVE_ON_SURFACE",
+        "COMPOSITE_CURVE",
+        "DEGENERATE_PCURVE",
+    ];
+    let (_, args) = record.any(&kinds).ok_or_else(|| Unread::Kind { id, kind: record.kind() })?;
+    let mut pieces = Vec::new();
+    for segment in arg(&args, 1).list().references() {
+        let (curve, forward) = geometry.segment(segment)?;
+        let endless = || Unread::Malformed { id: curve, what: "a boundary without ends".into() };
+        let parameter = geometry.pcurve(&geometry.record(curve)?, 0)?;
+        let in_plane = parameter.is_some();
+        let curve = match parameter {
+            Some((_, flat)) => flat,
+            None => geometry.curve(curve, 0)?,
+        };
+        let piece = Piece::whole(curve).ok_or_else(endless)?;
+        let piece = if forward { piece } else { piece.reversed() };
+        pieces.push(if in_plane {
+            Boundary::Parameter { piece }
+        } else {
+            Boundary::Space { piece, key: None }
+        });
+    }
+    Ok(pieces)
+}
+
+/// The sides of a RECTANGULAR_TRIMMED_SURFACE.
+fn rectangle(geometry: &Geometry<'_>, id: u64, args: &Args<'_>) -> Result<Vec<Boundary>, Unread> {
+    let surface = geometry.surface(geometry.to(id, args, 1)?, &[], 0)?.surface;
+    let scale = surface.parameter_units(geometry.units.length_mm, geometry.units.angle_rad);
+    let mut at = [0.0; 4];
+    for (k, t) in at.iter_mut().enumerate() {
+        *t = geometry.number(id, args, 2 + k)? * scale[k / 2];
+    }
+    let [u0, mut u1, v0, mut v1] = at;
+    // Closed directions are passed in their own sense: over the seam where the second value is the smaller one.
+    let domain = surface.domain();
+    if domain.u.periodic && u1 <= u0 {
+        u1 += domain.u.length();
+    }
+    if domain.v.periodic && v1 <= v0 {
+        v1 += domain.v.length();
+    }
+    let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)].map(|(u, v)| Point3::new(u, v, 0.0));
+    let side = |k: usize| Line::segment(corners[k], corners[(k + 1) % 4]);
+    let piece = |k| Boundary::Parameter { piece: Piece { curve: Arc::new(side(k)), ends: [0.0, 1.0] } };
+    Ok((0..4).map(piece).collect())
 }
 
 /// An edge in the sense of its loop.
@@ -147,19 +274,19 @@ fn bound_edges(geometry: &Geometry<'_>, id: u64) -> Result<Option<Vec<Edge>>, Un
         .part("FACE_BOUND")
         .or_else(|| record.part("FACE_OUTER_BOUND"))
         .ok_or_else(|| Unread::Kind { id, kind: record.kind() })?;
-    let loop_id = arg(args, 1)
+    let loop_id = arg(&args, 1)
         .reference()
         .ok_or_else(|| Unread::Malformed { id, what: "a bound without loop".into() })?;
-    let forward = arg(args, 2).flag().unwrap_or(true);
+    let forward = arg(&args, 2).flag().unwrap_or(true);
     let record = graph.get(loop_id).ok_or(Unread::Missing { id: loop_id })?;
     let mut edges = if let Some(args) = record.part("EDGE_LOOP") {
         let mut edges = Vec::new();
-        for oriented in arg(args, 1).list().iter().filter_map(Value::reference) {
+        for oriented in arg(&args, 1).list().references() {
             edges.extend(oriented_edge(geometry, oriented)?);
         }
         edges
     } else if let Some(args) = record.part("POLY_LOOP") {
-        polygon(geometry, loop_id, arg(args, 1).list())?
+        polygon(geometry, loop_id, &arg(&args, 1).list())?
     } else if record.is("VERTEX_LOOP") {
         return Ok(None);
     } else {
@@ -175,9 +302,8 @@ fn bound_edges(geometry: &Geometry<'_>, id: u64) -> Result<Option<Vec<Edge>>, Un
 }
 
 /// The straight edges of a POLY_LOOP.
-fn polygon(geometry: &Geometry<'_>, id: u64, values: &[Value]) -> Result<Vec<Edge>, Unread> {
-    let points: Vec<Point3> =
-        values.iter().filter_map(Value::reference).map(|p| geometry.point(p)).collect::<Result<_, _>>()?;
+fn polygon(geometry: &Geometry<'_>, id: u64, values: &Args<'_>) -> Result<Vec<Edge>, Unread> {
+    let points: Vec<Point3> = values.references().map(|p| geometry.point(p)).collect::<Result<_, _>>()?;
     if points.len() < 3 {
         return Err(Unread::Malformed { id, what: format!("a polygon of {} points", points.len()) });
     }
@@ -199,7 +325,7 @@ fn oriented_edge(geometry: &Geometry<'_>, id: u64) -> Result<Option<Edge>, Unrea
     let (edge_id, forward) = match record.part("ORIENTED_EDGE") {
         Some(args) => {
             let malformed = || Unread::Malformed { id, what: "an oriented edge without edge".into() };
-            (arg(args, 3).reference().ok_or_else(malformed)?, arg(args, 4).flag().unwrap_or(true))
+            (arg(&args, 3).reference().ok_or_else(malformed)?, arg(&args, 4).flag().unwrap_or(true))
         }
         None => (id, true),
     };
@@ -207,16 +333,16 @@ fn oriented_edge(geometry: &Geometry<'_>, id: u64) -> Result<Option<Edge>, Unrea
     let args = record.part("EDGE_CURVE").ok_or_else(|| Unread::Kind { id: edge_id, kind: record.kind() })?;
     let end = |k: usize| {
         let malformed = || Unread::Malformed { id: edge_id, what: "an edge without vertices".into() };
-        geometry.vertex(arg(args, k).reference().ok_or_else(malformed)?)
+        geometry.vertex(arg(&args, k).reference().ok_or_else(malformed)?)
     };
     let ends = [end(1)?, end(2)?];
-    let curve_id = arg(args, 3)
+    let curve_id = arg(&args, 3)
         .reference()
         .ok_or_else(|| Unread::Malformed { id: edge_id, what: "an edge without curve".into() })?;
     let curve = geometry.curve(curve_id, 0)?;
-    let same_sense = arg(args, 4).flag().unwrap_or(true);
+    let same_sense = arg(&args, 4).flag().unwrap_or(true);
     // Identity of vertices is exact in the file; the slack is for writers that repeat a vertex.
-    let one_vertex = arg(args, 1).reference() == arg(args, 2).reference();
+    let one_vertex = arg(&args, 1).reference() == arg(&args, 2).reference();
     let range = curve.range();
     let sample = if range.iter().all(|t| t.is_finite()) {
         Box3::around(&[0.0, 0.25, 0.5, 0.75].map(|f| curve.point(range[0] + f * (range[1] - range[0]))))
@@ -236,110 +362,5 @@ fn oriented_edge(geometry: &Geometry<'_>, id: u64) -> Result<Option<Edge>, Unrea
         None => {
             Err(Unread::Malformed { id: edge_id, what: "both ends at one place of an open curve".into() })
         }
-    }
-}
-
-/// Faces that reversed shells or oriented faces turn over.
-fn reversed_faces(graph: &Graph) -> BTreeSet<u64> {
-    let mut turned = BTreeSet::new();
-    let mut flip = |id: u64| {
-        if !turned.insert(id) {
-            turned.remove(&id);
-        }
-    };
-    for (_, record) in &graph.records {
-        for keyword in ["ORIENTED_CLOSED_SHELL", "ORIENTED_OPEN_SHELL", "ORIENTED_FACE"] {
-            let Some(args) = record.part(keyword) else { continue };
-            if arg(args, 3).flag() != Some(false) {
-                continue;
-            }
-            let Some(target) = arg(args, 2).reference() else { continue };
-            if keyword == "ORIENTED_FACE" {
-                flip(target);
-            } else if let Some(shell) = graph.get(target) {
-                let faces =
-                    shell.part("CLOSED_SHELL").or_else(|| shell.part("OPEN_SHELL")).unwrap_or_default();
-                arg(faces, 1).list().iter().filter_map(Value::reference).for_each(&mut flip);
-            }
-        }
-    }
-    turned
-}
-
-/// Kinds of shape items that are containers of faces, or say nothing about shape.
-const CONTAINERS: [&str; 11] = [
-    "MANIFOLD_SOLID_BREP",
-    "BREP_WITH_VOIDS",
-    "FACETED_BREP",
-    "SHELL_BASED_SURFACE_MODEL",
-    "FACE_BASED_SURFACE_MODEL",
-    "AXIS2_PLACEMENT_3D",
-    "AXIS2_PLACEMENT_2D",
-    "CARTESIAN_TRANSFORMATION_OPERATOR_3D",
-    "OPEN_SHELL",
-    "CLOSED_SHELL",
-    "CONNECTED_FACE_SET",
-];
-
-/// Counts shape items that hold no readable face, and placed instances.
-fn leftovers(graph: &Graph, left: &mut Leftovers, diagnostics: &mut Vec<Diagnostic>) {
-    for (_, record) in &graph.records {
-        let Some((_, args)) = record.parts.iter().find(|p| p.0.ends_with("SHAPE_REPRESENTATION")) else {
-            continue;
-        };
-        for item in arg(args, 1).list().iter().filter_map(Value::reference).filter_map(|i| graph.get(i)) {
-            if item.is("MAPPED_ITEM") || CONTAINERS.iter().any(|k| item.is(k)) || is_face(item) {
-                continue;
-            }
-            left.add(&item.kind(), "a shape item without faces that carry surfaces");
-        }
-    }
-    let plain_faces = graph.records.iter().filter(|r| r.1.part("FACE").is_some_and(|a| a.len() == 2)).count();
-    if plain_faces > 0 {
-        left.add_many("FACE", plain_faces, "a face without surface");
-    }
-    let placed = graph.records.iter().filter(|r| moves(graph, &r.1)).count();
-    if placed > 0 {
-        left.add_many(
-            "placed instance",
-            placed,
-            "assemblies are not put together: faces stay in their own part's frame",
-        );
-        diagnostics.push(Diagnostic::warning(
-            "",
-            format!(
-                "the file moves {placed} instances of parts to their places; every face is given once, in the \
-                 coordinates of the part that it belongs to. Export one body to have its parts in place"
-            ),
-        ));
-    }
-}
-
-/// Whether a record places a part somewhere else than where its own coordinates say.
-fn moves(graph: &Graph, record: &Record) -> bool {
-    let pair = if let Some(args) = record.part("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION") {
-        let transformation = args.iter().rev().find_map(Value::reference).and_then(|t| graph.get(t));
-        transformation
-            .and_then(|t| t.part("ITEM_DEFINED_TRANSFORMATION"))
-            .map(|t| [arg(t, 2).reference(), arg(t, 3).reference()])
-    } else if let Some(args) = record.part("MAPPED_ITEM") {
-        let source = arg(args, 1).reference().and_then(|m| graph.get(m));
-        source
-            .and_then(|m| m.part("REPRESENTATION_MAP"))
-            .map(|m| [arg(m, 0).reference(), arg(args, 2).reference()])
-    } else {
-        return false;
-    };
-    let units = Units { length_mm: 1.0, angle_rad: 1.0, name: String::new() };
-    let geometry = Geometry { graph, units };
-    let frame = |id: Option<u64>| geometry.placement(id?).ok();
-    match pair.map(|[a, b]| (frame(a), frame(b))) {
-        // Equal frames, to the digits of a file, leave everything where it is.
-        Some((Some(a), Some(b))) => {
-            let far = a.origin.coords.norm() + b.origin.coords.norm() + 1e-3;
-            (a.origin - b.origin).norm() > 1e-9 * far || (a.x.dot(&b.x)).min(a.z.dot(&b.z)) < 1.0 - 1e-12
-        }
-        // What cannot be read may be a motion.
-        _ => true,
     }
 }

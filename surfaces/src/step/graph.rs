@@ -1,125 +1,39 @@
 //! The record graph of a Part 21 file: instances by number, read as far as the text is sound.
 //!
-//! A record that cannot be read is skipped to its semicolon and reported; a truncated file gives what was complete.
-//! Nested parameter lists are limited to [`MAX_DEPTH`], so that hostile text cannot exhaust the stack.
+//! Damage is reported and skipped; a truncated file gives what was complete. The graph remembers which instances were
+//! asked for, so that what nobody used can be told.
 
-use super::lexer::{Lexer, Stop, Token, find};
+use super::lexer::find;
+use super::parse::{Chunk, Event, chunks};
+pub(crate) use super::record::{Args, Record, Value, arg};
+use super::text::decode;
 use osculate_geom::Diagnostic;
 use std::collections::{BTreeMap, HashMap};
-
-/// Deepest nesting of lists in a record. Geometry needs four (a net of poles in a typed select); 64 is far above any
-/// schema and far below what a thread's stack holds.
-const MAX_DEPTH: usize = 64;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Findings of one kind that are listed one by one; the rest is counted.
 const MAX_LISTED: usize = 8;
 
-/// A parameter of a record.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Value {
-    /// `$`, `*` or something without use here (binary, resource).
-    Nothing,
-    /// An integer.
-    Int(i64),
-    /// A real.
-    Real(f64),
-    /// A string.
-    Text(String),
-    /// An enumeration value, `T` and `F` included.
-    Enum(String),
-    /// A reference.
-    Ref(u64),
-    /// A list.
-    List(Vec<Value>),
-    /// `KEYWORD(...)` as a parameter.
-    Typed(String, Vec<Value>),
-}
-
-impl Value {
-    /// The number, integer or real; typed measures are looked through.
-    pub(crate) fn number(&self) -> Option<f64> {
-        match self {
-            Self::Int(i) => Some(*i as f64),
-            Self::Real(x) => Some(*x),
-            Self::Typed(_, inner) => match inner.as_slice() {
-                [one] if !matches!(one, Self::Typed(..)) => one.number(),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-    /// The referenced instance.
-    pub(crate) const fn reference(&self) -> Option<u64> {
-        match self {
-            Self::Ref(id) => Some(*id),
-            _ => None,
-        }
-    }
-    /// The elements of a list; empty for anything else.
-    pub(crate) fn list(&self) -> &[Self] {
-        match self {
-            Self::List(items) => items,
-            _ => &[],
-        }
-    }
-    /// `.T.` or `.F.`.
-    pub(crate) fn flag(&self) -> Option<bool> {
-        match self {
-            Self::Enum(e) if e == "T" => Some(true),
-            Self::Enum(e) if e == "F" => Some(false),
-            _ => None,
-        }
-    }
-    /// The text of a string, empty for anything else.
-    pub(crate) fn text(&self) -> &str {
-        match self {
-            Self::Text(t) => t,
-            _ => "",
-        }
-    }
-}
-
-/// An instance: one part, or several for a complex one.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Record {
-    /// Keyword and parameters of each part.
-    pub(crate) parts: Vec<(String, Vec<Value>)>,
-}
-
-impl Record {
-    /// The parameters of the part with this keyword.
-    pub(crate) fn part(&self, keyword: &str) -> Option<&[Value]> {
-        self.parts.iter().find(|p| p.0 == keyword).map(|p| p.1.as_slice())
-    }
-    /// Whether a part has this keyword.
-    pub(crate) fn is(&self, keyword: &str) -> bool {
-        self.parts.iter().any(|p| p.0 == keyword)
-    }
-    /// The keyword of a simple record; the parts' keywords joined for a complex one.
-    pub(crate) fn kind(&self) -> String {
-        self.parts.iter().map(|p| p.0.as_str()).collect::<Vec<_>>().join("+")
-    }
-    /// All references in the record, in order.
-    pub(crate) fn references(&self) -> Vec<u64> {
-        fn walk(v: &Value, out: &mut Vec<u64>) {
-            match v {
-                Value::Ref(id) => out.push(*id),
-                Value::List(items) | Value::Typed(_, items) => items.iter().for_each(|i| walk(i, out)),
-                _ => {}
-            }
-        }
-        let mut out = Vec::new();
-        self.parts.iter().flat_map(|p| &p.1).for_each(|v| walk(v, &mut out));
-        out
-    }
+/// From instance number to position.
+#[derive(Debug)]
+enum Index {
+    /// Position by number, `u32::MAX` where there is none.
+    Dense(Vec<u32>),
+    /// For files with few records and huge numbers.
+    Sparse(HashMap<u64, u32>),
 }
 
 /// All instances of a file.
-#[derive(Debug, Default)]
-pub(crate) struct Graph {
-    /// Records in file order.
-    pub(crate) records: Vec<(u64, Record)>,
-    index: HashMap<u64, usize>,
+#[derive(Debug)]
+pub(crate) struct Graph<'t> {
+    text: &'t [u8],
+    chunks: Vec<Chunk>,
+    /// Chunk and entry of each record, in file order.
+    order: Vec<(u32, u32)>,
+    index: Index,
+    used: Vec<AtomicBool>,
+    lines: OnceLock<Vec<u32>>,
     /// Schema names of the header.
     pub(crate) schemas: Vec<String>,
     /// What was found on the way.
@@ -128,129 +42,246 @@ pub(crate) struct Graph {
     pub(crate) truncated: bool,
 }
 
-/// The missing parameter that empty slots read as.
-static NOTHING: Value = Value::Nothing;
+impl<'t> Graph<'t> {
+    fn at(&self, position: usize) -> Record<'_> {
+        let (chunk, entry) = self.order[position];
+        let chunk = &self.chunks[chunk as usize];
+        Record::new(self.text, chunk, chunk.entries[entry as usize])
+    }
 
-impl Graph {
-    /// The record with this number.
-    pub(crate) fn get(&self, id: u64) -> Option<&Record> {
-        self.index.get(&id).map(|k| &self.records[*k].1)
+    fn position(&self, id: u64) -> Option<usize> {
+        let found = match &self.index {
+            Index::Dense(v) => usize::try_from(id).ok().and_then(|k| v.get(k)).copied(),
+            Index::Sparse(m) => m.get(&id).copied(),
+        };
+        found.filter(|k| *k != u32::MAX).map(|k| k as usize)
+    }
+
+    /// The record with this number; it counts as used from now on.
+    pub(crate) fn get(&self, id: u64) -> Option<Record<'_>> {
+        let k = self.position(id)?;
+        self.used[k].store(true, Ordering::Relaxed);
+        Some(self.at(k))
+    }
+
+    /// The record with this number, without counting as use.
+    pub(crate) fn peek(&self, id: u64) -> Option<Record<'_>> {
+        self.position(id).map(|k| self.at(k))
+    }
+
+    /// The place of a record in the file's order.
+    pub(crate) fn rank(&self, id: u64) -> usize {
+        self.position(id).unwrap_or(usize::MAX)
+    }
+
+    /// All records in file order.
+    pub(crate) fn records(&self) -> impl Iterator<Item = Record<'_>> {
+        (0..self.order.len()).map(|k| self.at(k))
+    }
+
+    /// Number of records.
+    pub(crate) const fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Whether a record exists that nobody asked for.
+    pub(crate) fn is_unused(&self, id: u64) -> bool {
+        self.position(id).is_some_and(|k| !self.used[k].load(Ordering::Relaxed))
+    }
+
+    /// Records that nobody asked for.
+    pub(crate) fn unused(&self) -> impl Iterator<Item = Record<'_>> {
+        (0..self.order.len()).filter(|k| !self.used[*k].load(Ordering::Relaxed)).map(|k| self.at(k))
+    }
+
+    /// The line, from 1, of an offset.
+    pub(crate) fn line(&self, at: usize) -> usize {
+        let lines = self.lines.get_or_init(|| {
+            let ends = self.text.iter().enumerate().filter(|(_, c)| **c == b'\n');
+            ends.map(|(k, _)| k as u32).collect()
+        });
+        1 + lines.partition_point(|end| (*end as usize) < at)
+    }
+
+    /// Where a record is, for people.
+    pub(crate) fn place(&self, id: u64) -> String {
+        match self.position(id) {
+            Some(k) => format!("#{id}, line {}", self.line(self.at(k).at())),
+            None => format!("#{id}"),
+        }
     }
 
     /// Reads every record of the header and the data sections. `start` is the offset behind `ISO-10303-21`.
-    pub(crate) fn read(text: &[u8], start: usize) -> Self {
-        let mut graph = Self::default();
-        let mut lexer = Lexer::new(text, start);
-        let mut bad: Tally = Tally::default();
-        let mut duplicates: BTreeMap<u64, usize> = BTreeMap::new();
-        let mut ended = false;
-        let mut truncated = false;
-        let mut in_section = true;
-        loop {
-            let from = lexer.at;
-            match lexer.next() {
-                Ok(Token::Id(id)) => match record(&mut lexer) {
-                    Ok(r) => {
-                        if graph.index.contains_key(&id) {
-                            *duplicates.entry(id).or_default() += 1;
-                        } else {
-                            graph.index.insert(id, graph.records.len());
-                            graph.records.push((id, r));
+    pub(crate) fn read(text: &'t [u8], start: usize) -> Self {
+        let mut chunks = chunks(text, start);
+        let mut graph = Self {
+            text,
+            chunks: Vec::new(),
+            order: Vec::new(),
+            index: Index::Dense(Vec::new()),
+            used: Vec::new(),
+            lines: OnceLock::new(),
+            schemas: Vec::new(),
+            diagnostics: Vec::new(),
+            truncated: false,
+        };
+        let state = graph.sections(&mut chunks);
+        graph.chunks = chunks;
+        graph.number();
+        graph.report_end(&state);
+        graph
+    }
+
+    /// Follows the sections' keywords through the chunks: drops what stands behind the end, tells what was skipped.
+    fn sections(&mut self, chunks: &mut Vec<Chunk>) -> Sections {
+        let mut state = Sections { in_section: true, ..Sections::default() };
+        let mut bad = Tally::default();
+        let mut behind = 0;
+        'chunks: for (k, chunk) in chunks.iter_mut().enumerate() {
+            for (event, at, before) in std::mem::take(&mut chunk.events) {
+                match event {
+                    Event::Word(span) => {
+                        let word = span.of(self.text).to_ascii_uppercase();
+                        if word.starts_with(b"END-ISO") {
+                            state.ended = Some(span.at as usize);
+                            chunk.entries.truncate(before);
+                            behind = k + 1;
+                            break 'chunks;
+                        }
+                        state.in_section = word != b"ENDSEC";
+                        state.opaque = word == b"SIGNATURE";
+                        if word == b"FILE_SCHEMA" {
+                            self.schemas = schema_names(&self.text[span.at as usize..]);
+                        }
+                        if let Some(name) = HEADER.iter().find(|h| word == h.as_bytes()) {
+                            state.header.push(name);
                         }
                     }
-                    Err(Fault::End) => {
-                        truncated = true;
-                        break;
+                    Event::Bad(..) if state.opaque => {}
+                    Event::Bad(id, fault) => {
+                        let line = self.line(at);
+                        bad.add(match id {
+                            Some(id) => format!("line {line}: #{id}: {fault}"),
+                            None => format!("line {line}: {fault}"),
+                        });
                     }
-                    Err(Fault::Bad(what)) => {
-                        bad.add(format!("#{id}: {what}"));
-                        if !lexer.skip_statement() {
-                            truncated = true;
-                            break;
-                        }
-                    }
-                    // The statement's semicolon has been read already.
-                    Err(Fault::Early(what)) => bad.add(format!("#{id}: {what}")),
-                },
-                Ok(Token::Word(word)) => {
-                    if word == "END-ISO-10303-21" {
-                        ended = true;
-                        break;
-                    }
-                    in_section = word != "ENDSEC";
-                    if word == "SIGNATURE" {
-                        // Base 64 text, no tokens: move to its end.
-                        match find(&text[lexer.at..], b"ENDSEC") {
-                            Some(n) => lexer.at += n,
-                            None => break,
-                        }
-                        continue;
-                    }
-                    if word == "FILE_SCHEMA"
-                        && let Ok(Token::Open) = lexer.next()
-                        && let Ok(values) = list(&mut lexer, 0)
-                    {
-                        graph.schemas = values
-                            .first()
-                            .map(|v| v.list().iter().map(|s| s.text().to_owned()).collect())
-                            .unwrap_or_default();
-                    }
-                    if !lexer.skip_statement() {
-                        truncated = true;
-                        break;
-                    }
-                }
-                Ok(Token::Semicolon) => {}
-                Ok(_) => {
-                    // `<name>=#1;` of an ANCHOR section, or stray text.
-                    if !lexer.skip_statement() {
-                        truncated = true;
-                        break;
-                    }
-                }
-                Err(Stop::End { open }) => {
-                    truncated = open;
-                    break;
-                }
-                Err(Stop::Bad { what }) => {
-                    bad.add(format!("byte {from}: {what}"));
-                    if !lexer.skip_statement() {
-                        break;
-                    }
+                    Event::End => state.open = !state.opaque,
                 }
             }
         }
-        graph.truncated = truncated || (!ended && in_section);
-        if truncated || !ended {
-            let last = graph.records.last().map_or_else(String::new, |r| format!("#{}", r.0));
-            graph.diagnostics.push(Diagnostic::loss(
-                last,
-                format!(
-                    "the file ends at byte {} without END-ISO-10303-21: it is truncated; {} complete records \
-                     were read",
-                    text.len(),
-                    graph.records.len()
-                ),
-            ));
+        if behind > 0 {
+            chunks.truncate(behind);
         }
-        bad.report("unreadable record skipped", &mut graph.diagnostics);
+        bad.report("unreadable record skipped", &mut self.diagnostics);
+        state
+    }
+
+    /// Numbers the records; of several with one number the first counts.
+    fn number(&mut self) {
+        let total: usize = self.chunks.iter().map(|c| c.entries.len()).sum();
+        let all = self.chunks.iter().flat_map(|c| &c.entries);
+        let highest = all.map(|e| e.id).max().unwrap_or(0);
+        let mut duplicates: BTreeMap<u64, usize> = BTreeMap::new();
+        let dense = highest <= 4 * total as u64 + 1024;
+        let (mut table, mut map) =
+            (vec![u32::MAX; if dense { highest as usize + 1 } else { 0 }], HashMap::new());
+        self.order.reserve(total);
+        for (c, chunk) in self.chunks.iter().enumerate() {
+            for (k, entry) in chunk.entries.iter().enumerate() {
+                let slot = if dense {
+                    &mut table[entry.id as usize]
+                } else {
+                    map.entry(entry.id).or_insert(u32::MAX)
+                };
+                if *slot == u32::MAX {
+                    *slot = self.order.len() as u32;
+                    self.order.push((c as u32, k as u32));
+                } else {
+                    *duplicates.entry(entry.id).or_default() += 1;
+                }
+            }
+        }
+        self.index = if dense { Index::Dense(table) } else { Index::Sparse(map) };
+        self.used = (0..self.order.len()).map(|_| AtomicBool::new(false)).collect();
         for (id, count) in duplicates.iter().take(MAX_LISTED) {
-            graph.diagnostics.push(Diagnostic::warning(
-                format!("#{id}"),
-                format!("defined {} times; the first definition is used", count + 1),
-            ));
+            let place = self.place(*id);
+            let said = format!("defined {} times; the first definition is used", count + 1);
+            self.diagnostics.push(Diagnostic::warning(place, said));
         }
         if duplicates.len() > MAX_LISTED {
             let rest = duplicates.len() - MAX_LISTED;
-            graph.diagnostics.push(Diagnostic::warning("", format!("{rest} more numbers defined twice")));
+            self.diagnostics.push(Diagnostic::warning("", format!("{rest} more numbers defined twice")));
         }
-        graph
+    }
+
+    /// Says how the file ends, and what its header lacks.
+    fn report_end(&mut self, state: &Sections) {
+        self.truncated = state.ended.is_none() && (state.open || state.in_section);
+        if let Some(end) = state.ended {
+            let rest = &self.text[end..];
+            let rest = &rest[find(rest, b";").map_or(rest.len(), |k| k + 1)..];
+            let said = rest.iter().filter(|c| !matches!(c, 0..=b' ' | 0x7f)).count();
+            if find(rest, b"ISO-10303-21").is_some() {
+                let said =
+                    "another exchange structure follows behind END-ISO-10303-21; only the first is read";
+                self.diagnostics.push(Diagnostic::loss(format!("line {}", self.line(end)), said));
+            } else if said > 0 {
+                let said = format!("{said} characters behind END-ISO-10303-21 are not read");
+                self.diagnostics.push(Diagnostic::note(format!("line {}", self.line(end)), said));
+            }
+        } else {
+            let last =
+                self.order.len().checked_sub(1).map_or_else(String::new, |k| self.place(self.at(k).id()));
+            let found = format!("{} complete records were read", self.order.len());
+            let bytes = self.text.len();
+            self.diagnostics.push(if self.truncated {
+                Diagnostic::loss(
+                    last,
+                    format!(
+                        "the file ends at byte {bytes} without END-ISO-10303-21: it is truncated; {found}"
+                    ),
+                )
+            } else {
+                let said = format!("the file ends at byte {bytes} without END-ISO-10303-21; {found}");
+                Diagnostic::warning(last, said)
+            });
+        }
+        for name in HEADER {
+            match state.header.iter().filter(|h| **h == name).count() {
+                0 if !self.order.is_empty() => {
+                    self.diagnostics.push(Diagnostic::note("", format!("the header has no {name}")));
+                }
+                0 | 1 => {}
+                n => {
+                    let said = format!("the header has {name} {n} times; the last one is used");
+                    self.diagnostics.push(Diagnostic::warning("", said));
+                }
+            }
+        }
     }
 }
 
-/// Parameter `k`, or [`Value::Nothing`] beyond the end.
-pub(crate) fn arg(args: &[Value], k: usize) -> &Value {
-    args.get(k).unwrap_or(&NOTHING)
+/// The entities that every header has.
+const HEADER: [&str; 3] = ["FILE_DESCRIPTION", "FILE_NAME", "FILE_SCHEMA"];
+
+/// What the keywords between the records say.
+#[derive(Default)]
+struct Sections {
+    header: Vec<&'static str>,
+    /// Offset of END-ISO-10303-21.
+    ended: Option<usize>,
+    in_section: bool,
+    /// The text ends inside a statement.
+    open: bool,
+    /// In a SIGNATURE section, whose text is no Part 21.
+    opaque: bool,
+}
+
+/// The names in `FILE_SCHEMA(('A','B'))`.
+fn schema_names(text: &[u8]) -> Vec<String> {
+    let end = find(text, b";").unwrap_or(text.len());
+    let pieces: Vec<&[u8]> = text[..end].split(|c| *c == b'\'').collect();
+    pieces.iter().skip(1).step_by(2).map(|p| decode(p)).filter(|p| !p.trim().is_empty()).collect()
 }
 
 /// Messages, the first few kept.
@@ -277,132 +308,5 @@ impl Tally {
     }
 }
 
-/// Why a record could not be read.
-enum Fault {
-    /// The text ended.
-    End,
-    /// Malformed; the statement still has to be skipped.
-    Bad(String),
-    /// Malformed, and the statement's semicolon is already behind.
-    Early(String),
-}
-
-impl From<Stop> for Fault {
-    fn from(stop: Stop) -> Self {
-        match stop {
-            Stop::End { .. } => Self::End,
-            Stop::Bad { what } => Self::Bad(what),
-        }
-    }
-}
-
-fn unexpected(token: &Token, wanted: &str) -> Fault {
-    let text = format!("{wanted} expected, found {token:?}");
-    if *token == Token::Semicolon { Fault::Early(text) } else { Fault::Bad(text) }
-}
-
-/// The rest of an instance after its number.
-fn record(lexer: &mut Lexer<'_>) -> Result<Record, Fault> {
-    match lexer.next()? {
-        Token::Equals => {}
-        other => return Err(unexpected(&other, "'='")),
-    }
-    let mut parts = Vec::new();
-    let mut token = lexer.next()?;
-    // `#1=&SCOPE ... ENDSCOPE` of the first edition does not occur; `#1=<uri>;` of the third is not a record.
-    if token == Token::Open {
-        loop {
-            match lexer.next()? {
-                Token::Word(word) => parts.push((word, parameters(lexer)?)),
-                Token::Close => break,
-                other => return Err(unexpected(&other, "a keyword or ')'")),
-            }
-        }
-    } else if let Token::Word(word) = token {
-        parts.push((word, parameters(lexer)?));
-    } else {
-        return Err(unexpected(&token, "a keyword"));
-    }
-    token = lexer.next()?;
-    match token {
-        Token::Semicolon => Ok(Record { parts }),
-        other => Err(unexpected(&other, "';'")),
-    }
-}
-
-fn parameters(lexer: &mut Lexer<'_>) -> Result<Vec<Value>, Fault> {
-    match lexer.next()? {
-        Token::Open => list(lexer, 0),
-        other => Err(unexpected(&other, "'('")),
-    }
-}
-
-/// Values up to the closing parenthesis. Stray and doubled commas are passed over.
-fn list(lexer: &mut Lexer<'_>, depth: usize) -> Result<Vec<Value>, Fault> {
-    if depth >= MAX_DEPTH {
-        return Err(Fault::Bad(format!("lists nested deeper than {MAX_DEPTH}")));
-    }
-    let mut values = Vec::new();
-    loop {
-        let value = match lexer.next()? {
-            Token::Close => return Ok(values),
-            Token::Comma => continue,
-            Token::Open => Value::List(list(lexer, depth + 1)?),
-            Token::Id(id) => Value::Ref(id),
-            Token::Int(i) => Value::Int(i),
-            Token::Real(x) => Value::Real(x),
-            Token::Text(t) => Value::Text(t),
-            Token::Enum(e) => Value::Enum(e),
-            Token::Omitted | Token::Derived | Token::Binary | Token::Resource => Value::Nothing,
-            Token::Word(word) => match lexer.next()? {
-                Token::Open => Value::Typed(word, list(lexer, depth + 1)?),
-                other => return Err(unexpected(&other, "'(' after a keyword")),
-            },
-            other => return Err(unexpected(&other, "a parameter")),
-        };
-        values.push(value);
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn read(text: &str) -> Graph {
-        Graph::read(text.as_bytes(), 0)
-    }
-
-    #[test]
-    fn simple_and_complex_records() {
-        let g = read("DATA;#1=A('x',(1,2.),$,.T.,B(3.));#2=(C(#1)D());ENDSEC;END-ISO-10303-21;");
-        assert!(g.diagnostics.is_empty(), "{:?}", g.diagnostics);
-        let a = g.get(1).unwrap().part("A").unwrap();
-        assert_eq!(a[1].list().iter().filter_map(Value::number).sum::<f64>(), 3.0);
-        assert_eq!((a[3].flag(), a[4].number(), arg(a, 9)), (Some(true), Some(3.0), &Value::Nothing));
-        assert_eq!((g.get(2).unwrap().kind().as_str(), g.get(2).unwrap().references()), ("C+D", vec![1]));
-    }
-
-    #[test]
-    fn damage_is_skipped_and_told() {
-        let g = read("#1=A(1;#2=A(2);#2=A(3);#3=;#4=A((?));#5=A(5);END-ISO-10303-21;");
-        let ids: Vec<u64> = g.records.iter().map(|r| r.0).collect();
-        assert_eq!(ids, [2, 5]);
-        assert_eq!(g.get(2).unwrap().part("A").unwrap()[0], Value::Int(2));
-        assert_eq!(g.diagnostics.len(), 4, "{:?}", g.diagnostics);
-    }
-
-    #[test]
-    fn truncation_keeps_what_is_complete() {
-        let g = read("#1=A(1);#2=A('abc");
-        assert_eq!(g.records.len(), 1);
-        assert!(g.diagnostics[0].message.contains("truncated"));
-    }
-
-    #[test]
-    fn deep_nesting_is_refused() {
-        let text = format!("#1=A({}1{});#2=A();END-ISO-10303-21;", "(".repeat(100_000), ")".repeat(100_000));
-        let g = read(&text);
-        assert!(g.get(1).is_none() && g.get(2).is_some());
-        assert!(g.diagnostics[0].message.contains("nested"));
-    }
-}
+mod tests;

@@ -1,24 +1,45 @@
-//! Tokens of a Part 21 exchange file (ISO 10303-21, clear text encoding).
+//! Tokens of a Part 21 exchange file (ISO 10303-21, clear text encoding), as ranges of the text.
 //!
 //! Lenient where dialects differ and the meaning is plain: comments anywhere between tokens, blanks of any kind
-//! (tabs, form feeds, CR LF), integers for reals, `D` for `E` in exponents, exponents without a point. Keywords are
-//! folded to upper case; control directives in strings (`''`, `\S\`, `\X\`, `\X2\`, `\X4\`) are decoded.
+//! (tabs, form feeds, CR LF), integers for reals, `D` for `E` in exponents, exponents without a point, keywords and
+//! enumerations in any case. Nothing is copied: strings are decoded by [`super::text`] where somebody asks for them.
+
+/// A range of the text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Span {
+    /// Offset of the first byte.
+    pub(crate) at: u32,
+    /// Number of bytes.
+    pub(crate) len: u32,
+}
+
+impl Span {
+    /// The range between two offsets.
+    pub(crate) const fn between(from: usize, to: usize) -> Self {
+        Self { at: from as u32, len: (to - from) as u32 }
+    }
+
+    /// The bytes of the range.
+    pub(crate) fn of(self, text: &[u8]) -> &[u8] {
+        &text[self.at as usize..(self.at + self.len) as usize]
+    }
+}
 
 /// One token.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Token {
     /// `#12`.
     Id(u64),
-    /// A keyword, upper case; user-defined ones keep their `!`.
-    Word(String),
+    /// A keyword; user-defined ones keep their `!`.
+    Word(Span),
     /// A number written without point and exponent.
     Int(i64),
     /// Any other number.
     Real(f64),
-    /// A decoded string.
-    Text(String),
-    /// `.T.` without its points, upper case.
-    Enum(String),
+    /// A string between its apostrophes.
+    Text(Span),
+    /// `.T.` without its points.
+    Enum(Span),
     /// `"0F3A"`.
     Binary,
     /// `<...>` of editions 3 and later.
@@ -37,10 +58,14 @@ pub(crate) enum Token {
     Semicolon,
     /// `=`.
     Equals,
+    /// `&` of a scope in the first edition.
+    Ampersand,
+    /// `/` of a scope's export list.
+    Slash,
 }
 
 /// Why there is no next token.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stop {
     /// The text ended, inside a token or comment where the flag is set.
     End {
@@ -48,13 +73,37 @@ pub(crate) enum Stop {
         open: bool,
     },
     /// A character that begins no token, or a malformed one.
-    Bad {
-        /// What is wrong.
-        what: String,
-    },
+    Bad(Mark),
+}
+
+/// A malformed token.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Mark {
+    /// A byte.
+    #[error("byte 0x{0:02x} begins no token")]
+    Byte(u8),
+    /// `#` without digits.
+    #[error("a reference without a number")]
+    NoNumber,
+    /// Digits beyond the range.
+    #[error("an instance number above 2^64")]
+    HugeId,
+    /// An enumeration value that goes on.
+    #[error("an enumeration value without its closing point")]
+    OpenEnum,
+    /// Digits that make no number.
+    #[error("a number that is none, or beyond the range of numbers")]
+    Number,
+    /// A string that goes on to the next record.
+    #[error("a string without its closing apostrophe")]
+    OpenText,
+    /// A binary literal that goes on.
+    #[error("a binary literal without its closing quotation mark")]
+    OpenBinary,
 }
 
 /// A reader of tokens.
+#[derive(Clone, Debug)]
 pub(crate) struct Lexer<'a> {
     text: &'a [u8],
     /// Offset of the next byte.
@@ -67,14 +116,18 @@ impl<'a> Lexer<'a> {
         Self { text, at }
     }
 
+    #[inline]
     fn peek(&self, ahead: usize) -> Option<u8> {
         self.text.get(self.at + ahead).copied()
     }
 
     /// Skips blanks, comments and the print control directives `\N\` and `\F\`.
+    #[inline]
     fn skip_blank(&mut self) -> Result<(), Stop> {
         loop {
             match self.peek(0) {
+                // Control characters and a byte order mark count as blanks.
+                Some(c) if c <= b' ' || c == 0x7f || matches!(c, 0xef | 0xbb | 0xbf) => self.at += 1,
                 Some(b'/') if self.peek(1) == Some(b'*') => {
                     let rest = &self.text[self.at + 2..];
                     let Some(end) = find(rest, b"*/") else {
@@ -89,8 +142,6 @@ impl<'a> Lexer<'a> {
                 {
                     self.at += 3;
                 }
-                // Control characters and a byte order mark count as blanks.
-                Some(c) if c <= b' ' || c == 0x7f || matches!(c, 0xef | 0xbb | 0xbf) => self.at += 1,
                 _ => return Ok(()),
             }
         }
@@ -104,7 +155,7 @@ impl<'a> Lexer<'a> {
                 Ok(_) => {}
                 Err(Stop::End { .. }) => return false,
                 // A bad character never holds the reader: next() has moved past it.
-                Err(Stop::Bad { .. }) => {}
+                Err(Stop::Bad(_)) => {}
             }
         }
     }
@@ -116,67 +167,68 @@ impl<'a> Lexer<'a> {
             return Err(Stop::End { open: false });
         };
         let simple = match c {
-            b'(' => Some(Token::Open),
-            b')' => Some(Token::Close),
-            b',' => Some(Token::Comma),
-            b';' => Some(Token::Semicolon),
-            b'=' => Some(Token::Equals),
-            b'$' => Some(Token::Omitted),
-            b'*' => Some(Token::Derived),
-            _ => None,
-        };
-        if let Some(token) = simple {
-            self.at += 1;
-            return Ok(token);
-        }
-        match c {
-            b'#' | b'@' => self.id(),
-            b'\'' => self.string(),
-            b'"' => self.bracketed(b'"', Token::Binary),
-            b'<' => self.bracketed(b'>', Token::Resource),
-            b'.' if self.peek(1).is_some_and(|d| d.is_ascii_alphabetic() || d == b'_') => self.enumeration(),
-            b'0'..=b'9' | b'+' | b'-' | b'.' => self.number(),
-            b'!' | b'_' => self.word(),
-            c if c.is_ascii_alphabetic() => self.word(),
+            b'(' => Token::Open,
+            b')' => Token::Close,
+            b',' => Token::Comma,
+            b';' => Token::Semicolon,
+            b'=' => Token::Equals,
+            b'$' => Token::Omitted,
+            b'*' => Token::Derived,
+            b'&' => Token::Ampersand,
+            b'/' => Token::Slash,
+            b'#' | b'@' => return self.id(),
+            b'0'..=b'9' | b'+' | b'-' => return self.number(),
+            b'\'' => return self.string(),
+            b'"' => return self.binary(),
+            b'<' => return self.resource(),
+            b'.' if self.peek(1).is_some_and(|d| d.is_ascii_alphabetic() || d == b'_') => {
+                return self.enumeration();
+            }
+            b'.' => return self.number(),
+            b'!' | b'_' => return Ok(self.word()),
+            c if c.is_ascii_alphabetic() => return Ok(self.word()),
             c => {
                 self.at += 1;
-                Err(Stop::Bad { what: format!("byte 0x{c:02x} begins no token") })
+                return Err(Stop::Bad(Mark::Byte(c)));
             }
-        }
+        };
+        self.at += 1;
+        Ok(simple)
     }
 
     fn id(&mut self) -> Result<Token, Stop> {
         self.at += 1;
-        let start = self.at;
-        while self.peek(0).is_some_and(|c| c.is_ascii_digit()) {
+        // Some writers set a blank behind the sign.
+        while self.peek(0) == Some(b' ') {
             self.at += 1;
         }
-        let digits = &self.text[start..self.at];
-        if digits.is_empty() {
+        let start = self.at;
+        let mut id: u64 = 0;
+        let mut whole = true;
+        while let Some(c @ b'0'..=b'9') = self.peek(0) {
+            match id.checked_mul(10).and_then(|v| v.checked_add(u64::from(c - b'0'))) {
+                Some(v) => id = v,
+                None => whole = false,
+            }
+            self.at += 1;
+        }
+        if start == self.at {
             // `#name` of edition 3: a reference to a constant or an external value.
             while self.peek(0).is_some_and(|c| c.is_ascii_alphanumeric() || c == b'_') {
                 self.at += 1;
             }
-            return Err(Stop::Bad { what: "a reference without a number".into() });
+            return Err(Stop::Bad(Mark::NoNumber));
         }
-        let mut id: u64 = 0;
-        for d in digits {
-            id = match id.checked_mul(10).and_then(|v| v.checked_add(u64::from(d - b'0'))) {
-                Some(v) => v,
-                None => return Err(Stop::Bad { what: "an instance number above 2^64".into() }),
-            };
-        }
-        Ok(Token::Id(id))
+        if whole { Ok(Token::Id(id)) } else { Err(Stop::Bad(Mark::HugeId)) }
     }
 
-    fn word(&mut self) -> Result<Token, Stop> {
+    fn word(&mut self) -> Token {
         let start = self.at;
         self.at += 1;
         while self.peek(0).is_some_and(|c| c.is_ascii_alphanumeric() || c == b'_' || c == b'-') {
             self.at += 1;
         }
-        let bytes = self.text[start..self.at].to_ascii_uppercase();
-        Ok(Token::Word(String::from_utf8_lossy(&bytes).into_owned()))
+        Token::Word(Span::between(start, self.at))
     }
 
     fn enumeration(&mut self) -> Result<Token, Stop> {
@@ -188,12 +240,11 @@ impl<'a> Lexer<'a> {
         match self.text.get(end) {
             Some(b'.') => {
                 self.at = end + 1;
-                let bytes = self.text[start..end].to_ascii_uppercase();
-                Ok(Token::Enum(String::from_utf8_lossy(&bytes).into_owned()))
+                Ok(Token::Enum(Span::between(start, end)))
             }
             Some(_) => {
                 self.at = end;
-                Err(Stop::Bad { what: "an enumeration value without its closing point".into() })
+                Err(Stop::Bad(Mark::OpenEnum))
             }
             None => {
                 self.at = end;
@@ -202,11 +253,15 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    fn bracketed(&mut self, close: u8, token: Token) -> Result<Token, Stop> {
-        match self.text[self.at + 1..].iter().position(|c| *c == close) {
-            Some(n) => {
+    fn resource(&mut self) -> Result<Token, Stop> {
+        match self.text[self.at + 1..].iter().position(|c| *c == b'>' || *c == b';') {
+            Some(n) if self.text[self.at + 1 + n] == b'>' => {
                 self.at += n + 2;
-                Ok(token)
+                Ok(Token::Resource)
+            }
+            Some(_) => {
+                self.at += 1;
+                Err(Stop::Bad(Mark::Byte(b'<')))
             }
             None => {
                 self.at = self.text.len();
@@ -215,197 +270,189 @@ impl<'a> Lexer<'a> {
         }
     }
 
+    fn binary(&mut self) -> Result<Token, Stop> {
+        let mut end = self.at + 1;
+        while self.text.get(end).is_some_and(|c| c.is_ascii_hexdigit() || c.is_ascii_whitespace()) {
+            end += 1;
+        }
+        let closed = self.text.get(end);
+        self.at = end;
+        match closed {
+            Some(b'"') => {
+                self.at += 1;
+                Ok(Token::Binary)
+            }
+            Some(_) => Err(Stop::Bad(Mark::OpenBinary)),
+            None => Err(Stop::End { open: true }),
+        }
+    }
+
     fn number(&mut self) -> Result<Token, Stop> {
         let start = self.at;
-        if matches!(self.peek(0), Some(b'+' | b'-')) {
-            self.at += 1;
-        }
-        let mut integer = true;
-        let mut text = String::with_capacity(24);
-        while let Some(c) = self.peek(0) {
+        let mut end = start + 1;
+        let (mut integer, mut fortran) = (self.text[start] != b'.', false);
+        while let Some(c) = self.text.get(end) {
             match c {
                 b'0'..=b'9' => {}
                 b'.' => integer = false,
                 b'e' | b'E' | b'd' | b'D' => {
                     integer = false;
-                    if matches!(self.peek(1), Some(b'+' | b'-')) {
-                        self.at += 1;
+                    fortran |= matches!(c, b'd' | b'D');
+                    if matches!(self.text.get(end + 1), Some(b'+' | b'-')) {
+                        end += 1;
                     }
                 }
                 _ => break,
             }
-            self.at += 1;
+            end += 1;
         }
-        for c in &self.text[start..self.at] {
-            text.push(match c {
-                b'd' | b'D' => 'e',
-                c => char::from(*c),
-            });
-        }
-        if integer && let Ok(i) = text.parse::<i64>() {
+        self.at = end;
+        let digits = &self.text[start..end];
+        if integer && let Some(i) = int(digits) {
             return Ok(Token::Int(i));
         }
-        match text.parse::<f64>() {
-            Ok(x) if x.is_finite() => Ok(Token::Real(x)),
-            _ => Err(Stop::Bad { what: format!("'{text}' is no finite number") }),
+        let value = if fortran {
+            let folded = digits.iter().map(|c| if matches!(c, b'd' | b'D') { b'E' } else { *c }).collect();
+            String::from_utf8(folded).ok().and_then(|t| t.parse::<f64>().ok())
+        } else {
+            short(digits).or_else(|| std::str::from_utf8(digits).ok().and_then(|t| t.parse::<f64>().ok()))
+        };
+        match value {
+            Some(x) if x.is_finite() => Ok(Token::Real(x)),
+            _ => Err(Stop::Bad(Mark::Number)),
         }
     }
 
     fn string(&mut self) -> Result<Token, Stop> {
         let start = self.at + 1;
-        let mut end = start;
-        loop {
-            match self.text.get(end) {
-                None => {
-                    self.at = self.text.len();
-                    return Err(Stop::End { open: true });
-                }
-                Some(b'\'') if self.text.get(end + 1) == Some(&b'\'') => end += 2,
-                Some(b'\'') => break,
-                Some(_) => end += 1,
+        match string_end(self.text, start) {
+            StringEnd::At(end) => {
+                self.at = end + 1;
+                Ok(Token::Text(Span::between(start, end)))
+            }
+            StringEnd::Open => {
+                self.at = self.text.len();
+                Err(Stop::End { open: true })
+            }
+            StringEnd::Lost(line) => {
+                self.at = line;
+                Err(Stop::Bad(Mark::OpenText))
             }
         }
-        self.at = end + 1;
-        Ok(Token::Text(decode(&self.text[start..end])))
     }
+}
+
+/// Where a string ends.
+pub(crate) enum StringEnd {
+    /// At this closing apostrophe.
+    At(usize),
+    /// Nowhere.
+    Open,
+    /// Its apostrophe is missing: the text goes on with a record at the beginning of a line. The offset is that of
+    /// the semicolon before it.
+    Lost(usize),
+}
+
+/// Looks for the end of the string whose text begins at `start`.
+pub(crate) fn string_end(text: &[u8], start: usize) -> StringEnd {
+    let mut end = start;
+    loop {
+        match text.get(end) {
+            None => return StringEnd::Open,
+            Some(b'\'') if text.get(end + 1) == Some(&b'\'') => end += 2,
+            Some(b'\'') => return StringEnd::At(end),
+            Some(b';') if record_follows(&text[end + 1..]) => return StringEnd::Lost(end),
+            Some(_) => end += 1,
+        }
+    }
+}
+
+/// Whether a line break and the beginning of a record follow.
+fn record_follows(rest: &[u8]) -> bool {
+    let blank = rest.iter().take_while(|c| c.is_ascii_whitespace()).count();
+    if !rest[..blank].contains(&b'\n') || rest.get(blank) != Some(&b'#') {
+        return false;
+    }
+    let digits = rest[blank + 1..].iter().take_while(|c| c.is_ascii_digit()).count();
+    let behind = &rest[blank + 1 + digits..];
+    digits > 0 && behind.iter().find(|c| **c != b' ') == Some(&b'=')
+}
+
+/// The integer, where it fits.
+fn int(digits: &[u8]) -> Option<i64> {
+    let (negative, digits) = match digits {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        rest => (false, rest),
+    };
+    if digits.is_empty() {
+        return None;
+    }
+    let value = digits
+        .iter()
+        .try_fold(0_i64, |v, c| v.checked_mul(10)?.checked_add(i64::from(c.wrapping_sub(b'0'))))?;
+    Some(if negative { -value } else { value })
+}
+
+/// Powers of ten that are exact.
+const TENS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
+/// A number of at most 15 digits and a power of ten up to 22: one multiplication or division of exact numbers, hence
+/// rounded correctly ([Clinger, How to read floating point numbers accurately, 1990]). `None` for any other.
+fn short(digits: &[u8]) -> Option<f64> {
+    let (mut mantissa, mut count, mut power, mut k) = (0_u64, 0_u32, 0_i32, 0);
+    let negative = digits[0] == b'-';
+    if matches!(digits[0], b'-' | b'+') {
+        k = 1;
+    }
+    let (mut point, mut any) = (false, false);
+    while let Some(c) = digits.get(k) {
+        match c {
+            b'0'..=b'9' => {
+                any = true;
+                count += u32::from(count > 0 || *c != b'0');
+                if count > 15 {
+                    return None;
+                }
+                mantissa = mantissa * 10 + u64::from(c - b'0');
+                power -= i32::from(point);
+            }
+            b'.' if !point => point = true,
+            b'e' | b'E' => break,
+            _ => return None,
+        }
+        k += 1;
+    }
+    if !any {
+        return None;
+    }
+    if k < digits.len() {
+        let e = int(&digits[k + 1..])?;
+        power += i32::try_from(e).ok().filter(|e| e.abs() < 400)?;
+    }
+    let value = match power {
+        0..=22 => mantissa as f64 * TENS[power as usize],
+        -22..=-1 => mantissa as f64 / TENS[-power as usize],
+        _ => return None,
+    };
+    Some(if negative { -value } else { value })
 }
 
 /// Offset of the first occurrence of `what`.
 pub(crate) fn find(text: &[u8], what: &[u8]) -> Option<usize> {
-    text.windows(what.len()).position(|w| w == what)
-}
-
-/// Decodes the control directives of a string. A malformed directive stays as it is written.
-fn decode(raw: &[u8]) -> String {
-    let mut out = String::with_capacity(raw.len());
-    let mut k = 0;
-    // Text outside directives may be UTF-8 (edition 3 and many writers): collect bytes, convert in one go.
-    let mut plain: Vec<u8> = Vec::with_capacity(raw.len());
-    let flush = |plain: &mut Vec<u8>, out: &mut String| {
-        out.push_str(&String::from_utf8_lossy(plain));
-        plain.clear();
-    };
-    while k < raw.len() {
-        let rest = &raw[k..];
-        if rest.starts_with(b"''") {
-            plain.push(b'\'');
-            k += 2;
-        } else if rest.starts_with(b"\\\\") {
-            plain.push(b'\\');
-            k += 2;
-        } else if rest.starts_with(b"\\S\\") && rest.len() > 3 {
-            // ISO 8859-1 upper half is the part of \S\ that is in use.
-            flush(&mut plain, &mut out);
-            out.push(char::from(rest[3] | 0x80));
-            k += 4;
-        } else if rest.starts_with(b"\\X\\") && hex(rest.get(3..5)).is_some() {
-            flush(&mut plain, &mut out);
-            out.extend(hex(rest.get(3..5)).and_then(char::from_u32));
-            k += 5;
-        } else if rest.starts_with(b"\\X2\\") || rest.starts_with(b"\\X4\\") {
-            let width = if rest[2] == b'2' { 4 } else { 8 };
-            let body_end = find(&rest[4..], b"\\X0\\").map_or(rest.len(), |e| e + 4);
-            flush(&mut plain, &mut out);
-            let codes: Vec<u32> = rest[4..body_end].chunks(width).filter_map(|c| hex(Some(c))).collect();
-            if width == 4 {
-                let units: Vec<u16> = codes.iter().map(|c| *c as u16).collect();
-                out.push_str(&String::from_utf16_lossy(&units));
-            } else {
-                out.extend(codes.iter().map(|c| char::from_u32(*c).unwrap_or('\u{fffd}')));
-            }
-            k += (body_end + 4).min(rest.len());
-        } else {
-            // Line ends inside a string are no part of it.
-            if !matches!(raw[k], b'\r' | b'\n') {
-                plain.push(raw[k]);
-            }
-            k += 1;
+    let first = *what.first()?;
+    let mut from = 0;
+    while let Some(n) = text[from..].iter().position(|c| *c == first) {
+        if text[from + n..].starts_with(what) {
+            return Some(from + n);
         }
+        from += n + 1;
     }
-    flush(&mut plain, &mut out);
-    out
-}
-
-fn hex(digits: Option<&[u8]>) -> Option<u32> {
-    let digits = digits.filter(|d| !d.is_empty())?;
-    digits.iter().try_fold(0_u32, |acc, d| Some((acc << 4) | char::from(*d).to_digit(16)?))
+    None
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn all(text: &str) -> Vec<Token> {
-        let mut lexer = Lexer::new(text.as_bytes(), 0);
-        let mut out = Vec::new();
-        while let Ok(t) = lexer.next() {
-            out.push(t);
-        }
-        out
-    }
-
-    #[test]
-    fn numbers_of_all_dialects() {
-        assert_eq!(
-            all("1 -2 1. 1.E-3 1.5D+02 1E0 -.5 +7"),
-            [
-                Token::Int(1),
-                Token::Int(-2),
-                Token::Real(1.0),
-                Token::Real(1e-3),
-                Token::Real(150.0),
-                Token::Real(1.0),
-                Token::Real(-0.5),
-                Token::Int(7)
-            ]
-        );
-        let mut big = Lexer::new(b"1.E999 #3", 0);
-        assert!(matches!(big.next(), Err(Stop::Bad { .. })));
-        assert_eq!(big.next(), Ok(Token::Id(3)));
-    }
-
-    #[test]
-    fn strings_decode_their_directives() {
-        let one = |s: &str| match all(s).remove(0) {
-            Token::Text(t) => t,
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(one(r"'a''b'"), "a'b");
-        assert_eq!(one(r"'\X2\00E90416\X0\\S\d z'"), "\u{e9}\u{416}\u{e4} z");
-        assert_eq!(one(r"'\X\E9 \X4\0001F600\X0\'"), "\u{e9} \u{1f600}");
-        assert_eq!(one("'c:\\\\x'"), "c:\\x");
-        assert_eq!(one("'two\r\nlines'"), "twolines");
-        assert_eq!(one(r"'\X2\00'"), "\u{0}");
-    }
-
-    #[test]
-    fn comments_enumerations_and_brackets() {
-        assert_eq!(
-            all("/* ; ' */ .T. /**/$*\"0F\"<a#b>!MY"),
-            [
-                Token::Enum("T".into()),
-                Token::Omitted,
-                Token::Derived,
-                Token::Binary,
-                Token::Resource,
-                Token::Word("!MY".into())
-            ]
-        );
-    }
-
-    #[test]
-    fn open_ends_are_told_from_ends() {
-        for text in ["'abc", "/* x", "\"0F", ".UNSPEC"] {
-            assert_eq!(Lexer::new(text.as_bytes(), 0).next(), Err(Stop::End { open: true }), "{text}");
-        }
-        assert_eq!(Lexer::new(b"  \t\x0c", 0).next(), Err(Stop::End { open: false }));
-    }
-
-    #[test]
-    fn a_statement_is_skipped_past_strings() {
-        let mut lexer = Lexer::new(b"A('x;y') ? ; #4", 0);
-        assert!(lexer.skip_statement());
-        assert_eq!(lexer.next(), Ok(Token::Id(4)));
-        assert!(!lexer.skip_statement());
-    }
-}
+mod tests;

@@ -1,13 +1,25 @@
 //! STEP files (ISO 10303-21 with the geometry of ISO 10303-42): faces of boundary representations and shells.
 //!
-//! `lexer` and `graph` know Part 21 only; `units` the contexts; `geometry` curves and surfaces; `faces` the
-//! topology. Pcurves are not used: the space curves are the definition, and writers disagree about pcurves.
+//! `lexer`, `parse`, `text`, `record` and `graph` know Part 21 only; `units` the contexts; `geometry`, `curves`,
+//! `splines` and `surfaces` the geometry; `structure` and `walk` representations and assemblies; `faces` the topology;
+//! `unused` what is left. Parameter curves count only where a file has no space curve: that one is the definition, and
+//! writers disagree about the others.
 
+mod colour;
+mod curves;
 mod faces;
 mod geometry;
 mod graph;
 mod lexer;
+mod parse;
+mod record;
+mod splines;
+mod structure;
+mod surfaces;
+mod text;
 mod units;
+mod unused;
+mod walk;
 mod write;
 
 pub use write::{StepOptions, StepWriteError, write};
@@ -60,7 +72,7 @@ fn start(bytes: &[u8]) -> Option<usize> {
 pub fn read(bytes: &[u8]) -> Result<Part, StepError> {
     let from = start(bytes).ok_or(StepError::NotStep { searched: bytes.len().min(MAGIC_WITHIN) })?;
     let graph = graph::Graph::read(bytes, from);
-    if graph.records.is_empty() {
+    if graph.len() == 0 {
         let detail = graph.diagnostics.first().map_or_else(String::new, |d| format!(" ({})", d.message));
         return Err(StepError::NoRecords { bytes: bytes.len(), detail });
     }

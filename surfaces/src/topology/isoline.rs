@@ -21,6 +21,7 @@ pub(super) fn between(carrier: &FaceSurface, a: Uv, b: Uv) -> Option<Piece> {
     };
     match carrier {
         FaceSurface::Analytic(s) => on_analytic(s, axis, a, b),
+        FaceSurface::Offset(_) => None,
         FaceSurface::Nurbs(n) => {
             // A thin strip with the line as its first row of poles.
             let d = n.domain();

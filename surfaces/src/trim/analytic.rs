@@ -4,7 +4,7 @@
 //! Parameters are those of [`osculate_geom::analytic`]: the angle about z first (plane: x), then the meridian's
 //! parameter. The natural normal points away from the axis (plane: +z).
 
-use osculate_geom::analytic::{BadSize, Cone, Cylinder, Placed, Placement, Plane, Sphere, Torus};
+use osculate_geom::analytic::{BadSize, Cone, Cylinder, Placed, Placement, Plane, Sphere, Spindle, Torus};
 use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv, uv};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -30,8 +30,15 @@ pub enum Shape {
         /// Radius, mm.
         radius_mm: f64,
     },
-    /// About z.
+    /// About z; where the tube is wider than its circle, the outer part of the spindle torus.
     Torus {
+        /// From the axis to the centre of the tube, mm.
+        major_radius_mm: f64,
+        /// Radius of the tube, mm.
+        minor_radius_mm: f64,
+    },
+    /// The inner part of a spindle torus about z, whose tube is wider than its circle.
+    Lemon {
         /// From the axis to the centre of the tube, mm.
         major_radius_mm: f64,
         /// Radius of the tube, mm.
@@ -94,8 +101,14 @@ impl Analytic {
                 (Inner::Sphere(Placed { surface, placement }), Domain { u: turn, v })
             }
             Shape::Torus { major_radius_mm, minor_radius_mm } => {
-                let surface = Torus::new(major_radius_mm, minor_radius_mm)?;
-                (Inner::Torus(Placed { surface, placement }), Domain { u: turn, v: turn })
+                let whole = Torus::new(major_radius_mm, minor_radius_mm)?;
+                let spindle = minor_radius_mm > major_radius_mm;
+                let surface = if spindle { whole.spindle(Spindle::Apple)? } else { whole };
+                (Inner::Torus(Placed { surface, placement }), surface.domain())
+            }
+            Shape::Lemon { major_radius_mm, minor_radius_mm } => {
+                let surface = Torus::new(major_radius_mm, minor_radius_mm)?.spindle(Spindle::Lemon)?;
+                (Inner::Torus(Placed { surface, placement }), surface.domain())
             }
         };
         Ok(Self { shape, placement, inner, domain })
@@ -140,8 +153,48 @@ impl Analytic {
                 uv(u, (r - radius_mm) * s + q.z * c)
             }
             Shape::Sphere { .. } => uv(u, angle(q.z, r, hint.v)),
-            Shape::Torus { major_radius_mm, .. } => uv(u, angle(q.z, r - major_radius_mm, hint.v)),
+            Shape::Torus { major_radius_mm, minor_radius_mm } => {
+                let v = angle(q.z, r - major_radius_mm, hint.v);
+                // The apple goes from -apex to apex, through zero.
+                let apex = (-major_radius_mm / minor_radius_mm).max(-1.0).acos();
+                uv(u, if minor_radius_mm > major_radius_mm { v.clamp(-apex, apex) } else { v })
+            }
+            // The lemon's radius is negative: it lies on the other side of the axis.
+            Shape::Lemon { major_radius_mm, minor_radius_mm } => {
+                let apex = (-major_radius_mm / minor_radius_mm).acos();
+                let v = angle(q.z, -r - major_radius_mm, hint.v).rem_euclid(TAU);
+                uv(angle(-q.y, -q.x, hint.u), v.clamp(apex, TAU - apex))
+            }
         }
+    }
+
+    /// The surface at a distance along its natural normal, on its widest rectangle: of the same kind.
+    ///
+    /// # Errors
+    /// [`BadSize`] where the distance leaves no surface.
+    pub fn offset(&self, distance_mm: f64) -> Result<Self, BadSize> {
+        let mut placement = self.placement;
+        let shape = match self.shape {
+            Shape::Plane => {
+                placement.origin += placement.z.into_inner() * distance_mm;
+                Shape::Plane
+            }
+            Shape::Cylinder { radius_mm } => Shape::Cylinder { radius_mm: radius_mm + distance_mm },
+            Shape::Cone { radius_mm, half_angle_rad } => {
+                // Along the axis too, so that v stays the distance from the same circle of the cone.
+                let (s, c) = half_angle_rad.sin_cos();
+                placement.origin -= placement.z.into_inner() * (distance_mm * s);
+                Shape::Cone { radius_mm: radius_mm + distance_mm * c, half_angle_rad }
+            }
+            Shape::Sphere { radius_mm } => Shape::Sphere { radius_mm: radius_mm + distance_mm },
+            Shape::Torus { major_radius_mm, minor_radius_mm } => {
+                Shape::Torus { major_radius_mm, minor_radius_mm: minor_radius_mm + distance_mm }
+            }
+            Shape::Lemon { major_radius_mm, minor_radius_mm } => {
+                Shape::Lemon { major_radius_mm, minor_radius_mm: minor_radius_mm - distance_mm }
+            }
+        };
+        Self::new(shape, placement)
     }
 
     /// The largest radius in the shape, mm.
@@ -151,7 +204,8 @@ impl Analytic {
             Shape::Cylinder { radius_mm } | Shape::Cone { radius_mm, .. } | Shape::Sphere { radius_mm } => {
                 radius_mm
             }
-            Shape::Torus { major_radius_mm, minor_radius_mm } => major_radius_mm + minor_radius_mm,
+            Shape::Torus { major_radius_mm, minor_radius_mm }
+            | Shape::Lemon { major_radius_mm, minor_radius_mm } => major_radius_mm + minor_radius_mm,
         }
     }
 
@@ -159,7 +213,7 @@ impl Analytic {
     const fn is_angle(&self, axis: Axis) -> bool {
         match (self.shape, axis) {
             (Shape::Plane, _) => false,
-            (Shape::Sphere { .. } | Shape::Torus { .. }, _) | (_, Axis::U) => true,
+            (Shape::Sphere { .. } | Shape::Torus { .. } | Shape::Lemon { .. }, _) | (_, Axis::U) => true,
             (_, Axis::V) => false,
         }
     }
@@ -223,6 +277,7 @@ mod tests {
             Shape::Cone { radius_mm: 2.0, half_angle_rad: -0.4 },
             Shape::Sphere { radius_mm: 4.0 },
             Shape::Torus { major_radius_mm: 6.0, minor_radius_mm: 1.5 },
+            Shape::Torus { major_radius_mm: 6.0, minor_radius_mm: 6.5 },
         ] {
             let s = Analytic::new(shape, placement).unwrap();
             for (u, v) in [(0.3, 0.7), (2.9, -1.2), (-2.0, 0.1)] {
@@ -230,6 +285,35 @@ mod tests {
                 // Coordinates of size 10 carry 2e-15; the parameters are angles or lengths of size one.
                 assert!((got.u - u).abs() < 1e-13 && (got.v - v).abs() < 1e-13, "{shape:?}: {got:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_lemon_gives_back_its_parameters_and_offsets_keep_their_distance() {
+        let lemon = Shape::Lemon { major_radius_mm: 1.0, minor_radius_mm: 2.0 };
+        let s = Analytic::new(lemon, Placement::identity()).unwrap();
+        for (u, v) in [(0.3, 2.2), (2.9, 3.1), (-2.0, 4.0)] {
+            let got = s.locate(&s.point(uv(u, v)), uv(0.0, 0.0));
+            assert!((got.u - u).abs() < 1e-14 && (got.v - v).abs() < 1e-14, "{got:?}");
+        }
+        let shapes = [
+            Shape::Plane,
+            Shape::Cylinder { radius_mm: 3.0 },
+            Shape::Cone { radius_mm: 2.0, half_angle_rad: 0.4 },
+            Shape::Sphere { radius_mm: 4.0 },
+            Shape::Torus { major_radius_mm: 6.0, minor_radius_mm: 1.5 },
+            lemon,
+        ];
+        for shape in shapes {
+            let s = Analytic::new(shape, Placement::identity()).unwrap();
+            let o = s.offset(0.25).unwrap();
+            let at = uv(0.7, if shape == lemon { 2.5 } else { 1.1 });
+            let jet = s.jet2(at);
+            let n = jet.du.cross(&jet.dv).normalize();
+            let foot = jet.point + n * 0.25;
+            let there = o.point(o.locate(&foot, at));
+            // Coordinates of size ten.
+            assert!((there - foot).norm() < 1e-14, "{shape:?}");
         }
     }
 

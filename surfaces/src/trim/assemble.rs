@@ -7,7 +7,7 @@ use super::carrier::{Carrier, FaceSurface};
 use super::chain::Joined;
 use super::region::{Chain, Known, Region};
 use crate::trimmed::{TrimError, TrimmedSurface};
-use osculate_geom::{Axis, Domain, Interval, Side, Surface, Uv, uv};
+use osculate_geom::{Axis, Domain, Interval, Side, Uv, uv};
 use std::sync::Arc;
 
 /// A trimmed surface and whether the chains agreed with what is known of the carrier's ends.
@@ -83,12 +83,9 @@ pub(crate) fn assemble(carrier: &Carrier, joined: &Joined, side: Side) -> Result
     }
     let carrier = match &carrier.surface {
         FaceSurface::Analytic(a) => FaceSurface::Analytic(Arc::new(a.limited(domain))),
-        FaceSurface::Nurbs(n) => FaceSurface::Nurbs(n.clone()),
+        other => other.clone(),
     };
-    let shared: Arc<dyn Surface> = match &carrier {
-        FaceSurface::Analytic(a) => a.clone(),
-        FaceSurface::Nurbs(n) => n.clone(),
-    };
+    let shared = carrier.shared();
     let surface = TrimmedSurface::from_region(shared, domain, region, side, joined.chains.len())?;
     Ok(Assembled { surface, carrier, consistent })
 }

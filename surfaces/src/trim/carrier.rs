@@ -2,10 +2,13 @@
 //! point, and the parameters of a point near it.
 
 use super::analytic::{Analytic, Shape};
+use super::curve::Motion;
 use super::foot;
 use super::region::Known;
-use crate::nurbs::NurbsSurface;
-use osculate_geom::{Axis, Box3, Domain, Jet2, Jet3, Point3, Surface, Taylor, Uv};
+use crate::nurbs::{Net, NurbsSurface};
+use crate::part::PlaceError;
+use osculate_geom::analytic::Placement;
+use osculate_geom::{Axis, Box3, Domain, Jet2, Jet3, Offset, Point3, Surface, Taylor, Unit3, Uv};
 use std::sync::Arc;
 
 /// The untrimmed surface of a face.
@@ -15,6 +18,8 @@ pub enum FaceSurface {
     Nurbs(Arc<NurbsSurface>),
     /// A surface with a closed form.
     Analytic(Arc<Analytic>),
+    /// A spline surface moved along its normals.
+    Offset(Arc<Offset<Arc<NurbsSurface>>>),
 }
 
 impl FaceSurface {
@@ -23,6 +28,91 @@ impl FaceSurface {
     pub const fn nurbs(&self) -> Option<&Arc<NurbsSurface>> {
         match self {
             Self::Nurbs(s) => Some(s),
+            Self::Analytic(_) | Self::Offset(_) => None,
+        }
+    }
+
+    /// The surface at another place, with the same parameters; `scale` is the motion's factor of lengths.
+    pub(crate) fn moved(&self, motion: &Motion, scale: f64) -> Result<Self, PlaceError> {
+        match self {
+            Self::Nurbs(n) => {
+                let net = n.net();
+                let points = net.points.iter().map(|p| motion.point(p)).collect();
+                let net = Net { count: net.count, points, weights: net.weights.clone() };
+                let knots = [Axis::U, Axis::V].map(|axis| n.knots(axis).as_slice().to_vec());
+                let made = NurbsSurface::new(n.degree(), knots, net).map_err(|_| PlaceError::Far)?;
+                Ok(Self::Nurbs(Arc::new(made)))
+            }
+            Self::Offset(o) => {
+                let base = Self::Nurbs(o.base().clone()).moved(motion, scale)?;
+                // A mirror turns the natural normal over.
+                base.offset(o.distance_mm() * scale).map_err(|_| PlaceError::Far)
+            }
+            Self::Analytic(a) => {
+                let p = a.placement();
+                // A mirrored plane keeps its parameters with its normal turned over; lengths among the parameters would
+                // have to change with a scale, angles with a mirror.
+                let mirrored = a.shape() == Shape::Plane && (scale + 1.0).abs() <= SAME_SCALE;
+                if !mirrored && (scale - 1.0).abs() > SAME_SCALE {
+                    return Err(PlaceError::Scaled { scale });
+                }
+                let z = Unit3::new_normalize(motion.vector(&p.z) * scale.signum());
+                let moved = Placement::new(motion.point(&p.origin), z, Some(motion.vector(&p.x)));
+                let made = Analytic::new(a.shape(), moved).map_err(|_| PlaceError::Far)?;
+                Ok(Self::Analytic(Arc::new(made.limited(a.domain()))))
+            }
+        }
+    }
+
+    /// The surface at a distance along its natural normal, exactly: analytic kinds stay of their kind.
+    ///
+    /// # Errors
+    /// Words for a distance that leaves no surface.
+    pub(crate) fn offset(&self, distance_mm: f64) -> Result<Self, String> {
+        match self {
+            Self::Analytic(a) => {
+                let made = a.offset(distance_mm).map_err(|e| e.to_string())?;
+                Ok(Self::Analytic(Arc::new(made)))
+            }
+            Self::Nurbs(n) => {
+                let made = Offset::new(n.clone(), distance_mm).map_err(|e| e.to_string())?;
+                Ok(Self::Offset(Arc::new(made)))
+            }
+            Self::Offset(o) => {
+                let made = (**o).clone().further(distance_mm).map_err(|e| e.to_string())?;
+                Ok(Self::Offset(Arc::new(made)))
+            }
+        }
+    }
+
+    /// What one unit of each parameter of a file is worth in this surface's parameters.
+    pub(crate) fn parameter_units(&self, length_mm: f64, angle_rad: f64) -> [f64; 2] {
+        match self {
+            Self::Nurbs(_) | Self::Offset(_) => [1.0, 1.0],
+            Self::Analytic(a) => match a.shape() {
+                Shape::Plane => [length_mm, length_mm],
+                Shape::Cylinder { .. } => [angle_rad, length_mm],
+                // The file measures along the axis.
+                Shape::Cone { half_angle_rad, .. } => [angle_rad, length_mm / half_angle_rad.cos()],
+                Shape::Sphere { .. } | Shape::Torus { .. } | Shape::Lemon { .. } => [angle_rad, angle_rad],
+            },
+        }
+    }
+
+    /// The surface behind a trimmed one.
+    pub(crate) fn shared(&self) -> Arc<dyn Surface> {
+        match self {
+            Self::Nurbs(s) => s.clone(),
+            Self::Analytic(s) => s.clone(),
+            Self::Offset(s) => s.clone(),
+        }
+    }
+
+    /// The spline surface that it is or is an offset of; for an analytic surface there is none to ask.
+    fn base(&self) -> Option<&NurbsSurface> {
+        match self {
+            Self::Nurbs(n) => Some(n),
+            Self::Offset(o) => Some(o.base()),
             Self::Analytic(_) => None,
         }
     }
@@ -31,6 +121,7 @@ impl FaceSurface {
         match self {
             Self::Nurbs(s) => &**s,
             Self::Analytic(s) => &**s,
+            Self::Offset(s) => &**s,
         }
     }
 }
@@ -58,6 +149,9 @@ impl Surface for FaceSurface {
         self.surface().breaks(axis)
     }
 }
+
+/// A motion whose factor of lengths is this near to one is rigid: frames are made of unit vectors.
+const SAME_SCALE: f64 = 1e-9;
 
 /// A face surface with its closing directions and typical size at hand.
 pub(crate) struct Carrier {
@@ -93,20 +187,24 @@ impl Carrier {
                         ([true, false], half_angle_rad <= 0.0, half_angle_rad >= 0.0)
                     }
                     Shape::Sphere { .. } => ([true, false], false, false),
-                    Shape::Torus { .. } => ([true, true], false, false),
+                    // Spindle tori end in apexes.
+                    Shape::Lemon { .. } => ([true, false], false, false),
+                    Shape::Torus { .. } => ([true, domain.v.periodic], false, false),
                 };
                 let speed = match a.shape() {
                     Shape::Plane => [1.0, 1.0],
                     Shape::Cylinder { radius_mm } => [radius_mm, 1.0],
                     Shape::Cone { radius_mm, .. } => [radius_mm, 1.0],
                     Shape::Sphere { radius_mm } => [radius_mm, radius_mm],
-                    Shape::Torus { major_radius_mm, minor_radius_mm } => [major_radius_mm, minor_radius_mm],
+                    Shape::Torus { major_radius_mm, minor_radius_mm }
+                    | Shape::Lemon { major_radius_mm, minor_radius_mm } => [major_radius_mm, minor_radius_mm],
                 };
                 let known = Known { below_out, above_out, oriented };
                 Self { surface, domain, closes, known, speed, seeds: foot::Seeds::default() }
             }
-            FaceSurface::Nurbs(n) => {
-                let size = Box3::around(&n.net().points).diagonal_mm();
+            FaceSurface::Nurbs(_) | FaceSurface::Offset(_) => {
+                let (n, base) = (&surface, surface.base());
+                let size = base.map_or(0.0, |b| Box3::around(&b.net().points).diagonal_mm());
                 let fractions: Vec<f64> = (0..PROBES).map(|k| k as f64 / (PROBES - 1) as f64).collect();
                 let side = |axis: Axis, end: f64| -> Vec<Point3> {
                     let at = domain.get(axis).at(end);
@@ -114,7 +212,7 @@ impl Carrier {
                     fractions.iter().map(|f| n.point(Uv::from_axis(axis, at, other.at(*f)))).collect()
                 };
                 let sides = [Axis::U, Axis::V].map(|axis| [side(axis, 0.0), side(axis, 1.0)]);
-                let closes = [Axis::U, Axis::V].map(|axis| n.closed(axis));
+                let closes = [Axis::U, Axis::V].map(|axis| base.is_some_and(|b| b.closed(axis)));
                 let is_point = |points: &[Point3]| Box3::around(points).diagonal_mm() <= SAME_LINE * size;
                 // The direction that does not close is v, or u where only v closes.
                 let open = if closes[1] && !closes[0] { 0 } else { 1 };
@@ -133,7 +231,7 @@ impl Carrier {
                     sum / 25.0
                 });
                 let known = Known { below_out, above_out, oriented };
-                let seeds = foot::Seeds::new(&**n);
+                let seeds = foot::Seeds::new(n);
                 Self { surface, domain, closes, known, speed, seeds }
             }
         }
@@ -147,8 +245,8 @@ impl Carrier {
                 let at = a.locate(p, hint.unwrap_or_default());
                 (at, (a.point(at) - p).norm())
             }
-            FaceSurface::Nurbs(n) => {
-                let target = foot::Target { surface: &**n, closes: self.closes, point: *p };
+            FaceSurface::Nurbs(_) | FaceSurface::Offset(_) => {
+                let target = foot::Target { surface: self.surface.surface(), closes: self.closes, point: *p };
                 if let Some(hint) = hint {
                     let near = foot::newton(&target, hint);
                     if near.1 <= good_mm {

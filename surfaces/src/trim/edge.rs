@@ -1,7 +1,8 @@
 //! The edges of a face as its file gave them, kept beside the loops: what tessellation and export share between faces.
 
-use super::curve::Piece;
+use super::curve::{Motion, Moved, Piece};
 use osculate_geom::Uv;
+use std::sync::Arc;
 
 /// An edge as one loop of a face uses it, slits and seams included.
 #[derive(Clone)]
@@ -14,4 +15,21 @@ pub(crate) struct FaceEdge {
     pub(crate) curve: Option<Piece>,
     /// Carrier parameters along the loop's sense, unwrapped, to the chord tolerance of the loops.
     pub(crate) points: Vec<Uv>,
+}
+
+/// Spreads place numbers over the numbers of edges, so that one edge at two places is two edges.
+const SPREAD: u64 = 0x9e37_79b9_7f4a_7c15;
+
+impl FaceEdge {
+    /// The edge at a place.
+    pub(crate) fn placed(&self, motion: Option<&Motion>, place: u64) -> Self {
+        let curve = match (&self.curve, motion) {
+            (Some(p), Some(motion)) => {
+                let moved = Moved { curve: p.curve.clone(), motion: *motion };
+                Some(Piece { curve: Arc::new(moved), ends: p.ends })
+            }
+            (own, _) => own.clone(),
+        };
+        Self { key: self.key.map(|k| k.wrapping_add(place.wrapping_mul(SPREAD))), curve, ..self.clone() }
+    }
 }

@@ -7,6 +7,7 @@ mod bands;
 pub(crate) mod boundary;
 pub(crate) mod carrier;
 pub(crate) mod chain;
+pub(crate) mod compound;
 pub(crate) mod curve;
 pub(crate) mod edge;
 mod foot;

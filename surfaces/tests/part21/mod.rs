@@ -1,6 +1,6 @@
 //! Small Part-21 files, record by record.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, dead_code)]
 
 use osculate_surfaces::Face;
 use osculate_surfaces::step;

@@ -14,6 +14,8 @@ pub(super) fn surface(face: &Face) -> Option<NurbsSurface> {
     match &face.carrier {
         FaceSurface::Nurbs(n) => Some((**n).clone()),
         FaceSurface::Analytic(a) => analytic(a, face),
+        // No spline is exactly an offset of one.
+        FaceSurface::Offset(_) => None,
     }
 }
 
@@ -32,7 +34,8 @@ fn analytic(a: &Analytic, face: &Face) -> Option<NurbsSurface> {
             Spline::polyline([d.v.lo, d.v.hi].map(|v| a.point(uv(0.0, v))).to_vec())
         }
         Shape::Sphere { radius_mm } => meridian(a, local(0.0, 0.0), radius_mm, [d.v.lo, d.v.hi]),
-        Shape::Torus { major_radius_mm, minor_radius_mm } => {
+        Shape::Torus { major_radius_mm, minor_radius_mm }
+        | Shape::Lemon { major_radius_mm, minor_radius_mm } => {
             meridian(a, local(major_radius_mm, 0.0), minor_radius_mm, [d.v.lo, d.v.hi])
         }
     };

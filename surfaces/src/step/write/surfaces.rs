@@ -14,6 +14,10 @@ pub(super) fn surface(out: &mut Records, face: &Face) -> usize {
     match &face.carrier {
         FaceSurface::Analytic(a) => analytic(out, a),
         FaceSurface::Nurbs(n) => spline(out, n),
+        FaceSurface::Offset(o) => {
+            let base = spline(out, o.base());
+            out.add(format!("OFFSET_SURFACE('',#{base},{},.U.)", real(o.distance_mm())))
+        }
     }
 }
 
@@ -48,6 +52,11 @@ fn analytic(out: &mut Records, a: &Analytic) -> usize {
             } else {
                 out.add(format!("TOROIDAL_SURFACE('',#{at},{sizes})"))
             }
+        }
+        Shape::Lemon { major_radius_mm, minor_radius_mm } => {
+            let at = out.placement(&frame);
+            let sizes = format!("{},{}", real(major_radius_mm), real(minor_radius_mm));
+            out.add(format!("DEGENERATE_TOROIDAL_SURFACE('',#{at},{sizes},.F.)"))
         }
     }
 }
