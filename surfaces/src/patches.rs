@@ -255,6 +255,8 @@ pub fn read(bytes: &[u8]) -> Result<Part, PatchesError> {
             Ok(Face {
                 id: format!("F{}", k + 1),
                 name: String::new(),
+                product: String::new(),
+                colour: None,
                 entity: patch.line as u64,
                 kind: FaceKind::Bezier,
                 oriented: false,
@@ -270,12 +272,13 @@ pub fn read(bytes: &[u8]) -> Result<Part, PatchesError> {
             Ok(f) => faces.push(f),
             Err(why) => {
                 diagnostics.push(Diagnostic::loss(format!("line {}", patch.line), format!("patch: {why}")));
-                left.add("Bezier patch", "its poles make no surface");
+                left.add_at("Bezier patch", "its poles make no surface", patch.line);
             }
         }
     }
     Ok(Part {
         format: Format::Patches,
+        uncertainty_mm: None,
         unit: "mm".to_owned(),
         schema: String::new(),
         faces,
