@@ -57,6 +57,9 @@ pub enum Verb {
         /// Skip words of the NC program that are not understood, with a finding each, instead of stopping.
         #[arg(long)]
         lenient: bool,
+        /// Write the surface as cut, coloured by its deviation, as a PLY file.
+        #[arg(long, value_name = "FILE")]
+        ply: Option<PathBuf>,
     },
     /// Machining time of an NC program with the axes' limits.
     Time(TimeArgs),

@@ -33,6 +33,10 @@ pub struct Job {
     pub setup: SetupTable,
     /// One contact, for `strip`.
     pub contact: Option<ContactTable>,
+    /// Raw material, for `verify`.
+    pub stock: Option<crate::stock_keys::StockTable>,
+    /// What holds the part, for `verify`.
+    pub fixture: Option<crate::stock_keys::FixtureTable>,
     /// How densely to verify.
     #[serde(default)]
     pub verification: VerificationTable,
@@ -103,6 +107,8 @@ pub struct ToolTable {
     pub corner_radius_mm: Option<f64>,
     /// From the tip to the holder.
     pub length_mm: Option<f64>,
+    /// From the tip to where the cutting edges end and the shank begins; the whole length where not given.
+    pub flute_length_mm: Option<f64>,
     /// Of a cone, half its angle.
     pub taper_deg: Option<f64>,
     /// Of a cone without a ball tip.
@@ -316,6 +322,25 @@ impl Job {
     /// The cutter.
     pub fn cutter(&self) -> Result<Cutter, Failure> {
         Cutter::try_from(self.cutter_spec()?).map_err(|e| Failure::file(&self.path, format!("[tool] {e}")))
+    }
+
+    /// The part of the cutter that cuts, and the shank above it where the flutes end below the length.
+    pub fn flutes(&self) -> Result<(Cutter, Option<Cutter>), Failure> {
+        let whole = self.cutter()?;
+        let Some(flute_mm) = self.tool.flute_length_mm else { return Ok((whole, None)) };
+        let wrong =
+            |why: String| Failure::file(&self.path, format!("[tool] flute_length_mm = {flute_mm}: {why}"));
+        let shank_mm = whole.length_mm() - flute_mm;
+        if !(flute_mm > 0.0 && shank_mm >= 0.0) {
+            return Err(wrong(format!("must lie between 0 and the length, {} mm", whole.length_mm())));
+        }
+        let short = whole.shortened(flute_mm).map_err(|e| wrong(e.to_string()))?;
+        let shank = if shank_mm > 0.0 {
+            Some(Cutter::cylinder(2.0 * whole.radius_mm(), shank_mm).map_err(|e| wrong(e.to_string()))?)
+        } else {
+            None
+        };
+        Ok((short, shank))
     }
 
     /// The holder as a cylinder.

@@ -12,10 +12,12 @@ mod job;
 mod nc;
 mod output;
 mod part;
+mod ply;
 mod progress;
 mod render;
 mod report;
 mod report_fill;
+mod stock_keys;
 mod verify;
 
 use args::{Cli, Verb};
@@ -33,7 +35,12 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Strip { job } => cmd::strip::run(job, cli.json),
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
-        Verb::Verify { file, job, lenient } => cmd::verify::run(file, job, *lenient, cli.json),
+        Verb::Verify { file, job, lenient, ply } => cmd::verify::run(
+            file,
+            job,
+            &cmd::verify::Options { lenient: *lenient, ply: ply.as_deref() },
+            cli.json,
+        ),
         Verb::Time(args) => cmd::time::run(args, cli.json),
         Verb::Machines => cmd::list::machines(cli.json),
         Verb::Dialects => cmd::list::dialects(cli.json),

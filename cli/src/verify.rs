@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
-use osculate_geom::Diagnostic;
-use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Sample, Swept, Verdict};
+use osculate_geom::{Diagnostic, Surface};
+use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Patch, Sample, Swept, Verdict};
 use serde::Serialize;
 
 /// Most samples where the job does not say.
@@ -27,6 +27,10 @@ pub struct Verification {
     pub hidden_scallop_mm: f64,
     /// Gouge that may hide between samples below the deepest one seen, mm.
     pub hidden_gouge_mm: f64,
+    /// The smallest radius of curvature at a sample; absent where everything is flat.
+    pub smallest_radius_mm: Option<f64>,
+    /// Whether the limits hold with what may hide added to what was measured.
+    pub certain: bool,
     /// Highest material left where the tool passed.
     pub scallop_max_mm: f64,
     /// Of 99 % of the area.
@@ -123,6 +127,7 @@ pub fn run(
         ));
     }
     let mut samples = Vec::new();
+    let mut patches: Vec<Option<Patch>> = Vec::new();
     let mut density: Option<Density> = None;
     for (k, (face, check_only)) in all.iter().enumerate() {
         let step = if *check_only { CHECK_COARSER * spacing } else { spacing };
@@ -138,7 +143,16 @@ pub fn run(
             density = Some(density.map_or(found.density, |d| d.union(&found.density)));
         }
         samples.extend(found.samples.into_iter().map(|s| Sample { check_only: *check_only, ..s }));
+        patches.extend(found.patches.into_iter().map(Some));
+        if !check_only && face.surface.is_trimmed() {
+            for outline in face.surface.loops() {
+                samples.extend(removal::sample_boundary(&*face.surface, &outline.points, k as u32, step));
+            }
+        }
+        patches.resize(samples.len(), None);
     }
+    samples.extend(crate::stock_keys::fixtures(job, all.len() as u32)?);
+    patches.resize(samples.len(), None);
     let density = density.ok_or_else(|| Failure::job("there is no face to verify"))?;
     let stock_mm = (20.0 * tolerance.scallop_mm).max(0.5).min(0.5 * cutter.radius_mm());
     let work = removal::Job {
@@ -153,7 +167,12 @@ pub fn run(
     // The tool's effective radius across the feed, from the strip that it leaves.
     let effective = strip * strip / (8.0 * tolerance.scallop_mm);
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
-    let verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
+    let mut verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
+    let surfaces: Vec<&dyn Surface> = all.iter().map(|(f, _)| &*f.surface as &dyn Surface).collect();
+    verdict.hidden = removal::hidden(&surfaces, &work, (&patches, &cuts), limits.uncut_mm, effective)
+        .map_err(Failure::job)?;
+    let sharpest =
+        patches.iter().flatten().map(|p| p.convex_per_mm.max(p.concave_per_mm)).fold(0.0, f64::max);
     // Worst first: by how much of its own limit a place takes.
     let share = |w: &removal::Worst| match w.kind {
         Kind::Scallop | Kind::Uncut => w.value_mm / limits.scallop_mm,
@@ -175,7 +194,7 @@ pub fn run(
             .to_owned(),
             value_mm: w.value_mm,
             at_mm: [w.at.x, w.at.y, w.at.z],
-            face: all.get(w.face as usize).map_or_else(String::new, |f| f.0.id.clone()),
+            face: all.get(w.face as usize).map_or_else(|| "fixture".to_owned(), |f| f.0.id.clone()),
             uv: [w.uv.u, w.uv.v],
             block: w.block.unwrap_or(0),
         })
@@ -186,6 +205,10 @@ pub fn run(
         spacing_mm: density.spacing_mm,
         hidden_scallop_mm: verdict.hidden.scallop_mm,
         hidden_gouge_mm: verdict.hidden.gouge_mm,
+        smallest_radius_mm: (sharpest > 0.0).then(|| 1.0 / sharpest),
+        certain: verdict.within
+            && verdict.scallop_max_mm + verdict.hidden.scallop_mm <= limits.scallop_mm
+            && verdict.gouge_max_mm + verdict.hidden.gouge_mm <= limits.gouge_mm,
         scallop_max_mm: verdict.scallop_max_mm,
         scallop_p99_mm: verdict.scallop_p99_mm,
         scallop_median_mm: verdict.median_mm,

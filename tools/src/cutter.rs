@@ -123,6 +123,20 @@ impl Cutter {
         Self::new(diameter_mm, 0.0, length_mm)
     }
 
+    /// The lower part of the cutter, up to `length_mm`.
+    ///
+    /// # Errors
+    /// [`CutterError::Length`] where that is not above the corner, [`CutterError::ShapeLength`] where it is longer.
+    pub fn shortened(&self, length_mm: f64) -> Result<Self, CutterError> {
+        if length_mm.is_nan() || length_mm <= self.corner {
+            return Err(CutterError::Length { length_mm, corner_mm: self.corner });
+        }
+        if length_mm > self.length {
+            return Err(CutterError::ShapeLength { length_mm, least_mm: self.corner, most_mm: self.length });
+        }
+        Ok(Self { length: length_mm, ..*self })
+    }
+
     /// Outer radius R, mm: the greatest distance of the cutter's body from its axis.
     #[must_use]
     pub const fn radius_mm(&self) -> f64 {

@@ -4,11 +4,14 @@ use crate::failure::{Done, Failure, Outcome, read_text};
 use crate::job::Job;
 use crate::nc;
 use crate::part;
+use crate::ply;
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
+use crate::stock_keys::{self, StockSummary};
 use crate::verify::{self, Verification, WorstPlace};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_postproc::cldata;
+use osculate_tools::Cutter;
 use osculate_tools::removal::Swept;
 use serde::Serialize;
 use std::path::Path;
@@ -18,6 +21,8 @@ struct Answer {
     #[serde(flatten)]
     verification: Verification,
     worst: Vec<WorstPlace>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stock: Option<StockSummary>,
     diagnostics: Vec<String>,
 }
 
@@ -33,8 +38,51 @@ fn is_cl(path: &Path, text: &str) -> bool {
     })
 }
 
+/// What the command line adds.
+pub struct Options<'a> {
+    /// Skip words that are not understood.
+    pub lenient: bool,
+    /// Where the surface as cut goes.
+    pub ply: Option<&'a Path>,
+}
+
+/// A feed above the job's by more than this is reported: rounding of F and of the path stays far below.
+const FEED_EXCESS: f64 = 1.05;
+
+/// Reports feed moves whose tip goes faster than the job says: the fastest, with its line.
+fn feeds(job: &Job, read: &nc::Motions) -> Result<Option<Diagnostic>, Failure> {
+    let wanted = job.feed_mm_min()?;
+    let (mut fastest, mut line, mut fast) = (0.0, 0, 0usize);
+    let mut before = 0.0;
+    for (m, clock) in read.motions.iter().zip(&read.times_min) {
+        let length = (m.to.tip - m.from.tip).norm();
+        let time = clock - before;
+        before = *clock;
+        // Shorter moves say more about rounding than about feed.
+        if m.rapid || time <= 0.0 || length < SHORT_MM {
+            continue;
+        }
+        let feed = length / time;
+        if feed > FEED_EXCESS * wanted {
+            fast += 1;
+        }
+        if feed > fastest {
+            (fastest, line) = (feed, m.block);
+        }
+    }
+    Ok((fast > 0).then(|| {
+        let text = format!(
+            "the tip moves faster than feed_mm_min = {wanted:.0} in {fast} moves, most in line {line}: {fastest:.0} mm/min"
+        );
+        Diagnostic::warning("feed", text)
+    }))
+}
+
+/// Moves that are too short to tell their feed, mm.
+const SHORT_MM: f64 = 0.05;
+
 /// Runs the verb.
-pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
+pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> Outcome {
     let job = Job::load(job_path)?;
     let faces = part::of_job(&job)?;
     let text = read_text(file)?;
@@ -42,13 +90,32 @@ pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
     let (motions, source) = if is_cl(file, &text) {
         let cl = cldata::read(&text).map_err(|e| Failure::file(file, e))?;
         diagnostics.extend(cl.diagnostics);
+        let own = job.cutter_spec()?;
+        if let Some(other) = cl.path.cutter.filter(|c| Cutter::try_from(*c) != Cutter::try_from(own)) {
+            let text =
+                format!("the CL data is for another cutter: {other:?}; verified with the job's, {own:?}");
+            diagnostics.push(Diagnostic::warning("tool", text));
+        }
         (Swept::along(&cl.path), "cl")
     } else {
         let (control, notes) = nc::control(&job)?;
-        diagnostics.extend(notes);
+        if job.machine.is_none() {
+            diagnostics.push(Diagnostic::warning(
+                "machine",
+                format!(
+                    "the job has no [machine]: the program is read as {} for {}; give [machine] name or file, and dialect",
+                    control.dialect_name,
+                    control.machine.name()
+                ),
+            ));
+        } else {
+            diagnostics.extend(notes);
+        }
         let (setup, notes) = nc::setup(&job, &faces)?;
         diagnostics.extend(notes);
-        let read = nc::read_back(&text, &control, &setup, lenient).map_err(|e| Failure::file(file, e))?;
+        let read =
+            nc::read_back(&text, &control, &setup, options.lenient).map_err(|e| Failure::file(file, e))?;
+        diagnostics.extend(feeds(&job, &read)?);
         diagnostics.extend(read.diagnostics);
         (read.motions, "nc")
     };
@@ -60,14 +127,30 @@ pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
     let v = verify::run(&job, &faces, &motions, source, None, &|f| stage.at(f))?;
     let wall = stage.end();
     diagnostics.extend(v.diagnostics.iter().cloned());
+    let stage = Stage::begin("stock");
+    let stock = stock_keys::run(&job, &faces, &motions, &|f| stage.at(f))?;
+    stage.end();
+    let stock = stock.map(|(summary, notes)| {
+        diagnostics.extend(notes);
+        summary
+    });
+    if let Some(path) = options.ply {
+        ply::write(path, &job, &faces, &motions, v.summary.spacing_mm)?;
+    }
+    let mut summary = v.summary.clone();
+    if stock.as_ref().is_some_and(|s| !s.collisions.is_empty()) {
+        summary.within_tolerance = false;
+        summary.certain = false;
+    }
     if json {
         render::json(&Answer {
-            verification: v.summary.clone(),
+            verification: summary.clone(),
             worst: v.worst.clone(),
+            stock,
             diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
         })?;
     } else {
-        let s = &v.summary;
+        let s = &summary;
         let mut t = Table::new(["verified", "", "unit"]);
         let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
         row("samples", s.samples.to_string(), "");
@@ -75,9 +158,22 @@ pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
         row("scallop max", format!("{:.5}", s.scallop_max_mm), "mm");
         row("scallop p99", format!("{:.5}", s.scallop_p99_mm), "mm");
         row("gouge max", format!("{:.5}", s.gouge_max_mm), "mm");
+        row("scallop that may hide", format!("{:.5}", s.hidden_scallop_mm), "mm");
+        row("gouge that may hide", format!("{:.5}", s.hidden_gouge_mm), "mm");
+        row(
+            "smallest radius",
+            s.smallest_radius_mm.map_or_else(|| "flat".to_owned(), |r| number(r, 4)),
+            "mm",
+        );
         row("uncut area", format!("{:.3}", s.uncut_area_mm2), "mm2");
         row("wall time", format!("{wall:.2}"), "s");
-        let word = if s.within_tolerance { "within tolerance" } else { "NOT within tolerance" };
+        let word = if s.certain {
+            "within tolerance, with all that may hide between samples"
+        } else if s.within_tolerance {
+            "within tolerance"
+        } else {
+            "NOT within tolerance"
+        };
         render::text(&format!("\n{}\n  {word}\n", t.render()));
         if !v.worst.is_empty() {
             let mut t = Table::new(["worst", "mm", "x", "y", "z", "face", "block"]);
@@ -95,12 +191,73 @@ pub fn run(file: &Path, job_path: &Path, lenient: bool, json: bool) -> Outcome {
             }
             render::text(&format!("\n{}", t.render()));
         }
+        if let Some(s) = &stock {
+            render::text(&format!("\n{}", stock_text(s)));
+        }
         if !diagnostics.is_empty() {
             render::text(&format!("\n{}", render::findings(&diagnostics)));
         }
         render::text("\n");
     }
-    Ok(if v.summary.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+    Ok(if summary.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+fn stock_text(s: &StockSummary) -> String {
+    let mut t = Table::new(["stock", "", "unit"]);
+    let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
+    row("cell", number(s.cell_mm, 4), "mm");
+    row("volume", format!("{:.1}", s.volume_mm3), "mm3");
+    row("removed", format!("{:.1}", s.removed_mm3), "mm3");
+    row("left", format!("{:.1} (spread {:.1})", s.left_mm3, s.spread_mm3), "mm3");
+    row("collisions", s.collisions.len().to_string(), "");
+    let mut out = t.render();
+    if !s.most.is_empty() {
+        let mut t = Table::new(["block", "mm3", "chip mm2", "engaged deg", "up to mm"]);
+        for b in &s.most {
+            t.row([
+                b.block.to_string(),
+                format!("{:.2}", b.volume_mm3),
+                number(b.section_mm2, 3),
+                format!("{:.0}", b.engaged_deg),
+                number(b.height_mm, 3),
+            ]);
+        }
+        out += &format!("\n{}", t.render());
+    }
+    if !s.collisions.is_empty() {
+        let mut t = Table::new(["collision", "block", "mm deep", "x", "y", "z"]);
+        for c in s.collisions.iter().take(10) {
+            let body = if c.rapid { format!("{} in rapid", c.body) } else { c.body.to_owned() };
+            let at = c.at_mm.map(|x| format!("{x:.3}"));
+            t.row([
+                body,
+                c.block.to_string(),
+                number(c.deepest_mm, 3),
+                at[0].clone(),
+                at[1].clone(),
+                at[2].clone(),
+            ]);
+        }
+        out += &format!("\n{}", t.render());
+    }
+    out
+}
+
+/// What unit a path may be in that meets the part only when scaled: a hint for the message.
+fn unit_hint(path: &Box3, reach: &Box3) -> &'static str {
+    const INCH: f64 = 25.4;
+    let meets = |scale: f64| {
+        (0..3).all(|k| path.min[k] * scale <= reach.max[k] && path.max[k] * scale >= reach.min[k])
+    };
+    if path.is_empty() {
+        ""
+    } else if meets(INCH) {
+        "; taken as inches they would meet: does the program need G20 or UNITS/INCHES?"
+    } else if meets(1.0 / INCH) {
+        "; divided by 25.4 they would meet: is the part in inches, or the program in mm under G20?"
+    } else {
+        ""
+    }
 }
 
 /// Refuses a path that never comes near the part: a wrong unit or a wrong part zero.
@@ -127,9 +284,10 @@ fn meet(file: &Path, motions: &[Swept], faces: &part::JobFaces) -> Result<(), Fa
             file,
             format!(
                 "the feed moves lie in {} mm, the part in {} mm: they do not meet; is the unit right (inch against \
-                 mm), or [setup] part_zero_mm?",
+                 mm), or [setup] part_zero_mm?{}",
                 if path.is_empty() { "nothing".to_owned() } else { show(&path) },
-                show(&whole)
+                show(&whole),
+                unit_hint(&path, &reach)
             ),
         ));
     }

@@ -1,10 +1,10 @@
-//! Samples on the trims of a face, and on the corners of its trims.
+//! Samples on the trims of a face, and on triangles.
 //!
 //! A narrow tip of a trimmed face may lie between the samples of a grid. Its outline does not: it is walked at half the
 //! spacing, and every corner of it gets a sample of its own. Samples on an outline stand for no area.
 
 use super::job::Sample;
-use osculate_geom::{Surface, Uv, uv};
+use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
 
 /// An outline turning by more than this, rad, from one chord to the next has a corner there: polylines of smooth
 /// curves turn by less.
@@ -55,6 +55,37 @@ pub fn sample_boundary(surface: &dyn Surface, outline: &[Uv], face: u32, spacing
             }
         }
         since = (since + length) - parts * step;
+    }
+    out
+}
+
+/// Samples on triangles that carry no material and are not to be touched, such as those of a fixture: their corners and
+/// places in between at most `spacing_mm` apart, the normal to the side from which they run counter-clockwise.
+/// Triangles without area have none.
+#[must_use]
+pub fn sample_triangles(triangles: &[[Point3; 3]], face: u32, spacing_mm: f64) -> Vec<Sample> {
+    let mut out = Vec::new();
+    for t in triangles {
+        let (a, b) = (t[1] - t[0], t[2] - t[0]);
+        let cross = a.cross(&b);
+        let Some(normal) = Unit3::try_new(cross, 0.0) else { continue };
+        let longest = a.norm().max(b.norm()).max((b - a).norm());
+        // More than a thousand to a side are a mistake in the spacing.
+        let parts = (longest / spacing_mm).ceil().clamp(1.0, 1e3) as u32;
+        let count = f64::from((parts + 1) * (parts + 2) / 2);
+        for i in 0..=parts {
+            for j in 0..=parts - i {
+                let at = [i, j].map(|k| f64::from(k) / f64::from(parts));
+                out.push(Sample {
+                    point: t[0] + a * at[0] + b * at[1],
+                    normal,
+                    face,
+                    uv: uv(at[0], at[1]),
+                    area_mm2: 0.5 * cross.norm() / count,
+                    check_only: true,
+                });
+            }
+        }
     }
     out
 }

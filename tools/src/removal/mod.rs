@@ -56,7 +56,7 @@ mod target;
 mod tree;
 mod verdict;
 
-pub use boundary::sample_boundary;
+pub use boundary::{sample_boundary, sample_triangles};
 pub use cut::cut;
 pub use density::{Density, Hidden};
 pub use hidden::{DIVISIONS, hidden};

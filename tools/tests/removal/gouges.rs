@@ -104,6 +104,91 @@ fn two_points_swapped() {
     assert!(matches!(worst.block, Some(40 | 42)), "{worst:?}");
 }
 
+/// Gouges of 0.002 to 0.5 mm in tip, axis, order, pivot and radius: the size within 5 percent, and the block.
+///
+/// On a plane, where each has a closed form. Samples are so dense that a gouge of relative curvature K looks shallower by
+/// at most `K (spacing / sqrt 2)^2 / 2`, a fiftieth of its depth.
+#[test]
+fn planted_gouges_have_their_size_and_block() {
+    let cutter = crate::common::toroidal(10.0, 2.0);
+    let (core, r) = (cutter.core_mm(), cutter.corner_mm());
+    // Leaned by b along the feed, the corner's lowest point touches the plane.
+    let b = 0.1f64;
+    let touching = |x: f64, y: f64, lean: f64, extra: f64| {
+        let axis = [lean.sin(), 0.0, lean.cos()];
+        pose([x, y, r + core * lean.sin() - r * lean.cos() + extra], axis)
+    };
+    for depth in [0.002, 0.02, 0.5f64] {
+        let spacing = (2.0 * 0.02 * depth * r).sqrt().min(0.1);
+        let near = |x: f64, y: f64| {
+            let i = |c: f64| Interval::new(c - 20.0 * spacing, c + 20.0 * spacing);
+            let surface = Plane::new(Domain { u: i(x), v: i(y) });
+            sample_surface(&surface, 7, spacing, 1_000_000).unwrap()
+        };
+        let passes = |place: &dyn Fn(usize) -> Pose| through(&(0..=20).map(place).collect::<Vec<_>>());
+        let x = |k: usize| k as f64 - 10.0;
+        // Where each fault is deepest, the poses with it, and the blocks that may be named.
+        let lowest = |pose: &Pose| {
+            let low = -pose.axis.z * pose.axis.into_inner();
+            let out = (Vec3::new(0.0, 0.0, -1.0) - low).normalize();
+            pose.tip + pose.axis.into_inner() * r + out * core - Vec3::z() * r
+        };
+        // An axis turned further about its own tip: the corner goes down by g.
+        let down = |lean: f64| r + core * lean.sin() - r * lean.cos();
+        let mut turned = b;
+        for _ in 0..60 {
+            // Newton on down(lean) = down(b) + depth; the slope is core cos + r sin.
+            turned -= (down(turned) - down(b) - depth) / (core * turned.cos() + r * turned.sin());
+        }
+        let tipped = touching(x(12), 0.0, b, -depth);
+        let leaned = Pose {
+            axis: pose([0.0; 3], [turned.sin(), 0.0, turned.cos()]).axis,
+            ..touching(x(12), 0.0, b, 0.0)
+        };
+        for (what, fault) in [("tip", tipped), ("axis", leaned)] {
+            let motions = passes(&|k| if k == 12 { fault } else { touching(x(k), 0.0, b, 0.0) });
+            let at = lowest(&fault);
+            let bad = verdict(&cutter, &motions, &near(at.x, at.y));
+            let got = bad.gouge_max_mm;
+            assert!((got - depth).abs() < 0.05 * depth, "{what}: {got} of {depth}");
+            let worst = bad.worst.iter().find(|w| w.kind == Kind::Gouge).unwrap();
+            assert!(matches!(worst.block, Some(12 | 13)), "{what} {worst:?}");
+        }
+        // A pivot that is off by d lowers a leaned tool by d (1 - cos b) everywhere, towards d sin b.
+        let off = depth / (1.0 - b.cos());
+        let motions = passes(&|k| {
+            let good = touching(x(k), 0.0, b, 0.0);
+            Pose { tip: good.tip + (good.axis.into_inner() - Vec3::z()) * off, ..good }
+        });
+        let got = verdict(&cutter, &motions, &near(off * b.sin() + core, 0.0)).gouge_max_mm;
+        assert!((got - depth).abs() < 0.05 * depth, "pivot: {got} of {depth}");
+        // A tool that is larger than programmed by e goes down by e (1 - cos b) and e sin b: the flat's radius grows.
+        let more = depth / b.sin();
+        let large = crate::common::toroidal(2.0 * (core + r + more), r);
+        let motions = passes(&|k| touching(x(k), 0.0, b, 0.0));
+        let got = verdict(&large, &motions, &near(core, 0.0)).gouge_max_mm;
+        assert!((got - depth).abs() < 0.05 * depth, "radius: {got} of {depth}");
+        // Two points of a zigzag over a ridge swapped: the tool goes straight where it should climb over.
+        let ball = ball(6.0);
+        let height = |k: usize| if k % 2 == 1 { 2.0 * depth } else { 0.0 };
+        let mut order: Vec<usize> = (0..=20).collect();
+        order.swap(11, 12);
+        let poses: Vec<Pose> = order.iter().map(|k| upright(x(*k), 0.0, height(*k))).collect();
+        let motions = through(&poses);
+        // Points 10, 12, 11, 13: from 10 to 12 along the ground through the crest of 11. The part's face there is the
+        // tool's own way over the crest, at half of it: a plane at `depth` above the ground.
+        let i = |c: f64| Interval::new(c - 20.0 * spacing, c + 20.0 * spacing);
+        let crest = Placed {
+            surface: Plane::new(Domain { u: i(x(11)), v: i(0.0) }),
+            placement: Placement::new(Point3::new(0.0, 0.0, depth), Vec3::z_axis(), Some(Vec3::x())),
+        };
+        let bad = verdict(&ball, &motions, &sample_surface(&crest, 7, spacing, 1_000_000).unwrap());
+        assert!((bad.gouge_max_mm - depth).abs() < 0.05 * depth, "swap: {} of {depth}", bad.gouge_max_mm);
+        let worst = bad.worst.iter().find(|w| w.kind == Kind::Gouge).unwrap();
+        assert_eq!(worst.block, Some(11), "{worst:?}");
+    }
+}
+
 #[test]
 fn depth_is_clipped() {
     let sampling = face(2.0, 0.5);

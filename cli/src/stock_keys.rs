@@ -1,0 +1,228 @@
+//! The `[stock]` and `[fixture]` tables: raw material and what holds the part.
+
+use crate::failure::{Failure, beside, read};
+use crate::job::Job;
+use crate::part::JobFaces;
+use osculate_geom::{Box3, Diagnostic, Point3};
+use osculate_surfaces::tessellate;
+use osculate_tools::removal::stock::{Blank, Carved, Resolution, Stock, StockJob, Upper, read_stl};
+use osculate_tools::removal::{Body, Sample, Swept, sample_triangles};
+use serde::{Deserialize, Serialize};
+
+/// Cells along the longest side of the stock where the job gives none.
+const DEFAULT_CELLS: f64 = 256.0;
+/// Memory for the stock where the job gives none.
+const DEFAULT_MEMORY_MB: f64 = 512.0;
+/// Blocks listed by what they took.
+const LISTED: usize = 10;
+
+/// `[stock]`: one of `box_mm`, `file` and `allowance_mm` (with `file`: a layer around it).
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StockTable {
+    /// Lower and upper corner in the part's frame.
+    pub box_mm: Option<[f64; 6]>,
+    /// A closed STL mesh in the part's frame, mm, relative to the job file.
+    pub file: Option<String>,
+    /// A layer of this thickness around the faces of the job, or around the file's solid.
+    pub allowance_mm: Option<f64>,
+    /// Sides of cells.
+    pub cell_mm: Option<f64>,
+    /// Memory for it.
+    pub memory_mb: Option<f64>,
+}
+
+/// `[fixture]`
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FixtureTable {
+    /// STL meshes in the part's frame, mm, relative to the job file.
+    pub files: Vec<String>,
+    /// Distance of the places looked at; 1 mm where not given.
+    pub spacing_mm: Option<f64>,
+}
+
+/// The `stock` object of `verify --json`.
+#[derive(Debug, Serialize, Clone)]
+pub struct StockSummary {
+    /// Sides of cells.
+    pub cell_mm: f64,
+    /// Rays along x, y and z.
+    pub rays: usize,
+    /// Volume before.
+    pub volume_mm3: f64,
+    /// What feed moves of the cutter took.
+    pub removed_mm3: f64,
+    /// What is left.
+    pub left_mm3: f64,
+    /// Range of what is left over the three directions of rays: how good it is.
+    pub spread_mm3: f64,
+    /// The blocks that took most.
+    pub most: Vec<StockBlock>,
+    /// Everything that met material and is not to.
+    pub collisions: Vec<StockCollision>,
+}
+
+/// What one block took.
+#[derive(Debug, Serialize, Clone)]
+pub struct StockBlock {
+    /// NC line or CL move.
+    pub block: u32,
+    /// Volume.
+    pub volume_mm3: f64,
+    /// Mean section of the chip.
+    pub section_mm2: f64,
+    /// Engaged angle around the axis.
+    pub engaged_deg: f64,
+    /// Highest engaged place above the tip.
+    pub height_mm: f64,
+}
+
+/// Something that ran into material.
+#[derive(Debug, Serialize, Clone)]
+pub struct StockCollision {
+    /// `cutter` (in rapid), `shank` or `holder`.
+    pub body: &'static str,
+    /// Whether in rapid.
+    pub rapid: bool,
+    /// NC line or CL move.
+    pub block: u32,
+    /// Longest way through material along a ray.
+    pub deepest_mm: f64,
+    /// Volume.
+    pub volume_mm3: f64,
+    /// Where, part coordinates.
+    pub at_mm: [f64; 3],
+}
+
+fn mesh(job: &Job, file: &str) -> Result<Vec<[Point3; 3]>, Failure> {
+    let path = beside(&job.path, file);
+    read_stl(&read(&path)?).map_err(|e| Failure::file(&path, e))
+}
+
+/// Places on the fixtures, as faces that carry no material, numbered from `face` on.
+pub fn fixtures(job: &Job, face: u32) -> Result<Vec<Sample>, Failure> {
+    let Some(table) = &job.fixture else { return Ok(Vec::new()) };
+    let spacing = table.spacing_mm.unwrap_or(1.0);
+    if !(spacing.is_finite() && spacing > 0.0) {
+        return Err(Failure::file(&job.path, format!("[fixture] spacing_mm = {spacing} must be positive")));
+    }
+    let mut out = Vec::new();
+    for (k, file) in table.files.iter().enumerate() {
+        out.extend(sample_triangles(&mesh(job, file)?, face + k as u32, spacing));
+    }
+    Ok(out)
+}
+
+/// Moves the tool through the raw material of a job, where it has one.
+pub fn run(
+    job: &Job,
+    faces: &JobFaces,
+    motions: &[Swept],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Option<(StockSummary, Vec<Diagnostic>)>, Failure> {
+    let Some(table) = &job.stock else { return Ok(None) };
+    let wrong = |text: String| Failure::file(&job.path, format!("[stock] {text}"));
+    let triangles = match (&table.box_mm, &table.file, table.allowance_mm) {
+        (Some(_), None, None) => Vec::new(),
+        (None, Some(file), _) => mesh(job, file)?,
+        (None, None, Some(_)) => {
+            let chord = 0.5 * job.tolerance()?.scallop_mm;
+            let mut out = Vec::new();
+            for f in &faces.faces {
+                let m = tessellate(&f.surface, chord, None);
+                let p = |k: u32| Point3::from(m.positions[k as usize]);
+                out.extend(m.triangles.iter().map(|t| t.map(p)));
+            }
+            out
+        }
+        (None, None, None) => return Err(wrong("needs box_mm, file or allowance_mm".to_owned())),
+        _ => return Err(wrong("box_mm goes with neither file nor allowance_mm; keep one".to_owned())),
+    };
+    let blank = match (&table.box_mm, table.allowance_mm) {
+        (Some(b), _) => {
+            Blank::Box(Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) })
+        }
+        (None, Some(thickness_mm)) => {
+            Blank::Layer { triangles: &triangles, thickness_mm, filled: table.file.is_some() }
+        }
+        (None, None) => Blank::Mesh(&triangles),
+    };
+    let size = match &blank {
+        Blank::Box(b) => b.max - b.min,
+        _ => {
+            let b = Box3::around(triangles.iter().flatten());
+            b.max - b.min
+        }
+    };
+    let memory = table.memory_mb.unwrap_or(DEFAULT_MEMORY_MB);
+    if !(memory.is_finite() && memory > 0.0) {
+        return Err(wrong(format!("memory_mb = {memory} must be positive")));
+    }
+    let resolution = Resolution {
+        cell_mm: table.cell_mm.unwrap_or(size.amax() / DEFAULT_CELLS),
+        tri: true,
+        // Beyond what a machine can address there is no limit.
+        budget_bytes: (memory * 1e6).min(1e15) as usize,
+    };
+    let made = Stock::fill(&blank, &resolution).map_err(|e| wrong(e.to_string()))?;
+    let mut notes = Vec::new();
+    if let Some(wanted) = made.coarsened {
+        let cell = made.stock.cell_mm();
+        notes.push(Diagnostic::warning(
+            "stock",
+            format!("cells are {cell:.4} mm instead of {wanted:.4} mm to stay within memory_mb = {memory}"),
+        ));
+    }
+    let mut stock = made.stock;
+    let volume_mm3 = stock.volume().mm3;
+    let (cutter, shank) = job.flutes()?;
+    let holder = job.holder()?;
+    let mut uppers = Vec::new();
+    let mut above_mm = cutter.length_mm();
+    for (body, kind) in [(shank.as_ref(), Body::Shank), (holder.as_ref(), Body::Holder)] {
+        if let Some(body) = body {
+            uppers.push(Upper { body, above_mm, kind });
+            above_mm += body.length_mm();
+        }
+    }
+    let touch_mm = job.tolerance()?.gouge_mm;
+    let work = StockJob { cutter: &cutter, uppers: &uppers, motions, touch_mm };
+    let carved = stock.carve(&work, progress).map_err(Failure::job)?;
+    Ok(Some((summary(&stock, volume_mm3, &carved), notes)))
+}
+
+fn summary(stock: &Stock, volume_mm3: f64, carved: &Carved) -> StockSummary {
+    let left = stock.volume();
+    let mut most: Vec<_> = carved.work.iter().collect();
+    most.sort_by(|a, b| b.volume_mm3.total_cmp(&a.volume_mm3).then(a.motion.cmp(&b.motion)));
+    let most = most.iter().take(LISTED).map(|w| StockBlock {
+        block: w.block,
+        volume_mm3: w.volume_mm3,
+        section_mm2: w.section_mm2,
+        engaged_deg: w.arc_rad.to_degrees(),
+        height_mm: w.height_mm[1],
+    });
+    let collisions = carved.collisions.iter().map(|c| StockCollision {
+        body: match c.body {
+            Body::Cutter => "cutter",
+            Body::Shank => "shank",
+            Body::Holder => "holder",
+        },
+        rapid: c.rapid,
+        block: c.block,
+        deepest_mm: c.deepest_mm,
+        volume_mm3: c.volume_mm3,
+        at_mm: c.at.into(),
+    });
+    StockSummary {
+        cell_mm: stock.cell_mm(),
+        rays: stock.rays(),
+        volume_mm3,
+        removed_mm3: carved.volume_mm3(),
+        left_mm3: left.mm3,
+        spread_mm3: left.spread_mm3,
+        most: most.collect(),
+        collisions: collisions.collect(),
+    }
+}
