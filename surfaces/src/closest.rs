@@ -19,6 +19,7 @@ use crate::nurbs::NurbsSurface;
 use descent::{Found, descend};
 pub(crate) use index::Index;
 use osculate_geom::{Axis, Domain, Point3, Surface, Uv};
+use rayon::prelude::*;
 
 /// Where on the surface a nearest point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +104,22 @@ pub fn closest(surface: &NurbsSurface, query: &Point3, hint: Option<Uv>) -> Resu
         None if !query.iter().all(|c| c.is_finite()) => Err(ClosestError::NotFinite { query: *query }),
         None => search::search(surface, query),
     }
+}
+
+/// [`closest`] for many queries on all threads, in their order. A hint for each query, or none at all: of hints
+/// that are fewer than the queries the rest go without.
+pub fn closest_batch(
+    surface: &NurbsSurface,
+    queries: &[Point3],
+    hints: Option<&[Uv]>,
+) -> Vec<Result<Foot, ClosestError>> {
+    let hint = |k: usize| hints.and_then(|h| h.get(k).copied());
+    if hints.is_none_or(|h| h.len() < queries.len()) {
+        // Once, before the threads would wait for each other.
+        surface.index();
+    }
+    // A chunk is worth waking a thread for.
+    queries.par_iter().with_min_len(64).enumerate().map(|(k, q)| closest(surface, q, hint(k))).collect()
 }
 
 /// The nearest point in the neighbourhood of a hint: where the distance stops shrinking on the way down from

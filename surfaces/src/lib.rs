@@ -22,6 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod fit;
 pub mod gallery;
 pub mod iges;
 pub mod lines;
@@ -33,6 +34,7 @@ mod topology;
 mod trim;
 mod trimmed;
 
+mod approximate;
 mod basis;
 mod closest;
 mod convert;
@@ -40,6 +42,7 @@ mod knots;
 mod nurbs;
 mod nurbs_batch;
 mod nurbs_curve;
+mod nurbs_degree;
 mod nurbs_edit;
 mod nurbs_eval;
 mod nurbs_pieces;
@@ -49,12 +52,14 @@ mod quad;
 mod refine;
 mod ruled;
 
-pub use closest::{ClosestError, Foot, FootKind, closest, closest_near, closest_sampled};
+pub use approximate::{ApproximateError, Approximation, approximate};
+pub use closest::{ClosestError, Foot, FootKind, closest, closest_batch, closest_near, closest_sampled};
 pub use convert::{ConvertError, CurveToNurbs, ToNurbs};
 pub use knots::{KnotError, Knots, MAX_DEGREE};
 pub use mesh::{Mesh, MeshError, MeshOptions, MeshReport, PartMesh, mesh_faces, tessellate};
 pub use nurbs::{Net, NurbsError, NurbsSurface};
 pub use nurbs_curve::{CurveError, CurveJet, NurbsCurve, NurbsCurve2, NurbsCurve3};
+pub use nurbs_degree::{RemovedCurve, RemovedSurface};
 pub use nurbs_edit::{BezierPatch, EditError};
 pub use part::{Colour, CurvatureRange, Face, FaceKind, Format, ImportError, NotUsed, Part, detect, read};
 pub use ruled::{RuledError, ruled};

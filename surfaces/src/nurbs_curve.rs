@@ -8,7 +8,7 @@
 
 use crate::knots::{KnotError, Knots};
 use crate::nurbs_edit::{EditError, check_insertion, check_piece};
-use crate::refine::{clamped_piece, inserted, means};
+use crate::refine::{Mean, clamped_piece, inserted, means};
 use nalgebra::{Point, SVector, Vector1};
 use osculate_geom::Interval;
 
@@ -194,8 +194,17 @@ impl<const D: usize> NurbsCurve<D> {
     }
 
     /// The same curve over the finer or shorter knots `new`.
-    fn over(&self, new: Vec<f64>) -> Self {
-        let means = means(&self.knots, &new);
+    pub(crate) fn over(&self, new: Vec<f64>) -> Self {
+        self.changed(self.degree(), &means(&self.knots, &new), new)
+    }
+
+    /// The curve of data that are known to be in order.
+    pub(crate) const fn checked(knots: Knots, poles: Vec<Point<f64, D>>, weights: Option<Vec<f64>>) -> Self {
+        Self { knots, poles, weights }
+    }
+
+    /// The curve with the poles that `means` give over the knots `new` of some degree.
+    pub(crate) fn changed(&self, degree: usize, means: &[Mean], new: Vec<f64>) -> Self {
         let weights: Option<Vec<f64>> =
             self.weights.as_ref().map(|w| means.iter().map(|m| m.of(|i| Vector1::new(w[i])).x).collect());
         let poles = means
@@ -206,7 +215,7 @@ impl<const D: usize> NurbsCurve<D> {
                 Point::from(sum / weights.as_ref().map_or(1.0, |w| w[j]))
             })
             .collect();
-        Self { knots: Knots::with_spans(self.degree(), new, means.len()), poles, weights }
+        Self { knots: Knots::with_spans(degree, new, means.len()), poles, weights }
     }
 
     /// The same curve with the knot `t` standing `times` more often.

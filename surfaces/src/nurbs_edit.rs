@@ -36,6 +36,32 @@ pub enum EditError {
         /// Upper end of the domain.
         hi: f64,
     },
+    /// A degree above the largest one.
+    #[error("degree {degree} is above the largest possible, {most}")]
+    Degree {
+        /// The degree asked for.
+        degree: usize,
+        /// The largest.
+        most: usize,
+    },
+    /// A knot to remove that does not stand there, or not often enough.
+    #[error("knot {at} stands {multiplicity} times and cannot be removed {times} times")]
+    NoKnot {
+        /// The knot.
+        at: f64,
+        /// How often it stands there.
+        multiplicity: usize,
+        /// How often it should be removed.
+        times: usize,
+    },
+    /// A weight that would not be positive.
+    #[error("weight {index} would become {got}")]
+    Weight {
+        /// Its place among the new poles.
+        index: usize,
+        /// Its value.
+        got: f64,
+    },
     /// A knot that would stand more often than the degree.
     #[error("knot {at} would stand {multiplicity} times, above the degree {degree}")]
     Multiplicity {
@@ -78,9 +104,14 @@ pub struct BezierPatch {
 
 impl NurbsSurface {
     /// The same surface over the finer or shorter knots `new` along an axis.
-    fn over(&self, axis: Axis, new: Vec<f64>) -> Self {
+    pub(crate) fn over(&self, axis: Axis, new: Vec<f64>) -> Self {
+        let knots = self.knots(axis);
+        self.changed(axis, knots.degree(), &means(knots, &new), new)
+    }
+
+    /// The surface with the poles that `means` give over the knots `new` of some degree along an axis.
+    pub(crate) fn changed(&self, axis: Axis, degree: usize, means: &[Mean], new: Vec<f64>) -> Self {
         let a = axis as usize;
-        let means = means(&self.both_knots()[a], &new);
         let mut count = self.net().count;
         count[a] = means.len();
         let poles = (0..count[0] * count[1]).map(|k| {
@@ -92,7 +123,7 @@ impl NurbsSurface {
         });
         let net = net_of(count, poles, self.net().weights.is_some());
         let mut knots = self.both_knots().clone();
-        knots[a] = Knots::with_spans(knots[a].degree(), new, count[a]);
+        knots[a] = Knots::with_spans(degree, new, count[a]);
         Self::checked(knots, net, self.side())
     }
 

@@ -55,3 +55,32 @@ pub(crate) fn inserted(old: &Knots, t: f64, times: usize) -> Vec<f64> {
     new.extend_from_slice(&knots[at..]);
     new
 }
+
+/// The knot vector of the same clamped spline taken as one of a degree more: every knot stands once more often.
+pub(crate) fn elevated(old: &Knots) -> Vec<f64> {
+    old.as_slice()
+        .chunk_by(|a, b| a == b)
+        .flat_map(|run| std::iter::repeat_n(run[0], run.len() + 1))
+        .collect()
+}
+
+/// The means that give the poles over [`elevated`] knots.
+pub(crate) fn elevated_means(old: &Knots, new: &[f64]) -> Vec<Mean> {
+    let p = old.degree();
+    (0..new.len() - p - 2)
+        .map(|j| {
+            let span = old.find(new[j]);
+            let arguments = &new[j + 1..=j + p + 1];
+            let mut mean = Mean { first: old.first_pole(span), weights: vec![0.0; p + 1] };
+            for left_out in 0..=p {
+                let rest: Vec<f64> =
+                    arguments.iter().enumerate().filter(|(k, _)| *k != left_out).map(|(_, t)| *t).collect();
+                let (_, weights) = old.blossom(span, &rest);
+                for (sum, w) in mean.weights.iter_mut().zip(weights) {
+                    *sum += w / (p + 1) as f64;
+                }
+            }
+            mean
+        })
+        .collect()
+}

@@ -9,7 +9,7 @@ use common::{any_surface, cylinder, moved, reference, sphere, torus};
 use osculate_geom::analytic::{Plane, Torus};
 use osculate_geom::{Axis, Domain, Interval, Point3, Surface, Vec3, uv};
 use osculate_surfaces::{
-    ClosestError, Foot, FootKind, Net, NurbsSurface, closest, closest_near, closest_sampled,
+    ClosestError, Foot, FootKind, Net, NurbsSurface, closest, closest_batch, closest_near, closest_sampled,
 };
 use proptest::prelude::*;
 
@@ -153,6 +153,24 @@ fn a_start_one_rounding_off_an_edge_ends_on_it() {
         let foot = closest(&s, &q, Some(uv(u, 0.4))).unwrap();
         assert_eq!((foot.kind, foot.uv.u), (FootKind::Edge, 1.0), "{foot:?}");
         assert!(foot.residual < 1e-12);
+    }
+}
+
+#[test]
+fn a_batch_is_its_queries_one_by_one() {
+    let s = reference(true);
+    let mut queries: Vec<Point3> = (0..300)
+        .map(|k| Point3::new(f64::from(k % 17) * 5.0, f64::from(k % 13) * 6.0, f64::from(k % 7)))
+        .collect();
+    queries[40].x = f64::NAN;
+    let hints: Vec<_> = (0..150).map(|k| uv(f64::from(k % 10) / 10.0, 0.5)).collect();
+    for hints in [None, Some(&hints[..])] {
+        let all = closest_batch(&s, &queries, hints);
+        assert_eq!(all.len(), queries.len());
+        for (k, (q, foot)) in queries.iter().zip(&all).enumerate() {
+            let one = closest(&s, q, hints.and_then(|h| h.get(k).copied()));
+            assert!(*foot == one || (k == 40 && foot.is_err() && one.is_err()), "{k}");
+        }
     }
 }
 

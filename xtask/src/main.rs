@@ -1,11 +1,12 @@
-//! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci` and
-//! `cargo xtask truth`.
+//! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
+//! `cargo xtask bench`, `cargo xtask reference` and `cargo xtask truth`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
 // A command of developers talks to its terminal; the ban on printing is for the libraries.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod bench;
 mod ci;
 mod cmd;
 mod interop;
@@ -23,6 +24,10 @@ usage: cargo xtask COMMAND
   interop linuxcnc
                 LinuxCNC's interpreter and kinematics, and pygcode, on our programs (Debian: apt-get, dpkg, gcc, pip)
   ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
+  bench [--peers]
+                times of the kernel; with --peers OpenCASCADE and SISL beside them (Debian: g++, libocct-*-dev, libsisl-dev)
+  reference [--data FOLDER]
+                the kernel against reference vectors and samples to 1e-12 and 1e-9
   papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -35,7 +40,10 @@ fn main() -> ExitCode {
         ["tidy"] => tidy::run(),
         ["ci"] => ci::run(),
         ["interop", "linuxcnc"] => interop::linuxcnc(),
-        ["truth", rest @ ..] => truth(rest),
+        ["bench"] => bench::run(false),
+        ["bench", "--peers"] => bench::run(true),
+        ["reference", rest @ ..] => example("reference", rest),
+        ["truth", rest @ ..] => example("truth", rest),
         ["papers", "z17"] => z17(),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
@@ -56,9 +64,9 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the comparison, which lives with the readers as an example, optimised.
-fn truth(rest: &[&str]) -> Result<(), cmd::Failure> {
-    let example = ["run", "--release", "--locked", "-p", "osculate-surfaces", "--example", "truth", "--"];
+/// Runs a comparison, which lives with the surfaces as an example, optimised.
+fn example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
+    let example = ["run", "--release", "--locked", "-p", "osculate-surfaces", "--example", name, "--"];
     cmd::run(cmd::cargo(&cmd::root()?, &[&example, rest].concat()))
 }
 
