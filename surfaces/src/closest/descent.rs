@@ -99,9 +99,10 @@ pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, s
             let there = state(jet(target(scale)), rect, query);
             // Near the foot the distances differ by rounding of coordinates alone; there the offset's part
             // along the surface decides.
-            let same =
-                there.square <= here.square + 2.0 * ROUNDING * size * (here.square.sqrt() + ROUNDING * size);
-            if there.square < here.square || (same && there.along_square < here.along_square) {
+            let same = || {
+                there.square <= here.square + 2.0 * ROUNDING * size * (here.square.sqrt() + ROUNDING * size)
+            };
+            if there.square < here.square || (there.along_square < here.along_square && same()) {
                 next = Some(there);
                 break;
             }
