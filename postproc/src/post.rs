@@ -228,11 +228,21 @@ struct Draft<'a> {
     /// Blocks whose F would not have fitted the control's format.
     limited: usize,
     time_min: f64,
+    /// Least and greatest feed of the tip, as a share of what was asked for.
+    shares: [f64; 2],
 }
 
 impl<'a> Draft<'a> {
     fn new(machine: &'a Machine, setup: &'a Setup, options: &'a PostOptions) -> Self {
-        Self { machine, setup, options, slowed: vec![0; machine.joints().len()], limited: 0, time_min: 0.0 }
+        Self {
+            machine,
+            setup,
+            options,
+            slowed: vec![0; machine.joints().len()],
+            limited: 0,
+            time_min: 0.0,
+            shares: [f64::INFINITY, 0.0],
+        }
     }
 
     fn moves(&mut self, path: &JointPath) -> Result<Vec<NcMove>, PostError> {
@@ -279,8 +289,12 @@ impl<'a> Draft<'a> {
                         (capped.duration_min, capped.joint.is_some()),
                         &mut risen,
                     );
-                    self.time_min += self
-                        .control_time(&step(&before, &m), m.feed)
+                    let read_min = self.control_time(&step(&before, &m), m.feed);
+                    if length > 0.0 && read_min > 0.0 {
+                        let share = capped.duration_min / read_min;
+                        self.shares = [self.shares[0].min(share), self.shares[1].max(share)];
+                    }
+                    self.time_min += read_min
                         .max(capped_duration(self.machine, &from.joints, &block.joints, 0.0).duration_min);
                 }
             }
@@ -380,14 +394,20 @@ impl<'a> Draft<'a> {
             self.options.feed.metric().filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
         if let Some(wanted) = wanted.filter(|w| *w != own && !self.machine.rotary().is_empty()) {
             let text = format!(
-                "F is written over {}, but this control reads it over {}: mixed moves take another time than asked",
+                "F is written over {}, but this control reads it over {}: mixed moves take another time than asked, \
+                 the tip runs at {:.3} to {:.3} times the feed asked for",
                 metric_name(wanted),
-                metric_name(own)
+                metric_name(own),
+                self.shares[0],
+                self.shares[1]
             );
             diagnostics.push(Diagnostic::warning("feed", text));
         }
         if self.options.feed == FeedMode::None && !self.machine.rotary().is_empty() {
-            let text = "F is not corrected: where rotary axes move, the tip's feed is not the one asked for";
+            let text = format!(
+                "F is not corrected: where rotary axes move, the tip runs at {:.3} to {:.3} times the feed asked for",
+                self.shares[0], self.shares[1]
+            );
             diagnostics.push(Diagnostic::warning("feed", text));
         }
     }

@@ -108,7 +108,7 @@ fn errors_carry_their_line() {
     is("GOTO/1,2,3,0,0,0", |e| matches!(e, ClReadError::ZeroAxis { line: 1, .. }));
     is("GODLTA/1,2,3", |e| matches!(e, ClReadError::Count { line: 1, .. }));
     is("GOTO/1,2,3\nGOTO/1,2,4", |e| matches!(e, ClReadError::NoFeed { line: 2 }));
-    is("FEDRAT/0.1,MMPR", |e| matches!(e, ClReadError::NoSpindle { line: 1 }));
+    is("FEDRAT/0.1,MMPR\nFROM/0,0,0\nGOTO/1,0,0", |e| matches!(e, ClReadError::NoSpindle { line: 1 }));
     is("\n\nFEDRAT/-5", |e| matches!(e, ClReadError::Feed { line: 3, .. }));
     is("FEDRAT/MMPM", |e| matches!(e, ClReadError::Count { line: 1, got: 0, .. }));
 }
@@ -147,4 +147,14 @@ proptest! {
     fn any_text(text in "[A-Z/$,.0-9 \\-\n]{0,200}") {
         let _ = read(&format!("RAPID\nGOTO/0,0,0\nFEDRAT/5\nGOTO/{text}"));
     }
+}
+
+/// A feed per revolution may stand before the speed; without any speed the line of the feed is named.
+#[test]
+fn feed_per_revolution_waits_for_the_spindle() {
+    let text = "FROM/0,0,0\nFEDRAT/0.25,MMPR\nSPINDL/4000,RPM\nGOTO/10,0,0\nFINI\n";
+    let data = osculate_postproc::cldata::read(text).unwrap();
+    assert_eq!(data.path.moves[1].motion, osculate_tools::cl::Motion::Feed(1000.0));
+    let refused = osculate_postproc::cldata::read(&text.replace("SPINDL/4000,RPM\n", "")).unwrap_err();
+    assert!(refused.to_string().contains("line 2"), "{refused}");
 }

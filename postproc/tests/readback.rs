@@ -291,3 +291,22 @@ proptest! {
         let _ = read(&text, Dialect::ALL[which], &machine("trunnion-ac"), &Setup::default(), &options);
     }
 }
+
+/// `A3= B3= C3=` point the tool; the rotary axes follow by the nearest way, and the tip stays on its words.
+#[test]
+fn tool_directions_as_vectors() {
+    let m = machine("trunnion-ac");
+    let text = "G90 G710\nTRAORI\nORIWKS\nCYCLE832(0.002,1,1)\nG0 X0 Y0 Z50 A3=0 B3=0.3 C3=1\n\
+                G1 X10 A3=0.1 B3=0.3 C3=1 F800\nX20 A3=0.2 B3=0.3 C3=1\nTRAFOOF\nM30\n";
+    let back = read(text, Dialect::Sinumerik, &m, &Setup::default(), &ReadOptions::default()).unwrap();
+    tip(&back, [20.0, 0.0, 50.0]);
+    let want = osculate_geom::Vec3::new(0.2, 0.3, 1.0).normalize();
+    let end = back.moves[back.moves.len() - 1].pose;
+    assert!((end.axis.into_inner() - want).norm() < 1e-12);
+    assert!(back.diagnostics.is_empty(), "{:?}", back.diagnostics);
+    // Without the transformation the words point nowhere.
+    let text = text.replace("TRAORI\n", "");
+    let refused =
+        read(&text, Dialect::Sinumerik, &m, &Setup::default(), &ReadOptions::default()).unwrap_err();
+    assert!(refused.to_string().contains("line 4"), "{refused}");
+}

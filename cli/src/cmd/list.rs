@@ -3,6 +3,8 @@
 use crate::cutter_keys;
 use crate::failure::{Done, Failure, Outcome};
 use crate::render::{self, Table};
+use osculate_postproc::machine::spec::CarriedSide;
+use osculate_postproc::machine::{Joint, JointKind};
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::{Machine, built_in_names};
 use serde::Serialize;
@@ -34,11 +36,38 @@ pub fn machines(json: bool) -> Outcome {
         t.row([r.name.clone(), r.joints.join(" ")]);
     }
     render::text(&format!("\n{}\n", t.render()));
-    for r in rows.iter().filter(|r| !r.description.is_empty()) {
-        render::text(&format!("  {}: {}\n", r.name, r.description));
+    for name in built_in_names() {
+        render::text(&chain(&Machine::built_in(name).map_err(Failure::job)?));
     }
-    render::text("\n");
     Ok(Done::Yes)
+}
+
+/// The chain of a machine as a line, part to tool, with the bed between, and its joints below.
+fn chain(m: &Machine) -> String {
+    let table = m.joints().iter().filter(|j| j.side == CarriedSide::Table);
+    let head = m.joints().iter().filter(|j| j.side == CarriedSide::Head);
+    let link = |j: &Joint| match j.kind {
+        JointKind::Linear => format!("--[{}]", j.letter),
+        JointKind::Rotary => format!("--({})", j.letter),
+    };
+    let carried: String = table.map(link).collect();
+    let carrying: String = head.map(link).collect();
+    let mut out = format!("  {}: {}\n    part{carried}--#bed#{carrying}--tool\n", m.name(), m.description());
+    for j in m.joints() {
+        let [x, y, z] = [j.direction.x, j.direction.y, j.direction.z].map(|c| render::number(c, 4));
+        let end = |v: Option<f64>| v.map_or("no limit".into(), |v| render::number(j.shown(v), 5));
+        let range =
+            if j.is_endless() { "endless".into() } else { format!("{} to {}", end(j.min), end(j.max)) };
+        let d = &j.drive;
+        out.push_str(&format!(
+            "      {:<4} along ({x}, {y}, {z}), {range} {u}, {} {u}/s, {} {u}/s2\n",
+            j.letter,
+            render::number(j.shown(d.velocity_per_s), 4),
+            render::number(j.shown(d.acceleration_per_s2), 4),
+            u = j.unit()
+        ));
+    }
+    out + "\n"
 }
 
 /// Runs `dialects`.

@@ -128,6 +128,14 @@ const HARMLESS: &[&str] = &[
 /// Lines of one word that are listed before the rest is only counted.
 const LISTED_LINES: usize = 5;
 
+/// A feed: per revolution it waits for the spindle's speed.
+#[derive(Clone, Copy)]
+struct Feed {
+    mm: f64,
+    per_turn: bool,
+    line: usize,
+}
+
 struct Reader {
     path: ClPath,
     diagnostics: Vec<Diagnostic>,
@@ -135,7 +143,7 @@ struct Reader {
     unit_mm: f64,
     axis: Unit3,
     tip: Option<Point3>,
-    feed_mm_min: Option<f64>,
+    feed: Option<Feed>,
     rapid: bool,
     loaded: Option<String>,
     /// Between CYCLE/ and CYCLE/OFF, where points are holes.
@@ -155,7 +163,7 @@ pub fn read(text: &str) -> Result<ClData, ClReadError> {
         unit_mm: 1.0,
         axis: Vec3::z_axis(),
         tip: None,
-        feed_mm_min: None,
+        feed: None,
         rapid: false,
         loaded: None,
         in_cycle: false,
@@ -234,14 +242,14 @@ impl Reader {
 
     fn arrive(&mut self, line: usize, tip: Point3) -> Result<(), ClReadError> {
         let first = self.path.moves.is_empty();
-        let motion = match (self.rapid, self.feed_mm_min) {
+        let motion = match (self.rapid, self.feed) {
             (true, _) => Motion::Rapid,
             (false, _) if first => {
                 let text = "the first point comes without RAPID: it leads from an unknown place and is taken as rapid";
                 self.note(line, text);
                 Motion::Rapid
             }
-            (false, Some(f)) => Motion::Feed(f),
+            (false, Some(feed)) => Motion::Feed(self.feed_mm_min(&feed)?),
             // The cycle says how a hole is made; it is reported as not interpreted, its points are kept.
             (false, None) if self.in_cycle => Motion::Rapid,
             (false, None) => return Err(ClReadError::NoFeed { line }),
@@ -270,18 +278,21 @@ impl Reader {
         } else {
             self.unit_mm
         };
-        let turns = match (per_turn, self.path.spindle_rpm) {
-            (false, _) => 1.0,
-            (true, Some(rpm)) => rpm,
-            (true, None) => return Err(ClReadError::NoSpindle { line: s.line }),
-        };
-        let feed_mm_min = value * unit * turns;
-        if !(feed_mm_min > 0.0 && feed_mm_min.is_finite()) {
-            return Err(ClReadError::Feed { line: s.line, feed_mm_min });
+        let mm = value * unit;
+        if !(mm > 0.0 && mm.is_finite()) {
+            return Err(ClReadError::Feed { line: s.line, feed_mm_min: mm });
         }
-        self.feed_mm_min = Some(feed_mm_min);
+        self.feed = Some(Feed { mm, per_turn, line: s.line });
         // A feed between RAPID and GOTO cancels the rapid in no system; it holds from the point after.
         Ok(())
+    }
+
+    fn feed_mm_min(&self, feed: &Feed) -> Result<f64, ClReadError> {
+        match (feed.per_turn, self.path.spindle_rpm) {
+            (false, _) => Ok(feed.mm),
+            (true, Some(rpm)) if rpm > 0.0 => Ok(feed.mm * rpm),
+            (true, _) => Err(ClReadError::NoSpindle { line: feed.line }),
+        }
     }
 
     fn units(&mut self, s: &Statement) {

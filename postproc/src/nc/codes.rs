@@ -45,6 +45,8 @@ impl<S: Sink> Interpreter<'_, S> {
             600 | 610 => asked.path = Some(PathWord::ExactPath),
             90 | 611 | 601 => asked.path = Some(PathWord::ExactStop),
             640..=645 => asked.path = Some(PathWord::Blend),
+            // Look-ahead, smoothing.
+            51 if self.dialect == Dialect::Fanuc => {}
             400 | 540..=590 | 800 | 6010 | 6020 => {}
             _ => return self.refuse(line, &format!("G{}", code as f64 / 10.0)),
         }
@@ -108,6 +110,12 @@ impl<S: Sink> Interpreter<'_, S> {
             group.radius_mm = Some(given.0);
             return Ok(());
         }
+        if self.dialect == Dialect::Sinumerik
+            && let Some(k) = ["A3", "B3", "C3"].iter().position(|n| *n == name)
+        {
+            asked.vector[k] = Some(given.0);
+            return Ok(());
+        }
         match name {
             "I" => asked.centre[0] = Some(given.0 * self.state.unit_mm),
             "J" => asked.centre[1] = Some(given.0 * self.state.unit_mm),
@@ -143,8 +151,12 @@ impl<S: Sink> Interpreter<'_, S> {
                     self.state.group = None;
                 }
             }
-            "ORIMKS" | "ORIAXES" | "MSG" | "FNORM" | "FFWON" | "FFWOF" | "SOFT" | "BRISK" | "COMPOF"
-            | "T" => {}
+            // Tolerance of smoothing; CYCLE800() ends a swivelled plane, with arguments it begins one.
+            "CYCLE832" => {}
+            "CYCLE800" if arguments.trim().is_empty() => {}
+            "CYCL" if klartext && arguments.starts_with("DEF 32.") => {}
+            "ORIWKS" | "ORIVECT" | "ORIMKS" | "ORIAXES" | "MSG" | "FNORM" | "FFWON" | "FFWOF" | "SOFT"
+            | "BRISK" | "COMPOF" | "T" => {}
             "L" if klartext => asked.klartext_move = true,
             "R0" | "TOOL" if klartext => {}
             "FMAX" if klartext => asked.rapid_once = true,

@@ -2,6 +2,7 @@
 //!
 //! - Tool-centre-point control is `G43.4 H`, off by `G49`; without it `G43 H` applies the tool's length.
 //! - Endless axes are rollover axes that take the shortest way to a position inside one turn (parameter 1008).
+//! - `G5.1 Q1` is contour control with look-ahead over many blocks, off by `G5.1 Q0`.
 //! - F in G94 is read over all axes, a degree as a mm. G93 wants F in every block.
 
 use super::block::{FeedWord, Program, RotaryName, WriteError};
@@ -41,6 +42,7 @@ pub(super) fn write(program: &Program) -> Result<String, WriteError> {
         let tcp = if program.tcp { "G43.4" } else { "G43" };
         line(&format!("{tcp} H{}", program.tool_number));
         modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]).iter().for_each(|l| line(l));
+        line("G5.1 Q1");
         if program.feed_word == FeedWord::Inverse {
             line("G93");
         }
@@ -54,6 +56,7 @@ pub(super) fn write(program: &Program) -> Result<String, WriteError> {
         }
     }
     line("G94");
+    line("G5.1 Q0");
     line("M5");
     line("G49");
     if program.has_z() {

@@ -3,6 +3,7 @@
 //! - Tool-centre-point control is `FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`: F at the tip, rotary axes interpolate
 //!   linearly. `FUNCTION RESET TCPM` turns it off.
 //! - Every position carries a sign; `FMAX` holds for its own block only.
+//! - `CYCL DEF 32` bounds what smoothing may do to the path (finishing).
 //! - `M126` makes endless axes take the shortest way. There is no inverse time feed. `M91` is machine coordinates.
 
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
@@ -51,6 +52,9 @@ pub(super) fn write(program: &Program) -> Result<String, WriteError> {
             text.line("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS");
         }
         approach(&mut text, &mut modal, program, first, &[Which::Across, Which::Along]);
+        text.line("CYCL DEF 32.0 TOLERANCE");
+        text.line(&format!("CYCL DEF 32.1 T{:.4}", program.blend_mm));
+        text.line("CYCL DEF 32.2 HSC-MODE:0");
         let mut words = String::new();
         for m in rest {
             words.clear();

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use osculate_geom::Diagnostic;
+use osculate_geom::{Diagnostic, Unit3, Vec3};
 
 use super::Dialect;
 use super::event::{Event, FeedNow, Frame, Moved, Sink};
@@ -14,7 +14,7 @@ use super::state::{FeedReading, Known, State};
 use super::token::{BadWord, Manner, Word, words};
 use super::way::{Arc, ArcWords, Way};
 use crate::feed::Step;
-use crate::machine::{JointValues, Machine, nearest_turn};
+use crate::machine::{JointValues, Machine, NearWish, nearest_turn};
 use crate::motion::linuxcnc::PathControl;
 use crate::setup::Setup;
 
@@ -244,6 +244,9 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         for (name, value, manner) in &asked.axes {
             self.position(line, name, (*value, *manner), asked.machine_frame)?;
         }
+        if asked.vector.iter().any(Option::is_some) {
+            self.point(line, &asked.vector)?;
+        }
         if asked.machine_frame {
             // The linear axes go to places of the machine's own frame, which the text does not relate to the part:
             // `position` has made them unknown.
@@ -292,6 +295,22 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             return Err(ReadError::Word { line, word: "an arc without centre or radius".into() });
         }
         Arc::new(from, to, &words).map_err(|off_mm| ReadError::Arc { line, off_mm })
+    }
+
+    /// `A3= B3= C3=`: the tool's direction, in the axes of X Y Z. The control turns the rotary axes there by the
+    /// nearest way.
+    fn point(&mut self, line: usize, vector: &[Option<f64>; 3]) -> Result<(), ReadError> {
+        let v = Vec3::new(vector[0].unwrap_or(0.0), vector[1].unwrap_or(0.0), vector[2].unwrap_or(0.0));
+        let axis = Unit3::try_new(v, 1e-6).filter(|_| self.state.tcp);
+        let near = self.state.rotary.map(|q| q.unwrap_or(0.0));
+        let wish = NearWish { rotary_rad: near, cone_rad: 0.0 };
+        match axis.and_then(|axis| self.machine.rotary_near(&axis, &wish).ok()) {
+            Some(rotary) => {
+                self.state.rotary = rotary.map(Some);
+                Ok(())
+            }
+            None => self.refuse(line, "a tool direction that the machine does not reach, or without TRAORI,"),
+        }
     }
 
     fn lost_increment(&mut self, line: usize, name: &str) -> Result<(), ReadError> {

@@ -5,6 +5,7 @@
 //! - F is read over the axes of `FGROUP`, a rotary one as an arc of radius `FGREF`: the program says both, so that it
 //!   does not depend on machine data. Rotary axes alone, outside of `FGROUP`, are read in deg/min.
 //! - `G93` wants F in every block; switching between G93 and G94 deletes F.
+//! - `CYCLE832` bounds what the control's compressor and smoothing may do to the path (finishing).
 //! - `SUPA` with `D0` moves in machine coordinates without tool length: Z0 is the top of the Z axis.
 
 use super::block::{FeedWord, NcMove, Program, RotaryName};
@@ -54,6 +55,7 @@ pub(super) fn write(program: &Program) -> String {
         for line in modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]) {
             text.line(&line);
         }
+        text.line(&format!("CYCLE832({:.4},1,1)", program.blend_mm));
         feed_head(&mut text, program);
         moves(&mut text, &mut modal, program, rest);
     }
