@@ -153,8 +153,8 @@ proptest! {
 #[test]
 fn feed_per_revolution_waits_for_the_spindle() {
     let text = "FROM/0,0,0\nFEDRAT/0.25,MMPR\nSPINDL/4000,RPM\nGOTO/10,0,0\nFINI\n";
-    let data = osculate_postproc::cldata::read(text).unwrap();
-    assert_eq!(data.path.moves[1].motion, osculate_tools::cl::Motion::Feed(1000.0));
-    let refused = osculate_postproc::cldata::read(&text.replace("SPINDL/4000,RPM\n", "")).unwrap_err();
+    let data = read(text).unwrap();
+    assert_eq!(data.path.moves[1].motion, Motion::Feed(1000.0));
+    let refused = read(&text.replace("SPINDL/4000,RPM\n", "")).unwrap_err();
     assert!(refused.to_string().contains("line 2"), "{refused}");
 }

@@ -300,7 +300,7 @@ fn tool_directions_as_vectors() {
                 G1 X10 A3=0.1 B3=0.3 C3=1 F800\nX20 A3=0.2 B3=0.3 C3=1\nTRAFOOF\nM30\n";
     let back = read(text, Dialect::Sinumerik, &m, &Setup::default(), &ReadOptions::default()).unwrap();
     tip(&back, [20.0, 0.0, 50.0]);
-    let want = osculate_geom::Vec3::new(0.2, 0.3, 1.0).normalize();
+    let want = Vec3::new(0.2, 0.3, 1.0).normalize();
     let end = back.moves[back.moves.len() - 1].pose;
     assert!((end.axis.into_inner() - want).norm() < 1e-12);
     assert!(back.diagnostics.is_empty(), "{:?}", back.diagnostics);
