@@ -376,11 +376,6 @@ impl Leftovers {
     /// Lines that are kept of each kind.
     pub(crate) const LINES: usize = 8;
 
-    /// Counts several.
-    pub(crate) fn add_many(&mut self, kind: &str, count: usize, why: &str) {
-        self.add_lines(kind, count, why, &[]);
-    }
-
     /// Counts one more, on a line.
     pub(crate) fn add_at(&mut self, kind: &str, why: &str, line: usize) {
         self.add_lines(kind, 1, why, &[line]);

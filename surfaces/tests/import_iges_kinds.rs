@@ -242,3 +242,22 @@ fn a_loop_that_is_none_is_left_out_and_told() {
         part.diagnostics
     );
 }
+
+#[test]
+fn offset_surfaces() {
+    // A sphere of radius 2, half a millimetre outside; the indicator is its normal in the middle, at -x.
+    let list = [entity(116, "0.,0.,0.,0"), entity(196, "@0,2."), entity(140, "-1.,0.,0.,0.5,@1")];
+    let face = only_face(&list);
+    assert_eq!(face.kind, FaceKind::Offset);
+    assert_area(&face, 25.0 * PI);
+    // The other way in.
+    let list = [entity(116, "0.,0.,0.,0"), entity(196, "@0,2."), entity(140, "1.,0.,0.,0.5,@1")];
+    assert_area(&only_face(&list), 9.0 * PI);
+    // A spline, 3 up.
+    let face = only_face(&[punched::flat_patch(), entity(140, "0.,0.,1.,3.,@0")]);
+    assert!((face.point(uv(0.5, 0.25)) - Point3::new(5.0, 2.5, 3.0)).norm() < 1e-12);
+    assert!((face.area_mm2() - 100.0).abs() < 1e-9);
+    // Offsets of each other have no root, an offset of itself is told.
+    let told = part(&[entity(140, "0.,0.,1.,3.,@0")]);
+    assert!(told.faces.is_empty() && told.diagnostics.iter().any(|d| d.message.contains("in a circle")));
+}

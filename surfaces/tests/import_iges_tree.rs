@@ -156,6 +156,25 @@ fn names_and_flags() {
     assert!(iges::read(with_status(&text, 7, "       0").as_bytes()).unwrap().diagnostics.is_empty());
 }
 
+#[test]
+fn colours_by_number_and_definition() {
+    let mut list = trimmed();
+    list.push(entity(314, "100.,50.,0.,6HORANGE"));
+    let text = file(&list);
+    // Field 13 of the 144: columns 17 to 24 of its second card.
+    let coloured = |field: &str| {
+        let mut cards: Vec<String> = text.lines().map(str::to_owned).collect();
+        let first = cards.iter().position(|l| &l[72..73] == "D").unwrap();
+        cards[first + 15].replace_range(16..24, field);
+        let part = iges::read((cards.join("\n") + "\n").as_bytes()).unwrap();
+        part.faces[0].colour.map(|c| [c.red, c.green, c.blue])
+    };
+    assert_eq!(coloured("       0"), None);
+    assert_eq!(coloured("       3"), Some([0.0, 1.0, 0.0]));
+    assert_eq!(coloured("     -17"), Some([1.0, 0.5, 0.0]));
+    assert_eq!(coloured("     -15"), None);
+}
+
 /// The same file in the compressed form.
 fn compressed(fixed: &str) -> String {
     let section = |letter: &str| -> Vec<&str> { fixed.lines().filter(|l| &l[72..73] == letter).collect() };

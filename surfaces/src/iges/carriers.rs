@@ -12,7 +12,7 @@ use crate::trim::carrier::FaceSurface;
 use crate::trim::curve::{Curve, Motion, Piece};
 use crate::trim::sweep::{extrude, revolve};
 use osculate_geom::analytic::Placement;
-use osculate_geom::{Axis, Point3, Unit3, Vec3};
+use osculate_geom::{Axis, Interval, Point3, Surface, Unit3, Vec3, uv};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -26,6 +26,18 @@ impl Geometry<'_> {
     /// A surface with its transform and `outer` applied, and its kind. The parameters of splines are those of the
     /// file; those of other kinds are not.
     pub(crate) fn surface(&self, de: i64, outer: &Motion) -> Result<(FaceSurface, FaceKind), Unread> {
+        self.surface_below(de, outer, 0)
+    }
+
+    fn surface_below(
+        &self,
+        de: i64,
+        outer: &Motion,
+        depth: usize,
+    ) -> Result<(FaceSurface, FaceKind), Unread> {
+        if depth >= MAX_CHAIN {
+            return Err(self.malformed(de, "offset surfaces refer to each other in a circle"));
+        }
         let e = self.entity(de)?;
         let motion = self.motion(e)?.then(outer);
         match e.kind {
@@ -61,6 +73,22 @@ impl Geometry<'_> {
                 let made =
                     extrude(&curve, &direction, [0.0, 1.0]).map_err(|e| self.malformed(de, e.to_string()))?;
                 Ok((self.moved(de, made, &motion)?, FaceKind::Extrusion))
+            }
+            140 => {
+                let n = self.numbers(de, e, 0, 4)?;
+                let base_de = self.required(de, e, 4, "surface")?;
+                let (base, _) = self.surface_below(base_de, &motion, depth + 1)?;
+                // The indicator is the normal of the offset in the middle of the surface.
+                let d = base.domain();
+                let middle = |i: Interval| if i.length().is_finite() { i.at(0.5) } else { 0.0 };
+                let jet = base.jet2(uv(middle(d.u), middle(d.v)));
+                let along = jet.du.cross(&jet.dv).dot(&(motion.linear * Vec3::new(n[0], n[1], n[2])));
+                if along == 0.0 || !along.is_finite() {
+                    return Err(self.malformed(de, "an offset whose indicator is not along the normal"));
+                }
+                let distance_mm = n[3] * self.scale_mm * scale_of(&motion) * along.signum();
+                let made = base.offset(distance_mm).map_err(|what| self.malformed(de, what))?;
+                Ok((made, FaceKind::Offset))
             }
             190 | 192 | 194 | 196 | 198 => {
                 let (shape, kind, placement) = self.analytic(de, e)?;

@@ -8,7 +8,7 @@ use super::links::{own_parameters, parts};
 use super::loops::surface_pointer;
 use super::names::kind_name;
 use super::tree::{Model, Placed, model};
-use crate::part::{Face, Format, Leftovers, Part};
+use crate::part::{Colour, Face, Format, Leftovers, Part};
 use osculate_geom::Diagnostic;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -70,7 +70,7 @@ pub(crate) fn part(mut cards: Cards) -> Part {
         unit: cards.global.unit_name.clone(),
         schema: cards.global.version.clone(),
         faces,
-        not_used: left.entries().into_entries(),
+        not_used: left.entries(&cards).into_entries(),
         truncated: cards.truncated,
         diagnostics,
     }
@@ -91,7 +91,7 @@ fn made(cards: &Cards, number: usize, de: i64, placed: &Placed) -> Outcome {
                 id: label,
                 name: entity.map_or_else(String::new, |e| name(cards, e)),
                 product: String::new(),
-                colour: None,
+                colour: entity.and_then(|e| colour(cards, e)),
                 entity: de as u64,
                 kind,
                 oriented: placed.side.is_some(),
@@ -109,6 +109,32 @@ fn made(cards: &Cards, number: usize, de: i64, placed: &Placed) -> Outcome {
             Outcome::Lost(said, Lost { kind, why: why.reason(), de })
         }
     }
+}
+
+/// The colours that have numbers, from one.
+const COLOURS: [[f64; 3]; 8] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [0.0, 1.0, 1.0],
+    [1.0, 1.0, 1.0],
+];
+
+/// The colour of an entity, or of the surface under it: by number, or a colour definition (314) in percent.
+fn colour(cards: &Cards, e: &Entity) -> Option<Colour> {
+    let own = |e: &Entity| -> Option<[f64; 3]> {
+        if e.color >= 0 {
+            return COLOURS.get(usize::try_from(e.color).ok()?.checked_sub(1)?).copied();
+        }
+        let named = cards.entities.get(&e.color.checked_neg()?).filter(|c| c.kind == 314)?;
+        let part = |k: usize| named.params.number(k).filter(|x| (0.0..=100.0).contains(x)).map(|x| x / 100.0);
+        Some([part(0)?, part(1)?, part(2)?])
+    };
+    let under = || surface_pointer(e).and_then(|s| own(cards.entities.get(&s)?));
+    own(e).or_else(under).map(|[red, green, blue]| Colour { red, green, blue })
 }
 
 /// The name of an entity: of a name property behind its parameters, else its label.
@@ -260,13 +286,16 @@ impl Left {
         }
     }
 
-    fn entries(self) -> Leftovers {
+    fn entries(self, cards: &Cards) -> Leftovers {
         let mut out = Leftovers::default();
         for key in self.order {
             let Some(list) = self.all.get(&key) else { continue };
             let names: Vec<String> = list.iter().take(NAMED).map(ToString::to_string).collect();
             let more = if list.len() > NAMED { ", ..." } else { "" };
-            out.add_many(&key.0, list.len(), &format!("{} (DE {}{more})", key.1, names.join(", ")));
+            let line = |de: &i64| cards.entities.get(de).map(|e| e.line as usize);
+            let lines: Vec<usize> = list.iter().take(Leftovers::LINES).filter_map(line).collect();
+            let why = format!("{} (DE {}{more})", key.1, names.join(", "));
+            out.add_lines(&key.0, list.len(), &why, &lines);
         }
         out
     }

@@ -5,7 +5,7 @@
 //! of the rational quadratic obey `tan(f / 2) = (2 s - 1) tan(d / 2)`. A tabulated cylinder (122) and a ruled surface
 //! (118) run from 0 to 1 in both directions.
 
-use super::geometry::{Geometry, Unread};
+use super::geometry::{Geometry, MAX_CHAIN, Unread};
 use crate::trim::curve::Curve;
 use osculate_geom::Point3;
 use std::f64::consts::FRAC_PI_2;
@@ -66,7 +66,16 @@ impl Parameters {
 impl Geometry<'_> {
     /// The parameters of a surface; `None` where the file's are not known on the carrier.
     pub(super) fn parameters(&self, de: i64) -> Result<Option<Parameters>, Unread> {
-        let e = self.entity(de)?;
+        let mut e = self.entity(de)?;
+        let mut de = de;
+        // An offset has the parameters of its base.
+        for _ in 0..MAX_CHAIN {
+            if e.kind != 140 {
+                break;
+            }
+            de = self.required(de, e, 4, "surface")?;
+            e = self.entity(de)?;
+        }
         let (maps, swapped) = match e.kind {
             128 | 114 => ([Map::Same; 2], false),
             118 => {
