@@ -33,7 +33,7 @@ pub struct LoadedFace {
 
 /// A part ready for work.
 pub struct Loaded {
-    /// `step`, `iges`, `patches` or `builtin`.
+    /// `step`, `iges`, `patches`, `sections` or `builtin`.
     pub format: &'static str,
     /// The file's unit.
     pub unit: String,
@@ -90,6 +90,7 @@ fn from_file(path: &Path) -> Result<Loaded, Failure> {
         osculate_surfaces::Format::Step => "step",
         osculate_surfaces::Format::Iges => "iges",
         osculate_surfaces::Format::Patches => "patches",
+        osculate_surfaces::Format::Sections => "sections",
     };
     let faces = part
         .faces

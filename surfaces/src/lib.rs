@@ -29,6 +29,7 @@ pub mod lines;
 mod mesh;
 mod part;
 pub mod patches;
+pub mod sections;
 pub mod step;
 mod topology;
 mod trim;

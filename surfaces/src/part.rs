@@ -6,7 +6,7 @@
 use crate::trim::carrier::FaceSurface;
 use crate::trim::curve::Motion;
 use crate::trimmed::TrimmedSurface;
-use crate::{iges, patches, step};
+use crate::{iges, patches, sections, step};
 use osculate_geom::{Axis, Box3, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
 use std::fmt;
 use std::sync::Arc;
@@ -20,6 +20,8 @@ pub enum Format {
     Iges,
     /// Bezier patches as text.
     Patches,
+    /// Sections of points as text.
+    Sections,
 }
 
 impl fmt::Display for Format {
@@ -28,6 +30,7 @@ impl fmt::Display for Format {
             Self::Step => "STEP",
             Self::Iges => "IGES",
             Self::Patches => "Bezier patches",
+            Self::Sections => "point sections",
         })
     }
 }
@@ -316,7 +319,8 @@ pub enum ImportError {
     /// None of the formats.
     #[error(
         "no format that is read: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
-         in column 73 of its lines, a set of Bezier patches begins with their number and a line of vertex numbers"
+         in column 73 of its lines, a set of Bezier patches begins with their number and a line of vertex numbers, \
+         sections are rows of x y z"
     )]
     Unknown {
         /// The first characters.
@@ -331,6 +335,9 @@ pub enum ImportError {
     /// Bezier patches that cannot be read.
     #[error("Bezier patches: {0}")]
     Patches(#[from] patches::PatchesError),
+    /// Sections that no surface goes through.
+    #[error("point sections: {0}")]
+    Sections(#[from] sections::SectionsError),
 }
 
 /// The format of a file, by its first lines.
@@ -342,6 +349,8 @@ pub fn detect(bytes: &[u8]) -> Option<Format> {
         Some(Format::Iges)
     } else if patches::looks_like(bytes) {
         Some(Format::Patches)
+    } else if sections::looks_like(bytes) {
+        Some(Format::Sections)
     } else {
         None
     }
@@ -359,6 +368,7 @@ pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
         Some(Format::Step) => Ok(step::read(bytes)?),
         Some(Format::Iges) => Ok(iges::read(bytes)?),
         Some(Format::Patches) => Ok(patches::read(bytes)?),
+        Some(Format::Sections) => Ok(sections::read(bytes)?),
         None => {
             let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
             Err(ImportError::Unknown { begin })
