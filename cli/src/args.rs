@@ -32,6 +32,8 @@ pub enum Verb {
         #[arg(long, value_name = "U,V", required = true, value_parser = pair, allow_hyphen_values = true)]
         at: Vec<[f64; 2]>,
     },
+    /// Characteristic lines of a face as SVG figures and JSON: lines of curvature, umbilics, contours, gradients, ridges.
+    Lines(LinesArgs),
     /// Strip width at one contact: exact and every closed form that applies, side by side.
     Strip {
         /// The job file, with its contact table.
@@ -69,6 +71,8 @@ pub enum Verb {
     Dialects,
     /// The cutter kinds that a job can ask for.
     Tools,
+    /// The surfaces with a name, for --builtin and for jobs.
+    Gallery,
 }
 
 /// A part: a file or a built-in surface.
@@ -80,6 +84,32 @@ pub struct PartArgs {
     /// A built-in surface as a TOML table's keys, for example 'kind = "torus", major_radius_mm = 200, ...'.
     #[arg(long, value_name = "KEYS")]
     pub builtin: Option<String>,
+}
+
+/// What `lines` takes.
+#[derive(Debug, Args)]
+pub struct LinesArgs {
+    /// The part.
+    #[command(flatten)]
+    pub part: PartArgs,
+    /// The face, by its id in `inspect`; may be left out where there is only one.
+    #[arg(long)]
+    pub face: Option<String>,
+    /// Tool axis for contours and gradients.
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", value_parser = triple, allow_hyphen_values = true)]
+    pub axis: [f64; 3],
+    /// Distance of neighbouring lines, mm; a twenty-second of the face's size where not given.
+    #[arg(long)]
+    pub spacing_mm: Option<f64>,
+    /// About how many levels of height and of curvature difference.
+    #[arg(long, default_value_t = 12)]
+    pub levels: usize,
+    /// Where the viewer stands: azimuth from +x towards +y and elevation, degrees; chosen by the face where not given.
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = pair, allow_hyphen_values = true)]
+    pub view_deg: Option<[f64; 2]>,
+    /// Folder for the figures and lines.json.
+    #[arg(long)]
+    pub out: PathBuf,
 }
 
 /// What `post` takes.

@@ -2,6 +2,7 @@
 
 use osculate_geom::analytic::{Cone, Cylinder, Ellipsoid, Paraboloid, Plane, Sphere, Torus};
 use osculate_geom::{Domain, Interval, Patch, Side, Surface};
+use osculate_surfaces::{NurbsSurface, gallery};
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -55,6 +56,29 @@ enum Keys {
         u_range: Option<[f64; 2]>,
         v_range: Option<[f64; 2]>,
     },
+    #[serde(rename = "m86-1")]
+    M86One(Cut),
+    #[serde(rename = "m86-2")]
+    M86Two(Cut),
+    #[serde(rename = "m86-3")]
+    M86Three(Cut),
+    #[serde(rename = "m86-4")]
+    M86Four(Cut),
+    #[serde(rename = "d98-eq18")]
+    D98Eq18(Cut),
+    #[serde(rename = "d98-liu")]
+    D98Liu(Cut),
+    #[serde(rename = "d98-hyperbolic")]
+    D98Hyperbolic {
+        h_mm: f64,
+        alpha_deg: f64,
+        #[serde(default)]
+        material: Material,
+        u_range: Option<[f64; 2]>,
+        v_range: Option<[f64; 2]>,
+    },
+    MonkeySaddle(Cut),
+    Enneper(Cut),
     Paraboloid {
         a_per_mm: f64,
         b_per_mm: f64,
@@ -66,6 +90,16 @@ enum Keys {
     },
 }
 
+/// The keys that every built-in takes.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Cut {
+    #[serde(default)]
+    material: Material,
+    u_range: Option<[f64; 2]>,
+    v_range: Option<[f64; 2]>,
+}
+
 /// Which side of the surface the material is on. For open surfaces inside means below (z smaller).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -75,21 +109,27 @@ enum Material {
     Outside,
 }
 
+impl Material {
+    const fn side(self) -> Side {
+        match self {
+            Self::Inside => Side::Along,
+            Self::Outside => Side::Against,
+        }
+    }
+}
+
 /// A built-in surface with its name.
 pub struct Builtin {
     /// The kind.
     pub kind: &'static str,
     /// The surface.
     pub surface: Arc<dyn Surface>,
+    /// The same as a spline, where it is one.
+    pub spline: Option<Arc<NurbsSurface>>,
 }
 
-fn patch<S: Surface + 'static>(
-    kind: &'static str,
-    surface: S,
-    material: Material,
-    ranges: [Option<[f64; 2]>; 2],
-) -> Result<Builtin, String> {
-    let whole = surface.domain();
+/// The rectangle that the ranges leave of a surface's own one.
+fn cut_domain(kind: &str, whole: Domain, ranges: [Option<[f64; 2]>; 2]) -> Result<Domain, String> {
     let cut = |key: &str, i: Interval, r: Option<[f64; 2]>| match r {
         None => Ok(i),
         Some([lo, hi]) if lo.is_finite() && hi.is_finite() && lo < hi => {
@@ -109,12 +149,25 @@ fn patch<S: Surface + 'static>(
             Err(format!("{key} = [{lo}, {hi}] must be two finite numbers, the lower one first"))
         }
     };
-    let domain = Domain { u: cut("u_range", whole.u, ranges[0])?, v: cut("v_range", whole.v, ranges[1])? };
-    let side = match material {
-        Material::Inside => Side::Along,
-        Material::Outside => Side::Against,
-    };
-    Ok(Builtin { kind, surface: Arc::new(Patch { surface, domain, side }) })
+    Ok(Domain { u: cut("u_range", whole.u, ranges[0])?, v: cut("v_range", whole.v, ranges[1])? })
+}
+
+fn patch<S: Surface + 'static>(
+    kind: &'static str,
+    surface: S,
+    material: Material,
+    ranges: [Option<[f64; 2]>; 2],
+) -> Result<Builtin, String> {
+    let domain = cut_domain(kind, surface.domain(), ranges)?;
+    Ok(Builtin { kind, surface: Arc::new(Patch { surface, domain, side: material.side() }), spline: None })
+}
+
+/// A spline, cut to its ranges.
+fn spline(kind: &'static str, surface: NurbsSurface, cut: Cut) -> Result<Builtin, String> {
+    let domain = cut_domain(kind, surface.domain(), [cut.u_range, cut.v_range])?;
+    let piece = surface.restricted(&domain).map_err(|e| e.to_string())?.with_side(cut.material.side());
+    let piece = Arc::new(piece);
+    Ok(Builtin { kind, surface: piece.clone(), spline: Some(piece) })
 }
 
 /// The surface that the keys describe.
@@ -153,6 +206,26 @@ pub fn build(keys: &toml::Table) -> Result<Builtin, String> {
         Keys::Ellipsoid { semi_axes_mm, material, u_range, v_range } => {
             patch("ellipsoid", Ellipsoid::new(semi_axes_mm).map_err(say)?, material, [u_range, v_range])
         }
+        Keys::M86One(cut) => spline("m86-1", gallery::m86(1), cut),
+        Keys::M86Two(cut) => spline("m86-2", gallery::m86(2), cut),
+        Keys::M86Three(cut) => spline("m86-3", gallery::m86(3), cut),
+        Keys::M86Four(cut) => spline("m86-4", gallery::m86(4), cut),
+        Keys::D98Eq18(cut) => {
+            patch("d98-eq18", gallery::d98_eq18(), cut.material, [cut.u_range, cut.v_range])
+        }
+        Keys::D98Liu(cut) => spline("d98-liu", gallery::d98_liu(), cut),
+        Keys::D98Hyperbolic { h_mm, alpha_deg, material, u_range, v_range } => {
+            let s = gallery::d98_hyperbolic(h_mm, alpha_deg.to_radians()).map_err(|e| {
+                if e.what == "alpha" {
+                    format!("alpha_deg = {alpha_deg} must be {}", e.need)
+                } else {
+                    e.to_string()
+                }
+            })?;
+            spline("d98-hyperbolic", s, Cut { material, u_range, v_range })
+        }
+        Keys::MonkeySaddle(cut) => spline("monkey_saddle", gallery::monkey_saddle(), cut),
+        Keys::Enneper(cut) => spline("enneper", gallery::enneper(), cut),
         Keys::Paraboloid { a_per_mm, b_per_mm, half_size_mm, material, u_range, v_range } => {
             let p = Paraboloid::new([a_per_mm, b_per_mm], half_size_mm).map_err(say)?;
             patch("paraboloid", p, material, [u_range, v_range])
@@ -187,6 +260,19 @@ mod tests {
         // A groove: the normal points into the tube, away from the axis.
         assert!((jet.normal().unwrap().x - 1.0).abs() < 1e-12);
         assert!(!t.surface.contains(uv(0.4, 0.0)) && t.surface.contains(uv(0.2, 9.0)));
+    }
+
+    #[test]
+    fn every_surface_of_the_gallery_can_be_built() {
+        for e in gallery::ENTRIES {
+            let comma = if e.keys.is_empty() { "" } else { ", " };
+            let b = parse(&format!("kind = \"{}\"{comma}{}", e.name, e.keys)).unwrap();
+            assert_eq!(b.kind, e.name);
+            let d = b.surface.domain();
+            assert!(b.surface.jet2(d.at(0.4, 0.6)).forms().is_ok());
+        }
+        let piece = parse("kind = \"m86-4\", u_range = [0.25, 0.75]").unwrap();
+        assert_eq!(piece.spline.unwrap().domain().u.lo, 0.25);
     }
 
     #[test]

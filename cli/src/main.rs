@@ -8,6 +8,7 @@ mod builtin;
 mod cmd;
 mod cutter_keys;
 mod failure;
+mod figure;
 mod job;
 mod nc;
 mod output;
@@ -32,6 +33,7 @@ fn run(cli: &Cli) -> Outcome {
     match &cli.verb {
         Verb::Inspect(part) => cmd::inspect::run(part, cli.json),
         Verb::Probe { part, face, at } => cmd::probe::run(part, face.as_deref(), at, cli.json),
+        Verb::Lines(options) => cmd::lines::run(options, cli.json),
         Verb::Strip { job } => cmd::strip::run(job, cli.json),
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
@@ -45,6 +47,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Machines => cmd::list::machines(cli.json),
         Verb::Dialects => cmd::list::dialects(cli.json),
         Verb::Tools => cmd::list::tools(cli.json),
+        Verb::Gallery => cmd::gallery::run(cli.json),
     }
 }
 

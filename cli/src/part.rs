@@ -5,7 +5,7 @@ use crate::builtin::{self, Builtin};
 use crate::failure::{Failure, beside, read};
 use crate::job::{FaceChoice, Job, Normals};
 use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
-use osculate_surfaces::{Face, TrimmedSurface, orient, tessellate};
+use osculate_surfaces::{Face, NurbsSurface, TrimmedSurface, orient, tessellate};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -29,6 +29,8 @@ pub struct LoadedFace {
     pub surface: Arc<TrimmedSurface>,
     /// The imported face, where it comes from a file.
     pub source: Option<Arc<Face>>,
+    /// The spline, where it is a built-in one.
+    pub spline: Option<Arc<NurbsSurface>>,
 }
 
 /// A part ready for work.
@@ -49,7 +51,25 @@ pub struct Loaded {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+impl LoadedFace {
+    /// The spline that the face is a piece of, where it is one.
+    pub fn nurbs(&self) -> Option<&NurbsSurface> {
+        self.spline.as_deref().or_else(|| self.source.as_ref().and_then(|f| f.carrier.nurbs()).map(|n| &**n))
+    }
+}
+
 impl Loaded {
+    /// The only face, or the one with this id.
+    pub fn one(&self, id: Option<&str>) -> Result<&LoadedFace, Failure> {
+        match (id, self.faces.as_slice()) {
+            (Some(id), _) => self.face(id),
+            (None, [one]) => Ok(one),
+            (None, all) => {
+                Err(Failure::Usage(format!("the part has {} faces: say which with --face", all.len())))
+            }
+        }
+    }
+
     /// The face of this id.
     pub fn face(&self, id: &str) -> Result<&LoadedFace, Failure> {
         self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
@@ -71,6 +91,7 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         kind: b.kind.to_owned(),
         surface: Arc::new(surface),
         source: None,
+        spline: b.spline,
     };
     Ok(Loaded {
         format: "builtin",
@@ -103,6 +124,7 @@ fn from_file(path: &Path) -> Result<Loaded, Failure> {
                 kind: source.kind.to_string(),
                 surface: source.surface.clone(),
                 source: Some(source),
+                spline: None,
             }
         })
         .collect();

@@ -164,6 +164,32 @@ fn ridges_of_an_ellipsoid_are_its_principal_sections() {
     }
 }
 
+/// Where a field is constant but for rounding it has no lines: a torus has no ridges, for its curvatures are constant
+/// along their own lines, a cylinder no parabolic ones, for it is parabolic all over.
+#[test]
+fn constant_fields_have_no_lines() {
+    let t = Torus::new(5.0, 2.0).unwrap();
+    let c = chart(&t);
+    assert!(ridges(&c, &umbilics(&c)).is_empty());
+    let s = osculate_geom::analytic::Cylinder::new(3.0, osculate_geom::Interval::new(0.0, 5.0)).unwrap();
+    let c = chart(&s);
+    assert!(contours(&c, &Gauss, &[0.0], None).lines.is_empty());
+    assert!(contours(&c, &CurvatureDifference, &[1.0 / 9.0], None).lines.is_empty());
+    // The circles on top and bottom of the torus are lines of critical points, not points.
+    let c = chart(&t);
+    let z = critical_points(&c, &along(0.0, 0.0, 1.0));
+    assert!(z.points.is_empty() && !z.lines.is_empty() && z.confirmed.is_none());
+}
+
+/// The monkey saddle's own saddle is degenerate: the gradient turns twice, backwards.
+#[test]
+fn the_monkey_saddle_is_a_saddle_of_index_minus_two() {
+    let s = gallery::monkey_saddle();
+    let found = critical_points(&chart(&s), &along(0.0, 0.0, 1.0));
+    let [p] = &found.points[..] else { panic!("{found:?}") };
+    assert_eq!((p.kind, p.index, found.confirmed), (CriticalKind::Saddle, Some(-2), Some(true)));
+}
+
 /// Lines of constant difference of the curvatures carry that difference; around the umbilics of an ellipsoid they
 /// close.
 #[test]

@@ -35,6 +35,13 @@ pub enum Failure {
         /// What the system said.
         why: io::Error,
     },
+    /// A file could not be written.
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        why: io::Error,
+    },
     /// No `Cargo.toml` with a `[workspace]` at or above the place where the search began.
     NoWorkspace(PathBuf),
     /// The rules of `tidy` that are broken.
@@ -55,6 +62,7 @@ impl std::fmt::Display for Failure {
             Self::Status { line, status } => write!(f, "`{line}` failed with {status}"),
             Self::Answer { line, why } => write!(f, "`{line}` answered what cannot be used: {why}"),
             Self::Read { path, why } => write!(f, "cannot read {}: {why}", path.display()),
+            Self::Write { path, why } => write!(f, "cannot write {}: {why}", path.display()),
             Self::NoWorkspace(from) => {
                 write!(f, "no Cargo.toml with a [workspace] at or above {}", from.display())
             }

@@ -1,5 +1,5 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
-//! `cargo xtask bench`, `cargo xtask reference` and `cargo xtask truth`.
+//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures` and `cargo xtask truth`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -9,6 +9,7 @@
 mod bench;
 mod ci;
 mod cmd;
+mod figures;
 mod interop;
 mod test;
 mod tidy;
@@ -29,6 +30,7 @@ usage: cargo xtask COMMAND
   reference [--data FOLDER]
                 the kernel against reference vectors and samples to 1e-12 and 1e-9
   papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
+  figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
 
@@ -45,12 +47,13 @@ fn main() -> ExitCode {
         ["reference", rest @ ..] => example("reference", rest),
         ["truth", rest @ ..] => example("truth", rest),
         ["papers", "z17"] => z17(),
+        ["figures"] => figures::run(),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             Ok(())
         }
         [] => return wrong_usage("no command given"),
-        [command @ ("tidy" | "ci"), extra, ..] => {
+        [command @ ("tidy" | "ci" | "figures"), extra, ..] => {
             return wrong_usage(&format!("{command} takes no arguments, got {extra}"));
         }
         [unknown, ..] => return wrong_usage(&format!("unknown command {unknown}")),

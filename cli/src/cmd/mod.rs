@@ -1,6 +1,8 @@
 //! The verbs.
 
+pub mod gallery;
 pub mod inspect;
+pub mod lines;
 pub mod list;
 pub mod plan;
 pub mod post;

@@ -28,13 +28,7 @@ struct Answer {
 /// Runs the verb.
 pub fn run(args: &PartArgs, face: Option<&str>, at: &[[f64; 2]], json: bool) -> Outcome {
     let loaded = part::whole(part::load(args)?)?;
-    let face = match (face, loaded.faces.as_slice()) {
-        (Some(id), _) => loaded.face(id)?,
-        (None, [one]) => one,
-        (None, all) => {
-            return Err(Failure::Usage(format!("the part has {} faces: say which with --face", all.len())));
-        }
-    };
+    let face = loaded.one(face)?;
     let array = |d: &Unit3| [d.x, d.y, d.z];
     let mut points = Vec::new();
     for [u, v] in at {

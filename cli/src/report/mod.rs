@@ -9,14 +9,14 @@
 
 mod chart;
 mod data;
-mod legend;
+pub mod legend;
 mod mesh;
 mod pack;
 mod page;
 mod picture;
-mod project;
+pub mod project;
 mod simplify;
-mod text;
+pub mod text;
 mod tool_body;
 mod viewer;
 

@@ -180,6 +180,21 @@ impl<'a> Chart<'a> {
         self.size_mm
     }
 
+    /// The largest curvature at the cells' corners, at least that of a sphere of the face's size, 1/mm.
+    #[must_use]
+    pub fn curvature_per_mm(&self) -> f64 {
+        let mut size = 1.0 / self.size_mm;
+        for u in self.borders(Axis::U) {
+            for v in self.borders(Axis::V) {
+                if let Ok(forms) = self.surface.jet2(uv(*u, *v)).forms() {
+                    let p = forms.principal();
+                    size = size.max(p.k_max.abs()).max(p.k_min.abs());
+                }
+            }
+        }
+        size
+    }
+
     /// The tolerances.
     #[must_use]
     pub const fn tolerance(&self) -> &LineTolerance {

@@ -11,7 +11,7 @@
 
 use super::chart::Chart;
 use super::critical::CriticalPoints;
-use super::field::{FieldSample, ScalarField};
+use super::field::{FieldSample, ScalarField, Scale};
 use super::stitch::chains;
 use super::trace::{LineEnd, LinePoint, SurfacePolyline};
 use super::web::{Extreme, Web, edge, same_sense};
@@ -58,9 +58,16 @@ pub fn contours(
     let known: Vec<Extreme> = extremes
         .map(|c| c.points.iter().map(|p| Extreme { at: p.at, value: p.value }).collect())
         .unwrap_or_default();
-    let web = Web::new(chart, field, &sorted, &known);
-    let drawn: Vec<Vec<Contour>> =
-        sorted.par_iter().map(|l| Level { chart, field, level: *l }.draw(&web)).collect();
+    let scale = Scale { size_mm: chart.size_mm(), curvature_per_mm: chart.curvature_per_mm() };
+    let rounding = field.rounding(scale);
+    // Lines are drawn a rounding below their level: where the field stays at a level but for rounding, as the Gaussian
+    // curvature of a cylinder, there is no line.
+    let lowered: Vec<f64> = sorted.iter().map(|l| l - rounding).collect();
+    let web = Web::new(chart, field, &lowered, &known);
+    let drawn: Vec<Vec<Contour>> = sorted
+        .par_iter()
+        .map(|named| Level { chart, field, named: *named, level: named - rounding }.draw(&web))
+        .collect();
     Contours { lines: drawn.into_iter().flatten().collect(), resolution_mm: chart.resolution_mm() }
 }
 
@@ -68,6 +75,9 @@ pub fn contours(
 struct Level<'a> {
     chart: &'a Chart<'a>,
     field: &'a dyn ScalarField,
+    /// The level asked for.
+    named: f64,
+    /// The level drawn, a rounding below.
     level: f64,
 }
 
@@ -112,7 +122,7 @@ impl Level<'_> {
         lines
             .into_iter()
             .flat_map(|(points, closed)| self.trimmed(points, closed))
-            .map(|line| Contour { level: self.level, line })
+            .map(|line| Contour { level: self.named, line })
             .collect()
     }
 

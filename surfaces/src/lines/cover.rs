@@ -9,8 +9,8 @@ use super::chart::Chart;
 use super::course::Course;
 use super::trace::{SurfacePolyline, TraceStops, trace_while};
 use osculate_geom::{Axis, Point3, Uv, uv};
-use std::collections::HashMap;
-use std::collections::VecDeque;
+use std::cell::RefCell;
+use std::collections::{HashMap, VecDeque};
 
 /// How lines are spread.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +81,36 @@ impl Crowd {
     }
 }
 
+/// The line under way, so that it does not wind up beside itself.
+struct Own {
+    spacing: f64,
+    /// Whether the second half is under way; its lengths count below zero.
+    back: bool,
+    reached: f64,
+    points: Vec<(Point3, f64)>,
+}
+
+impl Own {
+    /// Whether a point of the line is away from those that lie further than three spacings behind.
+    fn is_free(&mut self, q: &Point3, behind: f64) -> bool {
+        // The second half starts at zero again.
+        self.back |= behind < self.reached;
+        self.reached = behind;
+        let at = if self.back { -behind } else { behind };
+        let near = CLOSE * self.spacing;
+        let close = |(p, s): &(Point3, f64)| {
+            (at - s).abs() > 3.0 * self.spacing && (p - q).norm_squared() < near * near
+        };
+        if self.points.iter().any(close) {
+            return false;
+        }
+        if self.points.last().is_none_or(|(_, s)| (at - s).abs() > 0.2 * self.spacing) {
+            self.points.push((*q, at));
+        }
+        true
+    }
+}
+
 /// The part of the spacing that must be free at a start.
 const FREE: f64 = 0.9;
 /// The part of the spacing at which a line ends early.
@@ -100,8 +130,10 @@ pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Vec<SurfacePolyline>
         if !chart.surface().contains(seed) || !crowd.is_free(&p, FREE * d) {
             continue;
         }
-        let free = |q: &Point3, _: f64| crowd.is_free(q, CLOSE * d);
         let line = if how.ends_early {
+            let own = RefCell::new(Own { spacing: d, back: false, reached: 0.0, points: Vec::new() });
+            let free =
+                |q: &Point3, behind: f64| crowd.is_free(q, CLOSE * d) && own.borrow_mut().is_free(q, behind);
             trace_while(chart, course, seed, &how.stops, &free)
         } else {
             trace_while(chart, course, seed, &how.stops, &|_, _| true)

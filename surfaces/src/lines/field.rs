@@ -15,10 +15,25 @@ pub struct FieldSample {
     pub sense: Option<Vec3>,
 }
 
+/// How large a face and its curvatures are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The face's size, mm.
+    pub size_mm: f64,
+    /// Its largest curvature, 1/mm.
+    pub curvature_per_mm: f64,
+}
+
 /// A scalar field over a surface.
 pub trait ScalarField: Sync {
     /// The field at a point; `None` where it is not defined (no tangent plane).
     fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample>;
+
+    /// Differences that are rounding, on a face with curvatures up to `curvature_per_mm`: a field that is constant but
+    /// for them has no contours.
+    fn rounding(&self, _scale: Scale) -> f64 {
+        0.0
+    }
 
     /// Whether the field has its digits at the poles of the parametrisation too: it needs no tangent plane.
     fn holds_at_poles(&self) -> bool {
@@ -39,6 +54,9 @@ impl ScalarField for Height {
         let gradient = Some([jet.du.dot(&self.axis), jet.dv.dot(&self.axis)]);
         Some(FieldSample { value: jet.point.coords.dot(&self.axis), gradient, sense: None })
     }
+    fn rounding(&self, scale: Scale) -> f64 {
+        1e-13 * scale.size_mm
+    }
     fn holds_at_poles(&self) -> bool {
         true
     }
@@ -54,6 +72,9 @@ impl ScalarField for CurvatureDifference {
         let (value, gradient) = forms_rate(surface, at).ok()?.difference_squared();
         finite(value, gradient, None)
     }
+    fn rounding(&self, scale: Scale) -> f64 {
+        1e-14 * scale.curvature_per_mm.powi(2)
+    }
 }
 
 /// The Gaussian curvature, 1/mm2; zero on parabolic lines.
@@ -64,6 +85,9 @@ impl ScalarField for Gauss {
     fn sample(&self, surface: &dyn Surface, at: Uv) -> Option<FieldSample> {
         let (value, gradient) = forms_rate(surface, at).ok()?.gauss();
         finite(value, gradient, None)
+    }
+    fn rounding(&self, scale: Scale) -> f64 {
+        1e-11 * scale.curvature_per_mm.powi(2)
     }
 }
 

@@ -31,7 +31,7 @@ pub use contour::{Contour, Contours, contours};
 pub use course::{Course, Family};
 pub use cover::{Cover, cover};
 pub use critical::{Critical, CriticalKind, CriticalPoints, critical_points};
-pub use field::{CurvatureDifference, Extremality, FieldSample, Gauss, Height, ScalarField};
+pub use field::{CurvatureDifference, Extremality, FieldSample, Gauss, Height, ScalarField, Scale};
 pub use ridge::{Ridge, ridges};
 pub use third::{FormsRate, forms_rate};
 pub use trace::{LineEnd, LinePoint, SurfacePolyline, TraceStops, curvature_line, trace};

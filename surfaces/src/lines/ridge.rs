@@ -6,10 +6,10 @@
 use super::chart::Chart;
 use super::contour::contours;
 use super::course::Family;
-use super::field::Extremality;
+use super::field::{Extremality, ScalarField};
 use super::trace::{LineEnd, SurfacePolyline};
 use super::umbilic::Umbilics;
-use osculate_geom::{Uv, uv};
+use osculate_geom::{Axis, Uv, uv};
 
 /// A ridge.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,9 @@ const AT_UMBILIC: f64 = 1.0;
 pub fn ridges(chart: &Chart, umbilics: &Umbilics) -> Vec<Ridge> {
     let mut out = Vec::new();
     for family in Family::ALL {
+        if is_constant(chart, family) {
+            continue;
+        }
         for contour in contours(chart, &Extremality { family }, &[0.0], None).lines {
             let mut line = contour.line;
             if line.points.len() < 2 {
@@ -46,6 +49,18 @@ pub fn ridges(chart: &Chart, umbilics: &Umbilics) -> Vec<Ridge> {
         }
     }
     out
+}
+
+/// Whether the family's curvature is constant along all its own lines but for rounding, as on a torus: then every line
+/// is a ridge and none.
+fn is_constant(chart: &Chart, family: Family) -> bool {
+    /// Third derivatives keep ten digits.
+    const ROUNDING: f64 = 1e-10;
+    let limit = ROUNDING * chart.curvature_per_mm().powi(2);
+    let field = Extremality { family };
+    let value = |u: &f64, v: &f64| field.sample(chart.surface(), uv(*u, *v)).map_or(0.0, |s| s.value.abs());
+    let (us, vs) = (chart.borders(Axis::U), chart.borders(Axis::V));
+    us.iter().all(|u| vs.iter().all(|v| value(u, v) <= limit))
 }
 
 /// An end that the signless field left open, led on to the umbilic that it stopped at.

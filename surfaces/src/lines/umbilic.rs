@@ -17,7 +17,7 @@
 use super::chart::{Chart, Pole};
 use super::third::forms_rate;
 use super::zeros::{Plane, boundary_rotation, ring_rotation, zeros};
-use osculate_geom::{Axis, Point3, Surface, Unit3, Uv, uv};
+use osculate_geom::{Axis, Point3, Surface, Unit3, Uv};
 
 /// The type of an umbilic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,7 +109,7 @@ pub fn umbilics(chart: &Chart) -> Umbilics {
     let surface = chart.surface();
     let field = |at: Uv| directions(surface, at);
     let field: Plane = &field;
-    let size = curvature_size(chart);
+    let size = chart.curvature_per_mm();
     let found = zeros(chart, field, FLAT * size);
     let sign = orientation(chart);
     let mut points: Vec<Umbilic> = found
@@ -148,20 +148,6 @@ pub fn umbilics(chart: &Chart) -> Umbilics {
 fn directions(surface: &dyn Surface, at: Uv) -> Option<[f64; 2]> {
     let w = surface.jet2(at).forms().ok()?.curvature;
     Some([0.5 * (w[(0, 0)] - w[(1, 1)]), w[(0, 1)]])
-}
-
-/// The largest curvature at the cells' corners, at least that of a sphere of the face's size, 1/mm.
-fn curvature_size(chart: &Chart) -> f64 {
-    let mut size = 1.0 / chart.size_mm();
-    for u in chart.borders(Axis::U) {
-        for v in chart.borders(Axis::V) {
-            if let Ok(forms) = chart.surface().jet2(uv(*u, *v)).forms() {
-                let p = forms.principal();
-                size = size.max(p.k_max.abs()).max(p.k_min.abs());
-            }
-        }
-    }
-    size
 }
 
 /// +1 where the tangent frame of the forms turns as (u, v) does, -1 where the outward normal is on the other side.

@@ -11,7 +11,7 @@
 use super::chart::Chart;
 use osculate_geom::{Axis, Interval, Uv, uv};
 use rayon::prelude::*;
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// A plane vector field; `None` where it has no value.
@@ -44,7 +44,7 @@ pub(crate) struct Zeros {
 /// Cells are halved at most this often: to a thousandth of a cell of the chart.
 const DEPTH: u32 = 10;
 /// Open pieces of one cell at which halving ends: a line of zeros, not a point.
-const MOST_OPEN: usize = 200;
+const MOST_OPEN: usize = 120;
 /// Twice the misfit of the samples stands for what lies between them.
 const BETWEEN: f64 = 2.0;
 /// Open pieces that reach over more than this part of a cell are a line.
@@ -272,25 +272,47 @@ fn clamp_open(chart: &Chart, at: Uv) -> Uv {
     uv(one(chart.domain().u, at.u), one(chart.domain().v, at.v))
 }
 
-/// Pieces that touch, together.
+/// Pieces that touch, together. Pieces are compared with those of the same cell of the chart and of its neighbours
+/// only.
 fn clusters(chart: &Chart, open: &[Cell]) -> Vec<Vec<Cell>> {
+    let counts = [Axis::U, Axis::V].map(|axis| chart.borders(axis).len() - 1);
+    let place = |axis: Axis, t: f64| {
+        let lines = chart.borders(axis);
+        lines.partition_point(|x| *x <= t).clamp(1, lines.len() - 1) - 1
+    };
+    let key = |c: &Cell| [place(Axis::U, c.middle.u), place(Axis::V, c.middle.v)];
+    let mut boxes: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+    for (k, c) in open.iter().enumerate() {
+        boxes.entry(key(c)).or_default().push(k);
+    }
     let touches = |a: &Cell, b: &Cell| {
         let d = chart.between(a.middle, b.middle);
         d.u.abs() <= 1.01 * (a.half[0] + b.half[0]) && d.v.abs() <= 1.01 * (a.half[1] + b.half[1])
     };
-    let mut left: Vec<Cell> = open.to_vec();
+    let mut seen = vec![false; open.len()];
     let mut out = Vec::new();
-    while let Some(first) = left.pop() {
+    for first in 0..open.len() {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
         let mut cluster = vec![first];
         let mut k = 0;
         while k < cluster.len() {
-            let here = cluster[k];
-            let (near, far): (Vec<Cell>, Vec<Cell>) = left.iter().partition(|c| touches(&here, c));
-            cluster.extend(near);
-            left = far;
+            let here = &open[cluster[k]];
+            let [i, j] = key(here);
+            for (di, dj) in (0..9).map(|n| (n / 3, n % 3)) {
+                // One back, one on, around where a parameter closes; the wrong neighbours of an open side are far.
+                let near = [(i + counts[0] + di - 1) % counts[0], (j + counts[1] + dj - 1) % counts[1]];
+                for n in boxes.get(&near).into_iter().flatten() {
+                    if !seen[*n] && touches(here, &open[*n]) {
+                        seen[*n] = true;
+                        cluster.push(*n);
+                    }
+                }
+            }
             k += 1;
         }
-        out.push(cluster);
+        out.push(cluster.into_iter().map(|k| open[k]).collect());
     }
     out
 }

@@ -1,0 +1,73 @@
+//! `lines` and `gallery`: files, JSON, and what is refused.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+use common::{Scratch, osculate};
+
+#[test]
+fn figures_and_json_of_a_gallery_surface() {
+    let scratch = Scratch::new();
+    let run = |name: &str| {
+        let out = scratch.path(name);
+        let out = out.to_str().unwrap().to_owned();
+        osculate(&["lines", "--builtin", "kind = \"m86-3\"", "--out", &out, "--json"]).json()
+    };
+    let answer = run("a");
+    assert_eq!(answer["umbilics"]["points"].as_array().unwrap().len(), 1);
+    assert_eq!(answer["umbilics"]["points"][0]["kind"], "lemon");
+    assert_eq!(answer["umbilics"]["confirmed"], true);
+    assert_eq!(answer["umbilics"]["index_sum"], 0.5);
+    let minima = answer["contours"]["minima"].as_array().unwrap();
+    assert_eq!(minima.len(), 1);
+    // Contours carry their level, and close around the minimum.
+    let lowest = &answer["contours"]["lines"][0];
+    assert_eq!(lowest["closed"], true);
+    for p in lowest["points_mm"].as_array().unwrap() {
+        assert!((p[2].as_f64().unwrap() - lowest["level"].as_f64().unwrap()).abs() < 1e-6);
+    }
+    assert!(!answer["curvature_lines"][0]["lines"].as_array().unwrap().is_empty());
+    // Every file is there and is SVG; the same input gives the same bytes.
+    let again = run("b");
+    assert_eq!(answer, again);
+    let files = answer["files"].as_array().unwrap();
+    assert_eq!(files.len(), 9);
+    for file in files {
+        let read = |folder: &str| {
+            std::fs::read_to_string(scratch.path(folder).join(file.as_str().unwrap())).unwrap()
+        };
+        let text = read("a");
+        assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n") || text.starts_with("{\"format\":1"));
+        assert_eq!(text, read("b"), "{file}");
+    }
+}
+
+#[test]
+fn the_gallery_is_listed() {
+    let all = osculate(&["gallery", "--json"]).json();
+    let names: Vec<&str> = all.as_array().unwrap().iter().map(|e| e["name"].as_str().unwrap()).collect();
+    for name in
+        ["m86-1", "m86-2", "m86-3", "m86-4", "d98-eq18", "d98-liu", "d98-hyperbolic", "ellipsoid", "enneper"]
+    {
+        assert!(names.contains(&name), "{name}");
+    }
+}
+
+#[test]
+fn mistakes_are_refused() {
+    let scratch = Scratch::new();
+    let out = scratch.path("x");
+    let out = out.to_str().unwrap();
+    for (extra, code, word) in [
+        (["--axis", "0,0,0"], 2, "--axis"),
+        (["--spacing-mm", "0"], 2, "--spacing-mm"),
+        (["--levels", "0"], 2, "--levels"),
+        (["--face", "F9"], 1, "F9"),
+    ] {
+        let args = ["lines", "--builtin", "kind = \"m86-1\"", "--out", out, extra[0], extra[1]];
+        let run = osculate(&args);
+        assert_eq!(run.code, code, "{}", run.err);
+        assert!(run.err.contains(word), "{}", run.err);
+    }
+    assert!(!std::path::Path::new(out).exists());
+}
