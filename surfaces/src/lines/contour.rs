@@ -96,8 +96,10 @@ impl Level<'_> {
                     let (i, j) = edge(t[k], t[(k + 1) % 3]);
                     let (p, q) = (web.samples[i as usize]?, web.samples[j as usize]?);
                     let flip = same_sense(&p, &q);
-                    // A vertex on the level counts as above it.
-                    if (p.value < self.level) == (flip * q.value < self.level) {
+                    // A vertex on the level counts as above it, in its own sense: were it to follow the neighbour's, a
+                    // triangle could have one crossing.
+                    let above = |v: f64| if v < self.level { -1.0 } else { 1.0 };
+                    if above(p.value) * above(q.value) * flip > 0.0 {
                         return None;
                     }
                     Some(*nodes.entry((i, j)).or_insert_with(|| {
