@@ -3,6 +3,9 @@
 //! - [`closed_form`]: the strip-width formulas of Radzevich (R97) and Marciniak (M86), corrected, each beside the exact
 //!   strip of [`osculate_tools::strip`] that it approximates.
 //! - [`plan`]: passes over a face whose spacing the exact strip decides, and the moves between them.
+//! - [`rate`], [`split`]: productivity at an instant under the caps of cutter and machine, and the share of the tolerance
+//!   between tooth marks and scallops that makes it greatest.
+//! - [`optimum`]: the tool, feed direction, lead and tilt of greatest productivity at a point.
 //! - [`levels`]: productivity at an instant, along a pass and over the whole face.
 //!
 //! ```
@@ -17,4 +20,7 @@
 
 pub mod closed_form;
 pub mod levels;
+pub mod optimum;
 pub mod plan;
+pub mod rate;
+pub mod split;

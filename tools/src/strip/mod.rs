@@ -8,7 +8,9 @@
 
 mod exact;
 mod local;
+mod mark;
 
 pub use exact::{Strip, StripError, exact, standoff};
+pub use mark::{Mark, mark};
 
 use crate::contact::ContactMotion;
