@@ -9,7 +9,7 @@
 //! The search ranks a grid of postures by their leading order, measures the best of each neighbourhood exactly and
 //! settles the best few by coordinate searches. It is a heuristic with a measured miss, not a proof.
 
-use crate::closed_form::leading_order_swept;
+use crate::closed_form::{Section, leading_order_swept, width_37};
 use crate::rate::{Caps, CapsError, Rate, Share};
 use crate::split::leading_share;
 use osculate_geom::{Degenerate, Forms, Relative, Surface, SymEigen, Unit3, Uv, Vec3};
@@ -177,12 +177,42 @@ pub fn measure(
     posture: Posture,
     limits: &Limits,
 ) -> Result<Measured, StripError> {
-    let feed = FeedLine::Angle(posture.direction_rad);
-    let contact = Contact::new(surface, at, cutter, feed, posture.lean)?;
+    let contact = Contact::new(surface, at, cutter, FeedLine::Angle(posture.direction_rad), posture.lean)?;
     let (cap, _) = limits.caps.greatest_per_tooth();
-    let (share, mark_mm) = share_of(&contact, cap, limits.scallop_mm)?;
+    let share = share_of(&contact, cap, limits.scallop_mm, |c, h| strip::mark(c, h).map(|m| m.length_mm()))?;
+    measure_contact(&contact, share, limits)
+}
+
+/// As [`measure`] with the planar closed form of the tooth mark: what the search compares.
+fn compare(
+    surface: &dyn Surface,
+    at: Uv,
+    cutter: &Cutter,
+    posture: Posture,
+    limits: &Limits,
+) -> Result<Measured, StripError> {
+    let contact = Contact::new(surface, at, cutter, FeedLine::Angle(posture.direction_rad), posture.lean)?;
+    let along = contact.relative().along(&contact.frame.tangent);
+    if !(along > 0.0 && along.is_finite()) {
+        return measure(surface, at, cutter, posture, limits);
+    }
+    let (cap, _) = limits.caps.greatest_per_tooth();
+    let part_per_mm = contact.forms.normal_curvature(&contact.frame.tangent);
+    let planar = |_: &Contact<'_>, scallop_mm: f64| {
+        let section = Section { part_per_mm, tool_per_mm: along - part_per_mm, scallop_mm };
+        Ok(width_37(section).unwrap_or_else(|_| 2.0 * (2.0 * scallop_mm / along).sqrt()))
+    };
+    let share = share_of(&contact, cap, limits.scallop_mm, planar)?;
+    measure_contact(&contact, share, limits)
+}
+
+fn measure_contact(
+    contact: &Contact<'_>,
+    (share, mark_mm): (Share, f64),
+    limits: &Limits,
+) -> Result<Measured, StripError> {
     let mut lift_mm = 0.0;
-    let mut strip = strip::exact(&contact, share.across_mm())?;
+    let mut strip = strip::exact(contact, share.across_mm())?;
     if strip.undercut_mm > limits.gouge_mm {
         // The lift moves along one normal, the dip is a little off it: once more takes out what is left.
         for _ in 0..2 {
@@ -198,7 +228,12 @@ pub fn measure(
 }
 
 /// The smallest share whose tooth mark reaches the cap, or the half that is best without a cap; and the mark.
-fn share_of(contact: &Contact<'_>, cap_mm: f64, tolerance_mm: f64) -> Result<(Share, f64), StripError> {
+fn share_of(
+    contact: &Contact<'_>,
+    cap_mm: f64,
+    tolerance_mm: f64,
+    mark_of: impl Fn(&Contact<'_>, f64) -> Result<f64, StripError>,
+) -> Result<(Share, f64), StripError> {
     /// Least share looked at: below it the strip gains less than the fourth digit.
     const LEAST: f64 = 1e-4;
     /// Marks grow between the first power (a sharp edge) and the root of the height.
@@ -206,7 +241,7 @@ fn share_of(contact: &Contact<'_>, cap_mm: f64, tolerance_mm: f64) -> Result<(Sh
     let along = contact.relative().along(&contact.frame.tangent);
     let start = if along.is_finite() { leading_share(along, cap_mm, tolerance_mm) } else { 0.25 };
     let mut share = Share { tolerance_mm, chi: start.clamp(LEAST, 0.5) };
-    let mut mark = strip::mark(contact, share.along_mm())?.length_mm();
+    let mut mark = mark_of(contact, share.along_mm())?;
     for _ in 0..POWERS {
         let enough = mark >= cap_mm * (1.0 - 1e-6);
         let settled = if enough { mark <= cap_mm * 1.02 || share.chi <= LEAST } else { share.chi >= 0.5 };
@@ -216,19 +251,19 @@ fn share_of(contact: &Contact<'_>, cap_mm: f64, tolerance_mm: f64) -> Result<(Sh
         let power = if along.is_finite() { 2.0 } else { 1.0 };
         // A touch more than the power law says, so that the next mark reaches the cap.
         share.chi = (share.chi * (cap_mm / mark).powf(power) * 1.01).clamp(LEAST, 0.5);
-        mark = strip::mark(contact, share.along_mm())?.length_mm();
+        mark = mark_of(contact, share.along_mm())?;
     }
     Ok((share, mark))
 }
 
 /// Directions, leads and tilts of the grid that is ranked.
 const GRID: [usize; 3] = [16, 7, 5];
-/// Postures of the grid that are measured exactly, and of these, how many are settled.
-const MEASURED: usize = 14;
-const SETTLED: usize = 3;
+/// Postures of the grid above the least lead that are measured exactly, and how many of all are settled.
+const MEASURED: usize = 6;
+const SETTLED: usize = 2;
 /// Rounds of coordinate searches; steps shrink in each.
-const ROUNDS: u32 = 4;
-const SHRINK: f64 = 0.4;
+const ROUNDS: u32 = 3;
+const SHRINK: f64 = 0.35;
 
 /// The best posture of the best tool at a point.
 ///
@@ -322,7 +357,7 @@ impl Search<'_> {
             return None;
         }
         self.evaluations += 1;
-        match measure(self.surface, self.at, self.cutter, p, self.limits) {
+        match compare(self.surface, self.at, self.cutter, p, self.limits) {
             Ok(m) => Some(m),
             Err(e) => {
                 self.last = Some(e);
@@ -359,10 +394,16 @@ impl Search<'_> {
     fn run(&mut self) -> Option<Found> {
         let mut ranked = self.grid();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut found: Vec<Found> = Vec::with_capacity(MEASURED);
-        let mut tried: Vec<Posture> = Vec::with_capacity(MEASURED);
+        let mut tried: Vec<Posture> = Vec::with_capacity(6 * MEASURED);
+        // At the least lead the strip is usually widest and the leading order fails: all of it is measured.
+        let mut found: Vec<Found> =
+            self.least_lead().into_iter().filter_map(|p| Some((p, self.measure(p)?))).collect();
+        let enough = found.len() + MEASURED;
         for (p, _) in ranked {
-            if found.len() >= MEASURED || tried.len() >= 6 * MEASURED {
+            if p.lean.lead_rad == self.limits.lead.least_rad {
+                continue;
+            }
+            if found.len() >= enough || tried.len() >= 6 * MEASURED {
                 break;
             }
             // Not two postures of one neighbourhood.
@@ -380,6 +421,34 @@ impl Search<'_> {
             .into_iter()
             .map(|f| self.settle(f))
             .max_by(|a, b| a.1.rate.area_mm2_min.total_cmp(&b.1.rate.area_mm2_min))
+            .and_then(|(p, _)| Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).ok()?)))
+    }
+
+    /// Directions and tilts at the least lead.
+    fn least_lead(&self) -> Vec<Posture> {
+        let tilt = self.limits.tilt;
+        let tilts = if tilt.width() > 0.0 {
+            vec![tilt.least_rad, 0.5 * (tilt.least_rad + tilt.most_rad), tilt.most_rad]
+        } else {
+            vec![tilt.least_rad]
+        };
+        let first = self.first_direction();
+        (0..GRID[0])
+            .flat_map(|k| {
+                let direction_rad = first + TAU * k as f64 / GRID[0] as f64;
+                let lead_rad = self.limits.lead.least_rad;
+                tilts
+                    .iter()
+                    .map(|tilt_rad| Posture { direction_rad, lean: Lean { lead_rad, tilt_rad: *tilt_rad } })
+                    .collect::<Vec<_>>()
+            })
+            .collect()
+    }
+
+    /// A principal direction of the part: these are often the answer.
+    fn first_direction(&self) -> f64 {
+        let d = SymEigen::of(&self.forms.curvature).d_max;
+        d[1].atan2(d[0]) * self.surface.jet2(self.at).side.sign()
     }
 
     fn grid(&self) -> Vec<(Posture, f64)> {
@@ -405,9 +474,7 @@ impl Search<'_> {
             .collect();
         let tilts = steps(self.limits.tilt, GRID[2]);
         let mut out = Vec::with_capacity(GRID.iter().product());
-        // The principal directions of the part are on the grid: they are often the answer.
-        let d = SymEigen::of(&self.forms.curvature).d_max;
-        let first = d[1].atan2(d[0]) * self.surface.jet2(self.at).side.sign();
+        let first = self.first_direction();
         for k in 0..GRID[0] {
             let direction_rad = first + TAU * k as f64 / GRID[0] as f64;
             for lead_rad in &leads {

@@ -93,7 +93,7 @@ const EDGE_TOLERANCE: f64 = 1e-13;
 const MOTION_PIECE: f64 = 1.0;
 /// Disagreement accepted of a fitted piece, relative to the tolerance: the strip's edge moves by half as much,
 /// relative to its width.
-const MOTION_TOLERANCE: f64 = 1e-10;
+const MOTION_TOLERANCE: f64 = 2e-9;
 
 /// The exact strip at a contact for the tolerance `scallop_mm`.
 ///
