@@ -261,8 +261,11 @@ const GRID: [usize; 3] = [16, 7, 5];
 /// Postures of the grid above the least lead that are measured exactly, and how many of all are settled.
 const MEASURED: usize = 6;
 const SETTLED: usize = 2;
+/// Leads tried above an impossible one in the first look, and in each round of settling.
+const CLIMBS: u32 = 6;
+const BRINK: u32 = 7;
 /// Rounds of coordinate searches; steps shrink in each.
-const ROUNDS: u32 = 3;
+const ROUNDS: u32 = 4;
 const SHRINK: f64 = 0.35;
 
 /// The best posture of the best tool at a point.
@@ -424,6 +427,29 @@ impl Search<'_> {
             .and_then(|(p, _)| Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).ok()?)))
     }
 
+    /// The least lead above an impossible posture that leaves a strip: widest where two contacts just hold.
+    fn to_the_brink(&mut self, from: Posture, climbs: u32) -> Option<Found> {
+        let lead = self.limits.lead;
+        let at_lead = |lead_rad: f64| Posture { lean: Lean { lead_rad, ..from.lean }, ..from };
+        let (mut low, mut high) = (from.lean.lead_rad, None);
+        // Doubling the climb finds a possible lead, halving the least one.
+        let mut climb = 0.04 * lead.width();
+        for _ in 0..climbs {
+            let next = match high {
+                None if low >= lead.most_rad => return None,
+                None => lead.clamp(low + climb),
+                Some((p, _)) => 0.5 * (low + posture_lead(&p)),
+            };
+            let p = at_lead(next);
+            match self.measure(p) {
+                Some(m) => high = Some((p, m)),
+                None => low = next,
+            }
+            climb *= 2.0;
+        }
+        high
+    }
+
     /// Directions and tilts at the least lead.
     fn least_lead(&self) -> Vec<Posture> {
         let tilt = self.limits.tilt;
@@ -537,6 +563,10 @@ impl Search<'_> {
         let (pa, pb) = (self.moved(&from.0, coordinate, -step), self.moved(&from.0, coordinate, step));
         let (a, b) = (self.measure(pa), self.measure(pb));
         let mut best = better(better(from, pa, a), pb, b);
+        if coordinate == 1 && a.is_none() {
+            let brink = self.to_the_brink(pa, BRINK);
+            best = brink.map_or(best, |(p, m)| better(best, p, Some(m)));
+        }
         let (fa, f0, fb) = (value(a), from.1.rate.area_mm2_min, value(b));
         let bend = fa - 2.0 * f0 + fb;
         let to = if bend < 0.0 { 0.5 * step * (fa - fb) / bend } else { 0.0 };
@@ -569,6 +599,10 @@ impl Search<'_> {
             Binding::Inside
         }
     }
+}
+
+fn posture_lead(p: &Posture) -> f64 {
+    p.lean.lead_rad
 }
 
 /// Whether two postures share a neighbourhood of the grid.
