@@ -31,6 +31,7 @@ mod part;
 pub mod patches;
 pub mod sections;
 pub mod step;
+pub mod stl;
 mod topology;
 mod trim;
 mod trimmed;
