@@ -20,6 +20,8 @@ pub struct Cli {
 pub enum Verb {
     /// What is in a CAD file: faces with kind, degrees, poles, area, curvature range, what was not understood.
     Inspect(PartArgs),
+    /// Faces as STEP, IGES or JSON, or their triangles as STL or OBJ, by the ending of the file to write.
+    Export(ExportArgs),
     /// Point, normal, fundamental forms, principal curvatures and directions at parameters.
     Probe {
         /// The part.
@@ -110,6 +112,31 @@ pub struct LinesArgs {
     /// Folder for the figures and lines.json.
     #[arg(long)]
     pub out: PathBuf,
+}
+
+/// What `export` takes.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// A STEP or IGES file, or the JSON of an export.
+    pub part: PathBuf,
+    /// Only these faces, by their ids in `inspect`, with commas between.
+    #[arg(long, value_name = "IDS", value_delimiter = ',')]
+    pub faces: Vec<String>,
+    /// The file to write: .step, .stp, .igs, .iges, .json, .stl or .obj.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Triangles: largest distance from the faces; a thousandth of the part's size where not given.
+    #[arg(long)]
+    pub chord_mm: Option<f64>,
+    /// Triangles: largest angle between the normals at the ends of a side.
+    #[arg(long)]
+    pub angle_deg: Option<f64>,
+    /// Triangles: longest side.
+    #[arg(long)]
+    pub max_edge_mm: Option<f64>,
+    /// STL as text.
+    #[arg(long)]
+    pub text: bool,
 }
 
 /// What `post` takes.

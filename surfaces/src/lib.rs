@@ -25,6 +25,7 @@
 pub mod fit;
 pub mod gallery;
 pub mod iges;
+pub mod json;
 pub mod lines;
 mod mesh;
 mod part;

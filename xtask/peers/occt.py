@@ -2,6 +2,8 @@
 
 usage: occt.py FILE...   prints one JSON object a line
        occt.py --time N FILE   reads the file N times and prints the least seconds
+       occt.py --compare INSPECT.json ORIGINAL EXPORT...
+           compares every export with the original and with our own areas, one line each; exit 1 where they differ
 Needs the PyPI package cadquery-ocp-novtk (or cadquery-ocp).
 """
 
@@ -73,7 +75,44 @@ def report(path):
     }
 
 
+# Two kernels' loops follow circles to a few millionths; OpenCASCADE against itself on the same geometry is the sharper test.
+OURS = 1e-5
+SAME = 1e-6
+
+
+def largest(areas, others):
+    pairs = zip(sorted(areas), sorted(others))
+    return max((abs(a - b) / max(a, b, 1e-300) for a, b in pairs), default=0.0)
+
+
+def compare(inspect, original, exports):
+    with open(inspect, encoding="utf-8") as file:
+        ours = [face["area_mm2"] for face in json.load(file)["faces"]]
+    before = report(original)
+    reference = [face["area"] for face in before["faces"]]
+    good = True
+    for path in exports:
+        got = report(path)
+        areas = [face["area"] for face in got["faces"]]
+        kinds = sorted(face["kind"] for face in got["faces"])
+        same_kinds = kinds == sorted(face["kind"] for face in before["faces"])
+        counts = len(areas) == len(reference) == len(ours)
+        to_occt = largest(areas, reference) if counts else float("nan")
+        to_ours = largest(areas, ours) if counts else float("nan")
+        fine = counts and got["valid"] and to_occt <= SAME and to_ours <= OURS
+        good = good and fine
+        name = path.replace("\\", "/").rsplit("/", 1)[-1]
+        print(
+            f"{name:36} {len(reference):6} {len(areas):6} {'same' if same_kinds else 'other':>6} "
+            f"{got['solids']:6} {'yes' if got['valid'] else 'NO':>6} {to_occt:10.1e} {to_ours:10.1e}  "
+            f"{'ok' if fine else 'DIFFERS'}"
+        )
+    return good
+
+
 def main(arguments):
+    if arguments[:1] == ["--compare"]:
+        sys.exit(0 if compare(arguments[1], arguments[2], arguments[3:]) else 1)
     if arguments[:1] == ["--time"]:
         times, path = int(arguments[1]), arguments[2]
         best = min(read(path)[1:] for _ in range(times))

@@ -46,6 +46,15 @@ pub enum Failure {
     NoWorkspace(PathBuf),
     /// The rules of `tidy` that are broken.
     Untidy(usize),
+    /// A program of others that a comparison needs is not there.
+    NoPeer {
+        /// What it is.
+        what: &'static str,
+        /// How to get it.
+        how: &'static str,
+    },
+    /// Comparisons with another program that came out differently.
+    Differs(usize),
     /// A step of `ci` failed.
     Step {
         /// The step.
@@ -66,6 +75,8 @@ impl std::fmt::Display for Failure {
             Self::NoWorkspace(from) => {
                 write!(f, "no Cargo.toml with a [workspace] at or above {}", from.display())
             }
+            Self::NoPeer { what, how } => write!(f, "{what} is missing: {how}"),
+            Self::Differs(count) => write!(f, "{count} parts came out differently, see above"),
             Self::Untidy(1) => write!(f, "tidy: 1 finding, see above"),
             Self::Untidy(count) => write!(f, "tidy: {count} findings, see above"),
             Self::Step { name, why } => write!(f, "step {name} FAILED: {why}"),

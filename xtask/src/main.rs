@@ -21,6 +21,9 @@ const USAGE: &str = "\
 usage: cargo xtask COMMAND
 
   test [ARGS]   every test of the workspace, doctests included; ARGS go to `cargo test`
+  interop [occt FILES | occt --time FILE]
+                our exports of the example parts (or FILES) read by OpenCASCADE: faces, kinds, areas, validity;
+                --time: its reading of a STEP file beside ours, the best of seven
   tidy          the rules of the workspace that neither the compiler nor clippy checks
   interop linuxcnc
                 LinuxCNC's interpreter and kinematics, and pygcode, on our programs (Debian: apt-get, dpkg, gcc, pip)
@@ -48,6 +51,8 @@ fn main() -> ExitCode {
         ["truth", rest @ ..] => example("truth", rest),
         ["papers", "z17"] => z17(),
         ["figures"] => figures::run(),
+        ["interop"] => interop::occt(&[]),
+        ["interop", "occt", rest @ ..] => interop::occt(rest),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             Ok(())

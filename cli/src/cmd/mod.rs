@@ -1,5 +1,6 @@
 //! The verbs.
 
+pub mod export;
 pub mod gallery;
 pub mod inspect;
 pub mod lines;

@@ -7,7 +7,8 @@ use osculate_surfaces::{Face, step};
 
 pub fn faces(data: &str) -> Vec<Face> {
     let part = step::read(file(data).as_bytes()).unwrap();
-    assert!(part.not_used.is_empty(), "{:?}", part.not_used);
+    // The point of a loop that is a single vertex bounds nothing.
+    assert!(part.not_used.iter().all(|n| n.kind.ends_with("POINT")), "{:?}", part.not_used);
     part.faces
 }
 

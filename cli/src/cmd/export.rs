@@ -1,0 +1,141 @@
+//! `export`: faces of a part as STEP, IGES, JSON, or triangles as STL or OBJ.
+
+use crate::args::ExportArgs;
+use crate::failure::{Done, Failure, Outcome, read};
+use crate::{output, render};
+use osculate_surfaces::{Face, MeshOptions, PartMesh, iges, json, mesh_faces, step, stl};
+use serde::Serialize;
+
+#[derive(Serialize)]
+struct Triangles {
+    count: usize,
+    area_mm2: f64,
+    chord_error_mm: f64,
+    open_edges: usize,
+    bad_edges: usize,
+    watertight: bool,
+    unfinished: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    out: String,
+    format: &'static str,
+    faces: usize,
+    bytes: usize,
+    triangles: Option<Triangles>,
+}
+
+/// Chord tolerance as a part of the box's diagonal where none is given.
+const CHORD: f64 = 1e-3;
+
+/// Runs the verb.
+pub fn run(args: &ExportArgs, as_json: bool) -> Outcome {
+    let faces = chosen(args)?;
+    let name = args.out.file_stem().map_or_else(|| "part".to_owned(), |s| s.to_string_lossy().into_owned());
+    let kind = args.out.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let fail = |e: &dyn std::fmt::Display| Failure::file(&args.out, e);
+    let mut triangles = None;
+    let (format, bytes) = match kind.as_str() {
+        "step" | "stp" => {
+            let options = step::StepOptions { name, ..step::StepOptions::default() };
+            ("step", step::write(&faces, &options).map_err(|e| fail(&e))?.into_bytes())
+        }
+        "igs" | "iges" => {
+            let options = iges::IgesOptions { name, ..iges::IgesOptions::default() };
+            ("iges", iges::write(&faces, &options).map_err(|e| fail(&e))?.into_bytes())
+        }
+        "json" => ("json", json::write(&faces).map_err(|e| fail(&e))?.into_bytes()),
+        "stl" | "obj" => {
+            let mesh = meshed(args, &faces)?;
+            triangles = Some(found(&mesh));
+            let ids: Vec<&str> = faces.iter().map(|f| f.id.as_str()).collect();
+            match (kind.as_str(), args.text) {
+                ("obj", _) => ("obj", stl::obj(&mesh, &ids).into_bytes()),
+                (_, true) => ("stl", stl::ascii(&mesh, &name).into_bytes()),
+                (_, false) => ("stl", stl::binary(&mesh)),
+            }
+        }
+        _ => {
+            let path = args.out.display();
+            return Err(Failure::Usage(format!(
+                "{path}: the ending says what to write: .step, .stp, .igs, .iges, .json, .stl or .obj"
+            )));
+        }
+    };
+    output::write(&args.out, &bytes)?;
+    let out = args.out.display().to_string();
+    let answer = Answer { out, format, faces: faces.len(), bytes: bytes.len(), triangles };
+    if as_json {
+        render::json(&answer)?;
+        return Ok(Done::Yes);
+    }
+    render::text(&format!("  {}: {} faces, {} bytes\n", answer.out, answer.faces, answer.bytes));
+    if let Some(t) = &answer.triangles {
+        let closed = if t.watertight {
+            "closed".to_owned()
+        } else {
+            format!("not closed: {} open sides, {} bad ones", t.open_edges, t.bad_edges)
+        };
+        let (count, error) = (t.count, t.chord_error_mm);
+        render::text(&format!("  {count} triangles, {closed}; at most {error:.3e} mm off where measured\n"));
+        if !t.unfinished.is_empty() {
+            render::text(&format!("  farther off than asked: {}\n", t.unfinished.join(", ")));
+        }
+    }
+    Ok(Done::Yes)
+}
+
+/// The faces asked for, of a file that is whole.
+fn chosen(args: &ExportArgs) -> Result<Vec<Face>, Failure> {
+    let bytes = read(&args.part)?;
+    let from_json = args.part.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let mut faces = if from_json {
+        json::read(&bytes).map_err(|e| Failure::file(&args.part, e))?
+    } else {
+        let part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(&args.part, e))?;
+        if part.truncated {
+            let what = "the file is truncated: faces may be missing; export or copy it again";
+            return Err(Failure::file(&args.part, what));
+        }
+        part.faces
+    };
+    if !args.faces.is_empty() {
+        if let Some(id) = args.faces.iter().find(|id| faces.iter().all(|f| f.id != **id)) {
+            let (count, part) = (faces.len(), &args.part);
+            return Err(Failure::file(
+                part,
+                format!("there is no face {id} among its {count} (see inspect)"),
+            ));
+        }
+        faces.retain(|f| args.faces.contains(&f.id));
+    }
+    if faces.is_empty() {
+        return Err(Failure::file(&args.part, "it has no face to export (see inspect)"));
+    }
+    Ok(faces)
+}
+
+fn meshed(args: &ExportArgs, faces: &[Face]) -> Result<PartMesh, Failure> {
+    let size = || faces.iter().fold(osculate_geom::Box3::empty(), |b, f| b.union(&f.bbox())).diagonal_mm();
+    let options = MeshOptions {
+        chord_mm: args.chord_mm.unwrap_or_else(|| CHORD * size()),
+        angle_rad: args.angle_deg.map(f64::to_radians),
+        max_edge_mm: args.max_edge_mm,
+        join_mm: None,
+    };
+    mesh_faces(faces, &options).map_err(Failure::job)
+}
+
+fn found(mesh: &PartMesh) -> Triangles {
+    let r = &mesh.report;
+    Triangles {
+        count: mesh.triangles.len(),
+        area_mm2: mesh.area_mm2(),
+        chord_error_mm: r.chord_error_mm,
+        open_edges: r.open_edges,
+        bad_edges: r.bad_edges,
+        watertight: r.watertight(),
+        unfinished: r.unfinished.clone(),
+    }
+}

@@ -1,0 +1,201 @@
+//! Faces as JSON, both ways: everything that a face is made of, in full precision. The form is in `spec`.
+
+mod curves;
+mod spec;
+mod surfaces;
+
+use crate::knots::MAX_DEGREE;
+use crate::nurbs::NurbsError;
+use crate::nurbs_curve::CurveError;
+use crate::part::{Face, FaceKind};
+use crate::trim::boundary::{Boundary, build};
+use crate::trimmed::TrimError;
+use osculate_geom::analytic::BadSize;
+use osculate_geom::{Side, uv};
+use std::sync::Arc;
+
+/// The number of the form that is written and read.
+pub const FORMAT: u32 = 1;
+
+/// Why a text is no faces.
+#[derive(Debug, thiserror::Error)]
+pub enum JsonError {
+    /// Not the JSON of the form.
+    #[error("not the JSON of faces: {0}")]
+    Syntax(#[from] serde_json::Error),
+    /// Another form.
+    #[error("format {got}, but only format {FORMAT} is read")]
+    Format {
+        /// The number found.
+        got: u32,
+    },
+    /// A face that is none.
+    #[error("face {face}: {why}")]
+    Face {
+        /// Its id.
+        face: String,
+        /// What is wrong with it.
+        why: FaceFault,
+    },
+}
+
+/// What is wrong with a face.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FaceFault {
+    /// A kind that is not known.
+    #[error(
+        "kind {got:?} is none of plane, cylinder, cone, sphere, torus, bspline, bezier, revolution, extrusion, offset, ruled, other"
+    )]
+    Kind {
+        /// The word found.
+        got: String,
+    },
+    /// Axes that make no frame.
+    #[error("a frame with x = {x:?} and z = {z:?}: both must be unit vectors at right angles, to 1e-9")]
+    Frame {
+        /// First axis.
+        x: [f64; 3],
+        /// Third axis.
+        z: [f64; 3],
+    },
+    /// A number that is not finite.
+    #[error("{what} is not finite or not positive")]
+    Number {
+        /// Which one.
+        what: &'static str,
+    },
+    /// Rows of different lengths.
+    #[error("row {row} of the {what} has {got} entries, the first one {need}")]
+    Rows {
+        /// Poles or weights.
+        what: &'static str,
+        /// Which row, from 0.
+        row: usize,
+        /// Its length.
+        got: usize,
+        /// The first one's.
+        need: usize,
+    },
+    /// An edge with neither a curve and its ends nor parameters, or with both.
+    #[error("edge {edge} of loop {of}: it needs either a curve with ends or parameters (two pairs or more)")]
+    Edge {
+        /// Which loop, from 0.
+        of: usize,
+        /// Which edge, from 0.
+        edge: usize,
+    },
+    /// A size of a surface.
+    #[error(transparent)]
+    Size(#[from] BadSize),
+    /// A spline surface.
+    #[error(transparent)]
+    Surface(#[from] NurbsError),
+    /// A spline curve.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// Loops.
+    #[error(transparent)]
+    Trim(#[from] TrimError),
+}
+
+/// Why faces cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum JsonWriteError {
+    /// A number that JSON cannot hold, or a text that cannot be made.
+    #[error("the faces cannot be written as JSON: {0}")]
+    Text(#[from] serde_json::Error),
+}
+
+/// Writes faces.
+///
+/// # Errors
+/// [`JsonWriteError`].
+pub fn write(faces: &[Face]) -> Result<String, JsonWriteError> {
+    let faces = faces.iter().map(of_face).collect();
+    let mut text = serde_json::to_string_pretty(&spec::File { format: FORMAT, faces })?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// Reads faces that [`write`] has written.
+///
+/// # Errors
+/// [`JsonError`] with the place in the text, or the face and what is wrong with it.
+pub fn read(bytes: &[u8]) -> Result<Vec<Face>, JsonError> {
+    let file: spec::File = serde_json::from_slice(bytes)?;
+    if file.format != FORMAT {
+        return Err(JsonError::Format { got: file.format });
+    }
+    let numbered = file.faces.into_iter().enumerate();
+    numbered
+        .map(|(k, f)| {
+            let id = f.id.clone();
+            to_face(f, k as u64 + 1).map_err(|why| JsonError::Face { face: id, why })
+        })
+        .collect()
+}
+
+const KINDS: [FaceKind; 12] = [
+    FaceKind::Plane,
+    FaceKind::Cylinder,
+    FaceKind::Cone,
+    FaceKind::Sphere,
+    FaceKind::Torus,
+    FaceKind::Bspline,
+    FaceKind::Bezier,
+    FaceKind::Revolution,
+    FaceKind::Extrusion,
+    FaceKind::Offset,
+    FaceKind::Ruled,
+    FaceKind::Other,
+];
+
+fn of_face(face: &Face) -> spec::Face {
+    spec::Face {
+        id: face.id.clone(),
+        name: face.name.clone(),
+        kind: face.kind.to_string(),
+        oriented: face.oriented,
+        side: surfaces::of_side(face.surface.side()),
+        surface: surfaces::of_surface(&face.carrier),
+        loops: curves::of_loops(face),
+    }
+}
+
+fn to_face(f: spec::Face, entity: u64) -> Result<Face, FaceFault> {
+    let kind = KINDS.into_iter().find(|k| k.to_string() == f.kind);
+    let kind = kind.ok_or_else(|| FaceFault::Kind { got: f.kind.clone() })?;
+    let carrier = surfaces::to_surface(f.surface)?;
+    let mut loops: Vec<Vec<Boundary>> = Vec::with_capacity(f.loops.len());
+    for (of, edges) in f.loops.into_iter().enumerate() {
+        let mut boundary = Vec::with_capacity(edges.len());
+        for (edge, e) in edges.into_iter().enumerate() {
+            boundary.push(curves::to_boundary(e, of, edge)?);
+        }
+        loops.push(boundary);
+    }
+    let side = match f.side {
+        spec::Side::Along => Side::Along,
+        spec::Side::Against => Side::Against,
+    };
+    let built = build(carrier, &loops, side, f.oriented)?;
+    Ok(Face {
+        id: f.id,
+        name: f.name,
+        entity,
+        kind,
+        oriented: f.oriented,
+        carrier: built.assembled.carrier,
+        surface: Arc::new(built.assembled.surface),
+    })
+}
+
+/// A parameter pair that is two finite numbers.
+fn finite_uv([u, v]: [f64; 2]) -> Result<osculate_geom::Uv, FaceFault> {
+    if u.is_finite() && v.is_finite() { Ok(uv(u, v)) } else { Err(FaceFault::Number { what: "a parameter" }) }
+}
+
+/// Degrees are bounded before anything is made of them.
+const fn possible(degree: usize) -> bool {
+    degree >= 1 && degree <= MAX_DEGREE
+}
