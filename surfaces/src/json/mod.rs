@@ -7,7 +7,7 @@ mod surfaces;
 use crate::knots::MAX_DEGREE;
 use crate::nurbs::NurbsError;
 use crate::nurbs_curve::CurveError;
-use crate::part::{Face, FaceKind};
+use crate::part::{Colour, Face, FaceKind};
 use crate::trim::boundary::{Boundary, build};
 use crate::trimmed::TrimError;
 use osculate_geom::analytic::BadSize;
@@ -154,6 +154,8 @@ fn of_face(face: &Face) -> spec::Face {
     spec::Face {
         id: face.id.clone(),
         name: face.name.clone(),
+        product: face.product.clone(),
+        colour: face.colour.map(|c| [c.red, c.green, c.blue]),
         kind: face.kind.to_string(),
         oriented: face.oriented,
         side: surfaces::of_side(face.surface.side()),
@@ -165,6 +167,7 @@ fn of_face(face: &Face) -> spec::Face {
 fn to_face(f: spec::Face, entity: u64) -> Result<Face, FaceFault> {
     let kind = KINDS.into_iter().find(|k| k.to_string() == f.kind);
     let kind = kind.ok_or_else(|| FaceFault::Kind { got: f.kind.clone() })?;
+    let colour = f.colour.map(|[red, green, blue]| Colour { red, green, blue });
     let carrier = surfaces::to_surface(f.surface)?;
     let mut loops: Vec<Vec<Boundary>> = Vec::with_capacity(f.loops.len());
     for (of, edges) in f.loops.into_iter().enumerate() {
@@ -182,6 +185,8 @@ fn to_face(f: spec::Face, entity: u64) -> Result<Face, FaceFault> {
     Ok(Face {
         id: f.id,
         name: f.name,
+        product: f.product,
+        colour,
         entity,
         kind,
         oriented: f.oriented,

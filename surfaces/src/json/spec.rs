@@ -26,6 +26,12 @@ pub(super) struct Face {
     pub(super) id: String,
     #[serde(default)]
     pub(super) name: String,
+    /// The product that it belongs to.
+    #[serde(default)]
+    pub(super) product: String,
+    /// Red, green and blue from 0 to 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) colour: Option<[f64; 3]>,
     pub(super) kind: String,
     pub(super) oriented: bool,
     pub(super) side: Side,
@@ -49,7 +55,18 @@ pub(super) enum Surface {
     Cone(Cone),
     Sphere(Round),
     Torus(Torus),
+    /// The inner part of a spindle torus.
+    Lemon(Torus),
     Nurbs(Nurbs),
+    Offset(Offset),
+}
+
+/// A spline moved along its normal `S_u x S_v`.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Offset {
+    pub(super) base: Nurbs,
+    pub(super) distance_mm: f64,
 }
 
 /// Right-handed: y is z x x.

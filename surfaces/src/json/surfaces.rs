@@ -5,7 +5,7 @@ use crate::nurbs::{Net, NurbsSurface};
 use crate::trim::analytic::{Analytic, Shape};
 use crate::trim::carrier::FaceSurface;
 use osculate_geom::analytic::Placement;
-use osculate_geom::{Axis, Point3, Side, Unit3, Vec3};
+use osculate_geom::{Axis, Offset, Point3, Side, Unit3, Vec3};
 use std::sync::Arc;
 
 pub(super) const fn of_side(side: Side) -> spec::Side {
@@ -61,21 +61,29 @@ pub(super) fn of_surface(surface: &FaceSurface) -> spec::Surface {
                 Shape::Torus { major_radius_mm, minor_radius_mm } => {
                     spec::Surface::Torus(spec::Torus { frame, major_radius_mm, minor_radius_mm })
                 }
+                Shape::Lemon { major_radius_mm, minor_radius_mm } => {
+                    spec::Surface::Lemon(spec::Torus { frame, major_radius_mm, minor_radius_mm })
+                }
             }
         }
-        FaceSurface::Nurbs(n) => {
-            let net = n.net();
-            let row = net.count[1];
-            let knots = [Axis::U, Axis::V].map(|axis| n.knots(axis).as_slice().to_vec());
-            let poles = net.points.chunks(row).map(|r| r.iter().map(|p| p.coords.into()).collect());
-            spec::Surface::Nurbs(spec::Nurbs {
-                degree: n.degree(),
-                knots,
-                poles_mm: poles.collect(),
-                weights: net.weights.as_ref().map(|w| w.chunks(row).map(<[f64]>::to_vec).collect()),
-                side: of_side(n.side()),
-            })
+        FaceSurface::Offset(o) => {
+            spec::Surface::Offset(spec::Offset { base: of_nurbs(o.base()), distance_mm: o.distance_mm() })
         }
+        FaceSurface::Nurbs(n) => spec::Surface::Nurbs(of_nurbs(n)),
+    }
+}
+
+fn of_nurbs(n: &NurbsSurface) -> spec::Nurbs {
+    let net = n.net();
+    let row = net.count[1];
+    let knots = [Axis::U, Axis::V].map(|axis| n.knots(axis).as_slice().to_vec());
+    let poles = net.points.chunks(row).map(|r| r.iter().map(|p| p.coords.into()).collect());
+    spec::Nurbs {
+        degree: n.degree(),
+        knots,
+        poles_mm: poles.collect(),
+        weights: net.weights.as_ref().map(|w| w.chunks(row).map(<[f64]>::to_vec).collect()),
+        side: of_side(n.side()),
     }
 }
 
@@ -95,12 +103,21 @@ pub(super) fn to_surface(s: spec::Surface) -> Result<FaceSurface, FaceFault> {
             let (major_radius_mm, minor_radius_mm) = (t.major_radius_mm, t.minor_radius_mm);
             (Shape::Torus { major_radius_mm, minor_radius_mm }, t.frame)
         }
-        spec::Surface::Nurbs(n) => return to_nurbs(n),
+        spec::Surface::Lemon(t) => {
+            let (major_radius_mm, minor_radius_mm) = (t.major_radius_mm, t.minor_radius_mm);
+            (Shape::Lemon { major_radius_mm, minor_radius_mm }, t.frame)
+        }
+        spec::Surface::Nurbs(n) => return Ok(FaceSurface::Nurbs(Arc::new(to_nurbs(n)?))),
+        spec::Surface::Offset(o) => {
+            let number = FaceFault::Number { what: "distance_mm" };
+            let made = Offset::new(Arc::new(to_nurbs(o.base)?), o.distance_mm).map_err(|_| number)?;
+            return Ok(FaceSurface::Offset(Arc::new(made)));
+        }
     };
     Ok(FaceSurface::Analytic(Arc::new(Analytic::new(shape, to_frame(&frame)?)?)))
 }
 
-fn to_nurbs(n: spec::Nurbs) -> Result<FaceSurface, FaceFault> {
+fn to_nurbs(n: spec::Nurbs) -> Result<NurbsSurface, FaceFault> {
     if !n.degree.into_iter().all(possible) {
         return Err(FaceFault::Number {
             what: "a degree, which must be at least 1 and not above the greatest,",
@@ -119,9 +136,8 @@ fn to_nurbs(n: spec::Nurbs) -> Result<FaceSurface, FaceFault> {
     let points = n.poles_mm.into_iter().flatten().map(Point3::from).collect();
     let weights = n.weights.map(|w| w.into_iter().flatten().collect());
     let surface = NurbsSurface::new(n.degree, n.knots, Net { count, points, weights })?;
-    let surface = match n.side {
+    Ok(match n.side {
         spec::Side::Along => surface,
         spec::Side::Against => surface.with_side(Side::Against),
-    };
-    Ok(FaceSurface::Nurbs(Arc::new(surface)))
+    })
 }
