@@ -10,7 +10,7 @@
 //! `height <= min over motions i, j of max over corners c of (h_i(c) + h_j(c)) / 2 + k r^2 / 2`.
 //!
 //! At a cusp this is above the truth by a term in r^2 only, where one motion alone has one in r. The motions tried are the
-//! one that cut the sample and the lowest of those that come near the cell. Cells whose bound is above what the samples have shown are divided, parts that lie
+//! one that cut the sample, those that cut the samples around, and the lowest of all that come near the cell. Cells whose bound is above what the samples have shown are divided, parts that lie
 //! outside the trims left aside, up to [`DIVISIONS`] times. Heights along the cell's own normals are lower than along n by
 //! a factor within `1 / (1 - k r)`, which is put on top. The bound holds to leading order in the curvature's change over a
 //! cell and in the sagitta of turning motions.
@@ -70,7 +70,9 @@ pub fn hidden(
                 let k = *k as usize;
                 let (Some(patch), true) = (patches.get(k).copied().flatten(), judged(k)) else { continue };
                 let surface = surfaces[job.samples[k].face as usize];
-                let cell = Cell { surface, world: &world, own: cuts[k].by.map_or(0, |by| by.motion) };
+                let own = cuts[k].by.map_or(0, |by| by.motion);
+                let beside = world.beside(k, &group.members, cuts);
+                let cell = Cell { surface, world: &world, own, beside };
                 let (height, radius) = cell.bound(&patch, &mut None, DIVISIONS);
                 let level = 0.5 * (1.0 / tool_radius_mm + patch.convex_per_mm) * radius * radius;
                 bounds = [bounds[0].max(height), bounds[1].max(level)];
@@ -91,11 +93,40 @@ struct World<'a> {
     seen: f64,
 }
 
+/// Samples around a cell whose motions are tried first.
+const BESIDE: usize = 10;
+
+impl World<'_> {
+    /// The motions that cut the samples nearest to sample `k` among `members`: at a cusp they are the other side.
+    fn beside(&self, k: usize, members: &[u32], cuts: &[Cut]) -> Vec<u32> {
+        let here = self.job.samples[k].point;
+        // Kept sorted by distance; few enough that insertion is quickest.
+        let mut nearest: Vec<(f64, u32)> = Vec::with_capacity(BESIDE + 1);
+        for m in members {
+            let Some(by) = cuts[*m as usize].by else { continue };
+            let away = (self.job.samples[*m as usize].point - here).norm_squared();
+            if nearest.len() < BESIDE || nearest.last().is_some_and(|l| away < l.0) {
+                nearest.insert(nearest.partition_point(|n| n.0 <= away), (away, by.motion));
+                nearest.truncate(BESIDE);
+            }
+        }
+        let mut motions: Vec<u32> = Vec::with_capacity(BESIDE);
+        for (_, motion) in nearest {
+            if !motions.contains(&motion) {
+                motions.push(motion);
+            }
+        }
+        motions
+    }
+}
+
 struct Cell<'a> {
     surface: &'a dyn Surface,
     world: &'a World<'a>,
     /// The motion that cut the sample.
     own: u32,
+    /// Motions that cut the samples around.
+    beside: Vec<u32>,
 }
 
 impl Cell<'_> {
@@ -121,18 +152,29 @@ impl Cell<'_> {
             return (best, radius);
         }
         let mut all = vec![mine];
-        let around = near
-            .get_or_insert_with(|| self.around(points, jet.point, normal, best.min(self.world.job.stock_mm)));
-        for motion in around.iter().filter(|m| **m != self.own) {
-            let other = at(*motion);
+        // The lowest bound of one motion more, alone and in the mean with those before.
+        let mut best_of = |motion: u32, mut best: f64| {
+            let other = at(motion);
             best = best.min(upper(top(other)));
             for one in &all {
                 best = best.min(upper(top(std::array::from_fn(|c| 0.5 * (one[c] + other[c])))));
             }
+            all.push(other);
+            best
+        };
+        for motion in self.beside.iter().filter(|m| **m != self.own) {
+            best = best_of(*motion, best);
             if best <= seen {
                 return (best, radius);
             }
-            all.push(other);
+        }
+        let around = near
+            .get_or_insert_with(|| self.around(points, jet.point, normal, best.min(self.world.job.stock_mm)));
+        for motion in around.iter().filter(|m| **m != self.own && !self.beside.contains(m)) {
+            best = best_of(*motion, best);
+            if best <= seen {
+                return (best, radius);
+            }
         }
         if divisions == 0 {
             return (best, radius);
