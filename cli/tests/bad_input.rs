@@ -29,7 +29,7 @@ fn files_that_are_no_parts() {
     inspect(&scratch.path("nothing.igs")).refused(&["nothing.igs", "cannot be read"]);
     inspect(&scratch.write("empty.step", "")).refused(&["empty.step", "empty"]);
     inspect(&scratch.write("prose.step", "It was a dark and stormy night.\n"))
-        .refused(&["prose.step", "not a STEP"]);
+        .refused(&["prose.step", "no format that is read"]);
     let hull = include_str!("../../examples/wigley-hull/hull.step");
     let cut = &hull[..hull.len() / 3];
     let run = inspect(&scratch.write("cut.step", cut));
