@@ -1,6 +1,6 @@
 //! Curves and surfaces through or near points: interpolation, least squares, and lofts over sections.
 //!
-//! - [`interpolate`] and [`approximate`] make a [`NurbsCurve`] of a row of points, open or closed;
+//! - [`interpolate`] and [`approximate`] make a `NurbsCurve` of a row of points, open or closed;
 //! - [`interpolate_grid`] and [`approximate_grid`] a surface of a grid of points;
 //! - [`loft`] a surface of sections with differing numbers of points, [`skin`] one of curves.
 //!

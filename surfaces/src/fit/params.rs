@@ -10,7 +10,7 @@ pub enum Spacing {
     Uniform,
     /// Steps like the distances: speed near one, overshoots at sharp turns.
     Chord,
-    /// Steps like the roots of the distances [Lee]: calmer where distances change or the points turn sharply.
+    /// Steps like the roots of the distances (Lee): calmer where distances change or the points turn sharply.
     #[default]
     Centripetal,
 }

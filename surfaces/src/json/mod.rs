@@ -117,7 +117,7 @@ pub fn write(faces: &[Face]) -> Result<String, JsonWriteError> {
     Ok(text)
 }
 
-/// Reads faces that [`write`] has written.
+/// Reads faces that [`write()`] has written.
 ///
 /// # Errors
 /// [`JsonError`] with the place in the text, or the face and what is wrong with it.

@@ -3,7 +3,7 @@
 //! Every side of a file, the suction side say, becomes one face: cubic along the sections (u) and across them (v),
 //! quadratic or straight where there are too few points or sections, with the points on it to rounding. A section
 //! whose end meets its start is closed. A contour of radii over an axis becomes a surface of revolution about it. The
-//! layouts that are read are those of [`layout`].
+//! layouts that are read are those of `layout`.
 
 mod layout;
 

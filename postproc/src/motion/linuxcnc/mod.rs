@@ -1,9 +1,9 @@
 //! The trajectory planner of LinuxCNC 2.9, as far as time depends on it.
 //!
 //! The control samples the path once per step (1 ms). Every piece runs at a trapezoid of speed along its length; F,
-//! the axes' speeds and accelerations bound it per piece. How pieces meet is decided as they come in ([`blend`]), the
-//! speed at which each may end is found by looking back from the newest piece over the queue ([`optimise`]), and the
-//! steps themselves ([`cycle`]) add up to the time. Jerk is not limited. A piece with rotary motion is blended with
+//! the axes' speeds and accelerations bound it per piece. How pieces meet is decided as they come in (`blend`), the
+//! speed at which each may end is found by looking back from the newest piece over the queue (`optimise`), and the
+//! steps themselves (`cycle`) add up to the time. Jerk is not limited. A piece with rotary motion is blended with
 //! its neighbours parabolically and has half of the axes' acceleration for that: many short five-axis blocks take
 //! much longer than their F says.
 //!
