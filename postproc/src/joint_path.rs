@@ -60,9 +60,8 @@ pub struct JointPath {
 }
 
 impl JointPath {
-    /// Goes on with another piece of the same path.
-    pub(crate) fn append(&mut self, mut piece: Self) {
-        self.blocks.append(&mut piece.blocks);
+    /// Adds what another piece of the same path took and what was found there; its blocks are left out.
+    pub(crate) fn append_report(&mut self, mut piece: Self) {
         self.diagnostics.append(&mut piece.diagnostics);
         let (s, p) = (&mut self.summary, piece.summary);
         s.inserted_points += p.inserted_points;

@@ -22,6 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod choices;
 pub mod cldata;
 pub mod feed;
 pub mod joint_path;
@@ -33,6 +34,7 @@ mod post;
 mod sequence;
 mod setup;
 mod solve;
+mod solve_error;
 mod suggest;
 
 pub use feed::{FeedMode, PathMetric};
@@ -40,7 +42,8 @@ pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
 pub use machine::{Machine, MachineError, built_in_names};
 pub use nc::Dialect;
 pub use nc::readback;
-pub use post::{PostError, PostOptions, PostSummary, Posted, post};
+pub use post::{PostError, PostOptions, PostReport, PostSummary, Posted, post, post_to};
 pub use setup::{Setup, SetupError};
-pub use solve::{SolveError, SolveOptions};
+pub use solve::SolveOptions;
+pub use solve_error::SolveError;
 pub use suggest::{Suggestion, suggest};

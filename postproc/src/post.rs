@@ -1,18 +1,22 @@
 //! The whole way from a CL path to NC text.
 
+use std::io;
+
 use osculate_geom::Diagnostic;
 use osculate_tools::cl::{ClPath, Motion};
 
 use crate::feed::{
     FeedMode, PathMetric, Step, capped_duration, duration_min, fastest_durations_min, inverse_time_per_min,
 };
-use crate::joint_path::{JointBlock, JointPath};
-use crate::machine::Machine;
+use crate::joint_path::JointBlock;
+use crate::machine::{JointValues, Machine};
 use crate::motion::rapid_time_min;
 use crate::nc::block::RotaryName;
+use crate::nc::writer::Writer;
 use crate::nc::{Dialect, FeedWord, NcMove, Program, WriteError, number};
 use crate::setup::Setup;
-use crate::solve::{SolveError, SolveOptions};
+use crate::solve::SolveOptions;
+use crate::solve_error::SolveError;
 
 /// How a path is to be posted.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +89,12 @@ pub enum PostError {
     /// The dialect cannot say the program.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The sink takes no more.
+    #[error("the program cannot be written: {kind}")]
+    Sink {
+        /// What the sink says.
+        kind: io::ErrorKind,
+    },
     /// A position beyond what an axis word holds.
     #[error("CL move {index}: a position of {value} does not fit an axis word")]
     Position {
@@ -109,6 +119,15 @@ pub enum PostError {
     },
 }
 
+/// What became of a path whose text went into a sink.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PostReport {
+    /// Figures.
+    pub summary: PostSummary,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
 /// Posts a path: kinematics, feed, words.
 ///
 /// # Errors
@@ -119,11 +138,26 @@ pub fn post(
     setup: &Setup,
     options: &PostOptions,
 ) -> Result<Posted, PostError> {
+    let mut text = Vec::new();
+    let report = post_to(path, machine, setup, options, &mut text)?;
+    let text = String::from_utf8(text).expect("the pieces are text");
+    Ok(Posted { text, summary: report.summary, diagnostics: report.diagnostics })
+}
+
+/// As [`post()`], with the text going to `sink` in pieces of some ten kilobytes. Beside the path, what is held does not
+/// grow with its length, except in [`FeedMode::Fastest`], whose feed at the start depends on the end: 120 bytes a block.
+///
+/// # Errors
+/// As [`post()`], and where the sink takes no more. What the sink has then is a part of a program and must not be run.
+pub fn post_to(
+    path: &ClPath,
+    machine: &Machine,
+    setup: &Setup,
+    options: &PostOptions,
+    sink: &mut dyn io::Write,
+) -> Result<PostReport, PostError> {
     check(path, options)?;
     let tcp = options.feed == FeedMode::Tcp;
-    let joints = machine.solve(path, setup, &SolveOptions { tcp, ..options.solve })?;
-    let mut draft = Draft::new(machine, setup, options);
-    let moves = draft.moves(&joints)?;
     let spindle_rpm = options.spindle_rpm.or(path.spindle_rpm);
     let program = Program {
         name: options.program_name.clone(),
@@ -140,10 +174,32 @@ pub fn post(
             machine.linear().map(|p| machine.joints()[p].letter.clone())
         },
         rotary_names: machine.rotary().iter().map(|p| rotary_name(machine, *p)).collect(),
-        moves,
     };
-    let text = options.dialect.write(&program)?;
-    let mut diagnostics = joints.diagnostics.clone();
+    let mut writer = Writer::new(options.dialect, &program)?;
+    let mut draft = Draft::new(machine, setup, options);
+    let solve = SolveOptions { tcp, ..options.solve };
+    let mut blocks = 0;
+    let mut word = |draft: &mut Draft, writer: &mut Writer, block: &JointBlock, fastest: Option<f64>| {
+        let Some(m) = draft.next(block, fastest)? else { return Ok(()) };
+        blocks += 1;
+        writer.take(&m);
+        if writer.text().len() >= SINK_BYTES { flush(writer, sink) } else { Ok::<(), PostError>(()) }
+    };
+    let joints = if let FeedMode::Fastest { tip_mm_min } = options.feed {
+        let joints = machine.solve(path, setup, &solve)?;
+        let times = fastest_durations_min(machine, &joints, tip_mm_min);
+        for (block, time_min) in joints.blocks.iter().zip(times) {
+            word(&mut draft, &mut writer, block, Some(time_min))?;
+        }
+        joints
+    } else {
+        machine.solve_pieces(path, setup, &solve, |piece| {
+            piece.iter().try_for_each(|block| word(&mut draft, &mut writer, block, None))
+        })?
+    };
+    writer.finish();
+    flush(&mut writer, sink)?;
+    let mut diagnostics = joints.diagnostics;
     if spindle_rpm.is_none() {
         diagnostics.push(Diagnostic::warning(
             "program",
@@ -153,7 +209,7 @@ pub fn post(
     draft.report(&mut diagnostics, &program);
     let s = joints.summary;
     let summary = PostSummary {
-        blocks: program.moves.len(),
+        blocks,
         time_min: draft.time_min,
         rewinds: s.rewinds,
         singular_mm: s.singular_mm,
@@ -161,7 +217,16 @@ pub fn post(
         tip_error_mm: s.tip_error_mm,
         axis_error_deg: s.axis_error_rad.to_degrees(),
     };
-    Ok(Posted { text, summary, diagnostics })
+    Ok(PostReport { summary, diagnostics })
+}
+
+/// Text is given to the sink when there is this much of it.
+const SINK_BYTES: usize = 1 << 16;
+
+fn flush(writer: &mut Writer, sink: &mut dyn io::Write) -> Result<(), PostError> {
+    sink.write_all(writer.text().as_bytes()).map_err(|e| PostError::Sink { kind: e.kind() })?;
+    writer.clear();
+    Ok(())
 }
 
 fn check(path: &ClPath, options: &PostOptions) -> Result<(), PostError> {
@@ -230,6 +295,13 @@ struct Draft<'a> {
     time_min: f64,
     /// Least and greatest feed of the tip, as a share of what was asked for.
     shares: [f64; 2],
+    /// The last move with the joints at its end.
+    last: Option<(NcMove, JointValues)>,
+    /// Tip lengths and times of blocks that rounded to nothing: they go into the next one.
+    carried_mm: f64,
+    carried_min: f64,
+    /// The last F of a mode that bounds its rise.
+    risen: Option<f64>,
 }
 
 impl<'a> Draft<'a> {
@@ -242,68 +314,54 @@ impl<'a> Draft<'a> {
             limited: 0,
             time_min: 0.0,
             shares: [f64::INFINITY, 0.0],
+            last: None,
+            carried_mm: 0.0,
+            carried_min: 0.0,
+            risen: None,
         }
     }
 
-    fn moves(&mut self, path: &JointPath) -> Result<Vec<NcMove>, PostError> {
-        let mut moves: Vec<NcMove> = Vec::with_capacity(path.blocks.len());
-        // Tip lengths of blocks that rounded to nothing: their time goes into the next one.
-        let mut carried_mm = 0.0;
-        let mut last: Option<(NcMove, &JointBlock)> = None;
-        let mut risen: Option<f64> = None;
-        let fastest = match self.options.feed {
-            FeedMode::Fastest { tip_mm_min } => fastest_durations_min(self.machine, path, tip_mm_min),
-            _ => Vec::new(),
+    /// The move of the next block; `None` where it rounds to nothing. `fastest_min` is its time in the fastest program.
+    fn next(&mut self, block: &JointBlock, fastest_min: Option<f64>) -> Result<Option<NcMove>, PostError> {
+        let mut m = self.rounded(block)?;
+        let Some((before, from)) = self.last else {
+            self.last = Some((m, block.joints));
+            return Ok(Some(m));
         };
-        let mut carried_min = 0.0;
-        for (place, block) in path.blocks.iter().enumerate() {
-            let mut m = self.rounded(block)?;
-            let Some((before, from)) = last else {
-                moves.push(m);
-                last = Some((m, block));
-                continue;
-            };
-            if m.linear == before.linear && m.rotary == before.rotary {
-                carried_mm += if m.rapid { 0.0 } else { block.tip_length_mm };
-                carried_min += fastest.get(place).copied().unwrap_or(0.0);
-                continue;
-            }
-            match block.motion {
-                Motion::Rapid => {
-                    self.time_min += rapid_time_min(self.machine, &from.joints, &block.joints).0;
-                    risen = None;
-                }
-                Motion::Feed(wanted) => {
-                    let length = block.tip_length_mm + carried_mm;
-                    let asked_min = match fastest.get(place) {
-                        Some(t) => t + carried_min,
-                        None => duration_min(length, wanted),
-                    };
-                    let capped = capped_duration(self.machine, &from.joints, &block.joints, asked_min);
-                    if let Some(place) = capped.joint {
-                        self.slowed[place] += 1;
-                    }
-                    m.feed = self.feed(
-                        &step(&before, &m),
-                        wanted,
-                        (capped.duration_min, capped.joint.is_some()),
-                        &mut risen,
-                    );
-                    let read_min = self.control_time(&step(&before, &m), m.feed);
-                    if length > 0.0 && read_min > 0.0 {
-                        let share = capped.duration_min / read_min;
-                        self.shares = [self.shares[0].min(share), self.shares[1].max(share)];
-                    }
-                    self.time_min += read_min
-                        .max(capped_duration(self.machine, &from.joints, &block.joints, 0.0).duration_min);
-                }
-            }
-            carried_mm = 0.0;
-            carried_min = 0.0;
-            moves.push(m);
-            last = Some((m, block));
+        if m.linear == before.linear && m.rotary == before.rotary {
+            self.carried_mm += if m.rapid { 0.0 } else { block.tip_length_mm };
+            self.carried_min += fastest_min.unwrap_or(0.0);
+            return Ok(None);
         }
-        Ok(moves)
+        match block.motion {
+            Motion::Rapid => {
+                self.time_min += rapid_time_min(self.machine, &from, &block.joints).0;
+                self.risen = None;
+            }
+            Motion::Feed(wanted) => {
+                let length = block.tip_length_mm + self.carried_mm;
+                let asked_min = match fastest_min {
+                    Some(t) => t + self.carried_min,
+                    None => duration_min(length, wanted),
+                };
+                let capped = capped_duration(self.machine, &from, &block.joints, asked_min);
+                if let Some(place) = capped.joint {
+                    self.slowed[place] += 1;
+                }
+                let step = step(&before, &m);
+                m.feed = self.feed(&step, wanted, (capped.duration_min, capped.joint.is_some()));
+                let read_min = self.control_time(&step, m.feed);
+                if length > 0.0 && read_min > 0.0 {
+                    let share = capped.duration_min / read_min;
+                    self.shares = [self.shares[0].min(share), self.shares[1].max(share)];
+                }
+                self.time_min +=
+                    read_min.max(capped_duration(self.machine, &from, &block.joints, 0.0).duration_min);
+            }
+        }
+        (self.carried_mm, self.carried_min) = (0.0, 0.0);
+        self.last = Some((m, block.joints));
+        Ok(Some(m))
     }
 
     fn rounded(&self, block: &JointBlock) -> Result<NcMove, PostError> {
@@ -327,7 +385,7 @@ impl<'a> Draft<'a> {
     }
 
     /// F of a block that shall take this long.
-    fn feed(&mut self, step: &Step, wanted: f64, duration: (f64, bool), risen: &mut Option<f64>) -> f64 {
+    fn feed(&mut self, step: &Step, wanted: f64, duration: (f64, bool)) -> f64 {
         let (duration_min, slowed) = duration;
         let f = match self.options.feed {
             FeedMode::InverseTime => inverse_time_per_min(duration_min),
@@ -340,8 +398,8 @@ impl<'a> Draft<'a> {
                 let f = mode.metric().unwrap_or(own).length(step) / duration_min;
                 match mode {
                     FeedMode::Kz { step_mm_min, .. } => {
-                        let f = risen.map_or(f, |b| f.min(b + step_mm_min));
-                        *risen = Some(f);
+                        let f = self.risen.map_or(f, |b| f.min(b + step_mm_min));
+                        self.risen = Some(f);
                         f
                     }
                     _ => f,

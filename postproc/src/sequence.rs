@@ -9,12 +9,14 @@
 //! - the branch may change without a rewind only where the tool axis passes through a pole.
 //!
 //! Points inside the singular cone have no states of their own: there the outer joint is free, and it is interpolated
-//! between the neighbours afterwards while the inner one follows the axis as well as it can.
+//! between the neighbours afterwards ([`crate::choices`]) while the inner one follows the axis as well as it can.
+//!
+//! The sweep keeps no points. What it keeps is where each state comes from, and as neighbours nearly always agree in
+//! that, a run of points that do is one entry: a few bytes for every place where the states change, none for the points
+//! between. Where every point differed it would be 16 bytes a point and two a state.
 
+use crate::machine::{Candidate, LIMIT_SLACK, Machine, Orientations, angle_between, nearest_turn};
 use osculate_geom::Unit3;
-use osculate_tools::cl::Motion;
-
-use crate::machine::{Candidate, LIMIT_SLACK, Machine, angle_between, nearest_turn};
 
 /// Price of a rewind in cutting: more than any path's rotary travel that would avoid one.
 const REWIND_COST_S: f64 = 1e4;
@@ -37,8 +39,8 @@ pub(crate) struct Node {
     pub axis: Unit3,
     /// Inside the singular cone.
     pub singular: bool,
-    /// How the point is reached.
-    pub motion: Motion,
+    /// Reached by a rapid move.
+    pub rapid: bool,
 }
 
 /// One choice at a point.
@@ -48,124 +50,198 @@ pub(crate) struct State {
     pub rotary_rad: [f64; 2],
     /// Branch.
     pub branch: usize,
+    /// Its place among all turns of all candidates ([`all_turns`]), those beyond limits counted.
+    pub slot: u8,
 }
 
-/// The choice at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Choice {
-    /// Rotary joints, endless ones counted on.
-    pub rotary_rad: [f64; 2],
-    /// Branch; of the next regular point inside the cone.
-    pub branch: usize,
-    /// The way here from the point before needs a rewind.
-    pub rewind: bool,
+/// The slot of points inside the singular cone.
+pub(crate) const NO_SLOT: u8 = u8::MAX;
+
+/// Every turn of every candidate that the rotary limits allow: at most twice 7 times 7.
+pub(crate) fn all_turns(machine: &Machine, found: &Orientations) -> Vec<State> {
+    let mut all = Vec::with_capacity(4);
+    for candidate in found.candidates() {
+        turns(machine, candidate, &mut all);
+    }
+    all
 }
 
-/// Every turn of the candidate that the rotary limits allow.
-pub(crate) fn turns(machine: &Machine, candidate: &Candidate) -> Vec<State> {
-    let options = |slot: usize| -> Vec<f64> {
-        let q = candidate.rotary_rad[slot];
-        let Some(&place) = machine.rotary().get(slot) else { return vec![0.0] };
-        let joint = machine.joint_at(place);
-        if joint.is_endless() {
-            return vec![q];
+/// Adds every turn of the candidate that the rotary limits allow.
+fn turns(machine: &Machine, candidate: &Candidate, all: &mut Vec<State>) {
+    each_turn(machine, candidate, 0, |outer| {
+        each_turn(machine, candidate, 1, |inner| {
+            let slot = u8::try_from(all.len()).unwrap_or(NO_SLOT - 1);
+            all.push(State { rotary_rad: [outer, inner], branch: candidate.branch, slot });
+        });
+    });
+}
+
+fn each_turn(machine: &Machine, candidate: &Candidate, k: usize, mut take: impl FnMut(f64)) {
+    let q = candidate.rotary_rad[k];
+    let Some(&place) = machine.rotary().get(k) else { return take(0.0) };
+    let joint = machine.joint_at(place);
+    if joint.is_endless() {
+        return take(q);
+    }
+    for turn in -MOST_TURNS..=MOST_TURNS {
+        let q = q + f64::from(turn) * std::f64::consts::TAU;
+        if joint.excess(q) <= LIMIT_SLACK {
+            take(q);
         }
-        let all = (-MOST_TURNS..=MOST_TURNS).map(|k| q + f64::from(k) * std::f64::consts::TAU);
-        all.filter(|q| joint.excess(*q) <= LIMIT_SLACK).collect()
-    };
-    let inner = options(1);
-    let pairs = options(0).into_iter().flat_map(|a| inner.iter().map(move |b| [a, *b]));
-    pairs.map(|rotary_rad| State { rotary_rad, branch: candidate.branch }).collect()
+    }
 }
 
-/// The cheapest states over the nodes. Every node that is not singular must have a state.
-pub(crate) fn choose(machine: &Machine, nodes: &[Node], cone_rad: f64) -> Vec<Choice> {
-    let regular: Vec<usize> = (0..nodes.len()).filter(|&i| !nodes[i].singular).collect();
-    let mut picked = vec![Choice { rotary_rad: [0.0; 2], branch: 0, rewind: false }; nodes.len()];
-    if let Some(&first) = regular.first() {
-        let states = cheapest(machine, nodes, &regular, cone_rad);
-        let mut last = states[0].rotary_rad;
-        for (slot, (&node, state)) in regular.iter().zip(&states).enumerate() {
-            let before = slot.checked_sub(1).map(|s| regular[s]);
-            let step = before.map(|b| Step::between(machine, nodes, b, node, cone_rad));
-            let rewind = step.is_some_and(|s| s.needs_rewind(machine, &states[slot - 1], state));
-            let mut rotary_rad = state.rotary_rad;
-            if node != first {
-                for (k, &place) in machine.rotary().iter().enumerate() {
-                    if machine.joint_at(place).is_endless() {
-                        rotary_rad[k] = nearest_turn(rotary_rad[k], last[k]);
+/// Points in a row whose states come from the same states of the point before.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    points: usize,
+    /// Where its links start in the list of all, and how many there are.
+    links: (usize, usize),
+}
+
+/// Where a state comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Link {
+    slot: u8,
+    from: u8,
+}
+
+/// The sweep: points go in one after the other, the slots of the cheapest way come out.
+pub(crate) struct Search<'a> {
+    machine: &'a Machine,
+    cone_rad: f64,
+    runs: Vec<Run>,
+    links: Vec<Link>,
+    /// The last regular point with the price of each of its states.
+    last: Option<(Node, Vec<f64>)>,
+    /// Singular points since, and a rapid move since.
+    gap: bool,
+    rapid: bool,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(machine: &'a Machine, cone_rad: f64) -> Self {
+        let (runs, links) = (Vec::new(), Vec::new());
+        Self { machine, cone_rad, runs, links, last: None, gap: false, rapid: false }
+    }
+
+    /// The next point; one that is not singular must have a state.
+    pub fn add(&mut self, node: Node) {
+        self.rapid |= node.rapid;
+        let start = self.links.len();
+        if node.singular {
+            self.gap = true;
+            return self.close(start);
+        }
+        let cost = match &self.last {
+            None => {
+                self.links.extend(node.states.iter().map(|s| Link { slot: s.slot, from: 0 }));
+                let first = |s: &State| START_COST * (s.rotary_rad[0].abs() + s.rotary_rad[1].abs());
+                node.states.iter().map(first).collect()
+            }
+            Some((before, cost)) => {
+                let ends = (&before.axis, &node.axis);
+                let step = Step::between(self.machine, ends, (self.gap, self.rapid), self.cone_rad);
+                let mut next = Vec::with_capacity(node.states.len());
+                for to in &node.states {
+                    let mut best = (f64::INFINITY, 0u8);
+                    for ((s, c), i) in before.states.iter().zip(cost).zip(0u8..) {
+                        let total = c + step.cost_s(self.machine, s, to);
+                        if total < best.0 {
+                            best = (total, i);
+                        }
                     }
+                    next.push(best.0);
+                    self.links.push(Link { slot: to.slot, from: best.1 });
                 }
+                next
             }
-            last = rotary_rad;
-            picked[node] = Choice { rotary_rad, branch: state.branch, rewind };
-        }
+        };
+        self.last = Some((node, cost));
+        (self.gap, self.rapid) = (false, false);
+        self.close(start);
     }
-    fill_cone(machine, nodes, &regular, &mut picked);
-    picked
+
+    /// Makes the links from `start` on a point of the last run, or a run of their own.
+    fn close(&mut self, start: usize) {
+        let count = self.links.len() - start;
+        if let Some(run) = self.runs.last_mut() {
+            let (at, n) = run.links;
+            if n == count && self.links[at..at + n] == self.links[start..] {
+                run.points += 1;
+                self.links.truncate(start);
+                return;
+            }
+        }
+        self.runs.push(Run { points: 1, links: (start, count) });
+    }
+
+    /// The cheapest way.
+    pub fn finish(self) -> Slots {
+        let cost = self.last.map(|(_, cost)| cost).unwrap_or_default();
+        let mut at = cost.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
+        let mut slots = Slots { runs: Vec::new() };
+        for run in self.runs.iter().rev() {
+            let links = &self.links[run.links.0..run.links.0 + run.links.1];
+            let mut left = run.points;
+            if links.is_empty() {
+                slots.push(left, NO_SLOT);
+                continue;
+            }
+            while left > 0 {
+                let link = links[at];
+                let here = if usize::from(link.from) == at { left } else { 1 };
+                slots.push(here, link.slot);
+                left -= here;
+                at = usize::from(link.from);
+            }
+        }
+        slots.runs.reverse();
+        slots
+    }
 }
 
-fn cheapest(machine: &Machine, nodes: &[Node], regular: &[usize], cone_rad: f64) -> Vec<State> {
-    let start = |s: &State| {
-        let q = s.rotary_rad;
-        START_COST * (q[0].abs() + q[1].abs())
-    };
-    let mut cost: Vec<f64> = nodes[regular[0]].states.iter().map(start).collect();
-    let mut next: Vec<f64> = Vec::with_capacity(cost.len());
-    // Where each state comes from, all nodes in one list.
-    let mut from: Vec<usize> = Vec::with_capacity(2 * regular.len());
-    let mut starts: Vec<usize> = Vec::with_capacity(regular.len());
-    for pair in regular.windows(2) {
-        let step = Step::between(machine, nodes, pair[0], pair[1], cone_rad);
-        let before = &nodes[pair[0]].states;
-        starts.push(from.len());
-        next.clear();
-        for to in &nodes[pair[1]].states {
-            let mut best = (f64::INFINITY, 0);
-            for (i, (s, c)) in before.iter().zip(&cost).enumerate() {
-                let total = c + step.cost_s(machine, s, to);
-                if total < best.0 {
-                    best = (total, i);
-                }
-            }
-            next.push(best.0);
-            from.push(best.1);
+/// The chosen slot of every point: runs of equal ones.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Slots {
+    /// Points and their slot, in the order of the path.
+    pub runs: Vec<(usize, u8)>,
+}
+
+impl Slots {
+    fn push(&mut self, points: usize, slot: u8) {
+        match self.runs.last_mut() {
+            Some(last) if last.1 == slot => last.0 += points,
+            _ => self.runs.push((points, slot)),
         }
-        std::mem::swap(&mut cost, &mut next);
     }
-    let mut at = cost.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
-    let mut states = vec![nodes[regular[regular.len() - 1]].states[at]];
-    for (slot, start) in starts.iter().enumerate().rev() {
-        at = from[start + at];
-        states.push(nodes[regular[slot]].states[at]);
-    }
-    states.reverse();
-    states
 }
 
 /// What the way between two points allows.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+pub(crate) struct Step {
     rapid: bool,
     through_pole: bool,
 }
 
 impl Step {
-    fn between(machine: &Machine, nodes: &[Node], a: usize, b: usize, cone_rad: f64) -> Self {
-        let rapid = nodes[a + 1..=b].iter().any(|n| n.motion == Motion::Rapid);
-        let through_pole = b > a + 1
+    /// Between the axes of two regular points, where singular points (`gap`) or a rapid move may lie between.
+    pub fn between(
+        machine: &Machine,
+        ends: (&Unit3, &Unit3),
+        (gap, rapid): (bool, bool),
+        cone_rad: f64,
+    ) -> Self {
+        let (a, b) = ends;
+        let through_pole = gap
             || machine.pair().is_some_and(|p| {
                 let pole = p.pole();
-                least_angle(&nodes[a].axis, &nodes[b].axis, &pole).min(least_angle(
-                    &nodes[a].axis,
-                    &nodes[b].axis,
-                    &-pole,
-                )) <= cone_rad
+                least_angle(a, b, &pole).min(least_angle(a, b, &-pole)) <= cone_rad
             });
         Self { rapid, through_pole }
     }
 
-    fn needs_rewind(self, machine: &Machine, a: &State, b: &State) -> bool {
+    pub fn needs_rewind(self, machine: &Machine, a: &State, b: &State) -> bool {
         let turned = machine.rotary().iter().enumerate().any(|(k, &place)| {
             let d = (b.rotary_rad[k] - a.rotary_rad[k]).abs();
             // Half a turn is the most that a continuous axis can ask of a joint between neighbours.
@@ -199,37 +275,4 @@ fn least_angle(a: &Unit3, b: &Unit3, pole: &Unit3) -> f64 {
     let foot = pole.into_inner() - n.into_inner() * n.dot(pole);
     let between = a.cross(&foot).dot(&n) >= 0.0 && foot.cross(b).dot(&n) >= 0.0;
     if between { n.dot(pole).abs().min(1.0).asin() } else { ends }
-}
-
-/// Gives the points inside the cone an outer joint: linear between the regular neighbours over the count of points,
-/// held at the ends of the path; the inner joint then points the tool best.
-fn fill_cone(machine: &Machine, nodes: &[Node], regular: &[usize], picked: &mut [Choice]) {
-    let Some(pair) = machine.pair() else { return };
-    let mut next = 0;
-    for i in 0..nodes.len() {
-        if !nodes[i].singular {
-            next += 1;
-            continue;
-        }
-        let after = regular.get(next).map(|&n| (n, picked[n]));
-        let before = next.checked_sub(1).map(|s| (regular[s], picked[regular[s]]));
-        let (outer, near, branch) = match (before, after) {
-            (Some((p, a)), Some((n, b))) if !b.rewind => {
-                let t = (i - p) as f64 / (n - p) as f64;
-                let lerp = |k: usize| a.rotary_rad[k] + (b.rotary_rad[k] - a.rotary_rad[k]) * t;
-                (lerp(0), lerp(1), a.branch)
-            }
-            (Some((_, a)), _) => (a.rotary_rad[0], a.rotary_rad[1], a.branch),
-            (None, Some((_, b))) => (b.rotary_rad[0], b.rotary_rad[1], b.branch),
-            (None, None) => {
-                let joint = machine.joint_at(machine.rotary()[0]);
-                let rest = 0f64
-                    .max(joint.min.unwrap_or(0.0))
-                    .min(joint.max.unwrap_or(0.0).max(joint.min.unwrap_or(0.0)));
-                (rest, 0.0, 0)
-            }
-        };
-        let inner = machine.turned_near(machine.rotary()[1], pair.inner_for(outer, &nodes[i].axis), near);
-        picked[i] = Choice { rotary_rad: [outer, inner], branch, rewind: false };
-    }
 }

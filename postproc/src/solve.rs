@@ -1,21 +1,23 @@
 //! Inverse kinematics of a whole path: `machine.solve(&path, &setup, &options)`.
 //!
-//! 1. every CL point's candidates, with all limits applied;
-//! 2. branch and turn over the path ([`crate::sequence`]);
+//! 1. every CL point's candidates, with all limits applied, and branch and turn over the path ([`crate::sequence`]);
+//! 2. the path again, a piece at a time, with the joints chosen ([`crate::choices`]);
 //! 3. rewinds, where no continuous choice exists: away from the part along the tool, the rotary joints into their
 //!    other turn or branch with the tip held at its place relative to the part, and back;
 //! 4. linearisation ([`crate::linearize`]).
 
-use osculate_geom::{Diagnostic, Point3};
+use osculate_geom::Diagnostic;
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::{Pose, cl::ClMove};
 use rayon::prelude::*;
 
+use crate::choices::{Choice, Choices};
 use crate::joint_path::{BlockKind, JointBlock, JointPath};
 use crate::linearize::{Label, Liner, Placed, pose_between};
-use crate::machine::{AxisUnreachable, JointValues, Machine, angle_between, nearest_turn};
-use crate::sequence::{self, Choice, Node};
-use crate::setup::{Setup, SetupError};
+use crate::machine::{JointValues, Machine, angle_between, nearest_turn};
+use crate::sequence::{Node, Search, Slots, all_turns};
+use crate::setup::Setup;
+use crate::solve_error::SolveError;
 
 /// How a path is to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,129 +51,11 @@ impl Default for SolveOptions {
     }
 }
 
-/// Why a path cannot be run on a machine. `index` counts CL moves from 0.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SolveError {
-    /// Nothing to do.
-    #[error("the path has no moves")]
-    Empty,
-    /// The setup is none.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// An option that makes no sense.
-    #[error("solve option {what} is {value}: it must be a finite number {wanted}")]
-    Option {
-        /// The option.
-        what: &'static str,
-        /// What was given.
-        value: f64,
-        /// What would do.
-        wanted: &'static str,
-    },
-    /// A pose or feed is not finite, or a feed is not positive.
-    #[error("CL move {index}: a coordinate or feed is not a finite number, or the feed is not above zero")]
-    NotFinite {
-        /// The move.
-        index: usize,
-    },
-    /// The rotary joints cannot point the tool so.
-    #[error(
-        "CL move {index}: the tool axis ({:.6}, {:.6}, {:.6}) at ({:.3}, {:.3}, {:.3}) is {off_deg:.4} deg outside of \
-         what the machine's rotary joints reach: turn the part in its setup or change lead and tilt",
-        axis[0], axis[1], axis[2], tip.x, tip.y, tip.z
-    )]
-    Unreachable {
-        /// The move.
-        index: usize,
-        /// The tip, part frame.
-        tip: Point3,
-        /// The axis, part frame.
-        axis: [f64; 3],
-        /// Angle to what can be reached.
-        off_deg: f64,
-    },
-    /// Every way to reach a pose leaves a joint's range.
-    #[error(
-        "CL move {index}: at ({:.3}, {:.3}, {:.3}) joint {joint} would be at {value:.4} {unit}, its range is {min:.4} to \
-         {max:.4} {unit}: move or turn the part in its setup, or change lead and tilt",
-        tip.x, tip.y, tip.z
-    )]
-    Limit {
-        /// The move.
-        index: usize,
-        /// The tip, part frame.
-        tip: Point3,
-        /// The joint that is out by least.
-        joint: String,
-        /// Where it would be.
-        value: f64,
-        /// mm or deg.
-        unit: &'static str,
-        /// Smallest value; `-inf` without limit.
-        min: f64,
-        /// Largest value; `inf` without limit.
-        max: f64,
-    },
-    /// The linear joints cannot move the tip in all directions.
-    #[error("CL move {index}: the linear joints lie in one plane here, the tip at ({:.3}, {:.3}, {:.3}) cannot be held", tip.x, tip.y, tip.z)]
-    Flat {
-        /// The move.
-        index: usize,
-        /// The tip, part frame.
-        tip: Point3,
-    },
-    /// The joints would have to jump.
-    #[error(
-        "CL move {index}: the rotary joints would jump by {rotary_deg:.3} deg (tip off by {tip_mm:.4} mm, axis by \
-         {axis_deg:.4} deg): widen the tolerances or the singular cone, or turn the part in its setup"
-    )]
-    Jump {
-        /// The move.
-        index: usize,
-        /// Tip deviation left.
-        tip_mm: f64,
-        /// Axis deviation left.
-        axis_deg: f64,
-        /// Rotary step.
-        rotary_deg: f64,
-    },
-    /// A rewind is needed and no point of the move allows both turns.
-    #[error(
-        "CL move {index}: the rotary joints must be rewound, and nowhere on this move both turns are inside the \
-         limits: turn the part in its setup, or choose a machine with a wider range"
-    )]
-    NoRewind {
-        /// The move.
-        index: usize,
-    },
-}
-
 /// CL moves that are worth a thread of their own.
-const LEAST_SHARE: usize = 2048;
+const SHARE: usize = 2048;
 
-impl SolveError {
-    pub(crate) fn unreachable(index: usize, pose: &Pose, e: AxisUnreachable) -> Self {
-        let axis = [pose.axis.x, pose.axis.y, pose.axis.z];
-        Self::Unreachable { index, tip: pose.tip, axis, off_deg: e.off_rad.to_degrees() }
-    }
-
-    pub(crate) fn limit(machine: &Machine, index: usize, pose: &Pose, place: usize, value: f64) -> Self {
-        let joint = machine.joint_at(place);
-        Self::Limit {
-            index,
-            tip: pose.tip,
-            joint: joint.letter.clone(),
-            value: joint.shown(value),
-            unit: joint.unit(),
-            min: joint.min.map_or(f64::NEG_INFINITY, |m| joint.shown(m)),
-            max: joint.max.map_or(f64::INFINITY, |m| joint.shown(m)),
-        }
-    }
-
-    pub(crate) const fn flat(index: usize, pose: &Pose) -> Self {
-        Self::Flat { index, tip: pose.tip }
-    }
-}
+/// CL moves that are held at a time.
+const PIECE: usize = 8 * SHARE;
 
 impl Machine {
     /// The path in joints.
@@ -184,71 +68,137 @@ impl Machine {
         setup: &Setup,
         options: &SolveOptions,
     ) -> Result<JointPath, SolveError> {
-        setup.check()?;
+        let mut whole = JointPath::default();
+        let solved = self.solve_pieces(path, setup, options, |blocks| {
+            whole.blocks.extend_from_slice(blocks);
+            Ok::<(), SolveError>(())
+        })?;
+        Ok(JointPath { blocks: whole.blocks, ..solved })
+    }
+
+    /// As [`Machine::solve`], with the blocks given to `take` piece by piece; the answer has none. What is held at a
+    /// time does not grow with the path, except for the places where branches and turns meet ([`crate::sequence`]).
+    pub(crate) fn solve_pieces<E: From<SolveError>>(
+        &self,
+        path: &ClPath,
+        setup: &Setup,
+        options: &SolveOptions,
+        mut take: impl FnMut(&[JointBlock]) -> Result<(), E>,
+    ) -> Result<JointPath, E> {
+        setup.check().map_err(SolveError::from)?;
         check_options(options)?;
-        if path.moves.is_empty() {
-            return Err(SolveError::Empty);
-        }
-        // In parallel, merged in order: the first error is that of the first move that has one.
-        let nodes: Vec<Result<Node, SolveError>> = path
-            .moves
-            .par_iter()
-            .enumerate()
-            .with_min_len(LEAST_SHARE)
-            .map(|(index, m)| node(self, setup, options, index, m))
-            .collect();
-        let nodes = nodes.into_iter().collect::<Result<Vec<Node>, _>>()?;
-        let choices = sequence::choose(self, &nodes, options.singular_cone_rad);
-        let mut liner = Liner { machine: self, setup, options, path: JointPath::default() };
-        start(&mut liner, &path.moves[0], &choices[0])?;
-        let run = Run { path, nodes: &nodes, choices: &choices };
-        // Every move depends on the choices at its two ends alone; pieces are put together in order.
-        let indices: Vec<usize> = (1..path.moves.len()).collect();
-        let pieces: Vec<Result<JointPath, SolveError>> = indices
-            .par_chunks(LEAST_SHARE)
-            .map(|part| {
-                let mut liner = Liner { machine: self, setup, options, path: JointPath::default() };
-                liner.path.blocks.reserve(part.len());
-                for &index in part {
-                    run.move_to(&mut liner, index)?;
+        let slots = search(self, path, setup, options)?;
+        let mut choices = Choices::new(self, setup, path, (&slots, options.singular_cone_rad));
+        let liner = || Liner { machine: self, setup, options, path: JointPath::default() };
+        let mut sum = JointPath::default();
+        let mut last = None;
+        for (piece, moves) in path.moves.chunks(PIECE).enumerate() {
+            let mut chosen = choices.next_piece(PIECE);
+            // The first move of a piece starts where the piece before has ended.
+            let mut first = piece * PIECE;
+            match last.replace(chosen[moves.len() - 1]) {
+                Some(before) => {
+                    chosen.insert(0, before);
+                    first -= 1;
                 }
-                Ok(liner.path)
-            })
-            .collect();
-        for piece in pieces {
-            liner.path.append(piece?);
+                None => {
+                    let mut liner = liner();
+                    start(&mut liner, &path.moves[0], &chosen[0])?;
+                    take(&liner.path.blocks)?;
+                    sum.append_report(liner.path);
+                }
+            }
+            let run = Run { path, first, choices: &chosen };
+            // Every move depends on the choices at its two ends alone; pieces are put together in order.
+            let count = chosen.len() - 1;
+            let shares: Vec<usize> = (0..count).step_by(SHARE).collect();
+            let solved: Vec<Result<JointPath, SolveError>> = shares
+                .into_par_iter()
+                .map(|from| {
+                    let mut liner = liner();
+                    liner.path.blocks.reserve(SHARE);
+                    run.moves(&mut liner, from..(from + SHARE).min(count))?;
+                    Ok(liner.path)
+                })
+                .collect();
+            for share in solved {
+                let share = share?;
+                take(&share.blocks)?;
+                sum.append_report(share);
+            }
         }
-        Ok(liner.path)
+        Ok(sum)
     }
 }
 
-/// A path with everything chosen.
+/// Branch and turn of every point.
+fn search(
+    machine: &Machine,
+    path: &ClPath,
+    setup: &Setup,
+    options: &SolveOptions,
+) -> Result<Slots, SolveError> {
+    if path.moves.is_empty() {
+        return Err(SolveError::Empty);
+    }
+    let mut search = Search::new(machine, options.singular_cone_rad);
+    let mut nodes: Vec<Result<Node, SolveError>> = Vec::new();
+    for (piece, moves) in path.moves.chunks(PIECE).enumerate() {
+        // In parallel, merged in order: the first error is that of the first move that has one.
+        moves
+            .par_iter()
+            .enumerate()
+            .with_min_len(SHARE)
+            .map(|(i, m)| node(machine, setup, options, piece * PIECE + i, m))
+            .collect_into_vec(&mut nodes);
+        for node in nodes.drain(..) {
+            search.add(node?);
+        }
+    }
+    Ok(search.finish())
+}
+
+/// A piece of a path with everything chosen.
 struct Run<'a> {
     path: &'a ClPath,
-    nodes: &'a [Node],
+    /// The CL move of the first choice.
+    first: usize,
     choices: &'a [Choice],
 }
 
 impl Run<'_> {
-    /// The blocks of one CL move.
-    fn move_to(&self, liner: &mut Liner, index: usize) -> Result<(), SolveError> {
-        let (before, m) = (&self.path.moves[index - 1], &self.path.moves[index]);
-        let placed = |liner: &Liner, index: usize, m: &ClMove| {
-            let joints = liner.checked(&self.choices[index].rotary_rad, &m.pose, index)?;
-            Ok::<_, SolveError>(Placed { pose: m.pose, joints })
-        };
-        let mut at = placed(liner, index - 1, before)?;
-        let to = placed(liner, index, m)?;
-        let label = Label { motion: m.motion, source: index, kind: BlockKind::Point };
-        if self.choices[index].rewind {
-            at = rewind(liner, &at, &to, &self.choices[index], &label)?;
+    /// The blocks of the moves behind these choices.
+    fn moves(&self, liner: &mut Liner, range: std::ops::Range<usize>) -> Result<(), SolveError> {
+        let mut at = self.placed(liner, range.start)?;
+        for i in range {
+            at = self.move_to(liner, &at, i + 1)?;
+        }
+        Ok(())
+    }
+
+    fn placed(&self, liner: &Liner, i: usize) -> Result<Placed, SolveError> {
+        let index = self.first + i;
+        let pose = self.path.moves[index].pose;
+        let joints = liner.checked(&self.choices[i].rotary_rad, &pose, index)?;
+        Ok(Placed { pose, joints })
+    }
+
+    /// The blocks of one CL move; where it ends.
+    fn move_to(&self, liner: &mut Liner, from: &Placed, i: usize) -> Result<Placed, SolveError> {
+        let m = &self.path.moves[self.first + i];
+        let to = self.placed(liner, i)?;
+        let label = Label { motion: m.motion, source: self.first + i, kind: BlockKind::Point };
+        let mut at = *from;
+        if self.choices[i].rewind {
+            at = rewind(liner, &at, &to, &self.choices[i], &label)?;
         }
         let turns = angle_between(&at.pose.axis, &m.pose.axis) > 1e-9;
-        let singular = self.nodes[index - 1].singular || self.nodes[index].singular;
+        let singular = self.choices[i - 1].singular || self.choices[i].singular;
         if turns && m.motion != Motion::Rapid && singular {
             liner.path.summary.singular_mm += (m.pose.tip - at.pose.tip).norm();
         }
-        liner.line(&at, &to, &label)
+        liner.line(&at, &to, &label)?;
+        Ok(to)
     }
 }
 
@@ -293,42 +243,45 @@ fn node(
     let table = setup.to_table(&m.pose);
     let found = machine.orientations(&table.axis).map_err(|e| SolveError::unreachable(index, &m.pose, e))?;
     let singular = found.pole_rad <= options.singular_cone_rad;
-    let mut node = Node { states: Vec::new(), axis: table.axis, singular, motion: m.motion };
+    let rapid = m.motion == Motion::Rapid;
+    let mut node = Node { states: Vec::new(), axis: table.axis, singular, rapid };
     if singular {
         return Ok(node);
     }
-    let mut nearest: Option<(f64, SolveError)> = None;
-    let mut offer = |excess: f64, error: SolveError| {
+    // The limit that is missed by least, and the value; put into words only where nothing else is left.
+    let mut nearest: Option<(f64, Option<(usize, f64)>)> = None;
+    let mut offer = |excess: f64, at: Option<(usize, f64)>| {
         if nearest.as_ref().is_none_or(|(e, _)| excess < *e) {
-            nearest = Some((excess, error));
+            nearest = Some((excess, at));
         }
     };
+    let states = all_turns(machine, &found);
     for candidate in found.candidates() {
-        let states = sequence::turns(machine, candidate);
-        if states.is_empty() {
+        if states.iter().all(|s| s.branch != candidate.branch) {
             for (slot, &place) in machine.rotary().iter().enumerate() {
                 let q = candidate.rotary_rad[slot];
                 let excess = machine.joint_at(place).excess(q);
                 if excess > 0.0 {
-                    offer(excess, SolveError::limit(machine, index, &m.pose, place, q));
+                    offer(excess, Some((place, q)));
                 }
             }
         }
-        for state in states {
+        for state in states.iter().filter(|s| s.branch == candidate.branch) {
             let Some(joints) = machine.with_tip(&state.rotary_rad, &table.tip, setup.gauge_length_mm) else {
-                offer(f64::MAX, SolveError::flat(index, &m.pose));
+                offer(f64::MAX, None);
                 continue;
             };
             match machine.out_of_limits(&joints) {
-                None => node.states.push(state),
-                Some((place, excess)) => {
-                    offer(excess, SolveError::limit(machine, index, &m.pose, place, joints[place]));
-                }
+                None => node.states.push(*state),
+                Some((place, excess)) => offer(excess, Some((place, joints[place]))),
             }
         }
     }
     match nearest {
-        Some((_, error)) if node.states.is_empty() => Err(error),
+        Some((_, at)) if node.states.is_empty() => Err(at.map_or_else(
+            || SolveError::flat(index, &m.pose),
+            |(place, value)| SolveError::limit(machine, index, &m.pose, place, value),
+        )),
         _ => Ok(node),
     }
 }

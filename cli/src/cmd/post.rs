@@ -54,9 +54,11 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     };
     let setup = Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), gauge);
     let name = args.out.file_stem().map_or_else(|| "OSCULATE".into(), |s| s.to_string_lossy().into_owned());
-    let posted =
-        nc::post(&cl.path, &control, &setup, &name).map_err(|f| Failure::file(&args.clfile, f.message()))?;
-    output::write(&args.out, posted.text.as_bytes())?;
+    drop(text);
+    let posted = output::stream(&args.out, |file| {
+        nc::post_to(&cl.path, &control, &setup, &name, file)
+            .map_err(|f| Failure::file(&args.clfile, f.message()))
+    })?;
     notes.extend(posted.diagnostics);
     let s = &posted.summary;
     let answer = Answer {

@@ -34,7 +34,7 @@ pub struct RotaryName {
     pub endless: bool,
 }
 
-/// A whole program.
+/// What stands around the moves of a program, and how they are worded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     /// Its name; letters, digits and underscores survive.
@@ -57,8 +57,6 @@ pub struct Program {
     pub linear_names: [String; 3],
     /// Names of the rotary words, outer first.
     pub rotary_names: Vec<RotaryName>,
-    /// The moves; the first one leads from an unknown place.
-    pub moves: Vec<NcMove>,
 }
 
 /// Why a dialect cannot say a program.

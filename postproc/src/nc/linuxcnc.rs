@@ -6,72 +6,68 @@
 //! - Rotary axes count on through whole turns; nothing is wrapped.
 //! - `G64 P` bounds how far blending may leave the programmed corner. `G53` moves in machine coordinates.
 
-use super::block::{FeedWord, Program, RotaryName, WriteError};
+use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
 use super::modal::{Modal, Which, Wording, plain};
 use super::number;
+use super::writer::Lines;
 
-const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
+pub(super) const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     plain(text, &name.letter, counts);
 }
 
-pub(super) fn write(program: &Program) -> Result<String, WriteError> {
+pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
     program.single_letters("linuxcnc")?;
     let switch = program.linuxcnc_tcp.as_ref();
     if program.tcp && switch.is_none() {
         return Err(WriteError::NoTcpSwitch);
     }
-    let mut text = String::new();
-    let mut line = |words: &str| {
-        text.push_str(words);
-        text.push('\n');
-    };
-    line(&format!("({})", program.safe_name()));
+    lines.line(&format!("({})", program.safe_name()));
     for comment in program.safe_comments() {
-        line(&format!("({comment})"));
+        lines.line(&format!("({comment})"));
     }
-    line("G17 G21 G40 G49 G80 G90 G94");
-    line(&format!("G64 P{:.4}", program.blend_mm));
+    lines.line("G17 G21 G40 G49 G80 G90 G94");
+    lines.line(&format!("G64 P{:.4}", program.blend_mm));
     if let Some(words) = switch {
-        line(&words.off);
+        lines.line(&words.off);
     }
     if program.has_z() {
-        line("G53 G0 Z0");
+        lines.line("G53 G0 Z0");
     }
-    line(&format!("T{} M6", program.tool_number));
-    line(&format!("G43 H{}", program.tool_number));
-    line("G54");
+    lines.line(&format!("T{} M6", program.tool_number));
+    lines.line(&format!("G43 H{}", program.tool_number));
+    lines.line("G54");
     if let Some(rpm) = program.spindle_rpm {
-        line(&format!("S{} M3", number::feed(rpm)));
+        lines.line(&format!("S{} M3", number::feed(rpm)));
     }
-    let mut modal = Modal::new(program);
-    if let Some((first, rest)) = program.moves.split_first() {
-        modal.approach(program, &WORDING, first, &[Which::Rotary]).iter().for_each(|l| line(l));
-        if let (true, Some(words)) = (program.tcp, switch) {
-            line(&words.on);
-        }
-        modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]).iter().for_each(|l| line(l));
-        if program.feed_word == FeedWord::Inverse {
-            line("G93");
-        }
-        let mut words = String::new();
-        for m in rest {
-            words.clear();
-            modal.block(program, &WORDING, m, &mut words);
-            if !words.is_empty() {
-                line(&words[1..]);
-            }
-        }
+    Ok(())
+}
+
+pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines: &mut Lines) {
+    let switch = program.linuxcnc_tcp.as_ref();
+    modal.approach(program, &WORDING, first, &[Which::Rotary]).iter().for_each(|l| lines.line(l));
+    if let (true, Some(words)) = (program.tcp, switch) {
+        lines.line(&words.on);
     }
-    line("G94");
-    line("M5");
+    modal
+        .approach(program, &WORDING, first, &[Which::Across, Which::Along])
+        .iter()
+        .for_each(|l| lines.line(l));
+    if program.feed_word == FeedWord::Inverse {
+        lines.line("G93");
+    }
+}
+
+pub(super) fn tail(program: &Program, lines: &mut Lines) {
+    let switch = program.linuxcnc_tcp.as_ref();
+    lines.line("G94");
+    lines.line("M5");
     if let Some(words) = switch {
-        line(&words.off);
+        lines.line(&words.off);
     }
     if program.has_z() {
-        line("G53 G0 Z0");
+        lines.line("G53 G0 Z0");
     }
-    line("M30");
-    Ok(text)
+    lines.line("M30");
 }

@@ -15,6 +15,7 @@ mod state;
 pub mod timing;
 mod token;
 mod way;
+pub(crate) mod writer;
 
 use std::fmt;
 use std::str::FromStr;
@@ -65,19 +66,6 @@ impl Dialect {
             Self::Heidenhain => "h",
             Self::Fanuc => "nc",
             Self::LinuxCnc => "ngc",
-        }
-    }
-
-    /// The program in words.
-    ///
-    /// # Errors
-    /// Where the dialect cannot say it.
-    pub fn write(self, program: &Program) -> Result<String, WriteError> {
-        match self {
-            Self::Sinumerik => Ok(sinumerik::write(program)),
-            Self::Heidenhain => heidenhain::write(program),
-            Self::Fanuc => fanuc::write(program),
-            Self::LinuxCnc => linuxcnc::write(program),
         }
     }
 }

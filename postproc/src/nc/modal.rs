@@ -125,11 +125,6 @@ impl Modal {
         }
         lines
     }
-
-    /// F must be said again.
-    pub fn forget_feed(&mut self) {
-        self.feed.clear();
-    }
 }
 
 /// Which axes a block names.

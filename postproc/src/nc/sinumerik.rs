@@ -11,9 +11,10 @@
 use super::block::{FeedWord, NcMove, Program, RotaryName};
 use super::modal::{Modal, Which, Wording, in_turn, plain};
 use super::number;
+use super::writer::Lines;
 use crate::feed::PathMetric;
 
-const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
+pub(super) const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     if name.endless {
@@ -26,56 +27,57 @@ fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     }
 }
 
-pub(super) fn write(program: &Program) -> String {
-    let mut text = Numbered { text: String::new(), next: 10 };
-    text.text.push_str(&format!("; {}\n", program.safe_name()));
+pub(super) fn head(program: &Program, lines: &mut Lines) {
+    (lines.numbered, lines.next, lines.step) = (Some("N"), 10, 10);
+    lines.plain(&format!("; {}", program.safe_name()));
     for line in program.safe_comments() {
-        text.text.push_str(&format!("; {line}\n"));
+        lines.plain(&format!("; {line}"));
     }
-    text.line("G17 G40 G64 G90 G94 G710");
-    text.line("TRAFOOF");
-    retract(&mut text, program);
-    text.line(&format!("T{}", program.tool_number));
-    text.line("M6");
-    text.line("D1");
-    text.line("G54");
+    lines.line("G17 G40 G64 G90 G94 G710");
+    lines.line("TRAFOOF");
+    retract(lines, program);
+    lines.line(&format!("T{}", program.tool_number));
+    lines.line("M6");
+    lines.line("D1");
+    lines.line("G54");
     if let Some(rpm) = program.spindle_rpm {
-        text.line(&format!("S{} M3", number::feed(rpm)));
+        lines.line(&format!("S{} M3", number::feed(rpm)));
     }
-    let mut modal = Modal::new(program);
-    if let Some((first, rest)) = program.moves.split_first() {
-        for line in modal.approach(program, &WORDING, first, &[Which::Rotary]) {
-            text.line(&line);
-        }
-        if program.tcp {
-            text.line("TRAORI");
-            text.line("ORIMKS ORIAXES");
-            text.line("G54");
-        }
-        for line in modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]) {
-            text.line(&line);
-        }
-        text.line(&format!("CYCLE832({:.4},1,1)", program.blend_mm));
-        feed_head(&mut text, program);
-        moves(&mut text, &mut modal, program, rest);
+}
+
+pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines: &mut Lines) {
+    for line in modal.approach(program, &WORDING, first, &[Which::Rotary]) {
+        lines.line(&line);
     }
+    if program.tcp {
+        lines.line("TRAORI");
+        lines.line("ORIMKS ORIAXES");
+        lines.line("G54");
+    }
+    for line in modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]) {
+        lines.line(&line);
+    }
+    lines.line(&format!("CYCLE832({:.4},1,1)", program.blend_mm));
+    feed_head(lines, program);
+}
+
+pub(super) fn tail(program: &Program, lines: &mut Lines) {
     if program.feed_word == FeedWord::Inverse {
-        text.line("G94");
+        lines.line("G94");
     }
-    text.line("M5");
-    text.line("TRAFOOF");
-    retract(&mut text, program);
-    text.line("M30");
-    text.text
+    lines.line("M5");
+    lines.line("TRAFOOF");
+    retract(lines, program);
+    lines.line("M30");
 }
 
-fn retract(text: &mut Numbered, program: &Program) {
+fn retract(lines: &mut Lines, program: &Program) {
     if program.has_z() {
-        text.line("G0 SUPA Z0 D0");
+        lines.line("G0 SUPA Z0 D0");
     }
 }
 
-fn feed_head(text: &mut Numbered, program: &Program) {
+fn feed_head(lines: &mut Lines, program: &Program) {
     let names = |linear: bool, rotary: bool| {
         let linear = program.linear_names.iter().filter(|_| linear);
         let rotary = program.rotary_names.iter().map(|r| &r.letter).filter(|_| rotary);
@@ -84,7 +86,7 @@ fn feed_head(text: &mut Numbered, program: &Program) {
         all.join(",")
     };
     match program.feed_word {
-        FeedWord::Inverse => text.line("G93"),
+        FeedWord::Inverse => lines.line("G93"),
         FeedWord::PerMinute(None) => {}
         FeedWord::PerMinute(Some(metric)) => {
             let (group, radius_mm) = match metric {
@@ -92,44 +94,16 @@ fn feed_head(text: &mut Numbered, program: &Program) {
                 PathMetric::Arc { radius_mm } => (names(true, true), Some(radius_mm)),
                 PathMetric::RotaryOnly => (names(false, true), Some(crate::feed::DEGREE_AS_MM)),
             };
-            text.line(&format!("FGROUP({group})"));
+            lines.line(&format!("FGROUP({group})"));
             if let Some(radius_mm) = radius_mm {
                 let mut letters: Vec<&str> = program.rotary_names.iter().map(|r| r.letter.as_str()).collect();
                 letters.sort_unstable();
                 let words: Vec<String> =
                     letters.iter().map(|l| format!("FGREF[{l}]={radius_mm:.6}")).collect();
                 if !words.is_empty() {
-                    text.line(&words.join(" "));
+                    lines.line(&words.join(" "));
                 }
             }
         }
-    }
-}
-
-fn moves(text: &mut Numbered, modal: &mut Modal, program: &Program, rest: &[NcMove]) {
-    modal.forget_feed();
-    let mut words = String::new();
-    for m in rest {
-        words.clear();
-        modal.block(program, &WORDING, m, &mut words);
-        if !words.is_empty() {
-            text.line(&words[1..]);
-        }
-    }
-}
-
-struct Numbered {
-    text: String,
-    next: u64,
-}
-
-impl Numbered {
-    fn line(&mut self, words: &str) {
-        self.text.push('N');
-        number::push_whole(&mut self.text, self.next);
-        self.text.push(' ');
-        self.text.push_str(words);
-        self.text.push('\n');
-        self.next += 10;
     }
 }

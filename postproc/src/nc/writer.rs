@@ -1,0 +1,112 @@
+//! A program put into words move by move: what has been said leaves, so that its length costs no memory.
+
+use super::block::{NcMove, Program, WriteError};
+use super::modal::{Modal, Wording};
+use super::{Dialect, fanuc, heidenhain, linuxcnc, number, sinumerik};
+
+/// Lines of a program, numbered where the dialect wants it.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    pub text: String,
+    /// What stands before the number; `None`: no numbers.
+    pub numbered: Option<&'static str>,
+    pub next: u64,
+    pub step: u64,
+}
+
+impl Lines {
+    pub fn line(&mut self, words: &str) {
+        if let Some(letter) = self.numbered {
+            self.text.push_str(letter);
+            number::push_whole(&mut self.text, self.next);
+            self.text.push(' ');
+            self.next += self.step;
+        }
+        self.plain(words);
+    }
+
+    /// A line without a number.
+    pub fn plain(&mut self, words: &str) {
+        self.text.push_str(words);
+        self.text.push('\n');
+    }
+}
+
+/// Words moves as they come.
+pub(crate) struct Writer<'a> {
+    dialect: Dialect,
+    program: &'a Program,
+    modal: Modal,
+    lines: Lines,
+    words: String,
+    started: bool,
+}
+
+impl<'a> Writer<'a> {
+    /// The head of the program is written.
+    ///
+    /// # Errors
+    /// Where the dialect cannot say the program.
+    pub fn new(dialect: Dialect, program: &'a Program) -> Result<Self, WriteError> {
+        let mut lines = Lines::default();
+        match dialect {
+            Dialect::Sinumerik => sinumerik::head(program, &mut lines),
+            Dialect::Heidenhain => heidenhain::head(program, &mut lines)?,
+            Dialect::Fanuc => fanuc::head(program, &mut lines)?,
+            Dialect::LinuxCnc => linuxcnc::head(program, &mut lines)?,
+        }
+        let modal = Modal::new(program);
+        Ok(Self { dialect, program, modal, lines, words: String::new(), started: false })
+    }
+
+    /// Words the next move; the first one leads from an unknown place.
+    pub fn take(&mut self, m: &NcMove) {
+        let (program, modal, lines) = (self.program, &mut self.modal, &mut self.lines);
+        if !self.started {
+            self.started = true;
+            match self.dialect {
+                Dialect::Sinumerik => sinumerik::first(program, modal, m, lines),
+                Dialect::Heidenhain => heidenhain::first(program, modal, m, lines),
+                Dialect::Fanuc => fanuc::first(program, modal, m, lines),
+                Dialect::LinuxCnc => linuxcnc::first(program, modal, m, lines),
+            }
+            return;
+        }
+        let wording: &Wording = match self.dialect {
+            Dialect::Sinumerik => &sinumerik::WORDING,
+            Dialect::Heidenhain => &heidenhain::WORDING,
+            Dialect::Fanuc => &fanuc::WORDING,
+            Dialect::LinuxCnc => &linuxcnc::WORDING,
+        };
+        self.words.clear();
+        modal.block(program, wording, m, &mut self.words);
+        if self.words.is_empty() {
+            return;
+        }
+        if m.rapid && self.dialect == Dialect::Heidenhain {
+            self.words.push_str(" FMAX");
+        }
+        lines.line(&self.words[1..]);
+    }
+
+    /// The end of the program.
+    pub fn finish(&mut self) {
+        let (program, lines) = (self.program, &mut self.lines);
+        match self.dialect {
+            Dialect::Sinumerik => sinumerik::tail(program, lines),
+            Dialect::Heidenhain => heidenhain::tail(program, lines),
+            Dialect::Fanuc => fanuc::tail(program, lines),
+            Dialect::LinuxCnc => linuxcnc::tail(program, lines),
+        }
+    }
+
+    /// What has been written since the last [`Writer::clear`].
+    pub fn text(&self) -> &str {
+        &self.lines.text
+    }
+
+    /// Forgets what has been written.
+    pub fn clear(&mut self) {
+        self.lines.text.clear();
+    }
+}
