@@ -74,6 +74,13 @@ fn evaluation(bench: &Bench, s: &NurbsSurface) {
             black_box(s.jet2(*p).forms().unwrap().principal());
         });
     });
+    // Row by row, as a face is sampled.
+    let grid: Vec<Uv> =
+        (0..1_000_000).map(|k| uv(f64::from(k / 1000) / 999.0, f64::from(k % 1000) / 999.0)).collect();
+    bench.time("a million curvatures of a grid, all threads", 1, || {
+        s.par_curvatures_into(&grid, &mut curvatures);
+        black_box(&curvatures);
+    });
     let million = places(1_000_000);
     bench.time("a million curvatures, all threads", 1, || {
         s.par_curvatures_into(&million, &mut curvatures);

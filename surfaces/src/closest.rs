@@ -4,6 +4,7 @@
 //!   where a proven bound puts them farther than the best point found ([`index`], [`search`]).
 //! - [`closest_near`] follows any surface down from a hint ([`descent`]): for neighbouring points, one after
 //!   the other.
+//! - [`FaceSearch`] does both on a trimmed face.
 //! - [`closest_sampled`] starts that from a grid, for surfaces without pieces.
 //!
 //! The point minimises `|S(u, v) - q|`; it may lie on an edge, a corner, a crease or a seam. There the offset
@@ -12,14 +13,18 @@
 
 mod bounds;
 mod descent;
+mod face;
 mod index;
 mod search;
+mod way;
 
 use crate::nurbs::NurbsSurface;
-use descent::{Found, descend};
+use descent::{Found, Of, descend};
+pub use face::FaceSearch;
 pub(crate) use index::Index;
 use osculate_geom::{Axis, Domain, Point3, Surface, Uv};
 use rayon::prelude::*;
+use way::descend_surface;
 
 /// Where on the surface a nearest point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +105,12 @@ const PERPENDICULAR: f64 = 1e-6;
 /// [`ClosestError`] for numbers that are not finite, and for a descent from a hint that does not converge.
 pub fn closest(surface: &NurbsSurface, query: &Point3, hint: Option<Uv>) -> Result<Foot, ClosestError> {
     match hint {
-        Some(hint) => closest_near(surface, query, hint),
+        Some(hint) if !finite(query, hint) => Err(ClosestError::NotFinite { query: *query }),
+        Some(hint) => {
+            let domain = surface.domain();
+            let found = descend_surface(surface, None, &domain, query, hint);
+            finish(&found, &domain, found.distance_mm)
+        }
         None if !query.iter().all(|c| c.is_finite()) => Err(ClosestError::NotFinite { query: *query }),
         None => search::search(surface, query),
     }
@@ -132,13 +142,16 @@ pub fn closest_near<S: Surface + ?Sized>(
     query: &Point3,
     hint: Uv,
 ) -> Result<Foot, ClosestError> {
-    let finite = query.iter().all(|c| c.is_finite()) && hint.u.is_finite() && hint.v.is_finite();
-    if !finite {
+    if !finite(query, hint) {
         return Err(ClosestError::NotFinite { query: *query });
     }
     let domain = surface.domain();
-    let found = descend(|at| surface.jet2(at), &domain, query, hint);
+    let found = descend(&Of(surface), &domain, query, hint);
     finish(&found, &domain, found.distance_mm)
+}
+
+fn finite(query: &Point3, hint: Uv) -> bool {
+    query.iter().all(|c| c.is_finite()) && hint.u.is_finite() && hint.v.is_finite()
 }
 
 /// Most grid lines that [`closest_sampled`] lays in one direction.
@@ -196,14 +209,14 @@ pub fn closest_sampled(surface: &dyn Surface, query: &Point3) -> Result<Foot, Cl
 fn finish(found: &Found, domain: &Domain, gap_mm: f64) -> Result<Foot, ClosestError> {
     if found.residual > PERPENDICULAR || found.residual.is_nan() {
         return Err(ClosestError::NotConverged {
-            at: found.jet.uv,
+            at: found.uv,
             distance_mm: found.distance_mm,
             residual: found.residual,
             steps: found.steps,
         });
     }
     let at_end = [Axis::U, Axis::V].map(|axis| {
-        let (i, t) = (domain.get(axis), found.jet.uv.get(axis));
+        let (i, t) = (domain.get(axis), found.uv.get(axis));
         !i.periodic && (t <= i.lo || t >= i.hi)
     });
     let kind = match at_end {
@@ -212,8 +225,8 @@ fn finish(found: &Found, domain: &Domain, gap_mm: f64) -> Result<Foot, ClosestEr
         _ => FootKind::Edge,
     };
     Ok(Foot {
-        uv: found.jet.uv,
-        point: found.jet.point,
+        uv: found.uv,
+        point: found.point,
         distance_mm: found.distance_mm,
         residual: found.residual,
         kind,

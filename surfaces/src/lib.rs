@@ -56,7 +56,9 @@ mod refine;
 mod ruled;
 
 pub use approximate::{ApproximateError, Approximation, approximate};
-pub use closest::{ClosestError, Foot, FootKind, closest, closest_batch, closest_near, closest_sampled};
+pub use closest::{
+    ClosestError, FaceSearch, Foot, FootKind, closest, closest_batch, closest_near, closest_sampled,
+};
 pub use convert::{ConvertError, CurveToNurbs, ToNurbs};
 pub use knots::{KnotError, Knots, MAX_DEGREE};
 pub use mesh::{Mesh, MeshError, MeshOptions, MeshReport, PartMesh, mesh_faces, tessellate};

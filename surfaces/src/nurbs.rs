@@ -324,6 +324,12 @@ impl NurbsSurface {
         }
     }
 
+    /// [`Self::piece_jet`] as part of code that already runs over wide registers.
+    #[inline(always)]
+    pub(crate) fn jet_on<Q: quad::Quad>(&self, q: Q, pieces: &Pieces, at: Uv, span: [usize; 2]) -> Jet2 {
+        jet_of(at, piece_orders(q, pieces, at, span), self.side)
+    }
+
     /// The precomputed pieces, where there are any.
     pub(crate) const fn pieces(&self) -> Option<&Pieces> {
         self.evaluator.pieces()

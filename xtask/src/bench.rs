@@ -167,7 +167,12 @@ fn print(surface: &str, ours: &Times, theirs: &[BTreeMap<String, Times>], versio
             println!("{name:<30} {value:>10} {:>12} {:>7} {:>12}", wrong(0), "", wrong(1));
         }
     }
-    if let Some(t) = ours.get("a million curvatures, all threads") {
-        println!("{:<30} {:>8.4} s", "a million curvatures", t * 1e-9);
+    for (name, line) in [
+        ("a million curvatures", "a million curvatures, all threads"),
+        ("a million, of a grid", "a million curvatures of a grid, all threads"),
+    ] {
+        if let Some(t) = ours.get(line) {
+            println!("{name:<30} {:>8.4} s", t * 1e-9);
+        }
     }
 }

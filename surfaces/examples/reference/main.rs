@@ -6,16 +6,21 @@
 //!
 //! Errors of points and derivatives are relative to the size of the surface (and of its coordinates), those of
 //! curvatures to the larger one or to one over the size, whichever is greater. The samples are printed with 13
-//! digits of coordinates and 10 of curvatures. Exit status 1 where a limit is missed.
+//! digits of coordinates and 10 of curvatures. A number beyond its limit counts as an exception where a bound
+//! from the digits printed, from the rounding of both programs or from what the file itself says explains it
+//! ([`exceptions`]); exceptions are counted and named. Exit status 1 where a deviation is left without a reason.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program that prints its findings")]
 
+mod exceptions;
 #[path = "../truth/reference.rs"]
 #[allow(dead_code, reason = "areas and boxes are the other program's")]
 mod reference;
 
+use exceptions::Why;
 use osculate_geom::{Axis, Point3, Surface, Vec3, uv};
 use osculate_surfaces::{Net, NurbsCurve, NurbsSurface, closest};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -28,6 +33,8 @@ const CURVATURE: f64 = 1e-9;
 #[derive(Default)]
 struct Errors {
     all: Vec<(f64, String)>,
+    /// Beyond the limit with a reason: how many, the largest error.
+    excepted: BTreeMap<&'static str, (usize, f64)>,
 }
 
 impl Errors {
@@ -35,6 +42,17 @@ impl Errors {
         // A NaN counts as the worst.
         let error = if error.is_nan() { f64::INFINITY } else { error };
         self.all.push((error, if error > 1e-13 { place() } else { String::new() }));
+    }
+
+    /// Adds an error that may be beyond `limit` for a reason.
+    fn add_unless(&mut self, error: f64, limit: f64, why: Option<Why>, place: impl Fn() -> String) {
+        match why {
+            Some(why) if error > limit && error <= why.bound => {
+                let seen = self.excepted.entry(why.reason).or_default();
+                *seen = (seen.0 + 1, seen.1.max(error));
+            }
+            _ => self.add(error, place),
+        }
     }
 
     /// Prints the distribution and says whether all are within the limit.
@@ -49,6 +67,9 @@ impl Errors {
             at(0.01),
             at(0.0),
         );
+        for (reason, (count, worst)) in &self.excepted {
+            println!("    {count} exceptions up to {worst:.1e}: {reason}");
+        }
         for (error, place) in self.all[..beyond].iter().take(12) {
             println!("    {error:.1e}  {place}");
         }
@@ -256,11 +277,14 @@ fn one_step(kernel: &Path) -> Result<bool, String> {
         return Err("one.step has no spline face".into());
     };
     let size = same.control_box().diagonal_mm();
+    let digits = exceptions::poles(s, &same);
     for k in 0..400 {
         let (f, g) = (f64::from(k % 20) / 19.0, f64::from(k / 20) / 19.0);
         let (a, b) = (s.jet2(s.domain().at(f, g)), same.jet2(same.domain().at(f, g)));
         errors.add((a.point - b.point).norm() / size, || format!("one.step at {f}, {g}"));
-        errors.add((a.du - b.du).norm() / b.du.norm().max(size), || format!("S_u of one.step at {f}, {g}"));
+        let (off, scale) = ((a.du - b.du).norm(), b.du.norm().max(size));
+        let why = Why { bound: digits.bound / scale, ..digits };
+        errors.add_unless(off / scale, POINT, Some(why), || format!("S_u of one.step at {f}, {g}"));
     }
     Ok(errors.report("one.step", POINT))
 }
@@ -278,23 +302,36 @@ fn samples(data: &Path) -> Result<bool, String> {
             continue;
         };
         for face in reference.faces.iter().filter(|f| !f.samples.is_empty()) {
-            let ours =
-                part.faces.iter().filter(|f| Some(f.entity) == face.id).find_map(|f| f.carrier.nurbs());
+            // A face may stand in several places: the one meant is the one that the first sample lies on.
+            let off = |s: &NurbsSurface| {
+                let first = &face.samples[0];
+                (s.point(uv(first.uv[0], first.uv[1])) - Point3::from(first.point_mm)).norm()
+            };
+            let same = part.faces.iter().filter(|f| Some(f.entity) == face.id);
+            let ours = same.filter_map(|f| f.carrier.nurbs()).min_by(|a, b| off(a).total_cmp(&off(b)));
             let Some(s) = ours else {
                 missing += 1;
                 continue;
             };
             faces += 1;
             let size = s.control_box().diagonal_mm();
+            let units = exceptions::UNITS.iter().find(|(file, ..)| *file == entry.file);
+            let factor = units.map_or(1.0, |(_, factor, why)| {
+                println!("{}: compared after division by {factor}: {why}", entry.file);
+                *factor
+            });
             for sample in &face.samples {
                 let at = uv(sample.uv[0], sample.uv[1]);
                 let place = || format!("{} face {:?} at u = {}, v = {}", entry.file, face.id, at.u, at.v);
                 let jet = s.jet2(at);
-                let want = Point3::from(sample.point_mm);
-                points.add((jet.point - want).norm() / size.max(want.coords.norm()), place);
-                let (Some([k_max, k_min]), Ok(forms)) = (sample.curvature_per_mm, jet.forms()) else {
+                let want = Point3::from(sample.point_mm) / factor;
+                let scale = size.max(want.coords.norm());
+                let why = exceptions::point(&jet, scale);
+                points.add_unless((jet.point - want).norm() / scale, POINT, Some(why), place);
+                let (Some(curvature), Ok(forms)) = (sample.curvature_per_mm, jet.forms()) else {
                     continue;
                 };
+                let [k_max, k_min] = curvature.map(|k| k * factor);
                 // Curvatures jump at a knot: the reference may stand on its other side.
                 let on_knot = |axis: Axis, t: f64| {
                     s.breaks(axis).iter().any(|b| (b - t).abs() <= 1e-9 * s.domain().get(axis).length())
@@ -308,9 +345,11 @@ fn samples(data: &Path) -> Result<bool, String> {
                     if natural > 0.0 { (-p.k_min, -p.k_max) } else { (p.k_max, p.k_min) };
                 let scale = k_max.abs().max(k_min.abs()).max(1.0 / size);
                 let off = (got_max - k_max).abs().max((got_min - k_min).abs());
-                curvatures.add(off / scale, || {
+                let why = exceptions::curvature(s, &jet, scale);
+                curvatures.add_unless(off / scale, CURVATURE, why, || {
                     let sine = jet.du.cross(&jet.dv).norm() / (jet.du.norm() * jet.dv.norm());
-                    format!("{}: ours {got_max:.9e} {got_min:.9e}, theirs {k_max:.9e} {k_min:.9e}, sine {sine:.1e}", place())
+                    let bound = why.map_or(0.0, |w| w.bound);
+                    format!("{} (explained {bound:.1e}): ours {got_max:.9e} {got_min:.9e}, theirs {k_max:.9e} {k_min:.9e}, sine {sine:.1e}", place())
                 });
             }
         }

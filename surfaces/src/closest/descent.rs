@@ -9,13 +9,28 @@
 //! matrix of second derivatives is positive definite, Gauss's (without the second term) elsewhere, and is
 //! shortened until `f` falls, so that the distance never grows.
 
-use osculate_geom::{Domain, Interval, Jet2, Point3, Uv, uv};
+use osculate_geom::{Domain, Interval, Jet2, Point3, Surface, Uv, uv};
+
+/// Where jets come from.
+pub(super) trait Jets {
+    /// The jet at parameters in the rectangle of the descent.
+    fn jet(&self, at: Uv) -> Jet2;
+}
+
+/// Jets of any surface.
+pub(super) struct Of<'a, S: ?Sized>(pub(super) &'a S);
+
+impl<S: Surface + ?Sized> Jets for Of<'_, S> {
+    fn jet(&self, at: Uv) -> Jet2 {
+        self.0.jet2(at)
+    }
+}
 
 /// Where a descent ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
-    /// The jet there.
-    pub(super) jet: Jet2,
+    pub(super) uv: Uv,
+    pub(super) point: Point3,
     pub(super) distance_mm: f64,
     /// As in [`super::Foot::residual`].
     pub(super) residual: f64,
@@ -36,7 +51,9 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 const BLIND: f64 = 1e-10;
 
 /// After a step of Newton's below this fraction of the coordinates the next one, which goes like its square,
-/// would be lost in rounding.
+/// would be lost in rounding. The place that it leads to needs no jet of its own: what Taylor's second-order
+/// polynomial leaves out of the point goes like the cube, 1e-15 of the coordinates where pieces are as small as
+/// 1e-4 of them.
 const LAST_STEP: f64 = 1e-9;
 
 /// Squared sine between the columns of a step's matrix (in its own metric) below which it is not solved.
@@ -56,6 +73,7 @@ struct State {
     along_square: f64,
 }
 
+#[inline(always)]
 fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
     let r = jet.point - query;
     let gradient = [r.dot(&jet.du), r.dot(&jet.dv)];
@@ -70,11 +88,10 @@ fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
     State { jet, square: r.norm_squared(), gradient, metric, held, along_square: along(0).max(along(1)) }
 }
 
-/// The nearest point reached from `start`, brought into `rect` first. `jet` must take the parameters as they
-/// are there.
-#[inline]
-pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, start: Uv) -> Found {
-    let mut here = state(jet(place(rect, start)), rect, query);
+/// The nearest point reached from `start`, brought into `rect` first.
+#[inline(always)]
+pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: Uv) -> Found {
+    let mut here = state(jets.jet(place(rect, start)), rect, query);
     let size = here.jet.point.coords.norm() + query.coords.norm();
     let mut steps = 0;
     while steps < MAX_STEPS {
@@ -93,10 +110,15 @@ pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, s
         if length_square <= square(ROUNDING * size) || length_square.is_nan() {
             break;
         }
+        let inside = to == uv_minus(here.jet.uv, step, 1.0);
+        if newton && inside && length_square <= square(LAST_STEP * size) {
+            here = state(moved(&here.jet, to, step), rect, query);
+            break;
+        }
         let mut scale = 1.0;
         let mut next = None;
         for _ in 0..=MAX_SHORTENINGS {
-            let there = state(jet(target(scale)), rect, query);
+            let there = state(jets.jet(target(scale)), rect, query);
             // Near the foot the distances differ by rounding of coordinates alone; there the offset's part
             // along the surface decides.
             let same = || {
@@ -126,12 +148,12 @@ pub(super) fn descend(jet: impl Fn(Uv) -> Jet2, rect: &Domain, query: &Point3, s
     } else {
         noise_free(here.along_square.sqrt(), size) / distance_mm
     };
-    Found { jet: here.jet, distance_mm, residual, steps }
+    Found { uv: here.jet.uv, point: here.jet.point, distance_mm, residual, steps }
 }
 
 /// The parameters in the rectangle, at its end where they are only rounding away from it: a parameter just
 /// inside an end could neither be held nor move.
-#[inline]
+#[inline(always)]
 fn place(rect: &Domain, at: Uv) -> Uv {
     let snap = |i: &Interval, t: f64| {
         let near = ROUNDING * i.lo.abs().max(i.hi.abs());
@@ -145,10 +167,25 @@ fn place(rect: &Domain, at: Uv) -> Uv {
             t
         }
     };
-    let at = rect.bring(at);
+    let inside = at.u >= rect.u.lo && at.u <= rect.u.hi && at.v >= rect.v.lo && at.v <= rect.v.hi;
+    let at = if inside { at } else { rect.bring(at) };
     uv(snap(&rect.u, at.u), snap(&rect.v, at.v))
 }
 
+/// The jet a step further, by Taylor's polynomial.
+fn moved(jet: &Jet2, to: Uv, [s, t]: [f64; 2]) -> Jet2 {
+    let (uu, uv, vv) = (jet.duu * s, jet.duv, jet.dvv * t);
+    let half = (uu * s + vv * t) * 0.5 + uv * (s * t);
+    Jet2 {
+        uv: to,
+        point: jet.point - jet.du * s - jet.dv * t + half,
+        du: jet.du - uu - uv * t,
+        dv: jet.dv - uv * s - vv,
+        ..*jet
+    }
+}
+
+#[inline(always)]
 fn uv_minus(at: Uv, step: [f64; 2], scale: f64) -> Uv {
     uv(at.u - scale * step[0], at.v - scale * step[1])
 }
@@ -163,7 +200,7 @@ fn noise_free(length_mm: f64, size: f64) -> f64 {
 }
 
 /// The step to subtract from the parameters, and whether it is Newton's.
-#[inline]
+#[inline(always)]
 fn next_step(here: &State, query: &Point3) -> ([f64; 2], bool) {
     let j = &here.jet;
     let r = j.point - query;
@@ -181,7 +218,7 @@ fn next_step(here: &State, query: &Point3) -> ([f64; 2], bool) {
 }
 
 /// Solves `[[a, b], [b, c]] x = g` with held unknowns zero; `None` unless it is positive definite.
-#[inline]
+#[inline(always)]
 fn solve([a, b, c]: [f64; 3], g: [f64; 2], held: [bool; 2]) -> Option<[f64; 2]> {
     match held {
         [true, true] => Some([0.0, 0.0]),
@@ -189,8 +226,10 @@ fn solve([a, b, c]: [f64; 3], g: [f64; 2], held: [bool; 2]) -> Option<[f64; 2]> 
         [false, true] => (a > 0.0).then(|| [g[0] / a, 0.0]),
         [false, false] => {
             let det = a * c - b * b;
-            (a > 0.0 && c > 0.0 && det > SINGULAR * a * c)
-                .then(|| [(g[0] * c - g[1] * b) / det, (g[1] * a - g[0] * b) / det])
+            (a > 0.0 && c > 0.0 && det > SINGULAR * a * c).then(|| {
+                let r = 1.0 / det;
+                [(g[0] * c - g[1] * b) * r, (g[1] * a - g[0] * b) * r]
+            })
         }
     }
 }

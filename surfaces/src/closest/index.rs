@@ -90,11 +90,16 @@ impl Cell {
 
     /// The jet of the cell's own piece.
     pub(super) fn jet(&self, surface: &NurbsSurface, at: Uv) -> Jet2 {
-        surface.piece_jet(at, self.span.map(|s| s as usize))
+        surface.piece_jet(at, self.spans())
+    }
+
+    /// The spans of its piece.
+    pub(super) fn spans(&self) -> [usize; 2] {
+        self.span.map(|s| s as usize)
     }
 
     /// The nearest point of the parallelogram.
-    #[inline]
+    #[inline(always)]
     pub(super) fn reach(&self, query: &Point3) -> Reach {
         let [a, b] = &self.sides;
         let r = self.centre - query;
@@ -180,9 +185,12 @@ struct Node {
 }
 
 impl Node {
-    #[inline]
+    #[inline(always)]
     fn distance_squared(&self, q: &Point3) -> f64 {
-        (0..3).map(|k| (self.min[k] - q[k]).max(q[k] - self.max[k]).max(0.0).powi(2)).sum()
+        // Written out: an iterator is not always inlined into the loop over the tree.
+        let out = |k: usize| (self.min[k] - q[k]).max(q[k] - self.max[k]).max(0.0);
+        let (x, y, z) = (out(0), out(1), out(2));
+        x * x + y * y + z * z
     }
 }
 
@@ -226,31 +234,34 @@ impl Index {
 
     /// Calls `visit` with the cells that may be within the limit that `visit` returns, near ones first. The
     /// limit is a distance in mm.
+    #[inline(always)]
     pub(super) fn visit(&self, query: &Point3, mut visit: impl FnMut(u32) -> f64) {
-        let mut limit = f64::INFINITY;
+        let mut square_limit = f64::INFINITY;
         // Halving keeps the depth below 33 for 2^32 cells, and every level leaves one node behind.
         let mut stack = [(0.0, 0u32); 64];
         let mut depth = 1;
         while depth > 0 {
             depth -= 1;
             let (square, at) = stack[depth];
-            if square > limit {
+            if square > square_limit {
                 continue;
             }
             let node = &self.nodes[at as usize];
             if node.cells > 0 {
                 for k in node.first..node.first + node.cells {
                     let reach = visit(k);
-                    limit = reach * reach;
+                    square_limit = reach * reach;
                 }
                 continue;
             }
             let [a, b] = [node.first, node.first + 1];
-            let [da, db] = [a, b].map(|n| self.nodes[n as usize].distance_squared(query));
+            let children = &self.nodes[a as usize..][..2];
+            let (da, db) = (children[0].distance_squared(query), children[1].distance_squared(query));
             let (near, far) = if da <= db { ((da, a), (db, b)) } else { ((db, b), (da, a)) };
             stack[depth] = far;
-            stack[depth + 1] = near;
-            depth += 2;
+            depth += usize::from(far.0 <= square_limit);
+            stack[depth] = near;
+            depth += usize::from(near.0 <= square_limit);
         }
     }
 }

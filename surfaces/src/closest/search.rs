@@ -12,8 +12,9 @@
 //! 4. else it is halved, until the work allowed is spent; then the least lower bound left is reported as the
 //!    gap.
 
-use super::descent::{Found, descend};
+use super::descent::Found;
 use super::index::{Cell, Reach};
+use super::way::descend_surface;
 use super::{ClosestError, Foot, FootKind, PERPENDICULAR, finish};
 use crate::nurbs::NurbsSurface;
 use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, Uv};
@@ -71,13 +72,16 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
         }
         upper
     });
-    candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     // The start is the nearest parallelogram, not the least bound, which favours large cells.
     let start = candidates.iter().min_by(|a, b| a.2.distance_mm.total_cmp(&b.2.distance_mm));
     let Some((_, k, reach)) = start else { return Err(ClosestError::NotFinite { query: *query }) };
     let start = index.cells[*k as usize].at(reach.place);
     let domain = surface.domain();
-    let mut best = Best { found: descend(|at| surface.jet2(at), &domain, query, start), cell: None };
+    let mut best = Best { found: descend_surface(surface, None, &domain, query, start), cell: None };
+    // Few of them are left once a foot is known.
+    let reached = best.found.distance_mm * (1.0 - SAME_DISTANCE);
+    candidates.retain(|c| c.0 < reached || c.0.is_nan());
+    candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
 
     let mut gap_mm = 0.0;
     let mut tasks: BinaryHeap<Task> = BinaryHeap::new();
@@ -113,14 +117,14 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
         }
         let mut rect = cell.rect(surface);
         if model.cut_to_least(&mut rect) {
-            let at = rect.bring(best.found.jet.uv);
+            let at = rect.bring(best.found.uv);
             if !cannot_beat(&cell.jet(surface, at), &rect, query, best.found.distance_mm) {
-                best.offer(descend(|at| cell.jet(surface, at), &rect, query, at), &cell);
+                best.offer(descend_surface(surface, Some(cell.spans()), &rect, query, at), &cell);
             }
             continue;
         }
         if 2.0 * model.value < best.found.distance_mm * best.found.distance_mm {
-            best.offer(descend(|at| cell.jet(surface, at), &rect, query, cell.middle), &cell);
+            best.offer(descend_surface(surface, Some(cell.spans()), &rect, query, cell.middle), &cell);
         }
         for half in cell.halves(surface, cell.bent_axis()) {
             number += 1;
@@ -161,7 +165,7 @@ impl Best {
             }
             return self.on_crease(surface, domain, query, gap_mm);
         };
-        let free = descend(|at| surface.jet2(at), domain, query, self.found.jet.uv);
+        let free = descend_surface(surface, None, domain, query, self.found.uv);
         if free.residual <= PERPENDICULAR && free.distance_mm <= self.found.distance_mm {
             return finish(&free, domain, gap_mm);
         }
@@ -179,19 +183,19 @@ impl Best {
         query: &Point3,
         gap_mm: f64,
     ) -> Result<Foot, ClosestError> {
-        let at = self.found.jet.uv;
+        let at = self.found.uv;
         for span in spans_around(surface, at) {
             let piece = |axis: Axis| {
                 let ends = &surface.knots(axis).breaks()[span[axis as usize]..][..2];
                 Interval::new(ends[0], ends[1])
             };
             let rect = Domain { u: piece(Axis::U), v: piece(Axis::V) };
-            let found = descend(|at| surface.piece_jet(at, span), &rect, query, at);
+            let found = descend_surface(surface, Some(span), &rect, query, at);
             let near = found.distance_mm <= self.found.distance_mm * (1.0 + SAME_DISTANCE);
             if near && found.residual <= PERPENDICULAR {
                 let mut foot = finish(&found, domain, gap_mm)?;
                 let stands = |i: Interval, t: f64| t <= i.lo || t >= i.hi;
-                let at_side = stands(rect.u, found.jet.uv.u) || stands(rect.v, found.jet.uv.v);
+                let at_side = stands(rect.u, found.uv.u) || stands(rect.v, found.uv.v);
                 if foot.kind == FootKind::Interior && at_side {
                     foot.kind = FootKind::Crease;
                 }
