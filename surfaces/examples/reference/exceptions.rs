@@ -10,11 +10,12 @@
 use osculate_geom::{Axis, Jet2, Surface, Uv, uv};
 use osculate_surfaces::NurbsSurface;
 
-/// Files whose unit is said twice and differently: the reference's scale over ours, and why.
+/// Files whose unit the reference has wrong: its scale over the file's, and why.
 pub const UNITS: [(&str, f64, &str); 1] = [(
     "iges/pythonocc_testfile.igs",
     25.4,
-    "unit flag 1 (inch) beside unit name MM: the reference takes the flag, this reader the name",
+    "the file says unit flag 2, name MM; the reference took inches (its record of the file has flag 1 and, as the \
+     resolution, the coordinate of a pole)",
 )];
 
 /// A bound and what it is made of.

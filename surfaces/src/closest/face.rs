@@ -196,7 +196,7 @@ impl<'a> FaceSearch<'a> {
             let ends = self.sides[here.side].next_to;
             let next = ends.map(|side| self.down_side(query, side));
             let Some(better) = next.into_iter().min_by(|a, b| a.square.total_cmp(&b.square)) else { break };
-            if !(better.square < here.square) {
+            if better.square >= here.square || better.square.is_nan() {
                 break;
             }
             here = better;
