@@ -1,8 +1,6 @@
 //! What of a part differs from the reference.
 //!
-//! Tolerances: areas within the reference's own, else [`AREA`] of the value, which is what its own description asks
-//! for (its areas come from integrators that were found to be off by more in places; `--strict` asks for
-//! [`STRICT_AREA`]); points within [`POINT`] of the model's
+//! Tolerances: areas within the reference's own, else [`AREA`] of the value; points within [`POINT`] of the model's
 //! size; the reference prints 12 digits of normals and 10 of curvatures, of which its own checks by differences
 //! confirm [`NORMAL`] and [`CURVATURE`].
 
