@@ -316,6 +316,11 @@ pub enum ImportError {
     /// Nothing to read.
     #[error("the file is empty")]
     Empty,
+    /// Two bytes a character.
+    #[error(
+        "the file is UTF-16 text; STEP, IGES and point files are one byte a character: save it as UTF-8 or ASCII"
+    )]
+    Wide,
     /// None of the formats.
     #[error(
         "no format that is read: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
@@ -356,6 +361,13 @@ pub fn detect(bytes: &[u8]) -> Option<Format> {
     }
 }
 
+/// Whether text begins as UTF-16 does: with its mark, or with every other byte zero.
+fn is_wide(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(64)];
+    let every_other = |odd: usize| head.len() >= 16 && head.iter().skip(odd).step_by(2).all(|b| *b == 0);
+    head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff]) || (every_other(0) != every_other(1))
+}
+
 /// Reads a file of any format that [`detect`] knows.
 ///
 /// # Errors
@@ -369,6 +381,7 @@ pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
         Some(Format::Iges) => Ok(iges::read(bytes)?),
         Some(Format::Patches) => Ok(patches::read(bytes)?),
         Some(Format::Sections) => Ok(sections::read(bytes)?),
+        None if is_wide(bytes) => Err(ImportError::Wide),
         None => {
             let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
             Err(ImportError::Unknown { begin })

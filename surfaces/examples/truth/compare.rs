@@ -11,6 +11,8 @@ use std::fmt;
 
 /// Relative accuracy of areas where the reference claims a better one.
 const AREA: f64 = 1e-5;
+/// Relative accuracy of areas that the collection's notes recommend to compare with.
+const LOOSE_AREA: f64 = 1e-4;
 /// Accuracy of points, as a fraction of the model's size.
 const POINT: f64 = 1e-9;
 /// Accuracy of normals, rad.
@@ -63,6 +65,18 @@ impl Difference {
             Self::Normal { .. } => "sample: normal",
             Self::Curvature { .. } => "sample: curvature",
             Self::Inside { .. } => "sample: inside",
+        }
+    }
+}
+
+impl Difference {
+    /// Whether it is an area that differs by no more than the collection's notes recommend to allow.
+    pub fn is_small_area(&self) -> bool {
+        match self {
+            Self::FaceArea { ours_mm2, reference_mm2, .. } | Self::Area { ours_mm2, reference_mm2, .. } => {
+                within(*ours_mm2, *reference_mm2, LOOSE_AREA * reference_mm2)
+            }
+            _ => false,
         }
     }
 }

@@ -133,6 +133,9 @@ struct Made {
     findings: Vec<String>,
 }
 
+/// An edge with both vertices at one end of an open curve is taken as straight up to this fraction of the curve's size.
+const SHORT_EDGE: f64 = 1e-4;
+
 /// Vertices nearer than this fraction of the face's size are one: writers keep seven digits or more.
 const SAME_VERTEX: f64 = 1e-6;
 
@@ -154,6 +157,14 @@ fn face(geometry: &Geometry<'_>, occurrence: &Occurrence) -> Result<Made, FaceEr
     let reach: Vec<Point3> =
         loops.iter().flatten().flat_map(|e| (0..=8).map(|k| e.piece.point(f64::from(k) / 8.0))).collect();
     let carried = geometry.surface(surface_id, &reach, 0)?;
+    let straight: Vec<String> = loops
+        .iter()
+        .flatten()
+        .filter_map(|e| Some((e.key?, e.straight_mm?)))
+        .map(|(k, mm)| {
+            format!("the curve of edge #{k} ends before it; a straight line of {mm:.3e} mm stands for it")
+        })
+        .collect();
     // The loops are on the left seen along the face's normal; the builder wants them so along the carrier's.
     let along = same_sense != carried.reversed;
     let bounds: Vec<Vec<Boundary>> = loops
@@ -167,7 +178,8 @@ fn face(geometry: &Geometry<'_>, occurrence: &Occurrence) -> Result<Made, FaceEr
         })
         .collect();
     let side = if along != occurrence.turned { Side::Along } else { Side::Against };
-    let built = build(carried.surface, &bounds, side, true)?;
+    let mut built = build(carried.surface, &bounds, side, true)?;
+    built.findings.extend(straight);
     Ok(made(occurrence, arg(&args, 0).text(), carried.kind, built))
 }
 
@@ -264,6 +276,8 @@ fn rectangle(geometry: &Geometry<'_>, id: u64, args: &Args<'_>) -> Result<Vec<Bo
 struct Edge {
     piece: Piece,
     key: Option<u64>,
+    /// Length of an edge whose curve does not reach between its vertices, mm; a straight line stands for it.
+    straight_mm: Option<f64>,
 }
 
 /// The edges of a FACE_BOUND; `None` for a loop that is a single vertex.
@@ -313,6 +327,7 @@ fn polygon(geometry: &Geometry<'_>, id: u64, values: &Args<'_>) -> Result<Vec<Ed
         .map(|(a, b)| Edge {
             piece: Piece { curve: Arc::new(Line::segment(a, b)), ends: [0.0, 1.0] },
             key: None,
+            straight_mm: None,
         })
         .collect())
 }
@@ -352,13 +367,21 @@ fn oriented_edge(geometry: &Geometry<'_>, id: u64) -> Result<Option<Edge>, Unrea
     };
     let slack =
         if one_vertex { 1e-9 * sample } else { (SAME_VERTEX * sample).min(0.1 * (ends[1] - ends[0]).norm()) };
+    let chord_mm = (ends[1] - ends[0]).norm();
     match Piece::between(curve, ends, same_sense, slack) {
         Some(piece) => {
             let piece = if forward { piece } else { piece.reversed() };
-            Ok(Some(Edge { piece, key: Some(edge_id) }))
+            Ok(Some(Edge { piece, key: Some(edge_id), straight_mm: None }))
         }
         // Both ends at one place of an open curve.
         None if one_vertex => Ok(None),
+        // Both vertices at or just beyond one end of the curve: the way between them is straight for all that the file
+        // says.
+        None if chord_mm > 0.0 && chord_mm <= SHORT_EDGE * sample => {
+            let [a, b] = if forward { ends } else { [ends[1], ends[0]] };
+            let piece = Piece { curve: Arc::new(Line::segment(a, b)), ends: [0.0, 1.0] };
+            Ok(Some(Edge { piece, key: Some(edge_id), straight_mm: Some(chord_mm) }))
+        }
         None => {
             Err(Unread::Malformed { id: edge_id, what: "both ends at one place of an open curve".into() })
         }

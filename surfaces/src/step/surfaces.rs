@@ -29,6 +29,9 @@ const ELEMENTARY: [&str; 6] = [
     "DEGENERATE_TOROIDAL_SURFACE",
 ];
 
+/// Relative difference below which the two radii of a torus are the same number, written with rounding.
+const SAME_RADIUS: f64 = 1e-12;
+
 impl Geometry<'_> {
     /// A surface. `reach` holds the face's boundary: swept surfaces without ends are built as far as it goes.
     pub(crate) fn surface(&self, id: u64, reach: &[Point3], depth: usize) -> Result<Carried, Unread> {
@@ -150,7 +153,11 @@ impl Geometry<'_> {
             }
             "SPHERICAL_SURFACE" => (Shape::Sphere { radius_mm: length(2)? }, FaceKind::Sphere),
             _ => {
-                let (major_radius_mm, minor_radius_mm) = (length(2)?, length(3)?);
+                let (mut major_radius_mm, minor_radius_mm) = (length(2)?, length(3)?);
+                // Radii that differ by their last digits are a horn torus: no spindle has parts that small.
+                if (major_radius_mm - minor_radius_mm).abs() <= SAME_RADIUS * minor_radius_mm {
+                    major_radius_mm = minor_radius_mm;
+                }
                 let outer = record.part("DEGENERATE_TOROIDAL_SURFACE").is_none_or(|d| {
                     // Alone in a complex record, else behind name, place and radii.
                     let flag = if d.len() > 4 { arg(&d, 4) } else { arg(&d, 0) };

@@ -232,6 +232,11 @@ impl Walk<'_, '_> {
                 if !own.insert(*item) || only_new && self.before.contains(item) {
                     continue;
                 }
+                // A representation of a tolerance or a datum names faces of the solid: they have their place already.
+                let lone_face = web.graph.peek(*item).is_some_and(|i| is_face(&i));
+                if only_new && lone_face && self.seen.contains(item) {
+                    continue;
+                }
                 let place =
                     Place { motion, context: rep.context, item: Some(*item), product: product.clone() };
                 self.item(*item, &place, false, 0);

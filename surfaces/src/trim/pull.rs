@@ -1,7 +1,8 @@
 //! Space curves pulled onto a surface: polylines of parameters, followed continuously across closing sides.
 //!
 //! The curve is sampled from its middle outwards, so that an end in a pole takes the parameter of its neighbour, and
-//! refined until the middle of every piece is within the chord tolerance of the straight parameter line.
+//! refined until the middle of every piece is within the chord tolerance of the straight parameter line. A piece is then
+//! two straight lines whose corner makes up for the area between chord and arc.
 
 use super::carrier::Carrier;
 use super::curve::Curve;
@@ -80,21 +81,35 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
             let tm = 0.5 * (t0 + t1);
             let guess = uv(0.5 * (p0.u + p1.u), 0.5 * (p0.v + p1.v));
             let room = near && depth < MAX_DEPTH && points.len() + pending.len() < MAX_POINTS;
-            let split = room.then(|| locate(tm, Some(guess))).filter(|pm| {
-                let jet = osculate_geom::Surface::jet2(&carrier.surface, *pm);
-                let off = jet.tangent(uv(pm.u - guess.u, pm.v - guess.v)).norm();
-                off > tolerance.chord_mm
-            });
-            if let Some(pm) = split {
-                pending.push((t1, p1, depth + 1));
-                pending.push((tm, pm, depth + 1));
-            } else {
-                points.push(p1);
-                (t0, p0) = (t1, p1);
+            let middle = room.then(|| locate(tm, Some(guess))).map(|pm| (pm, rise_mm(carrier, pm, guess)));
+            match middle {
+                Some((pm, off)) if off > tolerance.chord_mm => {
+                    pending.push((t1, p1, depth + 1));
+                    pending.push((tm, pm, depth + 1));
+                }
+                _ => {
+                    points.extend(middle.map(|(pm, _)| apex(guess, pm)));
+                    points.push(p1);
+                    (t0, p0) = (t1, p1);
+                }
             }
         }
     }
     Pulled { points: simplify(carrier, &points, 0.05 * tolerance.chord_mm), gap_mm: gap_mm.get() }
+}
+
+/// Distance on the surface between a curve's point and the middle of its chord.
+fn rise_mm(carrier: &Carrier, on_curve: Uv, middle: Uv) -> f64 {
+    let jet = osculate_geom::Surface::jet2(&carrier.surface, on_curve);
+    jet.tangent(uv(on_curve.u - middle.u, on_curve.v - middle.v)).norm()
+}
+
+/// The corner over a chord that encloses as much as the arc through `on_curve`: a parabola's segment is four thirds of
+/// the triangle in it (Archimedes), so the corner rises a third above the curve. Chords alone would lie on one side of
+/// every arc and take away a whole strip.
+fn apex(middle: Uv, on_curve: Uv) -> Uv {
+    const RISE: f64 = 4.0 / 3.0;
+    uv(middle.u + RISE * (on_curve.u - middle.u), middle.v + RISE * (on_curve.v - middle.v))
 }
 
 /// The parameters shifted by whole periods to be nearest to `near`.
@@ -158,13 +173,15 @@ pub(crate) fn flatten(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance
         while let Some((t1, p1, depth)) = pending.pop() {
             let tm = 0.5 * (t0 + t1);
             let pm = at(tm);
-            let off = uv(pm.u - 0.5 * (p0.u + p1.u), pm.v - 0.5 * (p0.v + p1.v));
+            let guess = uv(0.5 * (p0.u + p1.u), 0.5 * (p0.v + p1.v));
             let room = depth < MAX_DEPTH && points.len() + pending.len() < MAX_POINTS;
-            let jet = osculate_geom::Surface::jet2(&carrier.surface, pm);
-            if room && jet.tangent(off).norm() > tolerance.chord_mm {
+            if room && rise_mm(carrier, pm, guess) > tolerance.chord_mm {
                 pending.push((t1, p1, depth + 1));
                 pending.push((tm, pm, depth + 1));
             } else {
+                if room {
+                    points.push(apex(guess, pm));
+                }
                 points.push(p1);
                 (t0, p0) = (t1, p1);
             }
