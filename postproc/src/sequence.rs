@@ -13,7 +13,7 @@
 //!
 //! The sweep keeps no points. What it keeps is where each state comes from, and as neighbours nearly always agree in
 //! that, a run of points that do is one entry: a few bytes for every place where the states change, none for the points
-//! between. Where every point differed it would be 16 bytes a point and two a state.
+//! between. Where every point differed it would be 24 bytes a point and two a state.
 
 use crate::machine::{Candidate, LIMIT_SLACK, Machine, Orientations, angle_between, nearest_turn};
 use osculate_geom::Unit3;
