@@ -5,6 +5,7 @@
 //! - [`Contact`] puts a cutter on a surface with [`Lean`] (lead and tilt) and a feed; [`ContactMotion`] drives it along.
 //! - [`sweep`] finds how deep a moving cutter reaches along a line; [`mod@strip`] turns that into the exact strip width.
 //! - [`removal`] judges whole paths: scallop, gouge and uncut area on sampled faces.
+//! - [`flank`] puts the side of a cutter against ruled surfaces.
 //! - [`cl`] is the path that planning hands on to posting and verification.
 //!
 //! Lengths are millimetres, angles radians. The tool axis points from the tip to the spindle.
@@ -27,6 +28,7 @@
 pub mod cl;
 pub mod contact;
 mod cutter;
+pub mod flank;
 mod make;
 pub mod meridian;
 mod pose;

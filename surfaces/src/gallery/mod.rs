@@ -7,9 +7,13 @@
 //! - The monkey saddle and Enneper's surface have lines of curvature in closed form.
 
 mod bicubic;
+mod directrices;
 mod ruled;
 
 pub use bicubic::{enneper, m86, monkey_saddle};
+pub use directrices::{
+    FormulaCurve, LiuSize, ParaboloidSize, eq18_directrices, liu_directrices, paraboloid_directrices,
+};
 pub use ruled::{Eq18, HyperbolicSize, d98_eq18, d98_hyperbolic, d98_liu};
 
 /// What is special about a surface of the gallery.
