@@ -11,14 +11,50 @@
 //! gouged. Source: [D98], with the errata of `docs/papers/d98.md`.
 //!
 //! - [`RuledStrip`] is the surface between two directrices, [`Rule`] its rule at a parameter with frame and derivatives.
+//! - [`place`] puts a [`SideTool`] (cylinder, cone, barrel) against a rule in one of the [`Setting`]s; [`profile`] is the
+//!   static deviation along the rule, [`Placed::verdict`] what the position is worth.
 //! - [`AxisLine`] is where a cutter's axis lies, [`AxisJet`] how it moves with the parameter.
+//!
+//! ```
+//! use osculate_geom::{Point3, Side, Vec3, analytic::Line};
+//! use osculate_tools::flank::{RuledStrip, Setting, SideTool, Stations, place};
+//! // Two straight directrices, 80 mm apart and turned against each other by 60 degrees: a hyperbolic paraboloid.
+//! let line = |z: f64, turn: f64| {
+//!     let (s, c) = turn.to_radians().sin_cos();
+//!     Line::segment(Point3::new(-40.0 * c, -40.0 * s, z), Point3::new(40.0 * c, 40.0 * s, z))
+//! };
+//! let strip = RuledStrip::new(line(0.0, 30.0)?, line(80.0, -30.0)?, Side::Along, 1.0)?;
+//! let (tool, stations) = (SideTool::cylinder(10.0)?, Stations::new(&strip, 48));
+//! let depth = |setting| -> Result<f64, Box<dyn std::error::Error>> {
+//!     let placed = place(&strip, &stations, 0.5, tool, setting)?;
+//!     Ok(-placed.profile(&strip, &stations, &tool, 65).lowest.deviation_mm)
+//! };
+//! // Along the rule the tool gouges by R (1 - cos 30 deg), touching three times by a fiftieth of that.
+//! assert!((depth(Setting::Distributed)? - 1.339746).abs() < 1e-6);
+//! assert!((depth(Setting::ThreeTangent)? - 0.026010).abs() < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod axis;
 mod directrix;
+mod lp;
+mod minimax;
 mod rule;
 mod ruled;
+mod search;
+mod section;
+mod setting;
+mod standard;
+mod three;
+mod tool;
 
 pub use axis::{AxisJet, AxisLine};
 pub use directrix::CurveJet2;
+pub use minimax::{Hold, MinimaxAxis, MinimaxSearch, minimax};
 pub use rule::{Rule, RuleError, RuleFrame};
 pub use ruled::{RuledError, RuledStrip};
+pub use section::{Least, Profile, Stations, least_at, profile};
+pub use setting::{PlaceError, Placed, Setting, Touch, Verdict, place};
+pub use standard::balanced_fraction;
+pub use three::{ThreeTangent, three_tangent};
+pub use tool::{SideNear, SideTool, SideToolError};

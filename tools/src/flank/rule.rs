@@ -1,6 +1,7 @@
 //! One rule of a strip: its ends, the normals there, and the frame in which a cutter is put against it.
 
 use super::directrix::CurveJet2;
+use super::search::least_between;
 use osculate_geom::{Point3, Side, Unit3, Vec3};
 
 /// Why a rule gives no frame.
@@ -163,15 +164,41 @@ impl Rule {
         Unit3::try_new(n, 0.0)
     }
 
-    /// Curvature of directrix `end` projected along the rule, 1/mm, positive where the body is convex on the tool's side:
-    /// the curvature of the surface's section across the rule at that end, as far as the directrix makes it.
+    /// Curvature of the line of constant v, projected along the rule, 1/mm: positive where the body is convex on the
+    /// tool's side. It is the curvature of the surface's section across the rule, as far as that line makes it; at v = 0
+    /// and 1 it is 1/rho of the directrices. Not finite where there is no tangent plane.
+    #[must_use]
+    pub fn section_curvature_per_mm(&self, v: f64) -> f64 {
+        let [a, b] = &self.ends;
+        let z = self.frame.z;
+        let across = self.du(v).cross(&z);
+        let speed = across.norm();
+        let bend = a.second + (b.second - a.second) * v;
+        // k_P = -II / I with the normal to the tool; the projection has the same normal component.
+        -bend.dot(&across) * self.side.sign() / (speed * speed * speed)
+    }
+
+    /// [`Rule::section_curvature_per_mm`] at the end on directrix 0 or 1.
     #[must_use]
     pub fn projected_curvature_per_mm(&self, end: usize) -> f64 {
-        let j = &self.ends[end];
-        let z = self.frame.z;
-        let across = |v: &Vec3| v - z * v.dot(&z);
-        let speed = across(&j.first).norm();
-        // k_P = -II / I with the normal to the tool; the projection has the same normal component.
-        -j.second.dot(&self.normals[end]) * self.side.sign() / (speed * speed)
+        self.section_curvature_per_mm(end as f64)
+    }
+
+    /// The largest radius of a cylinder along the rule that no section across the rule is too hollow for, mm; infinite
+    /// where none is hollow.
+    #[must_use]
+    pub fn largest_fit_mm(&self) -> f64 {
+        const LOOKS: usize = 16;
+        let at = |k: usize| k as f64 / LOOKS as f64;
+        let hollow = |v: f64| {
+            let k = -self.section_curvature_per_mm(v);
+            if k.is_finite() { k } else { f64::NEG_INFINITY }
+        };
+        let seen: [f64; LOOKS + 1] = std::array::from_fn(|k| hollow(at(k)));
+        let most = (0..=LOOKS).max_by(|a, b| seen[*a].total_cmp(&seen[*b])).unwrap_or(0);
+        let (lo, hi) = (at(most.saturating_sub(1)), at((most + 1).min(LOOKS)));
+        let found = -least_between(lo, hi, |v| -hollow(v)).1;
+        let most = found.max(seen[most]);
+        if most > 0.0 { 1.0 / most } else { f64::INFINITY }
     }
 }

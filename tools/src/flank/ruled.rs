@@ -2,7 +2,10 @@
 
 use super::directrix::{CurveJet2, Directrix, Source};
 use super::rule::{Rule, RuleError};
-use osculate_geom::{Axis, Curve, Domain, Interval, Jet2, Series, Side, Surface, Taylor, Uv, Vec3, uv};
+use super::search::least_between;
+use osculate_geom::{
+    Axis, Curve, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Uv, Vec3, uv,
+};
 
 /// Why two directrices make no strip.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -175,6 +178,19 @@ impl<'a> RuledStrip<'a> {
         self.directrices[end.min(1)].jet(u)
     }
 
+    /// The point of directrix 0 or 1 at u, inside the domain there too where derivatives are not finite.
+    pub(super) fn place(&self, end: usize, u: f64) -> Point3 {
+        let d = &self.directrices[end.min(1)];
+        if self.domain.contains(u) { d.point(u) } else { d.jet(u).point }
+    }
+
+    /// The point at (u, v), beyond the ends too.
+    #[must_use]
+    pub fn point_at(&self, u: f64, v: f64) -> Point3 {
+        let [a, b] = [0, 1].map(|end: usize| self.directrices[end].jet(u).point);
+        a + (b - a) * v
+    }
+
     /// The rule at u.
     ///
     /// # Errors
@@ -182,27 +198,6 @@ impl<'a> RuledStrip<'a> {
     pub fn rule(&self, u: f64) -> Result<Rule, RuleError> {
         Rule::new(u, [self.directrix(0, u), self.directrix(1, u)], self.side)
     }
-}
-
-/// Abscissa and value of the least value in a bracket by golden section, to rounding of the abscissa.
-fn least_between(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> (f64, f64) {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    /// A bracket shrinks by 1e-16 in so many sections.
-    const SECTIONS: usize = 78;
-    let (mut x, mut y) = (b - RATIO * (b - a), a + RATIO * (b - a));
-    let (mut fx, mut fy) = (f(x), f(y));
-    for _ in 0..SECTIONS {
-        if fx <= fy {
-            (b, y, fy) = (y, x, fx);
-            x = b - RATIO * (b - a);
-            fx = f(x);
-        } else {
-            (a, x, fx) = (x, y, fy);
-            y = a + RATIO * (b - a);
-            fy = f(y);
-        }
-    }
-    if fx <= fy { (x, fx) } else { (y, fy) }
 }
 
 impl Surface for RuledStrip<'_> {
