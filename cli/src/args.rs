@@ -67,6 +67,8 @@ pub enum Verb {
     },
     /// Machining time of an NC program with the axes' limits.
     Time(TimeArgs),
+    /// What an NC program makes the tool do, as CL data.
+    Readback(ReadbackArgs),
     /// The built-in machines.
     Machines,
     /// The built-in dialects.
@@ -188,6 +190,17 @@ pub struct TimeArgs {
     /// Stop at the first word that is not understood instead of leaving it out with a finding.
     #[arg(long)]
     pub strict: bool,
+}
+
+/// What `readback` takes.
+#[derive(Debug, Args)]
+pub struct ReadbackArgs {
+    /// The program and its machine.
+    #[command(flatten)]
+    pub nc: TimeArgs,
+    /// The CL file to write.
+    #[arg(long)]
+    pub out: PathBuf,
 }
 
 fn numbers<const N: usize>(s: &str) -> Result<[f64; N], String> {

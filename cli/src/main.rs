@@ -45,6 +45,7 @@ fn run(cli: &Cli) -> Outcome {
             cli.json,
         ),
         Verb::Time(args) => cmd::time::run(args, cli.json),
+        Verb::Readback(args) => cmd::readback::run(args, cli.json),
         Verb::Machines => cmd::list::machines(cli.json),
         Verb::Dialects => cmd::list::dialects(cli.json),
         Verb::Tools => cmd::list::tools(cli.json),

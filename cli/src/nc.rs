@@ -9,7 +9,7 @@ use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::readback::{self, ReadOptions};
-use osculate_postproc::{Machine, PostOptions, PostReport, Posted, Setup, built_in_names, suggest};
+use osculate_postproc::{Machine, PostOptions, Posted, Setup, built_in_names, suggest};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::Swept;
 use std::path::Path;
@@ -209,19 +209,8 @@ pub fn post(path: &ClPath, control: &Control, setup: &Setup, name: &str) -> Resu
     osculate_postproc::post(path, &control.machine, setup, &options).map_err(Failure::job)
 }
 
-/// NC code for a path into a sink, piece by piece.
-pub fn post_to(
-    path: &ClPath,
-    control: &Control,
-    setup: &Setup,
-    name: &str,
-    sink: &mut dyn std::io::Write,
-) -> Result<PostReport, Failure> {
-    let options = post_options(control, name);
-    osculate_postproc::post_to(path, &control.machine, setup, &options, sink).map_err(Failure::job)
-}
-
-fn post_options(control: &Control, name: &str) -> PostOptions {
+/// The options of a post for this control.
+pub fn post_options(control: &Control, name: &str) -> PostOptions {
     PostOptions { program_name: name.to_owned(), ..PostOptions::new(control.dialect, control.feed) }
 }
 

@@ -1,7 +1,7 @@
 //! The rotary joints of every point, once branch and turn are known: piece by piece, in the order of the path.
 
 use osculate_geom::Unit3;
-use osculate_tools::cl::{ClPath, Motion};
+use osculate_tools::cl::{ClMove, Motion};
 use rayon::prelude::*;
 
 use crate::machine::{Machine, nearest_turn};
@@ -34,11 +34,12 @@ struct Chosen {
 pub(crate) struct Choices<'a> {
     pub machine: &'a Machine,
     pub setup: &'a Setup,
-    pub path: &'a ClPath,
     cone_rad: f64,
     slots: &'a Slots,
     /// The run of slots that is next, and how many of its points have been taken.
     at: (usize, usize),
+    /// The gap that is next.
+    gap: usize,
     index: usize,
     before: Option<Chosen>,
     /// The regular point behind the singular ones that are being passed.
@@ -46,18 +47,13 @@ pub(crate) struct Choices<'a> {
 }
 
 impl<'a> Choices<'a> {
-    pub fn new(
-        machine: &'a Machine,
-        setup: &'a Setup,
-        path: &'a ClPath,
-        (slots, cone_rad): (&'a Slots, f64),
-    ) -> Self {
-        Self { machine, setup, path, cone_rad, slots, at: (0, 0), index: 0, before: None, after: None }
+    pub fn new(machine: &'a Machine, setup: &'a Setup, (slots, cone_rad): (&'a Slots, f64)) -> Self {
+        Self { machine, setup, cone_rad, slots, at: (0, 0), gap: 0, index: 0, before: None, after: None }
     }
 
-    /// The choices of the next `most` points; fewer at the end of the path.
-    pub fn next_piece(&mut self, most: usize) -> Vec<Choice> {
-        let start = self.index;
+    /// The choices of the next points of the path.
+    pub fn next_piece(&mut self, moves: &[ClMove]) -> Vec<Choice> {
+        let most = moves.len();
         let mut slots: Vec<u8> = Vec::with_capacity(most);
         let mut at = self.at;
         while slots.len() < most && at.0 < self.slots.runs.len() {
@@ -71,22 +67,28 @@ impl<'a> Choices<'a> {
         }
         let states: Vec<Option<(Unit3, State)>> = slots
             .par_iter()
-            .enumerate()
+            .zip(moves)
             .with_min_len(2048)
-            .map(|(i, slot)| (*slot != NO_SLOT).then(|| self.state(start + i, *slot)))
+            .map(|(slot, m)| {
+                (*slot != NO_SLOT).then(|| {
+                    let axis = self.setup.to_table(&m.pose).axis;
+                    (axis, self.state(&axis, *slot))
+                })
+            })
             .collect();
         let mut choices = Vec::with_capacity(slots.len());
-        for found in states {
+        for (found, m) in states.into_iter().zip(moves) {
+            let rapid = m.motion == Motion::Rapid;
             choices.push(match found {
                 Some((axis, state)) => {
                     let chosen = match self.after.take() {
                         Some(after) => after,
-                        None => self.regular(self.index, axis, state),
+                        None => self.regular(self.index, axis, state, rapid),
                     };
                     self.before = Some(chosen);
                     chosen.choice
                 }
-                None => self.in_cone(),
+                None => self.in_cone(&self.setup.to_table(&m.pose).axis),
             });
             self.index += 1;
             self.at.1 += 1;
@@ -97,20 +99,18 @@ impl<'a> Choices<'a> {
         choices
     }
 
-    /// The axis in the table's frame and the state that was chosen there.
-    fn state(&self, index: usize, slot: u8) -> (Unit3, State) {
-        let axis = self.setup.to_table(&self.path.moves[index].pose).axis;
-        let found = self.machine.orientations(&axis).expect("the search has found states here");
+    /// The state that was chosen for an axis of the table's frame.
+    fn state(&self, axis: &Unit3, slot: u8) -> State {
+        let found = self.machine.orientations(axis).expect("the search has found states here");
         let state = all_turns(self.machine, &found).into_iter().nth(usize::from(slot));
-        (axis, state.expect("the search has found this state here"))
+        state.expect("the search has found this state here")
     }
 
-    fn regular(&self, index: usize, axis: Unit3, state: State) -> Chosen {
+    /// `rapid`: a rapid move lies between the regular point before and this one.
+    fn regular(&self, index: usize, axis: Unit3, state: State, rapid: bool) -> Chosen {
         let mut choice =
             Choice { rotary_rad: state.rotary_rad, branch: state.branch, rewind: false, singular: false };
         if let Some(before) = &self.before {
-            let between = before.index + 1..=index;
-            let rapid = self.path.moves[between].iter().any(|m| m.motion == Motion::Rapid);
             let gap = index > before.index + 1;
             let step = Step::between(self.machine, (&before.axis, &axis), (gap, rapid), self.cone_rad);
             choice.rewind = step.needs_rewind(self.machine, &before.state, &state);
@@ -125,13 +125,16 @@ impl<'a> Choices<'a> {
 
     /// Gives a point inside the cone an outer joint: linear between the regular neighbours over the count of points,
     /// held at the ends of the path; the inner joint then points the tool best.
-    fn in_cone(&mut self) -> Choice {
+    fn in_cone(&mut self, axis: &Unit3) -> Choice {
         let i = self.index;
         if self.after.is_none() {
             let run = self.slots.runs[self.at.0].0 - self.at.1;
-            if let Some(&(_, slot)) = self.slots.runs.get(self.at.0 + 1) {
-                let (axis, state) = self.state(i + run, slot);
-                self.after = Some(self.regular(i + run, axis, state));
+            if let (Some(&(_, slot)), Some(gap)) =
+                (self.slots.runs.get(self.at.0 + 1), self.slots.gaps.get(self.gap))
+            {
+                let state = self.state(&gap.axis, slot);
+                self.after = Some(self.regular(i + run, gap.axis, state, gap.rapid));
+                self.gap += 1;
             }
         }
         let (outer, near, branch) = match (&self.before, &self.after) {
@@ -152,10 +155,9 @@ impl<'a> Choices<'a> {
                 (rest, 0.0, 0)
             }
         };
-        let axis = self.setup.to_table(&self.path.moves[i].pose).axis;
         let pair = self.machine.pair().expect("only a pair of rotary joints has poles");
         let place = self.machine.rotary()[1];
-        let inner = self.machine.turned_near(place, pair.inner_for(outer, &axis), near);
+        let inner = self.machine.turned_near(place, pair.inner_for(outer, axis), near);
         Choice { rotary_rad: [outer, inner], branch, rewind: false, singular: true }
     }
 }

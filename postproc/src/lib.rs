@@ -24,6 +24,7 @@
 
 mod choices;
 pub mod cldata;
+mod draft;
 pub mod feed;
 pub mod joint_path;
 mod linearize;
@@ -35,6 +36,7 @@ mod sequence;
 mod setup;
 mod solve;
 mod solve_error;
+mod source;
 mod suggest;
 
 pub use feed::{FeedMode, PathMetric};
@@ -42,8 +44,9 @@ pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
 pub use machine::{Machine, MachineError, built_in_names};
 pub use nc::Dialect;
 pub use nc::readback;
-pub use post::{PostError, PostOptions, PostReport, PostSummary, Posted, post, post_to};
+pub use post::{PostError, PostOptions, PostReport, PostSummary, Posted, post, post_from, post_to};
 pub use setup::{Setup, SetupError};
 pub use solve::SolveOptions;
 pub use solve_error::SolveError;
+pub use source::MoveSource;
 pub use suggest::{Suggestion, suggest};

@@ -117,12 +117,13 @@ pub(crate) struct Search<'a> {
     /// Singular points since, and a rapid move since.
     gap: bool,
     rapid: bool,
+    gaps: Vec<Gap>,
 }
 
 impl<'a> Search<'a> {
     pub fn new(machine: &'a Machine, cone_rad: f64) -> Self {
         let (runs, links) = (Vec::new(), Vec::new());
-        Self { machine, cone_rad, runs, links, last: None, gap: false, rapid: false }
+        Self { machine, cone_rad, runs, links, last: None, gap: false, rapid: false, gaps: Vec::new() }
     }
 
     /// The next point; one that is not singular must have a state.
@@ -132,6 +133,9 @@ impl<'a> Search<'a> {
         if node.singular {
             self.gap = true;
             return self.close(start);
+        }
+        if self.gap {
+            self.gaps.push(Gap { axis: node.axis, rapid: self.rapid });
         }
         let cost = match &self.last {
             None => {
@@ -180,7 +184,7 @@ impl<'a> Search<'a> {
     pub fn finish(self) -> Slots {
         let cost = self.last.map(|(_, cost)| cost).unwrap_or_default();
         let mut at = cost.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(i, _)| i);
-        let mut slots = Slots { runs: Vec::new() };
+        let mut slots = Slots { runs: Vec::new(), gaps: self.gaps };
         for run in self.runs.iter().rev() {
             let links = &self.links[run.links.0..run.links.0 + run.links.1];
             let mut left = run.points;
@@ -206,6 +210,17 @@ impl<'a> Search<'a> {
 pub(crate) struct Slots {
     /// Points and their slot, in the order of the path.
     pub runs: Vec<(usize, u8)>,
+    /// What comes after each run of singular points; nothing after one at the end of the path.
+    pub gaps: Vec<Gap>,
+}
+
+/// The regular point behind a run of singular ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Gap {
+    /// Its tool axis in the table's frame.
+    pub axis: Unit3,
+    /// A rapid move leads to it, or to one of the singular points.
+    pub rapid: bool,
 }
 
 impl Slots {

@@ -6,9 +6,11 @@
 //!    other turn or branch with the tip held at its place relative to the part, and back;
 //! 4. linearisation ([`crate::linearize`]).
 
+use std::ops::ControlFlow;
+
 use osculate_geom::Diagnostic;
-use osculate_tools::cl::{ClPath, Motion};
-use osculate_tools::{Pose, cl::ClMove};
+use osculate_tools::Pose;
+use osculate_tools::cl::{ClMove, ClPath, Motion};
 use rayon::prelude::*;
 
 use crate::choices::{Choice, Choices};
@@ -18,6 +20,7 @@ use crate::machine::{JointValues, Machine, angle_between, nearest_turn};
 use crate::sequence::{Node, Search, Slots, all_turns};
 use crate::setup::Setup;
 use crate::solve_error::SolveError;
+use crate::source::MoveSource;
 
 /// How a path is to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,99 +71,169 @@ impl Machine {
         setup: &Setup,
         options: &SolveOptions,
     ) -> Result<JointPath, SolveError> {
+        self.solve_from(path, setup, options)
+    }
+
+    /// As [`Machine::solve`], from any source of moves.
+    pub(crate) fn solve_from<S: MoveSource, E: From<SolveError> + From<S::Error>>(
+        &self,
+        source: &S,
+        setup: &Setup,
+        options: &SolveOptions,
+    ) -> Result<JointPath, E> {
         let mut whole = JointPath::default();
-        let solved = self.solve_pieces(path, setup, options, |blocks| {
+        let solved = self.solve_pieces(source, setup, options, |blocks| {
             whole.blocks.extend_from_slice(blocks);
-            Ok::<(), SolveError>(())
+            Ok::<(), E>(())
         })?;
         Ok(JointPath { blocks: whole.blocks, ..solved })
     }
 
     /// As [`Machine::solve`], with the blocks given to `take` piece by piece; the answer has none. What is held at a
     /// time does not grow with the path, except for the places where branches and turns meet ([`crate::sequence`]).
-    pub(crate) fn solve_pieces<E: From<SolveError>>(
+    pub(crate) fn solve_pieces<S: MoveSource, E: From<SolveError> + From<S::Error>>(
         &self,
-        path: &ClPath,
+        source: &S,
         setup: &Setup,
         options: &SolveOptions,
         mut take: impl FnMut(&[JointBlock]) -> Result<(), E>,
     ) -> Result<JointPath, E> {
         setup.check().map_err(SolveError::from)?;
         check_options(options)?;
-        let slots = search(self, path, setup, options)?;
-        let mut choices = Choices::new(self, setup, path, (&slots, options.singular_cone_rad));
-        let liner = || Liner { machine: self, setup, options, path: JointPath::default() };
-        let mut sum = JointPath::default();
-        let mut last = None;
-        for (piece, moves) in path.moves.chunks(PIECE).enumerate() {
-            let mut chosen = choices.next_piece(PIECE);
-            // The first move of a piece starts where the piece before has ended.
-            let mut first = piece * PIECE;
-            match last.replace(chosen[moves.len() - 1]) {
-                Some(before) => {
-                    chosen.insert(0, before);
-                    first -= 1;
-                }
-                None => {
-                    let mut liner = liner();
-                    start(&mut liner, &path.moves[0], &chosen[0])?;
-                    take(&liner.path.blocks)?;
-                    sum.append_report(liner.path);
-                }
-            }
-            let run = Run { path, first, choices: &chosen };
-            // Every move depends on the choices at its two ends alone; pieces are put together in order.
-            let count = chosen.len() - 1;
-            let shares: Vec<usize> = (0..count).step_by(SHARE).collect();
-            let solved: Vec<Result<JointPath, SolveError>> = shares
-                .into_par_iter()
-                .map(|from| {
-                    let mut liner = liner();
-                    liner.path.blocks.reserve(SHARE);
-                    run.moves(&mut liner, from..(from + SHARE).min(count))?;
-                    Ok(liner.path)
-                })
-                .collect();
-            for share in solved {
-                let share = share?;
-                take(&share.blocks)?;
-                sum.append_report(share);
-            }
+        let slots = search::<S, E>(self, source, setup, options)?;
+        let choices = Choices::new(self, setup, (&slots, options.singular_cone_rad));
+        let mut solver = Solver {
+            machine: self,
+            setup,
+            options,
+            choices,
+            last: None,
+            index: 0,
+            sum: JointPath::default(),
+        };
+        each_piece(source, |moves| solver.piece(moves, &mut take))?;
+        Ok(solver.sum)
+    }
+}
+
+/// Goes over the moves in pieces; the first failure ends it.
+fn each_piece<S: MoveSource, E: From<S::Error>>(
+    source: &S,
+    mut take: impl FnMut(&[ClMove]) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut failed = None;
+    source.pieces(PIECE, &mut |moves| match take(moves) {
+        Ok(()) => ControlFlow::Continue(()),
+        Err(e) => {
+            failed = Some(e);
+            ControlFlow::Break(())
         }
-        Ok(sum)
+    })?;
+    failed.map_or(Ok(()), Err)
+}
+
+/// The second time over the path.
+struct Solver<'a> {
+    machine: &'a Machine,
+    setup: &'a Setup,
+    options: &'a SolveOptions,
+    choices: Choices<'a>,
+    /// Where the piece before has ended.
+    last: Option<(ClMove, Choice)>,
+    /// Moves in the pieces before.
+    index: usize,
+    sum: JointPath,
+}
+
+impl Solver<'_> {
+    fn liner(&self) -> Liner<'_> {
+        Liner { machine: self.machine, setup: self.setup, options: self.options, path: JointPath::default() }
+    }
+
+    fn piece<E: From<SolveError>>(
+        &mut self,
+        moves: &[ClMove],
+        take: &mut impl FnMut(&[JointBlock]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Some(end) = moves.last() else { return Ok(()) };
+        let mut chosen = self.choices.next_piece(moves);
+        let last = self.last.replace((*end, chosen[moves.len() - 1]));
+        // The first move of a piece starts where the piece before has ended.
+        let mut joined = Vec::new();
+        let (first, moves) = match last {
+            Some((m, choice)) => {
+                chosen.insert(0, choice);
+                joined.reserve(moves.len() + 1);
+                joined.push(m);
+                joined.extend_from_slice(moves);
+                (self.index - 1, &joined[..])
+            }
+            None => {
+                let mut liner = self.liner();
+                start(&mut liner, &moves[0], &chosen[0])?;
+                let path = liner.path;
+                take(&path.blocks)?;
+                self.sum.append_report(path);
+                (0, moves)
+            }
+        };
+        self.index = first + moves.len();
+        let run = Run { moves, first, choices: &chosen };
+        // Every move depends on the choices at its two ends alone; pieces are put together in order.
+        let count = chosen.len() - 1;
+        let shares: Vec<usize> = (0..count).step_by(SHARE).collect();
+        let this = &*self;
+        let solved: Vec<Result<JointPath, SolveError>> = shares
+            .into_par_iter()
+            .map(|from| {
+                let mut liner = this.liner();
+                liner.path.blocks.reserve(SHARE);
+                run.moves(&mut liner, from..(from + SHARE).min(count))?;
+                Ok(liner.path)
+            })
+            .collect();
+        for share in solved {
+            let share = share?;
+            take(&share.blocks)?;
+            self.sum.append_report(share);
+        }
+        Ok(())
     }
 }
 
 /// Branch and turn of every point.
-fn search(
+fn search<S: MoveSource, E: From<SolveError> + From<S::Error>>(
     machine: &Machine,
-    path: &ClPath,
+    source: &S,
     setup: &Setup,
     options: &SolveOptions,
-) -> Result<Slots, SolveError> {
-    if path.moves.is_empty() {
-        return Err(SolveError::Empty);
-    }
+) -> Result<Slots, E> {
     let mut search = Search::new(machine, options.singular_cone_rad);
     let mut nodes: Vec<Result<Node, SolveError>> = Vec::new();
-    for (piece, moves) in path.moves.chunks(PIECE).enumerate() {
+    let mut index = 0;
+    each_piece(source, |moves| {
         // In parallel, merged in order: the first error is that of the first move that has one.
         moves
             .par_iter()
             .enumerate()
             .with_min_len(SHARE)
-            .map(|(i, m)| node(machine, setup, options, piece * PIECE + i, m))
+            .map(|(i, m)| node(machine, setup, options, index + i, m))
             .collect_into_vec(&mut nodes);
         for node in nodes.drain(..) {
             search.add(node?);
         }
+        index += moves.len();
+        Ok::<(), E>(())
+    })?;
+    if index == 0 {
+        return Err(SolveError::Empty.into());
     }
     Ok(search.finish())
 }
 
 /// A piece of a path with everything chosen.
 struct Run<'a> {
-    path: &'a ClPath,
+    moves: &'a [ClMove],
     /// The CL move of the first choice.
     first: usize,
     choices: &'a [Choice],
@@ -178,14 +251,14 @@ impl Run<'_> {
 
     fn placed(&self, liner: &Liner, i: usize) -> Result<Placed, SolveError> {
         let index = self.first + i;
-        let pose = self.path.moves[index].pose;
+        let pose = self.moves[i].pose;
         let joints = liner.checked(&self.choices[i].rotary_rad, &pose, index)?;
         Ok(Placed { pose, joints })
     }
 
     /// The blocks of one CL move; where it ends.
     fn move_to(&self, liner: &mut Liner, from: &Placed, i: usize) -> Result<Placed, SolveError> {
-        let m = &self.path.moves[self.first + i];
+        let m = &self.moves[i];
         let to = self.placed(liner, i)?;
         let label = Label { motion: m.motion, source: self.first + i, kind: BlockKind::Point };
         let mut at = *from;

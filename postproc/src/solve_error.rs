@@ -103,7 +103,27 @@ pub enum SolveError {
     },
 }
 
+impl From<std::convert::Infallible> for SolveError {
+    fn from(never: std::convert::Infallible) -> Self {
+        match never {}
+    }
+}
+
 impl SolveError {
+    /// The CL move that it speaks of, from 0.
+    #[must_use]
+    pub const fn index(&self) -> Option<usize> {
+        match self {
+            Self::NotFinite { index }
+            | Self::Unreachable { index, .. }
+            | Self::Limit { index, .. }
+            | Self::Flat { index, .. }
+            | Self::Jump { index, .. }
+            | Self::NoRewind { index } => Some(*index),
+            Self::Empty | Self::Setup(_) | Self::Option { .. } => None,
+        }
+    }
+
     pub(crate) fn unreachable(index: usize, pose: &Pose, e: AxisUnreachable) -> Self {
         let axis = [pose.axis.x, pose.axis.y, pose.axis.z];
         Self::Unreachable { index, tip: pose.tip, axis, off_deg: e.off_rad.to_degrees() }

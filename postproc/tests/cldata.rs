@@ -72,7 +72,7 @@ fn forms_of_other_systems() {
 #[test]
 fn what_is_not_interpreted_is_named() {
     let text = "CUTTER/12,0,6,3.6,31,0,63\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/100,MMPM\nCOOLNT/FLOOD\nRAPID\nGOTO/0,0,10\n\
-                CIRCLE/0,0,0,0,0,1,5\nGOTO/1,0,0\nCIRCLE/0,0,0,0,0,1,5\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\nCSYS/0,1,0,0,-1,0,0,0,0,0,1,0\n\
+                TRACUT/0,0,0,0,0,1,5\nGOTO/1,0,0\nTRACUT/0,0,0,0,0,1,5\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\nCSYS/0,1,0,0,-1,0,0,0,0,0,1,0\n\
                 FROBNI/1\nLOADTL/2\nGOTO/2,0,0\nFINI\n";
     let data = read(text).unwrap();
     assert_eq!((data.path.moves.len(), data.path.cutter), (3, None));
@@ -85,11 +85,12 @@ fn what_is_not_interpreted_is_named() {
     };
     said("line 1", Severity::Loss, "CUTTER/12,0,6,3.6,31,0,63");
     said("line 5", Severity::Note, "COOLNT");
-    said("line 8, 10", Severity::Loss, "CIRCLE (2 x)");
-    said("line 11, 12", Severity::Loss, "CSYS");
+    said("line 8, 10", Severity::Loss, "TRACUT (2 x)");
+    said("line 11", Severity::Note, "CSYS");
+    said("line 12", Severity::Loss, "CSYS");
     said("line 13", Severity::Loss, "FROBNI");
     said("line 14", Severity::Loss, "tool change to 2");
-    assert_eq!(data.diagnostics.len(), 6);
+    assert_eq!(data.diagnostics.len(), 7);
 }
 
 #[test]

@@ -42,6 +42,11 @@ fn slow() -> Machine {
     machine(linear, Axis { velocity: 30.0, acceleration: 300.0 }, 35.0)
 }
 
+fn mid() -> Machine {
+    let linear = Axis { velocity: 100.0, acceleration: 1000.0 };
+    machine(linear, Axis { velocity: 90.0, acceleration: 500.0 }, 200.0)
+}
+
 fn cutting_s(machine: &Machine, text: &str) -> f64 {
     let timed = time(text, Dialect::LinuxCnc, machine, &Setup::default(), true);
     60.0 * timed.expect("the programs are LinuxCNC's").time.cutting_min
@@ -90,5 +95,33 @@ fn sculpted_waves() {
         [(program!("sculpt_3axis_F1200.ngc"), 6.92), (program!("sculpt_5axis_g94_F600.ngc"), 19.72)]
     {
         check(&machine, text, name, measured);
+    }
+}
+
+/// Arcs in all planes, corners, exact path, rapid moves between, rotary axes alone, random walks, inches: counted
+/// steps of 1 ms in which the controller fed.
+#[test]
+fn what_else_a_program_may_hold() {
+    let programs = [
+        (program!("arc_pocket_F3000.ngc"), 8.341),
+        (program!("arc_corners.ngc"), 2.737),
+        (program!("helix_planes.ngc"), 9.043),
+        (program!("zig_G64.ngc"), 3.520),
+        (program!("zig_G61.ngc"), 4.728),
+        (program!("zig_P01.ngc"), 4.546),
+        (program!("five_long.ngc"), 19.017),
+        (program!("mixed_ax.ngc"), 2.788),
+        (program!("rotary.ngc"), 9.559),
+        (program!("walk1.ngc"), 12.647),
+        (program!("rapid_mix.ngc"), 2.936),
+        (program!("inch.ngc"), 12.797),
+        (program!("wave_P005Q002.ngc"), 3.582),
+        (program!("many_arcs.ngc"), 3.994),
+    ];
+    let machine = mid();
+    for ((name, text), measured) in programs {
+        let ours = cutting_s(&machine, text);
+        // 2 %: corners between arcs and lines are the least well modelled.
+        assert!((ours / measured - 1.0).abs() < 0.02, "{name}: {ours:.3} s, the controller took {measured} s");
     }
 }

@@ -8,6 +8,7 @@ pub mod list;
 pub mod plan;
 pub mod post;
 pub mod probe;
+pub mod readback;
 pub mod strip;
 pub mod time;
 pub mod verify;

@@ -1,14 +1,16 @@
 //! `post`: CL data to NC code.
 
 use crate::args::PostArgs;
-use crate::failure::{Done, Failure, Outcome, read_text};
+use crate::failure::{Done, Failure, Outcome};
 use crate::nc::{self, Control, Words};
 use crate::output;
 use crate::render::{self, Table, number};
 use osculate_geom::{Diagnostic, Vec3};
-use osculate_postproc::{Setup, built_in_names, cldata};
+use osculate_postproc::cldata::{ClReadOptions, ClStream};
+use osculate_postproc::{PostOptions, Setup, built_in_names, post_from};
 use osculate_tools::Cutter;
 use serde::Serialize;
+use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 #[derive(Serialize)]
@@ -23,10 +25,35 @@ struct Answer {
     diagnostics: Vec<String>,
 }
 
+/// Puts line and path length into findings that speak of a CL move.
+fn located<R: BufRead, O: Fn() -> io::Result<R>>(
+    cl: &ClStream<O>,
+    mut notes: Vec<Diagnostic>,
+) -> Vec<Diagnostic> {
+    let moves: Vec<(usize, usize)> = notes
+        .iter()
+        .enumerate()
+        .filter_map(|(k, d)| Some((d.place.strip_prefix("CL move ")?.parse().ok()?, k)))
+        .collect();
+    let indices: Vec<usize> = moves.iter().map(|(index, _)| *index).collect();
+    if indices.is_sorted()
+        && let Ok(places) = cl.locate(&indices)
+    {
+        for ((index, k), place) in moves.into_iter().zip(places) {
+            notes[k].place =
+                format!("CL line {} (move {index}, {:.3} mm on the way)", place.line, place.length_mm);
+        }
+    }
+    notes
+}
+
 /// Runs the verb.
 pub fn run(args: &PostArgs, json: bool) -> Outcome {
-    let text = read_text(&args.clfile)?;
-    let cl = cldata::read(&text).map_err(|e| Failure::file(&args.clfile, e))?;
+    let here = |e: &dyn std::fmt::Display| Failure::file(&args.clfile, e);
+    let open = || std::fs::File::open(&args.clfile).map(BufReader::new);
+    open().map_err(|e| Failure::file(&args.clfile, format!("cannot be read: {e}")))?;
+    let cl = ClStream::new(open, ClReadOptions::default());
+    let head = cl.head().map_err(|e| here(&e))?;
     // A name without a separator or ending is a built-in machine, anything else a file.
     let built_in = built_in_names().contains(&args.machine.as_str());
     let looks_like_file = args.machine.ends_with(".toml") || Path::new(&args.machine).exists();
@@ -38,12 +65,11 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
         feed: &args.feed,
         kz_step: args.kz_step,
     })?;
-    let cutter =
-        cl.path.cutter.map(Cutter::try_from).transpose().map_err(|e| Failure::file(&args.clfile, e))?;
-    let mut notes = cl.diagnostics.clone();
+    let cutter = head.cutter().map(Cutter::try_from).transpose().map_err(|e| here(&e))?;
+    let mut notes = Vec::new();
     let gauge = match (args.gauge_length_mm, cutter) {
         (Some(g), _) => g,
-        (None, Some(c)) => c.length_mm() + cl.path.holder.map_or(0.0, |h| h.length_mm),
+        (None, Some(c)) => c.length_mm(),
         (None, None) => {
             notes.push(Diagnostic::note(
                 "setup",
@@ -54,12 +80,20 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     };
     let setup = Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), gauge);
     let name = args.out.file_stem().map_or_else(|| "OSCULATE".into(), |s| s.to_string_lossy().into_owned());
-    drop(text);
+    let options = PostOptions { spindle_rpm: head.spindle_rpm(), ..nc::post_options(&control, &name) };
     let posted = output::stream(&args.out, |file| {
-        nc::post_to(&cl.path, &control, &setup, &name, file)
-            .map_err(|f| Failure::file(&args.clfile, f.message()))
+        post_from(&cl, &control.machine, &setup, &options, file).map_err(|e| {
+            let place = e.index().and_then(|i| cl.locate(&[i]).ok()?.pop());
+            match place {
+                Some(p) => here(&format!("line {}, {:.3} mm on the way: {e}", p.line, p.length_mm)),
+                None => here(&e),
+            }
+        })
     })?;
-    notes.extend(posted.diagnostics);
+    let mut all = cl.diagnostics();
+    all.append(&mut notes);
+    all.extend(located(&cl, posted.diagnostics));
+    let notes = all;
     let s = &posted.summary;
     let answer = Answer {
         blocks: s.blocks,

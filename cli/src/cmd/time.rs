@@ -72,7 +72,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
 }
 
 /// Reads a file line by line; bytes that are no UTF-8 come as replacement characters, as in comments of old programs.
-fn each_line(file: &Path, mut line: impl FnMut(&str) -> Result<(), Failure>) -> Result<(), Failure> {
+pub fn each_line(file: &Path, mut line: impl FnMut(&str) -> Result<(), Failure>) -> Result<(), Failure> {
     let fail = |e: std::io::Error| Failure::file(file, format!("cannot be read: {e}"));
     let mut reader = BufReader::new(std::fs::File::open(file).map_err(fail)?);
     let mut bytes = Vec::new();

@@ -3,10 +3,18 @@
 //! `GOTO/` carries the tool **tip** in the part's frame and the tool axis (from the tip to the spindle). `RAPID` holds
 //! for the next `GOTO` only, `FEDRAT/` until the next one.
 
+mod arc;
 mod cutter;
+mod cycle;
+mod error;
+mod fields;
 mod read;
 mod statement;
+mod stream;
+mod words;
 mod write;
 
-pub use read::{ClData, ClReadError, read};
-pub use write::{ClWriteError, ClWriteOptions, write};
+pub use error::ClReadError;
+pub use read::{ClData, ClReadOptions, ClReader, read};
+pub use stream::{ClPlace, ClStream, ClStreamError};
+pub use write::{ClWriteError, ClWriteOptions, ClWriter, write};

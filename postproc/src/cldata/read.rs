@@ -1,18 +1,24 @@
 //! Reading APT text of this and of other systems.
 //!
 //! What describes the tool's way is read: `GOTO`, `GODLTA`, `FROM`, `FEDRAT`, `RAPID`, `UNITS`, `SPINDL`, `CUTTER`,
-//! `TLAXIS`. Everything else is reported by word with its lines: as a loss where it may change the way (cycles, arcs,
-//! transformations, unknown words), as a note where it does not (coolant, texts). A `GOTO` without an axis keeps the
-//! last one, at first (0, 0, 1).
+//! `TLAXIS`, arcs ([`super::arc`]) and drilling cycles ([`super::cycle`]). Everything else is reported by word with its
+//! lines: as a loss where it may change the way (transformations, cutter compensation, unknown words), as a note where
+//! it does not (coolant, texts). A `GOTO` without an axis keeps the last one, at first (0, 0, 1).
+//!
+//! A feed per revolution needs the speed of the spindle. Where `SPINDL/` gives a surface speed instead (turning), the
+//! speed follows the distance of the tip from the part's Z axis, never taken below [`LEAST_RADIUS_MM`].
 
 use std::collections::BTreeMap;
 
 use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
-use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
+use osculate_tools::{CutterSpec, Pose};
 
-use super::cutter::{self, Found};
-use super::statement::{Item, Statement, items};
+use super::arc::{self, Arc};
+use super::cycle::{self, Cycle};
+use super::error::ClReadError;
+use super::fields::{axis, count, is_identity, numbers, place, unit, vector};
+use super::statement::{Item, Joiner, Statement};
 
 /// A path and what was noticed on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,67 +27,6 @@ pub struct ClData {
     pub path: ClPath,
     /// Findings, with line numbers.
     pub diagnostics: Vec<Diagnostic>,
-}
-
-/// Why a text is no cutter location data. Lines count from 1.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ClReadError {
-    /// A field that should be a number.
-    #[error("line {line}: '{field}' in {word}/ is not a finite number")]
-    Number {
-        /// Line.
-        line: usize,
-        /// Statement.
-        word: String,
-        /// The field as it stands there.
-        field: String,
-    },
-    /// Too few or too many numbers.
-    #[error("line {line}: {word}/ has {got} numbers, it needs {need}")]
-    Count {
-        /// Line.
-        line: usize,
-        /// Statement.
-        word: String,
-        /// Numbers found.
-        got: usize,
-        /// Numbers that would do.
-        need: &'static str,
-    },
-    /// A tool axis of length zero.
-    #[error("line {line}: the tool axis has length {length:.3e}: give a direction")]
-    ZeroAxis {
-        /// Line.
-        line: usize,
-        /// Its length.
-        length: f64,
-    },
-    /// A feed per revolution without a speed.
-    #[error("line {line}: FEDRAT per revolution before any SPINDL/ in rpm: put SPINDL/ first or use MMPM")]
-    NoSpindle {
-        /// Line.
-        line: usize,
-    },
-    /// A feed that is not above zero.
-    #[error("line {line}: a feed of {feed_mm_min} mm/min: it must be above zero")]
-    Feed {
-        /// Line.
-        line: usize,
-        /// What was read.
-        feed_mm_min: f64,
-    },
-    /// A move at feed before any feed.
-    #[error("line {line}: a move that is not RAPID before any FEDRAT/: the feed is unknown")]
-    NoFeed {
-        /// Line.
-        line: usize,
-    },
-    /// Not one point.
-    #[error("no GOTO/ or FROM/ in {lines} lines: this is no cutter location data, or in binary form")]
-    NoPoints {
-        /// Lines read.
-        lines: usize,
-    },
 }
 
 /// Words that say nothing about the tool's way.
@@ -105,7 +50,6 @@ const HARMLESS: &[&str] = &[
     "PAINT",
     "DISPLY",
     "END",
-    "TRNTYP",
     "CSI_SET_FLUTE_LENGTH",
     "CSI_SET_EXTENSION_LENGTH",
     "LEADER",
@@ -128,28 +72,94 @@ const HARMLESS: &[&str] = &[
 /// Lines of one word that are listed before the rest is only counted.
 const LISTED_LINES: usize = 5;
 
-/// A feed: per revolution it waits for the spindle's speed.
-#[derive(Clone, Copy)]
-struct Feed {
-    mm: f64,
-    per_turn: bool,
-    line: usize,
+/// The least distance from the turning axis at which a surface speed is turned into revolutions, mm.
+pub(super) const LEAST_RADIUS_MM: f64 = 1.0;
+
+/// How a text is to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClReadOptions {
+    /// How far the chords of an arc may stray from it, mm.
+    pub arc_tol_mm: f64,
 }
 
-struct Reader {
-    path: ClPath,
-    diagnostics: Vec<Diagnostic>,
+impl Default for ClReadOptions {
+    /// Arcs within 1 um.
+    fn default() -> Self {
+        Self { arc_tol_mm: 0.001 }
+    }
+}
+
+/// A feed: per revolution it waits for the spindle's speed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Feed {
+    pub mm: f64,
+    pub per_turn: bool,
+    pub line: usize,
+}
+
+/// How a word that is not a plain point was taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Taken {
+    /// It may change the way.
+    Lost,
+    /// It does not.
+    Harmless,
+    /// An arc, as chords.
+    Chords,
+    /// A cycle, as moves.
+    Moves,
+}
+
+/// Reads cutter location data a line at a time: points go out as they come, nothing of the text is kept.
+///
+/// ```
+/// use osculate_postproc::cldata::ClReader;
+///
+/// let mut reader = ClReader::default();
+/// for line in "FEDRAT/100\nRAPID\nGOTO/0,0,5\nGOTO/0,0,0\n".lines() {
+///     reader.line(line)?;
+/// }
+/// reader.end()?;
+/// assert_eq!(reader.take_moves().count(), 2);
+/// # Ok::<(), osculate_postproc::cldata::ClReadError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ClReader {
+    /// What is known beside the points, and the points not taken yet.
+    pub(super) path: ClPath,
+    /// No point has come yet.
+    pub(super) first: bool,
+    ended: bool,
+    joiner: Joiner,
+    options: ClReadOptions,
+    pub(super) diagnostics: Vec<Diagnostic>,
     /// mm per unit of length.
-    unit_mm: f64,
+    pub(super) unit_mm: f64,
     axis: Unit3,
     tip: Option<Point3>,
-    feed: Option<Feed>,
-    rapid: bool,
-    loaded: Option<String>,
+    pub(super) feed: Option<Feed>,
+    /// Surface speed of the part under the tool, mm/min.
+    pub(super) surface_mm_min: Option<f64>,
+    pub(super) rapid: bool,
+    pub(super) loaded: Option<String>,
+    /// The way to the next point.
+    arc: Option<Arc>,
+    /// The initial direction of a CATIA arc.
+    heading: Option<Vec3>,
+    /// What happens at the points to come.
+    cycle: Option<Cycle>,
     /// Between CYCLE/ and CYCLE/OFF, where points are holes.
     in_cycle: bool,
-    /// Word -> (loses, lines).
-    others: BTreeMap<String, (bool, Vec<usize>)>,
+    /// Points are in the world's frame: coordinate systems are for people.
+    world: bool,
+    /// Word and how it was taken -> lines listed, count.
+    others: BTreeMap<(String, Taken), (Vec<usize>, usize)>,
+}
+
+impl Default for ClReader {
+    fn default() -> Self {
+        Self::new(ClReadOptions::default())
+    }
 }
 
 /// The path of an APT text.
@@ -157,39 +167,123 @@ struct Reader {
 /// # Errors
 /// Where a number or axis cannot be read, a feed is unknown, or there is no point at all.
 pub fn read(text: &str) -> Result<ClData, ClReadError> {
-    let mut r = Reader {
-        path: ClPath::default(),
-        diagnostics: Vec::new(),
-        unit_mm: 1.0,
-        axis: Vec3::z_axis(),
-        tip: None,
-        feed: None,
-        rapid: false,
-        loaded: None,
-        in_cycle: false,
-        others: BTreeMap::new(),
-    };
-    items(text, |item| match item {
-        Item::Goto { line, numbers: n, count } => {
-            if count == 6 {
-                r.axis = unit(line, Vec3::new(n[3], n[4], n[5]))?;
-            }
-            r.arrive(line, Point3::new(n[0], n[1], n[2]) * r.unit_mm)?;
-            Ok(false)
-        }
-        Item::Other(s) => {
-            r.statement(&s)?;
-            Ok(s.word == "FINI")
-        }
-    })?;
-    if r.path.moves.is_empty() {
-        return Err(ClReadError::NoPoints { lines: text.lines().count() });
+    let mut reader = ClReader::default();
+    for line in text.lines() {
+        reader.line(line)?;
     }
-    r.report_others();
-    Ok(ClData { path: r.path, diagnostics: r.diagnostics })
+    reader.end()?;
+    let diagnostics = reader.diagnostics();
+    Ok(ClData { path: reader.path, diagnostics })
 }
 
-impl Reader {
+impl ClReader {
+    /// Before the first line.
+    #[must_use]
+    pub fn new(options: ClReadOptions) -> Self {
+        Self {
+            path: ClPath::default(),
+            first: true,
+            ended: false,
+            joiner: Joiner::default(),
+            options,
+            diagnostics: Vec::new(),
+            unit_mm: 1.0,
+            axis: Vec3::z_axis(),
+            tip: None,
+            feed: None,
+            surface_mm_min: None,
+            rapid: false,
+            loaded: None,
+            arc: None,
+            heading: None,
+            cycle: None,
+            in_cycle: false,
+            world: false,
+            others: BTreeMap::new(),
+        }
+    }
+
+    /// One line; those after `FINI` are ignored.
+    ///
+    /// # Errors
+    /// Where a number or axis cannot be read or a feed is unknown.
+    pub fn line(&mut self, line: &str) -> Result<(), ClReadError> {
+        if self.ended {
+            return Ok(());
+        }
+        match self.joiner.line(line) {
+            Some(item) => self.item(item),
+            None => Ok(()),
+        }
+    }
+
+    /// The end of the text.
+    ///
+    /// # Errors
+    /// As [`Self::line`], and where no point has come.
+    pub fn end(&mut self) -> Result<(), ClReadError> {
+        if !self.ended
+            && let Some(item) = self.joiner.finish()
+        {
+            self.item(item)?;
+        }
+        self.open_arc()?;
+        if self.first { Err(ClReadError::NoPoints { lines: self.joiner.lines }) } else { Ok(()) }
+    }
+
+    /// The points since the last call.
+    pub fn take_moves(&mut self) -> std::vec::Drain<'_, ClMove> {
+        self.path.moves.drain(..)
+    }
+
+    /// Points waiting to be taken.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.path.moves.len()
+    }
+
+    /// The cutter, as far as the text has said it.
+    #[must_use]
+    pub const fn cutter(&self) -> Option<CutterSpec> {
+        self.path.cutter
+    }
+
+    /// The speed of the spindle, as far as the text has said it.
+    #[must_use]
+    pub const fn spindle_rpm(&self) -> Option<f64> {
+        self.path.spindle_rpm
+    }
+
+    /// Lines seen.
+    #[must_use]
+    pub const fn lines(&self) -> usize {
+        self.joiner.lines
+    }
+
+    /// Findings so far, with line numbers.
+    #[must_use]
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
+        let mut all = self.diagnostics.clone();
+        self.report_others(&mut all);
+        all
+    }
+
+    fn item(&mut self, item: Item) -> Result<(), ClReadError> {
+        match item {
+            Item::Goto { line, numbers: n, count } => {
+                if count == 6 {
+                    self.axis = unit(line, Vec3::new(n[3], n[4], n[5]))?;
+                }
+                self.arrive(line, Point3::new(n[0], n[1], n[2]) * self.unit_mm)
+            }
+            Item::Other(s) => {
+                self.statement(&s)?;
+                self.ended |= s.word == "FINI";
+                Ok(())
+            }
+        }
+    }
+
     fn statement(&mut self, s: &Statement) -> Result<(), ClReadError> {
         match s.word.as_str() {
             "GOTO" => self.goto(s)?,
@@ -202,18 +296,95 @@ impl Reader {
             "FEDRAT" => self.feed(s)?,
             "UNITS" | "UNIT" => self.units(s),
             "SPINDL" => self.spindle(s)?,
-            "CUTTER" => self.cutter(s)?,
+            "CUTTER" => self.cutter_word(s)?,
             "LOADTL" => self.load(s),
             "TLAXIS" => self.axis = axis(s, &numbers(s, &s.fields)?)?,
+            "CIRCLE" | "MOVARC" => self.arc(s)?,
+            "INDIRV" => self.heading = Some(vector(s, &numbers(s, &s.fields)?)?),
             "PARTNO" | "FINI" | "MULTAX" => {}
+            word if word.ends_with("GOFWD") && s.fields.first().is_some_and(|f| f.contains("CIRCLE")) => {
+                self.catia_arc(s)?;
+            }
+            "CYCLE" => self.cycle(s)?,
             word => {
                 if word.starts_with("CYCLE") {
                     self.in_cycle = s.fields.first().is_none_or(|f| f != "OFF");
                 }
-                let loses = !HARMLESS.contains(&word) && !is_identity(s);
-                let entry = self.others.entry(word.to_string()).or_insert((false, Vec::new()));
-                entry.0 |= loses;
-                entry.1.push(s.line);
+                if word == "TRNTYP" {
+                    self.world = s.fields.first().is_some_and(|f| f == "WORLD");
+                }
+                let harmless = HARMLESS.contains(&word) || is_identity(s) || (word == "CSYS" && self.world);
+                self.other(word, s.line, if harmless { Taken::Harmless } else { Taken::Lost });
+            }
+        }
+        Ok(())
+    }
+
+    fn other(&mut self, word: &str, line: usize, taken: Taken) {
+        let entry = self.others.entry((word.to_string(), taken)).or_default();
+        if entry.0.len() < LISTED_LINES {
+            entry.0.push(line);
+        }
+        entry.1 += 1;
+    }
+
+    fn arc(&mut self, s: &Statement) -> Result<(), ClReadError> {
+        self.open_arc()?;
+        self.arc = Some(arc::circle(s, self.unit_mm)?);
+        self.other(&s.word, s.line, Taken::Chords);
+        Ok(())
+    }
+
+    /// `TLON,GOFWD/(CIRCLE/ ...),ON,(LINE/ ...)`: an arc that carries its end.
+    fn catia_arc(&mut self, s: &Statement) -> Result<(), ClReadError> {
+        self.open_arc()?;
+        match (self.tip, self.heading.take(), arc::gofwd(s, self.unit_mm)?) {
+            (Some(from), Some(heading), Some((mut arc, to))) => {
+                arc.axis = Unit3::try_new((from - arc.centre).cross(&heading), 1e-9);
+                self.arc = Some(arc);
+                self.other("TLON,GOFWD", s.line, Taken::Chords);
+                self.arrive(s.line, to)
+            }
+            _ => {
+                self.other(&s.word, s.line, Taken::Lost);
+                Ok(())
+            }
+        }
+    }
+
+    /// An arc after which no point came: by its angle it ends nevertheless.
+    fn open_arc(&mut self) -> Result<(), ClReadError> {
+        let Some(arc) = self.arc.take() else { return Ok(()) };
+        match self.tip.and_then(|from| arc.end_by_angle(&from)) {
+            Some(to) => {
+                let line = arc.line;
+                self.arc = Some(arc);
+                self.arrive(line, to)
+            }
+            None => {
+                let text = "an arc without a GOTO/ behind it has no end: it is left out";
+                self.diagnostics.push(Diagnostic::loss(place(arc.line), text));
+                Ok(())
+            }
+        }
+    }
+
+    fn cycle(&mut self, s: &Statement) -> Result<(), ClReadError> {
+        self.open_arc()?;
+        let first = s.fields.first().map_or("", String::as_str);
+        self.in_cycle = first != "OFF";
+        match first {
+            "INIT" => {}
+            "OFF" => self.cycle = None,
+            "ON" if self.cycle.is_some() => {}
+            _ => {
+                self.cycle = cycle::cycle(s, self.unit_mm)?;
+                let taken = if self.cycle.is_some() { Taken::Moves } else { Taken::Lost };
+                self.other(&format!("CYCLE/{first}"), s.line, taken);
+                if self.cycle.as_ref().is_some_and(|c| c.kind == cycle::Kind::Tap) {
+                    let text = "CYCLE/TAP: a path has one spindle direction, the reversal is left out";
+                    self.diagnostics.push(Diagnostic::loss(place(s.line), text));
+                }
             }
         }
         Ok(())
@@ -241,204 +412,85 @@ impl Reader {
     }
 
     fn arrive(&mut self, line: usize, tip: Point3) -> Result<(), ClReadError> {
-        let first = self.path.moves.is_empty();
+        if let Some(cycle) = self.cycle.clone() {
+            return self.hole(line, tip, &cycle);
+        }
         let motion = match (self.rapid, self.feed) {
             (true, _) => Motion::Rapid,
-            (false, _) if first => {
+            (false, _) if self.first => {
                 let text = "the first point comes without RAPID: it leads from an unknown place and is taken as rapid";
                 self.note(line, text);
                 Motion::Rapid
             }
-            (false, Some(feed)) => Motion::Feed(self.feed_mm_min(&feed)?),
+            (false, Some(feed)) => Motion::Feed(self.feed_mm_min(&feed, &tip)?),
             // The cycle says how a hole is made; it is reported as not interpreted, its points are kept.
             (false, None) if self.in_cycle => Motion::Rapid,
             (false, None) => return Err(ClReadError::NoFeed { line }),
         };
         self.rapid = false;
+        if let Some(arc) = self.arc.take() {
+            self.round(line, &arc, (tip, motion))?;
+        }
+        self.push(tip, motion);
+        Ok(())
+    }
+
+    fn push(&mut self, tip: Point3, motion: Motion) {
+        self.first = false;
         self.tip = Some(tip);
         self.path.moves.push(ClMove { pose: Pose { tip, axis: self.axis }, motion });
-        Ok(())
     }
 
-    fn feed(&mut self, s: &Statement) -> Result<(), ClReadError> {
-        if s.fields.iter().any(|f| f == "RAPID") {
-            self.rapid = true;
+    /// The points on the arc before its end.
+    fn round(&mut self, line: usize, arc: &Arc, end: (Point3, Motion)) -> Result<(), ClReadError> {
+        let Some(from) = self.tip else {
+            let text = "an arc before the first point: where it starts is not known, its end is kept";
+            self.diagnostics.push(Diagnostic::loss(place(arc.line), text));
             return Ok(());
-        }
-        let (words, values): (Vec<_>, Vec<_>) = s.fields.iter().cloned().partition(|f| is_word(f));
-        let values = numbers(s, &values)?;
-        // FEDRAT/IN, 5 and the like carry one number; what follows it (RAPTO distances) is not a feed.
-        let Some(&value) = values.first() else { return Err(count(s, 0, "1")) };
-        let has = |names: &[&str]| words.iter().any(|w| names.contains(&w.as_str()));
-        let per_turn = has(&["MMPR", "IPR", "PERREV"]);
-        let unit = if has(&["MMPM", "MMPR", "MPM"]) {
-            1.0
-        } else if has(&["IPM", "IPR"]) {
-            25.4
-        } else {
-            self.unit_mm
         };
-        let mm = value * unit;
-        if !(mm > 0.0 && mm.is_finite()) {
-            return Err(ClReadError::Feed { line: s.line, feed_mm_min: mm });
-        }
-        self.feed = Some(Feed { mm, per_turn, line: s.line });
-        // A feed between RAPID and GOTO cancels the rapid in no system; it holds from the point after.
-        Ok(())
-    }
-
-    fn feed_mm_min(&self, feed: &Feed) -> Result<f64, ClReadError> {
-        match (feed.per_turn, self.path.spindle_rpm) {
-            (false, _) => Ok(feed.mm),
-            (true, Some(rpm)) if rpm > 0.0 => Ok(feed.mm * rpm),
-            (true, _) => Err(ClReadError::NoSpindle { line: feed.line }),
-        }
-    }
-
-    fn units(&mut self, s: &Statement) {
-        match s.fields.first().map(String::as_str) {
-            Some("MM") => self.unit_mm = 1.0,
-            Some("CM") => self.unit_mm = 10.0,
-            Some("INCHES" | "INCH" | "IN") => self.unit_mm = 25.4,
-            other => {
-                let text =
-                    format!("UNITS/{} is not known, lengths stay as before", other.unwrap_or_default());
-                self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-            }
-        }
-    }
-
-    fn spindle(&mut self, s: &Statement) -> Result<(), ClReadError> {
-        if s.fields.iter().any(|f| f == "SFM" || f == "SMM") {
-            let text = "SPINDL/ as a surface speed needs a turning diameter: the speed in rpm stays unknown";
-            self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-            return Ok(());
-        }
-        let values: Vec<String> = s.fields.iter().filter(|f| !is_word(f)).cloned().collect();
-        if let Some(&rpm) = numbers(s, &values)?.first() {
-            let known = self.path.spindle_rpm;
-            if self.path.moves.is_empty() || known.is_none() {
-                self.path.spindle_rpm = Some(rpm);
-            } else if known != Some(rpm) {
+        match arc.chords(&from, &end.0, self.options.arc_tol_mm) {
+            Ok(points) => points.into_iter().for_each(|p| self.push(p, end.1)),
+            Err(off_mm) => {
                 let text = format!(
-                    "SPINDL/{rpm} changes the speed on the way; a path has one speed, the first is kept"
+                    "the arc of line {} misses its ends by {off_mm:.4} mm: it is taken as a straight line",
+                    arc.line
                 );
-                self.diagnostics.push(Diagnostic::loss(place(s.line), text));
+                self.diagnostics.push(Diagnostic::loss(place(line), text));
             }
-        }
-        if s.fields.iter().any(|f| f == "CCLW" || f == "CCW") {
-            let text = "SPINDL/ counter-clockwise: a path's spindle turns clockwise";
-            self.diagnostics.push(Diagnostic::loss(place(s.line), text));
         }
         Ok(())
     }
 
-    fn cutter(&mut self, s: &Statement) -> Result<(), ClReadError> {
-        let mut p = numbers(s, &s.fields)?;
-        for (i, v) in p.iter_mut().enumerate() {
-            // Fields 5 and 6 are angles.
-            if i != 4 && i != 5 {
-                *v *= self.unit_mm;
-            }
-        }
-        let found = cutter::cutter(&p);
-        let spec = match found {
-            Found::Known(spec) => spec,
-            Found::Assumed(spec, length_mm) => {
-                let text = format!("CUTTER/ has no height: a length of {length_mm} mm is assumed");
-                self.diagnostics.push(Diagnostic::warning(place(s.line), text));
-                spec
-            }
-            Found::Other => {
-                let text = format!(
-                    "CUTTER/{} is no ball, flat or toroidal cutter: the cutter stays unknown",
-                    s.fields.join(",")
-                );
-                self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-                return Ok(());
-            }
-        };
-        if self.path.moves.is_empty() || self.path.cutter.is_none() {
-            self.path.cutter = Some(spec);
-        } else if self.path.cutter != Some(spec) {
-            let text = "another CUTTER/ on the way; a path has one cutter, the first is kept";
-            self.diagnostics.push(Diagnostic::loss(place(s.line), text));
+    /// A drilling cycle at a point of the part.
+    fn hole(&mut self, line: usize, tip: Point3, cycle: &Cycle) -> Result<(), ClReadError> {
+        self.rapid = false;
+        let feed = cycle.feed.or(self.feed).ok_or(ClReadError::NoFeed { line })?;
+        let feed = Motion::Feed(self.feed_mm_min(&feed, &tip)?);
+        for (above_mm, rapid) in cycle.heights() {
+            let motion = if rapid { Motion::Rapid } else { feed };
+            self.push(tip + self.axis.into_inner() * above_mm, motion);
         }
         Ok(())
-    }
-
-    fn load(&mut self, s: &Statement) {
-        let tool = s.fields.first().cloned();
-        if !self.path.moves.is_empty() && self.loaded.is_some() && tool != self.loaded {
-            let text = format!(
-                "tool change to {} on the way: the path goes on with the first tool",
-                s.fields.join(",")
-            );
-            self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-        }
-        self.loaded = self.loaded.take().or(tool);
     }
 
     fn note(&mut self, line: usize, text: &str) {
         self.diagnostics.push(Diagnostic::note(place(line), text));
     }
 
-    fn report_others(&mut self) {
-        for (word, (loses, lines)) in std::mem::take(&mut self.others) {
-            let listed: Vec<String> = lines.iter().take(LISTED_LINES).map(usize::to_string).collect();
-            let more = if lines.len() > LISTED_LINES { ", ..." } else { "" };
+    fn report_others(&self, all: &mut Vec<Diagnostic>) {
+        for ((word, taken), (lines, times)) in &self.others {
+            let listed: Vec<String> = lines.iter().map(usize::to_string).collect();
+            let more = if *times > lines.len() { ", ..." } else { "" };
             let at = format!("line {}{more}", listed.join(", "));
-            let times = lines.len();
-            self.diagnostics.push(if loses {
-                Diagnostic::loss(
-                    at,
-                    format!("{word} ({times} x) is not interpreted and may change the tool's way"),
-                )
-            } else {
-                Diagnostic::note(
-                    at,
-                    format!("{word} ({times} x) is not interpreted; it does not change the tool's way"),
-                )
-            });
+            let what = match taken {
+                Taken::Lost => "is not interpreted and may change the tool's way".to_string(),
+                Taken::Harmless => "is not interpreted; it does not change the tool's way".to_string(),
+                Taken::Chords => format!("is read as chords within {} mm", self.options.arc_tol_mm),
+                Taken::Moves => "is read as the moves that it stands for".to_string(),
+            };
+            let text = format!("{word} ({times} x) {what}");
+            let lost = *taken == Taken::Lost;
+            all.push(if lost { Diagnostic::loss(at, text) } else { Diagnostic::note(at, text) });
         }
     }
-}
-
-fn place(line: usize) -> String {
-    format!("line {line}")
-}
-
-/// A coordinate system statement that leaves everything where it is.
-fn is_identity(s: &Statement) -> bool {
-    const IDENTITY: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    matches!(s.word.as_str(), "CSYS" | "MATRIX" | "TRACUT")
-        && (s.fields == ["NOMORE"] || numbers(s, &s.fields).is_ok_and(|n| n == IDENTITY))
-}
-
-fn is_word(field: &str) -> bool {
-    field.starts_with(|c: char| c.is_ascii_alphabetic()) && field != "NAN" && field != "INF"
-}
-
-fn numbers(s: &Statement, fields: &[String]) -> Result<Vec<f64>, ClReadError> {
-    let number = |f: &String| {
-        let bad = || ClReadError::Number { line: s.line, word: s.word.clone(), field: f.clone() };
-        // FORTRAN writes exponents with D.
-        let value: f64 = f.replace('D', "E").parse().map_err(|_| bad())?;
-        if value.is_finite() { Ok(value) } else { Err(bad()) }
-    };
-    fields.iter().map(number).collect()
-}
-
-fn count(s: &Statement, got: usize, need: &'static str) -> ClReadError {
-    ClReadError::Count { line: s.line, word: s.word.clone(), got, need }
-}
-
-fn axis(s: &Statement, n: &[f64]) -> Result<Unit3, ClReadError> {
-    let [x, y, z] = *n else { return Err(count(s, n.len(), "3 for an axis")) };
-    unit(s.line, Vec3::new(x, y, z))
-}
-
-fn unit(line: usize, v: Vec3) -> Result<Unit3, ClReadError> {
-    // A direction given with any sensible digits is far longer than this.
-    Unit3::try_new(v, 1e-6).ok_or(ClReadError::ZeroAxis { line, length: v.norm() })
 }

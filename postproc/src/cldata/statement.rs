@@ -32,36 +32,41 @@ fn plain_goto(line: &str) -> Option<([f64; 6], usize)> {
     (count == 3 || count == 6).then_some((numbers, count))
 }
 
-/// All statements of the text, one after the other, until `take` says that it has enough.
-pub(super) fn items<E>(text: &str, mut take: impl FnMut(Item) -> Result<bool, E>) -> Result<(), E> {
-    let mut pending: Option<(usize, String)> = None;
-    for (number, raw) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-        if let (None, Some((numbers, count))) = (&pending, plain_goto(raw)) {
-            if take(Item::Goto { line: number + 1, numbers, count })? {
-                return Ok(());
-            }
-            continue;
+/// Puts lines together to statements, a line at a time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Joiner {
+    /// Lines seen.
+    pub lines: usize,
+    pending: Option<(usize, String)>,
+}
+
+impl Joiner {
+    /// The statement that ends on this line, if one does.
+    pub fn line(&mut self, raw: &str) -> Option<Item> {
+        let raw = if self.lines == 0 { raw.trim_start_matches('\u{feff}') } else { raw };
+        self.lines += 1;
+        if self.pending.is_none()
+            && let Some((numbers, count)) = plain_goto(raw)
+        {
+            return Some(Item::Goto { line: self.lines, numbers, count });
         }
-        let free = pending.is_none() && is_free(raw);
+        let free = self.pending.is_none() && is_free(raw);
         let line = if free { raw } else { raw.find("$$").map_or(raw, |at| &raw[..at]) };
         let line = line.trim();
-        let (start, mut joined) = pending.take().unwrap_or((number + 1, String::new()));
+        let (start, mut joined) = self.pending.take().unwrap_or((self.lines, String::new()));
         if let (Some(head), false) = (line.strip_suffix('$'), free) {
             joined.push_str(head);
-            pending = Some((start, joined));
-            continue;
+            self.pending = Some((start, joined));
+            return None;
         }
         joined.push_str(line);
-        if let Some(statement) = statement(start, &joined)
-            && take(Item::Other(statement))?
-        {
-            return Ok(());
-        }
+        statement(start, &joined).map(Item::Other)
     }
-    if let Some(last) = pending.and_then(|(start, joined)| statement(start, &joined)) {
-        take(Item::Other(last))?;
+
+    /// What an open continuation at the end of the text holds.
+    pub fn finish(&mut self) -> Option<Item> {
+        self.pending.take().and_then(|(start, joined)| statement(start, &joined)).map(Item::Other)
     }
-    Ok(())
 }
 
 fn is_free(line: &str) -> bool {
@@ -94,14 +99,14 @@ mod tests {
     fn comments_continuations_case_and_blanks() {
         let text =
             "$$ nothing\npartno a / b $$ stays\nGoto  / 1., 2 $\n  ,3 $$ end\n\nFEDRAT/ 10,mmpm\nRAPID\n";
-        let mut all = Vec::new();
-        let keep = |item| {
-            if let Item::Other(s) = item {
-                all.push(s);
-            }
-            Ok::<bool, ()>(false)
+        let mut joiner = Joiner::default();
+        let mut found: Vec<Item> = text.lines().filter_map(|line| joiner.line(line)).collect();
+        found.extend(joiner.finish());
+        let other = |item| match item {
+            Item::Other(s) => Some(s),
+            Item::Goto { .. } => None,
         };
-        assert_eq!(items(text, keep), Ok(()));
+        let all: Vec<Statement> = found.into_iter().filter_map(other).collect();
         let words: Vec<_> = all.iter().map(|s| (s.line, s.word.as_str(), s.fields.join(";"))).collect();
         assert_eq!(
             words,

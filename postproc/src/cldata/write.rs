@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use osculate_tools::cl::{ClPath, Motion};
+use osculate_tools::CutterSpec;
+use osculate_tools::cl::{ClMove, ClPath, Motion};
 
 use super::cutter;
 
@@ -46,38 +47,72 @@ pub enum ClWriteError {
 pub fn write(path: &ClPath, options: &ClWriteOptions) -> Result<String, ClWriteError> {
     // 90 characters hold the longest GOTO of a part within 100 m.
     let mut text = String::with_capacity(300 + 90 * path.moves.len());
-    let name: String = options.part_name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    // Writing into a String cannot fail; the results of `write!` are dropped for that reason.
-    let _ = writeln!(text, "PARTNO {name}\nUNITS/MM\nMULTAX/ON");
-    let _ = writeln!(text, "LOADTL/{}", options.tool_number);
-    if let Some(p) = path.cutter.as_ref().and_then(cutter::parameters) {
-        let p: Vec<String> = p.iter().map(|v| format!("{}", v + 0.0)).collect();
-        let _ = writeln!(text, "CUTTER/{}", p.join(","));
+    let mut writer = ClWriter::new(options, path.cutter.as_ref(), path.spindle_rpm, &mut text);
+    for m in &path.moves {
+        writer.take(m, &mut text)?;
     }
-    if let Some(rpm) = path.spindle_rpm.filter(|r| r.is_finite() && *r > 0.0) {
-        let _ = writeln!(text, "SPINDL/{rpm},CLW");
+    writer.end(&mut text);
+    Ok(text)
+}
+
+/// Writes a path move by move; the text belongs to the caller, who may take it away at any time.
+#[derive(Clone, Debug)]
+pub struct ClWriter {
+    feed: Option<f64>,
+    index: usize,
+}
+
+impl ClWriter {
+    /// The head goes into `text`.
+    pub fn new(
+        options: &ClWriteOptions,
+        cutter: Option<&CutterSpec>,
+        spindle_rpm: Option<f64>,
+        text: &mut String,
+    ) -> Self {
+        let name: String = options.part_name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        // Writing into a String cannot fail; the results of `write!` are dropped for that reason.
+        let _ = writeln!(text, "PARTNO {name}\nUNITS/MM\nMULTAX/ON");
+        let _ = writeln!(text, "LOADTL/{}", options.tool_number);
+        if let Some(p) = cutter.and_then(cutter::parameters) {
+            let p: Vec<String> = p.iter().map(|v| format!("{}", v + 0.0)).collect();
+            let _ = writeln!(text, "CUTTER/{}", p.join(","));
+        }
+        if let Some(rpm) = spindle_rpm.filter(|r| r.is_finite() && *r > 0.0) {
+            let _ = writeln!(text, "SPINDL/{rpm},CLW");
+        }
+        Self { feed: None, index: 0 }
     }
-    let mut feed = None;
-    for (index, m) in path.moves.iter().enumerate() {
-        let (p, a) = (m.pose.tip, m.pose.axis);
+
+    /// One move.
+    ///
+    /// # Errors
+    /// Where a number is not finite.
+    pub fn take(&mut self, m: &ClMove, text: &mut String) -> Result<(), ClWriteError> {
+        let (p, a, index) = (m.pose.tip, m.pose.axis, self.index);
+        self.index += 1;
         if !p.iter().chain(a.iter()).all(|c| c.is_finite()) {
             return Err(ClWriteError::NotFinite { index });
         }
         match m.motion {
             Motion::Rapid => text.push_str("RAPID\n"),
             Motion::Feed(f) if !(f.is_finite() && f > 0.0) => return Err(ClWriteError::NotFinite { index }),
-            Motion::Feed(f) if feed != Some(f) => {
+            Motion::Feed(f) if self.feed != Some(f) => {
                 let _ = writeln!(text, "FEDRAT/{f},MMPM");
-                feed = Some(f);
+                self.feed = Some(f);
             }
             Motion::Feed(_) => {}
         }
         let tip = [p.x, p.y, p.z].map(|v| fixed(v, TIP_DECIMALS)).join(",");
         let axis = [a.x, a.y, a.z].map(|v| fixed(v, AXIS_DECIMALS)).join(",");
         let _ = writeln!(text, "GOTO/{tip},{axis}");
+        Ok(())
     }
-    text.push_str("FINI\n");
-    Ok(text)
+
+    /// The end.
+    pub fn end(self, text: &mut String) {
+        text.push_str("FINI\n");
+    }
 }
 
 /// Fixed decimals, never `-0`.

@@ -64,15 +64,6 @@ pub(super) struct Asked {
     pub end: bool,
 }
 
-/// Names of the axes in a text.
-pub(super) fn named<'t>(lines: impl Iterator<Item = &'t str>, dialect: Dialect) -> BTreeSet<String> {
-    let mut named = BTreeSet::new();
-    for line in lines {
-        note_names(line, dialect, &mut named);
-    }
-    named
-}
-
 /// Adds the names of the axes in a line.
 pub(super) fn note_names(line: &str, dialect: Dialect, named: &mut BTreeSet<String>) {
     for word in words(line, dialect).unwrap_or_default() {

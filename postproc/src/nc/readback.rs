@@ -11,8 +11,9 @@ use osculate_tools::cl::{ClMove, ClPath, Motion};
 
 use super::Dialect;
 use super::event::{Event, Frame, Moved, Sink};
-use super::interpret::{Interpreter, named};
+use super::interpret::Interpreter;
 use super::state::FeedReading;
+use super::timing::Names;
 use crate::machine::{JointValues, Machine};
 use crate::motion::{TimedMove, rapid_time_min};
 use crate::setup::{Setup, SetupError};
@@ -183,29 +184,99 @@ pub fn read(
     setup: &Setup,
     options: &ReadOptions,
 ) -> Result<ReadBack, ReadError> {
-    setup.check()?;
-    for (what, value) in [("tip_tol_mm", options.tip_tol_mm), ("axis_tol_rad", options.axis_tol_rad)] {
-        if !(value.is_finite() && value > 0.0) {
-            return Err(ReadError::Tolerance { what, value });
-        }
+    let mut names = Names::new(dialect, machine);
+    text.lines().for_each(|line| names.line(line));
+    let mut reader = Reader::new(&names, machine, setup, options)?;
+    for line in text.lines() {
+        reader.line(line)?;
     }
-    let frame = Frame { machine, setup };
-    let collect = Collect { out: ReadBack::default(), tolerance: [options.tip_tol_mm, options.axis_tol_rad] };
-    let mut control = Interpreter::new(dialect, frame, options.strict, collect);
-    control.rest_unnamed(&named(text.lines(), dialect));
-    for (number, line) in text.lines().enumerate() {
-        if control.text_line(number + 1, line)? {
-            break;
-        }
-    }
-    control.end();
+    reader.end()?;
+    let Reader { control, .. } = reader;
     let mut out = control.sink.out;
     out.spindle_rpm = control.spindle_rpm;
     out.diagnostics = control.diagnostics;
-    if out.moves.is_empty() {
-        return Err(ReadError::NoMoves { lines: text.lines().count(), machine: machine.name().into() });
-    }
     Ok(out)
+}
+
+/// Reads a text a line at a time: moves and blocks go out as they come, nothing of the text is kept.
+pub struct Reader<'a> {
+    control: Interpreter<'a, Collect>,
+    lines: usize,
+    ended: bool,
+    moved: bool,
+}
+
+impl<'a> Reader<'a> {
+    /// Before the first line. `names` must have seen the whole text.
+    ///
+    /// # Errors
+    /// Where the setup or the options are none.
+    pub fn new(
+        names: &Names,
+        machine: &'a Machine,
+        setup: &'a Setup,
+        options: &ReadOptions,
+    ) -> Result<Self, ReadError> {
+        setup.check()?;
+        for (what, value) in [("tip_tol_mm", options.tip_tol_mm), ("axis_tol_rad", options.axis_tol_rad)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(ReadError::Tolerance { what, value });
+            }
+        }
+        let frame = Frame { machine, setup };
+        let tolerance = [options.tip_tol_mm, options.axis_tol_rad];
+        let collect = Collect { out: ReadBack::default(), tolerance };
+        let mut control = Interpreter::new(names.dialect(), frame, options.strict, collect);
+        control.rest_unnamed(names.all());
+        Ok(Self { control, lines: 0, ended: false, moved: false })
+    }
+
+    /// One line; those after the end of the program are ignored.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    pub fn line(&mut self, line: &str) -> Result<(), ReadError> {
+        self.lines += 1;
+        if !self.ended {
+            self.ended = self.control.text_line(self.lines, line)?;
+            self.moved |= !self.control.sink.out.moves.is_empty();
+        }
+        Ok(())
+    }
+
+    /// The end of the text.
+    ///
+    /// # Errors
+    /// Where nothing has moved.
+    pub fn end(&mut self) -> Result<(), ReadError> {
+        self.control.end();
+        if self.moved {
+            return Ok(());
+        }
+        Err(ReadError::NoMoves { lines: self.lines, machine: self.control.machine.name().into() })
+    }
+
+    /// The moves since the last call.
+    pub fn take_moves(&mut self) -> std::vec::Drain<'_, ReadMove> {
+        self.control.sink.out.moves.drain(..)
+    }
+
+    /// The blocks since the last call.
+    pub fn take_blocks(&mut self) -> std::vec::Drain<'_, ReadBlock> {
+        self.control.sink.out.blocks.drain(..)
+    }
+
+    /// Spindle speed, as far as the text has said it.
+    #[must_use]
+    pub const fn spindle_rpm(&self) -> Option<f64> {
+        self.control.spindle_rpm
+    }
+
+    /// Findings so far, with line numbers.
+    #[must_use]
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.control.diagnostics
+    }
 }
 
 /// Collects everything.

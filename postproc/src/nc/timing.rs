@@ -33,6 +33,14 @@ impl Names {
         Self { dialect, all: BTreeSet::new(), missing }
     }
 
+    pub(super) const fn dialect(&self) -> Dialect {
+        self.dialect
+    }
+
+    pub(super) const fn all(&self) -> &BTreeSet<String> {
+        &self.all
+    }
+
     /// One line.
     pub fn line(&mut self, line: &str) {
         if !self.missing.is_empty() {

@@ -1,0 +1,62 @@
+//! Why a text is no cutter location data: line, value, what would do.
+
+/// Why a text is no cutter location data. Lines count from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ClReadError {
+    /// A field that should be a number.
+    #[error("line {line}: '{field}' in {word}/ is not a finite number")]
+    Number {
+        /// Line.
+        line: usize,
+        /// Statement.
+        word: String,
+        /// The field as it stands there.
+        field: String,
+    },
+    /// Too few or too many numbers.
+    #[error("line {line}: {word}/ has {got} numbers, it needs {need}")]
+    Count {
+        /// Line.
+        line: usize,
+        /// Statement.
+        word: String,
+        /// Numbers found.
+        got: usize,
+        /// Numbers that would do.
+        need: &'static str,
+    },
+    /// A tool axis of length zero.
+    #[error("line {line}: the tool axis has length {length:.3e}: give a direction")]
+    ZeroAxis {
+        /// Line.
+        line: usize,
+        /// Its length.
+        length: f64,
+    },
+    /// A feed per revolution without a speed.
+    #[error("line {line}: FEDRAT per revolution before any SPINDL/ in rpm: put SPINDL/ first or use MMPM")]
+    NoSpindle {
+        /// Line.
+        line: usize,
+    },
+    /// A feed that is not above zero.
+    #[error("line {line}: a feed of {feed_mm_min} mm/min: it must be above zero")]
+    Feed {
+        /// Line.
+        line: usize,
+        /// What was read.
+        feed_mm_min: f64,
+    },
+    /// A move at feed before any feed.
+    #[error("line {line}: a move that is not RAPID before any FEDRAT/: the feed is unknown")]
+    NoFeed {
+        /// Line.
+        line: usize,
+    },
+    /// Not one point.
+    #[error("no GOTO/ or FROM/ in {lines} lines: this is no cutter location data, or in binary form")]
+    NoPoints {
+        /// Lines read.
+        lines: usize,
+    },
+}

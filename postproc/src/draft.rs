@@ -1,0 +1,219 @@
+//! Moves of a program made from joints: rounded to the output's counts, with the F that each block needs.
+
+use osculate_geom::Diagnostic;
+use osculate_tools::cl::Motion;
+
+use crate::feed::{FeedMode, PathMetric, Step, capped_duration, duration_min, inverse_time_per_min};
+use crate::joint_path::JointBlock;
+use crate::machine::{JointValues, Machine};
+use crate::motion::rapid_time_min;
+use crate::nc::{Dialect, NcMove, Program, number};
+use crate::post::{PostError, PostOptions};
+use crate::setup::Setup;
+
+/// Moves being made from joints, with what is counted on the way.
+pub(crate) struct Draft<'a> {
+    machine: &'a Machine,
+    setup: &'a Setup,
+    options: &'a PostOptions,
+    /// Blocks that a joint's speed made longer, per joint.
+    slowed: Vec<usize>,
+    /// Blocks whose F would not have fitted the control's format.
+    limited: usize,
+    pub time_min: f64,
+    /// Least and greatest feed of the tip, as a share of what was asked for.
+    shares: [f64; 2],
+    /// The last move with the joints at its end.
+    last: Option<(NcMove, JointValues)>,
+    /// Tip lengths and times of blocks that rounded to nothing: they go into the next one.
+    carried_mm: f64,
+    carried_min: f64,
+    /// The last F of a mode that bounds its rise.
+    risen: Option<f64>,
+}
+
+impl<'a> Draft<'a> {
+    pub fn new(machine: &'a Machine, setup: &'a Setup, options: &'a PostOptions) -> Self {
+        Self {
+            machine,
+            setup,
+            options,
+            slowed: vec![0; machine.joints().len()],
+            limited: 0,
+            time_min: 0.0,
+            shares: [f64::INFINITY, 0.0],
+            last: None,
+            carried_mm: 0.0,
+            carried_min: 0.0,
+            risen: None,
+        }
+    }
+
+    /// The move of the next block; `None` where it rounds to nothing. `fastest_min` is its time in the fastest program.
+    pub fn next(
+        &mut self,
+        block: &JointBlock,
+        fastest_min: Option<f64>,
+    ) -> Result<Option<NcMove>, PostError> {
+        let mut m = self.rounded(block)?;
+        let Some((before, from)) = self.last else {
+            self.last = Some((m, block.joints));
+            return Ok(Some(m));
+        };
+        if m.linear == before.linear && m.rotary == before.rotary {
+            self.carried_mm += if m.rapid { 0.0 } else { block.tip_length_mm };
+            self.carried_min += fastest_min.unwrap_or(0.0);
+            return Ok(None);
+        }
+        match block.motion {
+            Motion::Rapid => {
+                self.time_min += rapid_time_min(self.machine, &from, &block.joints).0;
+                self.risen = None;
+            }
+            Motion::Feed(wanted) => {
+                let length = block.tip_length_mm + self.carried_mm;
+                let asked_min = match fastest_min {
+                    Some(t) => t + self.carried_min,
+                    None => duration_min(length, wanted),
+                };
+                let capped = capped_duration(self.machine, &from, &block.joints, asked_min);
+                if let Some(place) = capped.joint {
+                    self.slowed[place] += 1;
+                }
+                let step = step(&before, &m);
+                m.feed = self.feed(&step, wanted, (capped.duration_min, capped.joint.is_some()));
+                let read_min = self.control_time(&step, m.feed);
+                if length > 0.0 && read_min > 0.0 {
+                    let share = capped.duration_min / read_min;
+                    self.shares = [self.shares[0].min(share), self.shares[1].max(share)];
+                }
+                self.time_min +=
+                    read_min.max(capped_duration(self.machine, &from, &block.joints, 0.0).duration_min);
+            }
+        }
+        (self.carried_mm, self.carried_min) = (0.0, 0.0);
+        self.last = Some((m, block.joints));
+        Ok(Some(m))
+    }
+
+    fn rounded(&self, block: &JointBlock) -> Result<NcMove, PostError> {
+        let index = block.source;
+        let counts = |value: f64| number::counts(value).ok_or(PostError::Position { index, value });
+        let xyz = if self.options.feed == FeedMode::Tcp {
+            let p = self.setup.to_program(&block.tip);
+            [p.x, p.y, p.z]
+        } else {
+            self.machine.linear().map(|place| block.joints[place])
+        };
+        let mut linear = [0; 3];
+        for (to, value) in linear.iter_mut().zip(xyz) {
+            *to = counts(value)?;
+        }
+        let mut rotary = [0; 2];
+        for (to, place) in rotary.iter_mut().zip(self.machine.rotary()) {
+            *to = counts(block.joints[*place].to_degrees())?;
+        }
+        Ok(NcMove { rapid: block.motion == Motion::Rapid, linear, rotary, feed: 0.0 })
+    }
+
+    /// F of a block that shall take this long.
+    fn feed(&mut self, step: &Step, wanted: f64, duration: (f64, bool)) -> f64 {
+        let (duration_min, slowed) = duration;
+        let f = match self.options.feed {
+            FeedMode::InverseTime => inverse_time_per_min(duration_min),
+            FeedMode::None => wanted,
+            // The tip's feed is F itself, whatever rounding does to the length.
+            FeedMode::Tcp if !slowed && step.linear_mm > 0.0 => wanted,
+            mode => {
+                // The fastest program is written over whatever the control reads.
+                let own = PathMetric::from(self.machine.control().feed_reading);
+                let f = mode.metric().unwrap_or(own).length(step) / duration_min;
+                match mode {
+                    FeedMode::Kz { step_mm_min, .. } => {
+                        let f = self.risen.map_or(f, |b| f.min(b + step_mm_min));
+                        self.risen = Some(f);
+                        f
+                    }
+                    _ => f,
+                }
+            }
+        };
+        let largest = self.machine.control().largest_feed;
+        if f > largest {
+            self.limited += 1;
+            return largest;
+        }
+        f
+    }
+
+    /// How long the control takes, by its own reading of F, min.
+    fn control_time(&self, step: &Step, feed: f64) -> f64 {
+        match self.options.feed {
+            FeedMode::InverseTime => 1.0 / feed,
+            mode => {
+                // A program that declares its metric (Sinumerik) is read over it; elsewhere the machine's own holds.
+                let declared = mode.metric().filter(|_| {
+                    self.options.dialect == Dialect::Sinumerik || self.options.feed == FeedMode::Tcp
+                });
+                let metric = declared.unwrap_or_else(|| self.machine.control().feed_reading.into());
+                metric.length(step) / feed
+            }
+        }
+    }
+
+    pub fn report(&self, diagnostics: &mut Vec<Diagnostic>, program: &Program) {
+        for (count, joint) in self.slowed.iter().zip(self.machine.joints()) {
+            if *count > 0 {
+                let text = format!(
+                    "{count} blocks are slower than asked: joint {} is at its greatest speed",
+                    joint.letter
+                );
+                diagnostics.push(Diagnostic::warning("feed", text));
+            }
+        }
+        if self.limited > 0 {
+            let largest = self.machine.control().largest_feed;
+            let text = format!(
+                "{} blocks are slower than asked: F is cut to the control's largest, {largest}",
+                self.limited
+            );
+            diagnostics.push(Diagnostic::warning("feed", text));
+        }
+        let own = PathMetric::from(self.machine.control().feed_reading);
+        let wanted =
+            self.options.feed.metric().filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
+        if let Some(wanted) = wanted.filter(|w| *w != own && !self.machine.rotary().is_empty()) {
+            let text = format!(
+                "F is written over {}, but this control reads it over {}: mixed moves take another time than asked, \
+                 the tip runs at {:.3} to {:.3} times the feed asked for",
+                metric_name(wanted),
+                metric_name(own),
+                self.shares[0],
+                self.shares[1]
+            );
+            diagnostics.push(Diagnostic::warning("feed", text));
+        }
+        if self.options.feed == FeedMode::None && !self.machine.rotary().is_empty() {
+            let text = format!(
+                "F is not corrected: where rotary axes move, the tip runs at {:.3} to {:.3} times the feed asked for",
+                self.shares[0], self.shares[1]
+            );
+            diagnostics.push(Diagnostic::warning("feed", text));
+        }
+    }
+}
+
+fn metric_name(metric: PathMetric) -> String {
+    match metric {
+        PathMetric::Linear => "the linear axes".into(),
+        PathMetric::Arc { radius_mm } => format!("all axes, rotary ones at a radius of {radius_mm:.3} mm"),
+        PathMetric::RotaryOnly => "the rotary axes".into(),
+    }
+}
+
+/// By how much the words of a move differ from those before.
+fn step(from: &NcMove, to: &NcMove) -> Step {
+    let mm = |k: usize| number::value(to.linear[k] - from.linear[k]);
+    let rad = |k: usize| number::value(to.rotary[k] - from.rotary[k]).to_radians();
+    Step { linear_mm: (mm(0) * mm(0) + mm(1) * mm(1) + mm(2) * mm(2)).sqrt(), rotary_rad: [rad(0), rad(1)] }
+}
