@@ -1,12 +1,17 @@
 //! One million blocks posted, read back for their time: how long it takes and how much memory it needs.
 //!
-//! `cargo run --release -p osculate-postproc --example million [BLOCKS]`. The CL text is written first; what is timed
-//! is from CL text to NC text, and from NC text to the time of the program.
+//! `cargo run --release -p osculate-postproc --example million [BLOCKS [all | post]]`. The CL file is written first;
+//! what is timed is from CL file to NC file, from NC file to the time of the program, and from NC file to the tool's
+//! way. `all`: every dialect has its turn; `post`: only that.
 #![allow(clippy::print_stdout, clippy::expect_used)]
 
-use osculate_postproc::nc::timing::time;
-use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, cldata, post_to};
-use std::fmt::Write;
+use osculate_postproc::cldata::{ClReadOptions, ClStream};
+use osculate_postproc::nc::timing::{Clock, Names};
+use osculate_postproc::readback::{ReadOptions, Reader};
+use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, post_from};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Write};
+use std::path::Path;
 use std::time::Instant;
 
 /// Peak of the process's memory so far, MB, where the system tells.
@@ -25,55 +30,93 @@ fn cpu_s() -> f64 {
     ticks / 100.0
 }
 
-fn main() {
-    let blocks: u32 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(1_000_000);
-    let mut cl = String::from("UNITS/MM\nSPINDL/8000,RPM\nRAPID\nGOTO/0,0,10,0,0.3,1\nFEDRAT/2000,MMPM\n");
+/// A CL file of so many points on a bumpy patch, the tool leaning by about 17 degrees.
+fn cl_file(place: &Path, blocks: u32) -> io::Result<()> {
+    let mut out = BufWriter::new(File::create(place)?);
+    writeln!(
+        out,
+        "UNITS/MM\nCUTTER/6,3,0,3,0,0,50\nSPINDL/8000,RPM\nRAPID\nGOTO/0,0,10,0,0.3,1\nFEDRAT/2000,MMPM"
+    )?;
     for i in 0..blocks {
         let t = f64::from(i) * 0.01;
         let (s, c) = (0.05 * t).sin_cos();
         let lean = 0.3 + 0.1 * (0.031 * t).sin();
-        writeln!(
-            cl,
-            "GOTO/{:.4},{:.4},{:.4},{:.6},{:.6},{:.6}",
-            60.0 * s,
-            40.0 * (0.073 * t).sin(),
-            10.0 + 5.0 * c,
-            lean * c,
-            lean * s,
-            1.0
-        )
-        .expect("text");
+        let (x, y, z) = (60.0 * s, 40.0 * (0.073 * t).sin(), 10.0 + 5.0 * c);
+        writeln!(out, "GOTO/{x:.4},{y:.4},{z:.4},{:.6},{:.6},{:.6}", lean * c, lean * s, 1.0)?;
     }
+    writeln!(out, "FINI")
+}
+
+fn each_line(place: &Path, mut take: impl FnMut(&str)) -> io::Result<()> {
+    let mut reader = BufReader::new(File::open(place)?);
+    let mut line = String::new();
+    while reader.read_line(&mut line)? > 0 {
+        take(line.trim_end());
+        line.clear();
+    }
+    Ok(())
+}
+
+/// Says what a step took.
+fn step<T>(what: &str, run: impl FnOnce() -> T) -> T {
+    let (start, cpu) = (Instant::now(), cpu_s());
+    let answer = run();
+    let (wall, cpu) = (start.elapsed().as_secs_f64(), cpu_s() - cpu);
+    println!("  {what:<44} wall {wall:6.2} s, CPU {cpu:5.2} s, peak so far {:4.0} MB", peak_mb());
+    answer
+}
+
+fn main() -> io::Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let blocks: u32 = arguments.next().and_then(|n| n.parse().ok()).unwrap_or(1_000_000);
+    let what = arguments.next().unwrap_or_default();
+    let folder = std::env::temp_dir().join(format!("osculate-million-{}", std::process::id()));
+    std::fs::create_dir_all(&folder)?;
+    let (cl, nc) = (folder.join("path.cl"), folder.join("program.nc"));
+    cl_file(&cl, blocks)?;
     let machine = Machine::built_in("trunnion-ac").expect("built in");
     let setup = Setup::default();
-    println!("{blocks} CL points, {:.0} MB of text, peak {:.0} MB", cl.len() as f64 / 1e6, peak_mb());
-    for (dialect, feed) in
-        [(Dialect::Sinumerik, FeedMode::Kv { fgref_mm: None }), (Dialect::Sinumerik, FeedMode::Tcp)]
-    {
-        let (start, cpu) = (Instant::now(), cpu_s());
-        let path = cldata::read(&cl).expect("CL").path;
-        let read_s = start.elapsed().as_secs_f64();
-        let (held, options) = (peak_mb(), PostOptions::new(dialect, feed));
-        let place = std::env::temp_dir().join(format!("osculate-million-{}.nc", std::process::id()));
-        let mut file = std::fs::File::create(&place).expect("a file for the program");
-        let posted = post_to(&path, &machine, &setup, &options, &mut file).expect("posts");
-        let post_s = start.elapsed().as_secs_f64();
-        let n = posted.summary.blocks;
-        println!(
-            "{dialect} {feed:?}: {n} blocks, CL read in {read_s:.2} s, posted after {post_s:.2} s (CPU {:.2} s), peak {:.0} MB, {held:.0} MB of them with the path read",
-            cpu_s() - cpu,
-            peak_mb()
-        );
-        let text = std::fs::read_to_string(&place).expect("the program");
-        std::fs::remove_file(&place).expect("the program");
-        let (start, cpu) = (Instant::now(), cpu_s());
-        let timed = time(&text, dialect, &machine, &setup, true).expect("reads");
-        println!(
-            "  time {:.2} min in {:.2} s (CPU {:.2} s), peak {:.0} MB",
-            timed.time.time_min(),
-            start.elapsed().as_secs_f64(),
-            cpu_s() - cpu,
-            peak_mb()
-        );
+    println!("{blocks} CL points, {:.0} MB of text", std::fs::metadata(&cl)?.len() as f64 / 1e6);
+    let kv = FeedMode::Kv { fgref_mm: None };
+    let mut modes = vec![(Dialect::Sinumerik, kv), (Dialect::Sinumerik, FeedMode::Tcp)];
+    if what == "all" {
+        modes.push((Dialect::Heidenhain, FeedMode::Tcp));
+        modes.push((Dialect::Fanuc, FeedMode::InverseTime));
+        modes.push((Dialect::LinuxCnc, FeedMode::Kf));
     }
+    for (dialect, feed) in modes {
+        println!("{dialect} {feed:?}");
+        let options = PostOptions { spindle_rpm: Some(8000.0), ..PostOptions::new(dialect, feed) };
+        let source = ClStream::new(|| File::open(&cl).map(BufReader::new), ClReadOptions::default());
+        let mut file = File::create(&nc)?;
+        let posted = step("posted, from CL file to NC file", || {
+            post_from(&source, &machine, &setup, &options, &mut file).expect("posts")
+        });
+        if what == "post" {
+            println!("  {} blocks", posted.summary.blocks);
+            continue;
+        }
+        let mut names = Names::new(dialect, &machine);
+        let timed = step("timed, from NC file", || {
+            each_line(&nc, |line| names.line(line)).expect("reads");
+            let mut clock = Clock::new(&names, &machine, &setup, true).expect("a setup");
+            each_line(&nc, |line| clock.line(line).expect("our own words")).expect("reads");
+            clock.finish()
+        });
+        let mut points = 0;
+        step("read back to the tool's way, from NC file", || {
+            let options = ReadOptions::default();
+            let mut reader = Reader::new(&names, &machine, &setup, &options).expect("a setup");
+            each_line(&nc, |line| {
+                reader.line(line).expect("our own words");
+                points += reader.take_moves().count();
+                reader.take_blocks();
+            })
+            .expect("reads");
+            reader.end().expect("moves");
+        });
+        let (blocks, minutes) = (posted.summary.blocks, timed.time.time_min());
+        println!("  {blocks} blocks, {points} points read back, {minutes:.2} min on the machine");
+    }
+    std::fs::remove_dir_all(&folder)
 }

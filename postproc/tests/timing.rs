@@ -122,6 +122,9 @@ fn what_else_a_program_may_hold() {
     for ((name, text), measured) in programs {
         let ours = cutting_s(&machine, text);
         // 2 %: corners between arcs and lines are the least well modelled.
-        assert!((ours / measured - 1.0).abs() < 0.02, "{name}: {ours:.3} s, the controller took {measured} s");
+        assert!(
+            (ours / measured - 1.0).abs() < 0.02,
+            "{name}: {ours:.3} s, the controller took {measured} s"
+        );
     }
 }
