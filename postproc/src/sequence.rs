@@ -251,6 +251,13 @@ impl Step {
         let through_pole = gap
             || machine.pair().is_some_and(|p| {
                 let pole = p.pole();
+                // Far from the pole, told without angles: the sine is below the angle, and the arc below pi / 2 chords.
+                let cosine = a.dot(&pole).abs().max(b.dot(&pole).abs());
+                let chord = (b.into_inner() - a.into_inner()).norm();
+                let least = (1.0 - cosine * cosine).max(0.0).sqrt() - std::f64::consts::FRAC_PI_2 * chord;
+                if least > cone_rad {
+                    return false;
+                }
                 least_angle(a, b, &pole).min(least_angle(a, b, &-pole)) <= cone_rad
             });
         Self { rapid, through_pole }

@@ -26,10 +26,45 @@ fn plain_goto(line: &str) -> Option<([f64; 6], usize)> {
     let mut numbers = [0.0; 6];
     let mut count = 0;
     for field in line.strip_prefix("GOTO/")?.split(',') {
-        *numbers.get_mut(count)? = field.trim().parse().ok().filter(|v: &f64| v.is_finite())?;
+        *numbers.get_mut(count)? = decimal(field.trim())?;
         count += 1;
     }
     (count == 3 || count == 6).then_some((numbers, count))
+}
+
+/// Powers of ten, all exact in f64.
+const POWERS: [f64; 16] =
+    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+
+/// A finite number. With at most 15 digits and no exponent both the digits and the power of ten are exact, so that one
+/// division rounds right; anything else goes the general way.
+fn decimal(text: &str) -> Option<f64> {
+    let general = || text.parse().ok().filter(|v: &f64| v.is_finite());
+    let bytes = text.as_bytes();
+    let (negative, digits) = match bytes.first()? {
+        b'-' => (true, &bytes[1..]),
+        _ => (false, bytes),
+    };
+    // 15 digits and a point.
+    if digits.len() > 16 {
+        return general();
+    }
+    let (mut whole, mut after, mut count) = (0u64, None, 0usize);
+    for b in digits {
+        match b {
+            b'0'..=b'9' => {
+                whole = 10 * whole + u64::from(b - b'0');
+                count += 1;
+            }
+            b'.' if after.is_none() => after = Some(count),
+            _ => return general(),
+        }
+    }
+    if count == 0 || count > 15 {
+        return general();
+    }
+    let value = whole as f64 / POWERS[after.map_or(0, |a| count - a)];
+    Some(if negative { -value } else { value })
 }
 
 /// Puts lines together to statements, a line at a time.
@@ -117,5 +152,26 @@ mod tests {
                 (7, "RAPID", String::new())
             ]
         );
+    }
+
+    proptest::proptest! {
+        /// The short way gives the bits of the general one.
+        #[test]
+        fn decimals_round_right(digits in 0u64..2_000_000_000_000_000, places in 0usize..17, minus in proptest::bool::ANY) {
+            let mut text = format!("{digits:0>18}");
+            text.insert(18 - places, '.');
+            let text = format!("{}{}", if minus { "-" } else { "" }, text.trim_start_matches('0'));
+            proptest::prop_assert_eq!(decimal(&text), text.parse().ok(), "{}", text);
+        }
+    }
+
+    #[test]
+    fn odd_decimals() {
+        for text in ["1e3", "-1.5E-3", "+2.", ".5", "-.5", "0", "-0.0", "123456789012345678.25"] {
+            assert_eq!(decimal(text).map(f64::to_bits), text.parse::<f64>().ok().map(f64::to_bits), "{text}");
+        }
+        for text in ["", "-", ".", "1.2.3", "x", "NaN", "inf", "1e999", "1 2"] {
+            assert_eq!(decimal(text), None, "{text}");
+        }
     }
 }

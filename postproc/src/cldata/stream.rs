@@ -3,6 +3,8 @@
 use std::cell::RefCell;
 use std::io::{self, BufRead};
 use std::ops::ControlFlow;
+use std::sync::mpsc;
+use std::thread;
 
 use osculate_geom::{Diagnostic, Point3};
 use osculate_tools::cl::ClMove;
@@ -65,7 +67,7 @@ impl<R: BufRead, O: Fn() -> io::Result<R>> ClStream<O> {
     /// Where the text cannot be read.
     pub fn head(&self) -> Result<ClReader, ClStreamError> {
         let mut reader = ClReader::new(self.options);
-        self.read(&mut reader, |reader| {
+        feed(&self.open, &mut reader, |reader| {
             reader.take_moves();
             match (reader.cutter(), reader.spindle_rpm()) {
                 (Some(_), Some(_)) => ControlFlow::Break(()),
@@ -85,7 +87,7 @@ impl<R: BufRead, O: Fn() -> io::Result<R>> ClStream<O> {
         let mut tip: Option<Point3> = None;
         let mut places = Vec::with_capacity(indices.len());
         let mut open = indices.iter().copied().peekable();
-        self.read(&mut reader, |reader| {
+        feed(&self.open, &mut reader, |reader| {
             let line = reader.lines();
             for m in reader.take_moves() {
                 length_mm += tip.map_or(0.0, |t| (m.pose.tip - t).norm());
@@ -99,57 +101,76 @@ impl<R: BufRead, O: Fn() -> io::Result<R>> ClStream<O> {
         })?;
         Ok(places)
     }
-
-    /// Feeds the lines to the reader; `after` sees it after each. True where the end was reached.
-    fn read(
-        &self,
-        reader: &mut ClReader,
-        mut after: impl FnMut(&mut ClReader) -> ControlFlow<()>,
-    ) -> Result<bool, ClStreamError> {
-        let mut text = (self.open)()?;
-        let mut bytes = Vec::new();
-        loop {
-            bytes.clear();
-            if text.read_until(b'\n', &mut bytes)? == 0 {
-                break;
-            }
-            // Comments of old files are in other encodings.
-            let line = String::from_utf8_lossy(&bytes);
-            reader.line(line.trim_end_matches(['\r', '\n']))?;
-            if after(reader).is_break() {
-                return Ok(false);
-            }
-        }
-        reader.end()?;
-        Ok(after(reader).is_continue())
-    }
 }
 
-impl<R: BufRead, O: Fn() -> io::Result<R>> MoveSource for ClStream<O> {
+/// Feeds the lines to the reader; `after` sees it after each. True where the end was reached.
+fn feed<R: BufRead, O: Fn() -> io::Result<R>>(
+    open: &O,
+    reader: &mut ClReader,
+    mut after: impl FnMut(&mut ClReader) -> ControlFlow<()>,
+) -> Result<bool, ClStreamError> {
+    let mut text = open()?;
+    let mut bytes = Vec::new();
+    loop {
+        bytes.clear();
+        if text.read_until(b'\n', &mut bytes)? == 0 {
+            break;
+        }
+        // Comments of old files are in other encodings.
+        let line = String::from_utf8_lossy(&bytes);
+        reader.line(line.trim_end_matches(['\r', '\n']))?;
+        if after(reader).is_break() {
+            return Ok(false);
+        }
+    }
+    reader.end()?;
+    Ok(after(reader).is_continue())
+}
+
+/// Pieces that are read while one is worked on.
+const AHEAD: usize = 2;
+
+impl<R: BufRead, O: Fn() -> io::Result<R> + Sync> MoveSource for ClStream<O> {
     type Error = ClStreamError;
 
+    /// The text is read by a thread of its own, a few pieces ahead of `take`.
     fn pieces(
         &self,
         most: usize,
         take: &mut dyn FnMut(&[ClMove]) -> ControlFlow<()>,
     ) -> Result<(), ClStreamError> {
-        let mut reader = ClReader::new(self.options);
-        let mut piece = Vec::with_capacity(most);
-        let whole = self.read(&mut reader, |reader| {
-            piece.extend(reader.take_moves());
-            while piece.len() >= most {
-                let rest = piece.split_off(most);
-                let flow = take(&piece);
-                piece = rest;
-                flow?;
+        let (open, options) = (&self.open, self.options);
+        let (send, receive) = mpsc::sync_channel::<Vec<ClMove>>(AHEAD);
+        let (whole, found) = thread::scope(|scope| {
+            let reading = scope.spawn(move || {
+                let mut reader = ClReader::new(options);
+                let mut piece = Vec::with_capacity(most);
+                let whole = feed(open, &mut reader, |reader| {
+                    piece.extend(reader.take_moves());
+                    while piece.len() >= most {
+                        let rest = piece.split_off(most);
+                        // Where nobody listens any more, there is nothing to be read for.
+                        if send.send(std::mem::replace(&mut piece, rest)).is_err() {
+                            return ControlFlow::Break(());
+                        }
+                        piece.reserve(most);
+                    }
+                    ControlFlow::Continue(())
+                });
+                // What stands before a fault is worked on first: a fault there comes before.
+                let sent = piece.is_empty() || send.send(piece).is_ok();
+                (whole.map(|whole| whole && sent), reader.diagnostics())
+            });
+            for piece in &receive {
+                if take(&piece).is_break() {
+                    break;
+                }
             }
-            ControlFlow::Continue(())
-        })?;
-        if whole {
-            if !piece.is_empty() && take(&piece).is_break() {
-                return Ok(());
-            }
-            *self.found.borrow_mut() = reader.diagnostics();
+            drop(receive);
+            reading.join().expect("the reader does not panic")
+        });
+        if whole? {
+            *self.found.borrow_mut() = found;
         }
         Ok(())
     }

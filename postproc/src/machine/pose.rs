@@ -210,5 +210,14 @@ pub(crate) const LIMIT_SLACK: f64 = 1e-9;
 
 /// The angle between two directions, exact for small ones.
 pub(crate) fn angle_between(a: &Vec3, b: &Vec3) -> f64 {
-    a.cross(b).norm().atan2(a.dot(b))
+    let (sine, cosine) = (a.cross(b).norm(), a.dot(b));
+    // Neighbours on a path: the series of the arc tangent, whose next term is below a part in 10^18.
+    if sine < SMALL_TANGENT * cosine {
+        let t = sine / cosine;
+        return t * (1.0 - t * t * (1.0 / 3.0 - t * t / 5.0));
+    }
+    sine.atan2(cosine)
 }
+
+/// Tangents of angles whose arc tangent is three terms of its series.
+const SMALL_TANGENT: f64 = 1e-3;

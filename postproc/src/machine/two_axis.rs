@@ -77,6 +77,8 @@ pub struct TwoAxis {
     outer: Unit3,
     inner: Unit3,
     tool: Unit3,
+    /// Smallest and largest angle between a reachable tool axis and the outer axis, rad.
+    reach_rad: [f64; 2],
 }
 
 impl TwoAxis {
@@ -91,7 +93,10 @@ impl TwoAxis {
         if sine < SMALLEST_SINE {
             return Err(TwoAxisError::AlongTool { sine });
         }
-        Ok(Self { outer, inner, tool })
+        // The reachable axes make an angle with b between |ab - ua| and pi - |pi - ab - ua|.
+        let (ab, ua) = (angle(&inner, &outer), angle(&tool, &inner));
+        let pi = std::f64::consts::PI;
+        Ok(Self { outer, inner, tool, reach_rad: [(ab - ua).abs(), pi - (pi - ab - ua).abs()] })
     }
 
     /// The tool axis at the given angles.
@@ -107,7 +112,8 @@ impl TwoAxis {
     /// [`AxisUnreachable`] with the angle by which the wanted axis is out of reach.
     pub fn solve(&self, wanted: &Unit3) -> Result<Solutions, AxisUnreachable> {
         let (a, b, u, w) = (&self.inner, &self.outer, &self.tool, wanted);
-        let off_rad = self.off_rad(w);
+        let wb = angle(w, b);
+        let off_rad = (self.reach_rad[0] - wb).max(wb - self.reach_rad[1]).max(0.0);
         if off_rad > REACH_TOLERANCE_RAD {
             return Err(AxisUnreachable { off_rad });
         }
@@ -122,7 +128,7 @@ impl TwoAxis {
             let v = a.into_inner() * x + b.into_inner() * y + normal * z;
             Angles { outer_rad: angle_about(b, &v, w), inner_rad: angle_about(a, u, &v) }
         };
-        let pole_rad = w.cross(b).norm().atan2(w.dot(b).abs());
+        let pole_rad = wb.min(std::f64::consts::PI - wb);
         Ok(Solutions { branches: [branch(z), branch(-z)], pole_rad })
     }
 
@@ -138,16 +144,11 @@ impl TwoAxis {
     pub const fn pole(&self) -> Unit3 {
         self.outer
     }
+}
 
-    /// The reachable axes make an angle with `b` between `|ab - ua|` and `pi - |pi - ab - ua|`.
-    fn off_rad(&self, w: &Unit3) -> f64 {
-        let angle = |p: &Vec3, q: &Vec3| p.cross(q).norm().atan2(p.dot(q));
-        let (ab, ua, wb) =
-            (angle(&self.inner, &self.outer), angle(&self.tool, &self.inner), angle(w, &self.outer));
-        let least = (ab - ua).abs();
-        let most = std::f64::consts::PI - (std::f64::consts::PI - ab - ua).abs();
-        (least - wb).max(wb - most).max(0.0)
-    }
+/// The angle between two directions, exact near 0 and pi.
+fn angle(p: &Vec3, q: &Vec3) -> f64 {
+    p.cross(q).norm().atan2(p.dot(q))
 }
 
 /// `v` turned right-handed about `axis`.
