@@ -8,11 +8,12 @@
 //!
 //! sigma = +1 is the side of `S_u x S_v`, [`Side::Along`](osculate_geom::Side). A cylinder of radius R about an axis deviates
 //! from a point of the strip by `delta = dist(point, axis) - R`: above zero material is left, below zero the part is
-//! gouged. Source: [D98], with the errata of `docs/papers/d98.md`.
+//! gouged. Source: D98, with the errata of `docs/papers/d98.md`.
 //!
 //! - [`RuledStrip`] is the surface between two directrices, [`Rule`] its rule at a parameter with frame and derivatives.
 //! - [`place`] puts a [`SideTool`] (cylinder, cone, barrel) against a rule in one of the [`Setting`]s; [`profile`] is the
 //!   static deviation along the rule, [`Placed::verdict`] what the position is worth.
+//! - [`mod@closed`] has the paper's closed forms beside the exact values, [`largest_radius`] the largest tool within a tolerance.
 //! - [`AxisLine`] is where a cutter's axis lies, [`AxisJet`] how it moves with the parameter.
 //!
 //! ```
@@ -36,7 +37,9 @@
 //! ```
 
 mod axis;
+pub mod closed;
 mod directrix;
+mod largest;
 mod lp;
 mod minimax;
 mod rule;
@@ -50,6 +53,7 @@ mod tool;
 
 pub use axis::{AxisJet, AxisLine};
 pub use directrix::CurveJet2;
+pub use largest::{LargestRadius, RadiusLimit, RadiusSearch, RadiusSearchError, largest_radius};
 pub use minimax::{Hold, MinimaxAxis, MinimaxSearch, minimax};
 pub use rule::{Rule, RuleError, RuleFrame};
 pub use ruled::{RuledError, RuledStrip};

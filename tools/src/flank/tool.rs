@@ -21,6 +21,8 @@ use osculate_geom::{Point3, Vec3};
 pub struct SideTool {
     radius_mm: f64,
     taper_rad: f64,
+    /// Sine and cosine of the taper.
+    lean: [f64; 2],
     bulge_per_mm: f64,
 }
 
@@ -79,7 +81,8 @@ impl SideTool {
         if !(bulge_per_mm >= 0.0 && bulge_per_mm.is_finite()) {
             return bad("bulge_per_mm", bulge_per_mm, "at least 0 and finite");
         }
-        Ok(Self { radius_mm, taper_rad, bulge_per_mm })
+        let lean = [taper_rad.sin(), taper_rad.cos()];
+        Ok(Self { radius_mm, taper_rad, lean, bulge_per_mm })
     }
 
     /// Radius at the reference section, mm.
@@ -113,7 +116,7 @@ impl SideTool {
 
     /// delta and its derivatives by e and s.
     fn meridian(&self, e: f64, s: f64) -> (f64, f64, f64, f64) {
-        let (sin, cos) = self.taper_rad.sin_cos();
+        let [sin, cos] = self.lean;
         let k = self.bulge_per_mm;
         let line = cos * e - sin * s;
         let square = e * e + s * s;
@@ -154,7 +157,7 @@ impl SideTool {
     /// generator, b along the part's normal from the contact into the tool, c along the generator. At the contact all
     /// three are zero. Differences of lengths near the radius do not occur.
     pub(super) fn at_contact(&self, [a, b, c]: [f64; 3]) -> (f64, Vec3, Matrix3<f64>) {
-        let (sin, cos) = self.taper_rad.sin_cos();
+        let [sin, cos] = self.lean;
         let q = sin * c - cos * b;
         let r = self.radius_mm + q;
         let rho = a.hypot(r);
