@@ -16,6 +16,7 @@ mod descent;
 mod face;
 mod index;
 mod search;
+mod tree;
 mod way;
 
 use crate::nurbs::NurbsSurface;

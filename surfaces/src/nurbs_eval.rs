@@ -83,27 +83,30 @@ pub(crate) fn piece_orders<Q: Quad>(q: Q, pieces: &Pieces, at: Uv, span: [usize;
         orders = quotient_of_quads(q, orders);
     }
     let [x, y, z] = piece.origin;
-    orders[0] = q.add(orders[0], q.load(&[x, y, z, 0.0]));
-    let jet = orders.map(|c| {
-        let [x, y, z, _] = q.array(c);
-        Vec3::new(x, y, z)
-    });
+    let [s, su, sv, suu, suv, svv] = orders;
+    let s = q.add(s, q.load(&[x, y, z, 0.0]));
+    let jet = [vector(q, s), vector(q, su), vector(q, sv), vector(q, suu), vector(q, suv), vector(q, svv)];
     without_noise(jet, piece.silent())
+}
+
+#[inline(always)]
+fn vector<Q: Quad>(q: Q, c: Q::V) -> Vec3 {
+    let [x, y, z, _] = q.array(c);
+    Vec3::new(x, y, z)
 }
 
 /// The quotient rule for `(x, y, z, w)`.
 #[inline(always)]
 fn quotient_of_quads<Q: Quad>(q: Q, a: Orders<Q::V>) -> Orders<Q::V> {
-    let w = a.map(|c| q.array(c)[3]);
-    let r = q.splat(1.0 / w[0]);
-    let [_, wu, wv, wuu, wuv, wvv] = w.map(|w| q.splat(w));
-    let (add, sub, mul) = (|a, b| q.add(a, b), |a, b| q.sub(a, b), |a, b| q.mul(a, b));
-    let s = mul(a[0], r);
-    let su = mul(sub(a[1], mul(s, wu)), r);
-    let sv = mul(sub(a[2], mul(s, wv)), r);
-    let suu = mul(sub(sub(a[3], mul(su, add(wu, wu))), mul(s, wuu)), r);
-    let suv = mul(sub(sub(sub(a[4], mul(sv, wu)), mul(su, wv)), mul(s, wuv)), r);
-    let svv = mul(sub(sub(a[5], mul(sv, add(wv, wv))), mul(s, wvv)), r);
+    let (wu, wv) = (q.splat_last(a[1]), q.splat_last(a[2]));
+    let (wuu, wuv, wvv) = (q.splat_last(a[3]), q.splat_last(a[4]), q.splat_last(a[5]));
+    let r = q.div(q.splat(1.0), q.splat_last(a[0]));
+    let s = q.mul(a[0], r);
+    let su = q.mul(q.sub(a[1], q.mul(s, wu)), r);
+    let sv = q.mul(q.sub(a[2], q.mul(s, wv)), r);
+    let suu = q.mul(q.sub(q.sub(a[3], q.mul(su, q.add(wu, wu))), q.mul(s, wuu)), r);
+    let suv = q.mul(q.sub(q.sub(q.sub(a[4], q.mul(sv, wu)), q.mul(su, wv)), q.mul(s, wuv)), r);
+    let svv = q.mul(q.sub(q.sub(a[5], q.mul(sv, q.add(wv, wv))), q.mul(s, wvv)), r);
     [s, su, sv, suu, suv, svv]
 }
 

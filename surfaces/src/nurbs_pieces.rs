@@ -14,8 +14,8 @@ use crate::knots::Knots;
 use crate::nurbs::Net;
 use crate::quad::Quad;
 use nalgebra::Vector4;
-use osculate_geom::Point3;
 use osculate_geom::lanes::Lanes;
+use osculate_geom::{Point3, Uv};
 
 /// Room for a piece's coefficients: 8 bytes each, 64 MiB in all, 130 thousand bicubic pieces. A surface with
 /// more is evaluated by the direct sum.
@@ -138,6 +138,13 @@ impl Pieces {
         })
     }
 
+    /// Whether parameters are below the upper ends of two spans and not below their lower ends.
+    #[inline(always)]
+    pub(crate) fn holds(&self, span: [usize; 2], at: Uv) -> bool {
+        let [u, v] = [&self.frames[0][span[0]], &self.frames[1][span[1]]];
+        u.lo <= at.u && at.u < u.hi && v.lo <= at.v && at.v < v.hi
+    }
+
     /// The piece over two spans.
     #[inline(always)]
     pub(crate) fn piece(&self, span: [usize; 2]) -> Piece<'_> {
@@ -160,20 +167,20 @@ impl Piece<'_> {
     pub(crate) fn orders<Q: Quad>(&self, q: Q, u: f64, v: f64) -> Orders<Q::V> {
         let x = q.splat(self.frames[0].local(Lanes([u])).0[0]);
         let y = q.splat(self.frames[1].local(Lanes([v])).0[0]);
-        let (step_x, step_y) = (|s, r| q.add(q.mul(s, x), r), |s, r| q.add(q.mul(s, y), r));
-        let k = |i: usize| q.load(&self.coefficients[i]);
-        let zero = q.splat(0.0);
         // A known count lets the compiler unroll the commonest case.
-        let mut orders = match self.coefficients.as_chunks::<16>().0 {
-            [sixteen] if self.terms == [4, 4] => {
-                horner([4, 4], |i| q.load(&sixteen[i]), step_x, step_y, zero)
-            }
-            _ => horner(self.terms, k, step_x, step_y, zero),
+        let o = match self.coefficients.as_chunks::<16>().0 {
+            [sixteen] if self.terms == [4, 4] => horner([4, 4], &OfQuads { q, k: &sixteen[..], x, y }),
+            _ => horner(self.terms, &OfQuads { q, k: self.coefficients, x, y }),
         };
-        for (order, rate) in orders[1..].iter_mut().zip(self.rates()) {
-            *order = q.mul(*order, q.splat(rate));
-        }
-        orders
+        let r = self.rates();
+        [
+            o[0],
+            q.mul(o[1], q.splat(r[0])),
+            q.mul(o[2], q.splat(r[1])),
+            q.mul(o[3], q.splat(r[2])),
+            q.mul(o[4], q.splat(r[3])),
+            q.mul(o[5], q.splat(r[4])),
+        ]
     }
 
     /// The same for one component of N places.
@@ -184,17 +191,15 @@ impl Piece<'_> {
         x: Lanes<N>,
         y: Lanes<N>,
     ) -> Orders<Lanes<N>> {
-        let k = |i: usize| Lanes::splat(self.coefficients[i][component]);
-        let (step_x, step_y) = (|s, r| s * x + r, |s, r| s * y + r);
-        let zero = Lanes::default();
         let mut orders = match self.coefficients.as_chunks::<16>().0 {
             [sixteen] if self.terms == [4, 4] => {
-                horner([4, 4], |i| Lanes::splat(sixteen[i][component]), step_x, step_y, zero)
+                horner([4, 4], &OfLanes { component, k: &sixteen[..], x, y })
             }
-            _ => horner(self.terms, k, step_x, step_y, zero),
+            _ => horner(self.terms, &OfLanes { component, k: self.coefficients, x, y }),
         };
-        for (order, rate) in orders[1..].iter_mut().zip(self.rates()) {
-            *order = *order * Lanes::splat(rate);
+        let rates = self.rates();
+        for k in 0..rates.len() {
+            orders[k + 1] = orders[k + 1] * Lanes::splat(rates[k]);
         }
         orders
     }
@@ -227,66 +232,127 @@ impl Piece<'_> {
     /// Squares below which the first derivatives by u and v are rounding alone.
     #[inline(always)]
     pub(crate) fn silent(&self) -> [f64; 2] {
-        [0, 1].map(|a| {
-            let x = self.noise * self.frames[a].slope();
-            x * x
-        })
+        let (x, y) = (self.noise * self.frames[0].slope(), self.noise * self.frames[1].slope());
+        [x * x, y * y]
     }
 }
 
-/// Horner's rule with two derivatives, the second one halved: `k(i)` is the coefficient of power i.
+/// A polynomial in x and y at one place of each.
+///
+/// A trait, where closures would do, since a method can be made part of the caller always: code over a
+/// processor's wide registers is only fast where all of it is one function.
+trait Polynomial {
+    type V: Copy;
+    /// The coefficient at a place of the list.
+    fn k(&self, place: usize) -> Self::V;
+    /// `s x + r`.
+    fn x(&self, s: Self::V, r: Self::V) -> Self::V;
+    /// `s y + r`.
+    fn y(&self, s: Self::V, r: Self::V) -> Self::V;
+    fn zero(&self) -> Self::V;
+}
+
+/// All components.
+struct OfQuads<'a, Q: Quad> {
+    q: Q,
+    k: &'a [[f64; 4]],
+    x: Q::V,
+    y: Q::V,
+}
+
+impl<Q: Quad> Polynomial for OfQuads<'_, Q> {
+    type V = Q::V;
+    #[inline(always)]
+    fn k(&self, place: usize) -> Q::V {
+        self.q.load(&self.k[place])
+    }
+    #[inline(always)]
+    fn x(&self, s: Q::V, r: Q::V) -> Q::V {
+        self.q.add(self.q.mul(s, self.x), r)
+    }
+    #[inline(always)]
+    fn y(&self, s: Q::V, r: Q::V) -> Q::V {
+        self.q.add(self.q.mul(s, self.y), r)
+    }
+    #[inline(always)]
+    fn zero(&self) -> Q::V {
+        self.q.splat(0.0)
+    }
+}
+
+/// One component of N places.
+struct OfLanes<'a, const N: usize> {
+    component: usize,
+    k: &'a [[f64; 4]],
+    x: Lanes<N>,
+    y: Lanes<N>,
+}
+
+impl<const N: usize> Polynomial for OfLanes<'_, N> {
+    type V = Lanes<N>;
+    #[inline(always)]
+    fn k(&self, place: usize) -> Lanes<N> {
+        Lanes::splat(self.k[place][self.component])
+    }
+    #[inline(always)]
+    fn x(&self, s: Lanes<N>, r: Lanes<N>) -> Lanes<N> {
+        s * self.x + r
+    }
+    #[inline(always)]
+    fn y(&self, s: Lanes<N>, r: Lanes<N>) -> Lanes<N> {
+        s * self.y + r
+    }
+    #[inline(always)]
+    fn zero(&self) -> Lanes<N> {
+        Lanes::default()
+    }
+}
+
+/// Horner's rule in y with two derivatives, the second one halved, for the `terms` coefficients from `first` on.
 ///
 /// The first steps leave out what would be added to zero.
 #[inline(always)]
-fn taylor<V: Copy>(terms: usize, k: impl Fn(usize) -> V, step: impl Fn(V, V) -> V, zero: V) -> [V; 3] {
-    let mut r0 = k(terms - 1);
+fn taylor<P: Polynomial>(terms: usize, p: &P, first: usize) -> [P::V; 3] {
+    let mut r0 = p.k(first + terms - 1);
     if terms == 1 {
-        return [r0, zero, zero];
+        return [r0, p.zero(), p.zero()];
     }
     let mut r1 = r0;
-    r0 = step(r0, k(terms - 2));
+    r0 = p.y(r0, p.k(first + terms - 2));
     if terms == 2 {
-        return [r0, r1, zero];
+        return [r0, r1, p.zero()];
     }
     let mut r2 = r1;
-    r1 = step(r1, r0);
-    r0 = step(r0, k(terms - 3));
+    r1 = p.y(r1, r0);
+    r0 = p.y(r0, p.k(first + terms - 3));
     for i in (0..terms - 3).rev() {
-        r2 = step(r2, r1);
-        r1 = step(r1, r0);
-        r0 = step(r0, k(i));
+        r2 = p.y(r2, r1);
+        r1 = p.y(r1, r0);
+        r0 = p.y(r0, p.k(first + i));
     }
     [r0, r1, r2]
 }
 
 /// Value and derivatives of a polynomial piece by x and y, second ones by xx and yy halved.
 #[inline(always)]
-fn horner<V: Copy>(
-    [n, m]: [usize; 2],
-    k: impl Fn(usize) -> V,
-    step_x: impl Fn(V, V) -> V,
-    step_y: impl Fn(V, V) -> V,
-    zero: V,
-) -> Orders<V> {
-    let row = |a: usize| taylor(m, |b| k(a * m + b), &step_y, zero);
-    let x = step_x;
-    let [mut s0, mut s2, mut s5] = row(n - 1);
-    let (mut s1, mut s3, mut s4) = (zero, zero, zero);
+fn horner<P: Polynomial>([n, m]: [usize; 2], p: &P) -> Orders<P::V> {
+    let [mut s0, mut s2, mut s5] = taylor(m, p, (n - 1) * m);
+    let (mut s1, mut s3, mut s4) = (p.zero(), p.zero(), p.zero());
     if n > 1 {
-        let r = row(n - 2);
+        let r = taylor(m, p, (n - 2) * m);
         (s1, s4) = (s0, s2);
-        (s0, s2, s5) = (x(s0, r[0]), x(s2, r[1]), x(s5, r[2]));
+        (s0, s2, s5) = (p.x(s0, r[0]), p.x(s2, r[1]), p.x(s5, r[2]));
     }
     if n > 2 {
-        let r = row(n - 3);
+        let r = taylor(m, p, (n - 3) * m);
         s3 = s1;
-        (s1, s4) = (x(s1, s0), x(s4, s2));
-        (s0, s2, s5) = (x(s0, r[0]), x(s2, r[1]), x(s5, r[2]));
+        (s1, s4) = (p.x(s1, s0), p.x(s4, s2));
+        (s0, s2, s5) = (p.x(s0, r[0]), p.x(s2, r[1]), p.x(s5, r[2]));
         for a in (0..n - 3).rev() {
-            let r = row(a);
-            s3 = x(s3, s1);
-            (s1, s4) = (x(s1, s0), x(s4, s2));
-            (s0, s2, s5) = (x(s0, r[0]), x(s2, r[1]), x(s5, r[2]));
+            let r = taylor(m, p, a * m);
+            s3 = p.x(s3, s1);
+            (s1, s4) = (p.x(s1, s0), p.x(s4, s2));
+            (s0, s2, s5) = (p.x(s0, r[0]), p.x(s2, r[1]), p.x(s5, r[2]));
         }
     }
     [s0, s1, s2, s3, s4, s5]

@@ -14,6 +14,16 @@ pub(crate) trait Quad: Copy {
     fn add(self, a: Self::V, b: Self::V) -> Self::V;
     fn sub(self, a: Self::V, b: Self::V) -> Self::V;
     fn mul(self, a: Self::V, b: Self::V) -> Self::V;
+    fn sqrt(self, a: Self::V) -> Self::V;
+    /// `a < b ? a : b`, so that of a NaN and a number the second one is left.
+    fn min(self, a: Self::V, b: Self::V) -> Self::V;
+    /// `a > b ? a : b`.
+    fn max(self, a: Self::V, b: Self::V) -> Self::V;
+    /// `a < b ? x : y`.
+    fn less(self, a: Self::V, b: Self::V, x: Self::V, y: Self::V) -> Self::V;
+    /// The fourth number in all places.
+    fn splat_last(self, a: Self::V) -> Self::V;
+    fn div(self, a: Self::V, b: Self::V) -> Self::V;
     fn array(self, a: Self::V) -> [f64; 4];
 }
 
@@ -44,6 +54,30 @@ impl Quad for Plain {
         a * b
     }
     #[inline(always)]
+    fn sqrt(self, a: Lanes<4>) -> Lanes<4> {
+        a.sqrt()
+    }
+    #[inline(always)]
+    fn min(self, a: Lanes<4>, b: Lanes<4>) -> Lanes<4> {
+        a.with(b, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    fn max(self, a: Lanes<4>, b: Lanes<4>) -> Lanes<4> {
+        a.with(b, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn less(self, a: Lanes<4>, b: Lanes<4>, x: Lanes<4>, y: Lanes<4>) -> Lanes<4> {
+        Lanes(std::array::from_fn(|k| if a.0[k] < b.0[k] { x.0[k] } else { y.0[k] }))
+    }
+    #[inline(always)]
+    fn splat_last(self, a: Lanes<4>) -> Lanes<4> {
+        Lanes::splat(a.0[3])
+    }
+    #[inline(always)]
+    fn div(self, a: Lanes<4>, b: Lanes<4>) -> Lanes<4> {
+        a / b
+    }
+    #[inline(always)]
     fn array(self, a: Lanes<4>) -> [f64; 4] {
         a.0
     }
@@ -71,6 +105,30 @@ impl Quad for pulp::x86::V3 {
     #[inline(always)]
     fn mul(self, a: pulp::f64x4, b: pulp::f64x4) -> pulp::f64x4 {
         pulp::Simd::mul_f64s(self, a, b)
+    }
+    #[inline(always)]
+    fn sqrt(self, a: pulp::f64x4) -> pulp::f64x4 {
+        self.sqrt_f64x4(a)
+    }
+    #[inline(always)]
+    fn min(self, a: pulp::f64x4, b: pulp::f64x4) -> pulp::f64x4 {
+        pulp::Simd::min_f64s(self, a, b)
+    }
+    #[inline(always)]
+    fn max(self, a: pulp::f64x4, b: pulp::f64x4) -> pulp::f64x4 {
+        pulp::Simd::max_f64s(self, a, b)
+    }
+    #[inline(always)]
+    fn less(self, a: pulp::f64x4, b: pulp::f64x4, x: pulp::f64x4, y: pulp::f64x4) -> pulp::f64x4 {
+        pulp::Simd::select_f64s(self, pulp::Simd::less_than_f64s(self, a, b), x, y)
+    }
+    #[inline(always)]
+    fn splat_last(self, a: pulp::f64x4) -> pulp::f64x4 {
+        pulp::cast(self.avx2._mm256_permute4x64_pd::<0b1111_1111>(pulp::cast(a)))
+    }
+    #[inline(always)]
+    fn div(self, a: pulp::f64x4, b: pulp::f64x4) -> pulp::f64x4 {
+        pulp::Simd::div_f64s(self, a, b)
     }
     #[inline(always)]
     fn array(self, a: pulp::f64x4) -> [f64; 4] {

@@ -27,6 +27,19 @@ pub(super) struct Bounds {
     pub(super) third: [f64; 4],
 }
 
+impl Bounds {
+    /// With those of the second derivatives by Taylor's theorem from the middle, where they are better: the
+    /// derivatives there, by ss, st and tt, and how much the third ones let them change.
+    pub(super) fn tightened(mut self, bends: &[Vec3; 3]) -> Self {
+        let [t0, t1, t2, t3] = self.third;
+        let changes = [t0 + t1, t1 + t2, t2 + t3];
+        for ((bound, bend), change) in self.second.iter_mut().zip(bends).zip(changes) {
+            *bound = bound.min((bend.norm() + change) * GUARD);
+        }
+        self
+    }
+}
+
 /// The same polynomial in powers of s and t, with `x = x0 + hx s`, `y = y0 + hy t`.
 pub(super) fn moved(
     c: &[Vector4<f64>],

@@ -34,6 +34,8 @@ pub(super) struct Found {
     pub(super) distance_mm: f64,
     /// As in [`super::Foot::residual`].
     pub(super) residual: f64,
+    /// `(S - q) . S_u` and `(S - q) . S_v`.
+    pub(super) gradient: [f64; 2],
     pub(super) steps: u32,
 }
 
@@ -68,9 +70,21 @@ struct State {
     /// Squared lengths of S_u and S_v.
     metric: [f64; 2],
     held: [bool; 2],
-    /// Square of the offset's part along the free directions, the larger of both, mm2. Squares throughout:
-    /// roots are half of what a step costs beyond the jet.
-    along_square: f64,
+}
+
+impl State {
+    /// Square of the offset's part along the free directions, the larger of both, mm2. Only computed where it
+    /// decides: roots and quotients are half of what a step costs beyond the jet.
+    fn along_square(&self) -> f64 {
+        let along = |k: usize| {
+            if self.held[k] || self.metric[k] == 0.0 {
+                0.0
+            } else {
+                self.gradient[k] * self.gradient[k] / self.metric[k]
+            }
+        };
+        along(0).max(along(1))
+    }
 }
 
 #[inline(always)]
@@ -83,9 +97,7 @@ fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
         !i.periodic && ((t <= i.lo && g > 0.0) || (t >= i.hi && g < 0.0))
     };
     let held = [hold(&rect.u, jet.uv.u, gradient[0]), hold(&rect.v, jet.uv.v, gradient[1])];
-    let along =
-        |k: usize| if held[k] || metric[k] == 0.0 { 0.0 } else { gradient[k] * gradient[k] / metric[k] };
-    State { jet, square: r.norm_squared(), gradient, metric, held, along_square: along(0).max(along(1)) }
+    State { jet, square: r.norm_squared(), gradient, metric, held }
 }
 
 /// The nearest point reached from `start`, brought into `rect` first.
@@ -116,15 +128,16 @@ pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: U
             break;
         }
         let mut scale = 1.0;
+        let mut at = to;
         let mut next = None;
         for _ in 0..=MAX_SHORTENINGS {
-            let there = state(jets.jet(target(scale)), rect, query);
+            let there = state(jets.jet(at), rect, query);
             // Near the foot the distances differ by rounding of coordinates alone; there the offset's part
             // along the surface decides.
             let same = || {
                 there.square <= here.square + 2.0 * ROUNDING * size * (here.square.sqrt() + ROUNDING * size)
             };
-            if there.square < here.square || (there.along_square < here.along_square && same()) {
+            if there.square < here.square || (same() && there.along_square() < here.along_square()) {
                 next = Some(there);
                 break;
             }
@@ -132,6 +145,7 @@ pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: U
                 break;
             }
             scale *= 0.25;
+            at = target(scale);
         }
         match next {
             Some(there) => here = there,
@@ -146,9 +160,10 @@ pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: U
     let residual = if distance_mm <= 16.0 * ROUNDING * size {
         0.0
     } else {
-        noise_free(here.along_square.sqrt(), size) / distance_mm
+        noise_free(here.along_square().sqrt(), size) / distance_mm
     };
-    Found { uv: here.jet.uv, point: here.jet.point, distance_mm, residual, steps }
+    let gradient = here.gradient;
+    Found { uv: here.jet.uv, point: here.jet.point, distance_mm, residual, gradient, steps }
 }
 
 /// The parameters in the rectangle, at its end where they are only rounding away from it: a parameter just

@@ -12,6 +12,7 @@
 //! flatness bounds its distance from the cell from below.
 
 use super::bounds::{Bounds, bounds, moved};
+use super::tree::Tree;
 use crate::nurbs::NurbsSurface;
 use crate::nurbs_pieces::piece_powers;
 use nalgebra::Vector4;
@@ -29,9 +30,6 @@ const MAX_HALVINGS: u32 = 8;
 /// Most cells made by halving pieces, beyond the one that every piece has.
 const MAX_EXTRA_CELLS: usize = 1 << 17;
 
-/// Cells in a leaf of the tree.
-const LEAF_CELLS: usize = 2;
-
 /// A sub-rectangle of a piece.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
@@ -44,16 +42,9 @@ pub(super) struct Cell {
     pub(super) centre: Point3,
     /// Derivatives there by s and t.
     pub(super) sides: [Vec3; 2],
+    /// Second derivatives there by ss, st and tt.
+    pub(super) bends: [Vec3; 3],
     pub(super) bounds: Bounds,
-}
-
-/// The nearest point of a cell's parallelogram.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reach {
-    /// Its distance.
-    pub(super) distance_mm: f64,
-    /// Its place, each in `[-1, 1]`.
-    pub(super) place: [f64; 2],
 }
 
 impl Cell {
@@ -98,9 +89,8 @@ impl Cell {
         self.span.map(|s| s as usize)
     }
 
-    /// The nearest point of the parallelogram.
-    #[inline(always)]
-    pub(super) fn reach(&self, query: &Point3) -> Reach {
+    /// Distance of the nearest point of the parallelogram, mm.
+    fn reach_mm(&self, query: &Point3) -> f64 {
         let [a, b] = &self.sides;
         let r = self.centre - query;
         let (e, f, g) = (a.norm_squared(), a.dot(b), b.norm_squared());
@@ -114,22 +104,19 @@ impl Cell {
                 let t = -r.dot(&across) / det;
                 let s = -(ra + f * t) / e;
                 if s.abs() <= 1.0 && t.abs() <= 1.0 {
-                    return Reach { distance_mm: value(s, t).sqrt(), place: [s, t] };
+                    return value(s, t).sqrt();
                 }
             }
         }
         // On one of the four sides; those of a parallelogram without area are all of it.
         let ratio = |num: f64, den: f64| if den > 0.0 { (num / den).clamp(-1.0, 1.0) } else { 0.0 };
-        let mut best = (f64::INFINITY, [0.0, 0.0]);
-        for end in [-1.0, 1.0] {
-            for place in [[end, ratio(-(rb + f * end), g)], [ratio(-(ra + f * end), e), end]] {
-                let d = value(place[0], place[1]);
-                if d < best.0 {
-                    best = (d, place);
-                }
-            }
-        }
-        Reach { distance_mm: best.0.sqrt(), place: best.1 }
+        let on = |end: f64| value(end, ratio(-(rb + f * end), g)).min(value(ratio(-(ra + f * end), e), end));
+        on(-1.0).min(on(1.0)).sqrt()
+    }
+
+    /// No point of the cell is nearer, mm.
+    pub(super) fn least_mm(&self, query: &Point3) -> f64 {
+        self.reach_mm(query) - self.flatness_mm()
     }
 
     /// Both halves across an axis, with bounds that shrink with them.
@@ -144,125 +131,45 @@ impl Cell {
             let jet = self.jet(surface, middle);
             let [t0, t1, t2, t3] = self.bounds.third;
             let third = [t0 * fu * fu * fu, t1 * fu * fu * fv, t2 * fu * fv * fv, t3 * fv * fv * fv];
-            let here = [
-                jet.duu.norm() * half.u * half.u,
-                jet.duv.norm() * half.u * half.v,
-                jet.dvv.norm() * half.v * half.v,
-            ];
-            // Taylor from the new middle, where that is better than what holds for the whole.
+            let bends = bends(&jet, half);
             let [s0, s1, s2] = self.bounds.second;
-            let second = [
-                (s0 * fu * fu).min((here[0] + third[0] + third[1]) * (1.0 + 1e-9)),
-                (s1 * fu * fv).min((here[1] + third[1] + third[2]) * (1.0 + 1e-9)),
-                (s2 * fv * fv).min((here[2] + third[2] + third[3]) * (1.0 + 1e-9)),
-            ];
+            let second = [s0 * fu * fu, s1 * fu * fv, s2 * fv * fv];
+            let bounds = Bounds { second, third }.tightened(&bends);
             Self {
                 span: self.span,
                 middle,
                 half,
                 centre: jet.point,
                 sides: [jet.du * half.u, jet.dv * half.v],
-                bounds: Bounds { second, third },
+                bends,
+                bounds,
             }
         })
     }
 
-    fn box_around(&self) -> Box3 {
+    pub(super) fn box_around(&self) -> Box3 {
         let reach = self.sides[0].abs() + self.sides[1].abs() + Vec3::repeat(self.flatness_mm());
         Box3 { min: self.centre - reach, max: self.centre + reach }
     }
 }
 
-/// A node of the tree: a box and either two nodes or a few cells.
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    min: [f64; 3],
-    max: [f64; 3],
-    /// First cell, or the first of two child nodes.
-    first: u32,
-    /// Number of cells; zero for a node with children.
-    cells: u32,
-}
-
-impl Node {
-    #[inline(always)]
-    fn distance_squared(&self, q: &Point3) -> f64 {
-        // Written out: an iterator is not always inlined into the loop over the tree.
-        let out = |k: usize| (self.min[k] - q[k]).max(q[k] - self.max[k]).max(0.0);
-        let (x, y, z) = (out(0), out(1), out(2));
-        x * x + y * y + z * z
-    }
+/// Second derivatives by s and t, which run over the half widths.
+fn bends(jet: &Jet2, half: Uv) -> [Vec3; 3] {
+    [jet.duu * (half.u * half.u), jet.duv * (half.u * half.v), jet.dvv * (half.v * half.v)]
 }
 
 /// Cells and the tree over them.
 #[derive(Clone, Debug)]
 pub(crate) struct Index {
     pub(super) cells: Vec<Cell>,
-    nodes: Vec<Node>,
+    pub(super) tree: Tree,
 }
 
 impl Index {
     pub(crate) fn new(surface: &NurbsSurface) -> Self {
         let mut cells = cells(surface);
-        let boxes: Vec<Box3> = cells.iter().map(Cell::box_around).collect();
-        let mut order: Vec<u32> = (0..cells.len() as u32).collect();
-        let mut nodes = vec![Node { min: [0.0; 3], max: [0.0; 3], first: 0, cells: 0 }];
-        let mut stack = vec![(0, 0, order.len())];
-        while let Some((node, from, to)) = stack.pop() {
-            let around = order[from..to].iter().fold(Box3::empty(), |b, k| b.union(&boxes[*k as usize]));
-            nodes[node].min = around.min.into();
-            nodes[node].max = around.max.into();
-            if to - from <= LEAF_CELLS {
-                nodes[node].first = from as u32;
-                nodes[node].cells = (to - from) as u32;
-                continue;
-            }
-            let axis = (around.max - around.min).imax();
-            let middle = (from + to) / 2;
-            let key = |k: &u32| boxes[*k as usize].centre()[axis];
-            order[from..to]
-                .select_nth_unstable_by(middle - from, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
-            let child = nodes.len();
-            nodes[node].first = child as u32;
-            nodes.extend([Node { min: [0.0; 3], max: [0.0; 3], first: 0, cells: 0 }; 2]);
-            stack.push((child, from, middle));
-            stack.push((child + 1, middle, to));
-        }
-        cells = order.iter().map(|k| cells[*k as usize]).collect();
-        Self { cells, nodes }
-    }
-
-    /// Calls `visit` with the cells that may be within the limit that `visit` returns, near ones first. The
-    /// limit is a distance in mm.
-    #[inline(always)]
-    pub(super) fn visit(&self, query: &Point3, mut visit: impl FnMut(u32) -> f64) {
-        let mut square_limit = f64::INFINITY;
-        // Halving keeps the depth below 33 for 2^32 cells, and every level leaves one node behind.
-        let mut stack = [(0.0, 0u32); 64];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let (square, at) = stack[depth];
-            if square > square_limit {
-                continue;
-            }
-            let node = &self.nodes[at as usize];
-            if node.cells > 0 {
-                for k in node.first..node.first + node.cells {
-                    let reach = visit(k);
-                    square_limit = reach * reach;
-                }
-                continue;
-            }
-            let [a, b] = [node.first, node.first + 1];
-            let children = &self.nodes[a as usize..][..2];
-            let (da, db) = (children[0].distance_squared(query), children[1].distance_squared(query));
-            let (near, far) = if da <= db { ((da, a), (db, b)) } else { ((db, b), (da, a)) };
-            stack[depth] = far;
-            depth += usize::from(far.0 <= square_limit);
-            stack[depth] = near;
-            depth += usize::from(near.0 <= square_limit);
-        }
+        let tree = Tree::new(&mut cells);
+        Self { cells, tree }
     }
 }
 
@@ -340,13 +247,15 @@ impl Piece<'_> {
         };
         let ((u, hu), (v, hv)) = (on(Axis::U), on(Axis::V));
         let jet = self.surface.piece_jet(uv(u, v), self.span.map(|s| s as usize));
+        let bends = bends(&jet, uv(hu, hv));
         Cell {
             span: self.span,
             middle: uv(u, v),
             half: uv(hu, hv),
             centre: jet.point,
             sides: [jet.du * hu, jet.dv * hv],
-            bounds: bounds(&c, self.terms, self.least_weight),
+            bends,
+            bounds: bounds(&c, self.terms, self.least_weight).tightened(&bends),
         }
     }
 }

@@ -13,7 +13,8 @@
 //!    gap.
 
 use super::descent::Found;
-use super::index::{Cell, Reach};
+use super::index::Cell;
+use super::tree::{Seen, sharpened};
 use super::way::descend_surface;
 use super::{ClosestError, Foot, FootKind, PERPENDICULAR, finish};
 use crate::nurbs::NurbsSurface;
@@ -59,29 +60,17 @@ impl Eq for Task {}
 /// The nearest point of the whole surface.
 pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, ClosestError> {
     let index = surface.index();
-    let mut candidates: Vec<(f64, u32, Reach)> = Vec::with_capacity(32);
-    let mut upper = f64::INFINITY;
-    index.visit(query, |k| {
-        let cell = &index.cells[k as usize];
-        let (reach, flatness) = (cell.reach(query), cell.flatness_mm());
-        let least = reach.distance_mm - flatness;
-        // A NaN is kept and found out about below.
-        if least <= upper || least.is_nan() {
-            candidates.push((least, k, reach));
-            upper = upper.min(reach.distance_mm + flatness);
-        }
-        upper
-    });
-    // The start is the nearest parallelogram, not the least bound, which favours large cells.
-    let start = candidates.iter().min_by(|a, b| a.2.distance_mm.total_cmp(&b.2.distance_mm));
-    let Some((_, k, reach)) = start else { return Err(ClosestError::NotFinite { query: *query }) };
-    let start = index.cells[*k as usize].at(reach.place);
+    let Seen { mut candidates, start } = index.tree.look(query);
+    // The start is on the nearest parallelogram, not in the cell of the least bound, which favours large ones.
+    let Some((k, place)) = start else { return Err(ClosestError::NotFinite { query: *query }) };
+    let cell = &index.cells[k as usize];
+    let start = cell.at(sharpened(cell, query, place));
     let domain = surface.domain();
     let mut best = Best { found: descend_surface(surface, None, &domain, query, start), cell: None };
     // Few of them are left once a foot is known.
     let reached = best.found.distance_mm * (1.0 - SAME_DISTANCE);
-    candidates.retain(|c| c.0 < reached || c.0.is_nan());
-    candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    candidates.retain(|c| c.least_mm < reached || c.least_mm.is_nan());
+    candidates.sort_unstable_by(|a, b| a.least_mm.total_cmp(&b.least_mm).then(a.cell.cmp(&b.cell)));
 
     let mut gap_mm = 0.0;
     let mut tasks: BinaryHeap<Task> = BinaryHeap::new();
@@ -91,7 +80,7 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
     loop {
         // Candidates and tasks are both in the order of their bounds.
         let from_list = match (pending, tasks.peek()) {
-            (Some(c), Some(t)) => c.0 <= t.least_mm,
+            (Some(c), Some(t)) => c.least_mm <= t.least_mm,
             (Some(_), None) => true,
             (None, Some(_)) => false,
             (None, None) => break,
@@ -99,7 +88,7 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
         let (least_mm, cell) = if from_list {
             let c = pending.expect("looked at above");
             pending = next.next();
-            (c.0, index.cells[c.1 as usize])
+            (c.least_mm, index.cells[c.cell as usize])
         } else {
             let t = tasks.pop().expect("looked at above");
             (t.least_mm, t.cell)
@@ -111,14 +100,18 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
             gap_mm = best.found.distance_mm - least_mm.max(0.0);
             break;
         }
-        let model = Model::new(surface, &cell, query);
+        let model = Model::new(&cell, query);
         if model.least_mm() >= best.found.distance_mm * (1.0 - SAME_DISTANCE) {
             continue;
         }
         let mut rect = cell.rect(surface);
         if model.cut_to_least(&mut rect) {
             let at = rect.bring(best.found.uv);
-            if !cannot_beat(&cell.jet(surface, at), &rect, query, best.found.distance_mm) {
+            // Of the foot itself nothing is left to compute, unless it is on a line to the next piece.
+            let known = strictly_inside(&rect, best.found.uv);
+            let tangent =
+                if known { Tangent::at(&best.found) } else { Tangent::of(&cell.jet(surface, at), query) };
+            if !tangent.cannot_beat(&rect, best.found.distance_mm) {
                 best.offer(descend_surface(surface, Some(cell.spans()), &rect, query, at), &cell);
             }
             continue;
@@ -128,7 +121,7 @@ pub(super) fn search(surface: &NurbsSurface, query: &Point3) -> Result<Foot, Clo
         }
         for half in cell.halves(surface, cell.bent_axis()) {
             number += 1;
-            let least = half.reach(query).distance_mm - half.flatness_mm();
+            let least = half.least_mm(query);
             if least < best.found.distance_mm * (1.0 - SAME_DISTANCE) {
                 tasks.push(Task { least_mm: least.max(least_mm), cell: half, number });
             }
@@ -233,11 +226,8 @@ struct Model {
 }
 
 impl Model {
-    fn new(surface: &NurbsSurface, cell: &Cell, query: &Point3) -> Self {
-        let centre = cell.jet(surface, cell.middle);
-        let [a, b] = &cell.sides;
-        let (hu, hv) = (cell.half.u, cell.half.v);
-        let (ss, st, tt) = (centre.duu * (hu * hu), centre.duv * (hu * hv), centre.dvv * (hv * hv));
+    fn new(cell: &Cell, query: &Point3) -> Self {
+        let ([a, b], [ss, st, tt]) = (&cell.sides, &cell.bends);
         let r = cell.centre - query;
         // Changes of the first derivatives, the second ones and the offset. All shrink at least in proportion
         // on the way to the middle.
@@ -248,7 +238,7 @@ impl Model {
         Self {
             value: 0.5 * r.norm_squared(),
             gradient: [r.dot(a), r.dot(b)],
-            second: [a.dot(a) + r.dot(&ss), a.dot(b) + r.dot(&st), b.dot(b) + r.dot(&tt)],
+            second: [a.dot(a) + r.dot(ss), a.dot(b) + r.dot(st), b.dot(b) + r.dot(tt)],
             change: [
                 2.0 * la * da + da * da + lr * dss + dr * (ss.norm() + dss),
                 la * db + lb * da + da * db + lr * dst + dr * (st.norm() + dst),
@@ -306,14 +296,33 @@ impl Model {
     }
 }
 
-/// Whether a convex squared distance with this jet at a place of the rectangle stays above the best one
-/// everywhere in it.
-fn cannot_beat(jet: &Jet2, rect: &Domain, query: &Point3, best_mm: f64) -> bool {
-    let r = jet.point - query;
-    // The squared distance lies above its tangent plane, whose least value is at a corner of the rectangle.
-    let fall = |g: f64, t: f64, lo: f64, hi: f64| (g * (lo - t)).min(g * (hi - t));
-    let least = r.norm_squared()
-        + 2.0 * fall(r.dot(&jet.du), jet.uv.u, rect.u.lo, rect.u.hi)
-        + 2.0 * fall(r.dot(&jet.dv), jet.uv.v, rect.v.lo, rect.v.hi);
-    least >= best_mm * best_mm * (1.0 - SAME_DISTANCE)
+/// Whether the parameters are inside, not on a side.
+fn strictly_inside(rect: &Domain, at: Uv) -> bool {
+    rect.u.lo < at.u && at.u < rect.u.hi && rect.v.lo < at.v && at.v < rect.v.hi
+}
+
+/// The tangent plane of half the squared distance at a place.
+struct Tangent {
+    at: Uv,
+    square: f64,
+    gradient: [f64; 2],
+}
+
+impl Tangent {
+    fn of(jet: &Jet2, query: &Point3) -> Self {
+        let r = jet.point - query;
+        Self { at: jet.uv, square: r.norm_squared(), gradient: [r.dot(&jet.du), r.dot(&jet.dv)] }
+    }
+
+    fn at(found: &Found) -> Self {
+        Self { at: found.uv, square: found.distance_mm * found.distance_mm, gradient: found.gradient }
+    }
+
+    /// Whether a squared distance that is convex over the rectangle stays above the best one everywhere in it:
+    /// it lies above its tangent plane, whose least value is at a corner.
+    fn cannot_beat(&self, rect: &Domain, best_mm: f64) -> bool {
+        let fall = |g: f64, t: f64, side: &Interval| (g * (side.lo - t)).min(g * (side.hi - t));
+        let fall = fall(self.gradient[0], self.at.u, &rect.u) + fall(self.gradient[1], self.at.v, &rect.v);
+        self.square + 2.0 * fall >= best_mm * best_mm * (1.0 - SAME_DISTANCE)
+    }
 }

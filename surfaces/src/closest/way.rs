@@ -6,6 +6,7 @@ use crate::nurbs::NurbsSurface;
 use crate::nurbs_pieces::Pieces;
 use crate::quad::{self, Quad};
 use osculate_geom::{Domain, Jet2, Point3, Surface, Uv};
+use std::cell::Cell;
 
 /// Down over the whole surface, or with `span` over one piece, continued where `rect` reaches past it.
 pub(super) fn descend_surface(
@@ -36,7 +37,8 @@ impl quad::Over for Way<'_> {
 
     #[inline(always)]
     fn run<Q: Quad>(self, q: Q) -> Found {
-        let jets = OnPieces { q, surface: self.surface, pieces: self.pieces, span: self.span };
+        let (fixed, last) = (self.span.is_some(), Cell::new(self.span.unwrap_or_default()));
+        let jets = OnPieces { q, surface: self.surface, pieces: self.pieces, fixed, last };
         descend(&jets, self.rect, self.query, self.start)
     }
 }
@@ -46,14 +48,22 @@ struct OnPieces<'a, Q> {
     q: Q,
     surface: &'a NurbsSurface,
     pieces: &'a Pieces,
-    span: Option<[usize; 2]>,
+    /// Whether the first piece is that of all jets.
+    fixed: bool,
+    /// The piece of the last jet.
+    last: Cell<[usize; 2]>,
 }
 
 impl<Q: Quad> Jets for OnPieces<'_, Q> {
     #[inline(always)]
     fn jet(&self, at: Uv) -> Jet2 {
-        // A descent brings its parameters into the domain itself.
-        let span = self.span.unwrap_or_else(|| self.surface.span(at));
+        // Most steps stay on their piece. To guess that and to check it is no wait for what depends on it, as
+        // looking the piece up would be. A descent brings its parameters into the domain itself.
+        let mut span = self.last.get();
+        if !self.fixed && !self.pieces.holds(span, at) {
+            span = self.surface.span(at);
+            self.last.set(span);
+        }
         self.surface.jet_on(self.q, self.pieces, at, span)
     }
 }
