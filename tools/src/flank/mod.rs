@@ -14,6 +14,7 @@
 //! - [`place`] puts a [`SideTool`] (cylinder, cone, barrel) against a rule in one of the [`Setting`]s; [`profile`] is the
 //!   static deviation along the rule, [`Placed::verdict`] what the position is worth.
 //! - [`mod@closed`] has the paper's closed forms beside the exact values, [`largest_radius`] the largest tool within a tolerance.
+//! - [`envelope`] is what a moving cutter leaves, [`fn@global::optimise`] the motion that leaves least over a whole face.
 //! - [`AxisLine`] is where a cutter's axis lies, [`AxisJet`] how it moves with the parameter.
 //!
 //! ```
@@ -36,12 +37,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod axes;
 mod axis;
 pub mod closed;
+pub mod cutter_side;
+pub mod deviation;
 mod directrix;
 mod largest;
 mod lp;
 mod minimax;
+pub mod envelope;
+pub mod global;
 mod rule;
 mod ruled;
 mod search;
