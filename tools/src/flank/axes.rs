@@ -259,7 +259,7 @@ mod tests {
             AxisSurface::along(range, &[good, good, bad, good]),
             Err(AxesError::Direction { index: 2 })
         );
-        let empty = Interval { lo: 1.0, hi: 1.0 };
+        let empty = Interval::new(1.0, 1.0);
         assert!(matches!(AxisSurface::along(empty, &[good; 4]), Err(AxesError::Range { .. })));
     }
 }

@@ -5,7 +5,7 @@ use osculate_geom::{Interval, Surface, Uv, uv};
 use rayon::prelude::*;
 
 /// Extremes of the grid that are followed between its places.
-const FOLLOWED: usize = 6;
+const FOLLOWED: usize = 40;
 /// The search for an extreme ends when its step has shrunk by this much.
 const FINEST: f64 = 1e-5;
 /// Most moves and halvings of that search.

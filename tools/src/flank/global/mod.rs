@@ -50,7 +50,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { goal: Goal::Minimax, spans: 16, gouge_weight: 1.0, smoothness_per_mm: 0.0, iterations: 60 }
+        Self { goal: Goal::Minimax, spans: 32, gouge_weight: 1.0, smoothness_per_mm: 0.0, iterations: 60 }
     }
 }
 
@@ -70,7 +70,8 @@ pub struct Task<'a> {
 impl Task<'_> {
     /// The grid on which a motion is judged between the places that it was made for.
     fn fine(&self) -> Patch {
-        Patch { count: self.judged.count.map(|n| 2 * n - 1), ..self.judged }
+        let [along, across] = self.judged.count;
+        Patch { count: [4 * along - 3, 2 * across - 1], ..self.judged }
     }
 }
 

@@ -26,6 +26,8 @@ const PROMISE: f64 = 1e-5;
 const LEAST_REGION: f64 = 1e-6;
 /// How far poles may move for the lower bound, in radii.
 const BOUND_REGION: f64 = 0.01;
+/// Motions of more spans than this are held against those of half as many.
+const MOST_EVEN: usize = 20;
 /// Iterations given to each start and weight.
 const TRIAL: usize = 8;
 /// Most rounds in which places between the grid's that stand out are added, and by how much they may, of the value.
@@ -40,7 +42,8 @@ fn constraints(rows: &Rows, judged: &Judged, o: &Options, region: f64) -> Vec<Co
         let row = k as u32;
         let change: f64 =
             region * rows.values[k * rows.length..(k + 1) * rows.length].iter().map(|g| g.abs()).sum::<f64>();
-        let level = NEAR * judged.value;
+        // Where gouges count more, the value is theirs and says nothing of the material left.
+        let level = if o.gouge_weight > 1.0 { 0.0 } else { NEAR * judged.value };
         let forbids = o.goal == Goal::Rms && o.gouge_weight > 1.0;
         if o.goal == Goal::Minimax && v + change >= level {
             out.push(Constraint { row, sign: 1.0, share: 1.0, limit: -v });
@@ -240,16 +243,17 @@ pub fn optimise(task: &Task<'_>, options: &Options, more: &[AxisSurface]) -> Res
     let judged = super::Patch { count: [(along / 3).max(5), across.min(11)], ..task.judged };
     let thin = Task { judged, ..*task };
     let few = Places::new(&thin);
+    let own: Vec<AxisSurface> = starts(task, options.spans)?.into_iter().map(|s| s.axes).collect();
     let mut best: Option<(f64, AxisSurface)> = None;
-    let own = starts(task, options.spans)?.into_iter().map(|s| s.axes);
-    for axes in own.chain(more.iter().cloned()) {
-        let mut s = Search::new(&thin, &few, Options { goal: Goal::Rms, ..*options }, axes)?;
+    for axes in own.into_iter().chain(more.iter().cloned()) {
+        let even = Options { goal: Goal::Rms, gouge_weight: 1.0, ..*options };
+        let mut s = Search::new(&thin, &few, even, axes)?;
         for unique in SMOOTH {
             s.unique = unique;
             s.region = FIRST_REGION * task.side.radius_mm();
             s.run(TRIAL)?;
         }
-        if options.goal == Goal::Minimax {
+        if options.goal == Goal::Minimax || options.gouge_weight > 1.0 {
             let (iterations, axes) = (s.iterations, s.axes);
             s = Search::new(&thin, &few, *options, axes)?;
             s.iterations = iterations;
@@ -261,7 +265,15 @@ pub fn optimise(task: &Task<'_>, options: &Options, more: &[AxisSurface]) -> Res
         }
     }
     let (_, axes) = best.ok_or(GlobalError::TooFew { what: "starts", got: 0, least: 1 })?;
-    finish(task, options, axes)
+    let found = finish(task, options, axes)?;
+    // A motion with half the spans is one of these, too, and may have been found more easily.
+    if options.goal == Goal::Minimax && options.spans.is_multiple_of(2) && options.spans > MOST_EVEN {
+        let half = optimise(task, &Options { spans: options.spans / 2, ..*options }, &[])?;
+        if half.value_mm < found.value_mm {
+            return finish(task, options, half.axes.refined());
+        }
+    }
+    Ok(found)
 }
 
 /// From the best start on the whole grid to the end, with places added where the deviation stands out between the grid's.
