@@ -158,6 +158,10 @@ pub struct PostArgs {
     /// The largest rise of F from block to block, for --feed kz, mm/min.
     #[arg(long)]
     pub kz_step: Option<f64>,
+    /// Where the tool points, in words: rotary joints, directions (A3= B3= C3=, TX TY TZ, I J K), or a tilted plane per
+    /// position (CYCLE800, PLANE SPATIAL, G68.2).
+    #[arg(long, value_parser = ["joints", "vectors", "planes"], default_value = "joints")]
+    pub orientation: String,
     /// Where the part's origin sits from the table's reference point, mm.
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
     pub part_zero: Option<[f64; 3]>,

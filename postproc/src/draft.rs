@@ -1,13 +1,14 @@
 //! Moves of a program made from joints: rounded to the output's counts, with the F that each block needs.
 
-use osculate_geom::Diagnostic;
+use osculate_geom::{Diagnostic, Vec3};
 use osculate_tools::cl::Motion;
 
 use crate::feed::{FeedMode, PathMetric, Step, capped_duration, duration_min, inverse_time_per_min};
-use crate::joint_path::JointBlock;
+use crate::joint_path::{BlockKind, JointBlock};
 use crate::machine::{JointValues, Machine};
 use crate::motion::rapid_time_min;
-use crate::nc::{Dialect, NcMove, Program, number};
+use crate::nc::orientation::{plane, plane_counts, vector_counts};
+use crate::nc::{Dialect, NcMove, Orientation, Program, number};
 use crate::post::{PostError, PostOptions};
 use crate::setup::Setup;
 
@@ -56,6 +57,15 @@ impl<'a> Draft<'a> {
         fastest_min: Option<f64>,
     ) -> Result<Option<NcMove>, PostError> {
         let mut m = self.rounded(block)?;
+        let index = block.source;
+        let planes = self.options.orientation == Orientation::Planes;
+        if planes && m.rapid && block.kind != BlockKind::Point && self.last.is_some() {
+            // Between two planes the tool is away from the part: only the end counts.
+            return Ok(None);
+        }
+        if block.kind == BlockKind::Rewind && self.options.orientation == Orientation::Vectors {
+            return Err(PostError::Rewind { index });
+        }
         let Some((before, from)) = self.last else {
             self.last = Some((m, block.joints));
             return Ok(Some(m));
@@ -64,6 +74,9 @@ impl<'a> Draft<'a> {
             self.carried_mm += if m.rapid { 0.0 } else { block.tip_length_mm };
             self.carried_min += fastest_min.unwrap_or(0.0);
             return Ok(None);
+        }
+        if planes && !m.rapid && m.rotary != before.rotary {
+            return Err(PostError::Turns { index });
         }
         match block.motion {
             Motion::Rapid => {
@@ -105,6 +118,16 @@ impl<'a> Draft<'a> {
         } else {
             self.machine.linear().map(|place| block.joints[place])
         };
+        let axis = || self.machine.axis_at(&self.machine.rotary_of(&block.joints));
+        let (xyz, orientation) = match self.options.orientation {
+            Orientation::Joints => (xyz, [0; 3]),
+            Orientation::Vectors => (xyz, vector_counts(&axis())),
+            Orientation::Planes => {
+                let angles = plane_counts(self.options.dialect, &axis());
+                let plane = plane(self.options.dialect, angles.map(number::value));
+                ((plane.inverse() * Vec3::from(xyz)).into(), angles)
+            }
+        };
         let mut linear = [0; 3];
         for (to, value) in linear.iter_mut().zip(xyz) {
             *to = counts(value)?;
@@ -113,7 +136,7 @@ impl<'a> Draft<'a> {
         for (to, place) in rotary.iter_mut().zip(self.machine.rotary()) {
             *to = counts(block.joints[*place].to_degrees())?;
         }
-        Ok(NcMove { rapid: block.motion == Motion::Rapid, linear, rotary, feed: 0.0 })
+        Ok(NcMove { rapid: block.motion == Motion::Rapid, linear, rotary, orientation, feed: 0.0 })
     }
 
     /// F of a block that shall take this long.

@@ -12,7 +12,7 @@ use crate::joint_path::JointBlock;
 use crate::machine::Machine;
 use crate::nc::block::RotaryName;
 use crate::nc::writer::Writer;
-use crate::nc::{Dialect, FeedWord, Program, WriteError};
+use crate::nc::{Dialect, FeedWord, Orientation, Program, WriteError};
 use crate::setup::Setup;
 use crate::solve::SolveOptions;
 use crate::solve_error::SolveError;
@@ -25,6 +25,8 @@ pub struct PostOptions {
     pub dialect: Dialect,
     /// How F is written; [`FeedMode::Tcp`] turns tool-centre-point control on.
     pub feed: FeedMode,
+    /// How the program says where the tool points; other than by joints only with [`FeedMode::Tcp`].
+    pub orientation: Orientation,
     /// Tolerances and what else the kinematics need. Its `tcp` is not read: the feed mode says it.
     pub solve: SolveOptions,
     /// Name of the program.
@@ -42,6 +44,7 @@ impl PostOptions {
         Self {
             dialect,
             feed,
+            orientation: Orientation::Joints,
             solve: SolveOptions::default(),
             program_name: "OSCULATE".into(),
             tool_number: 1,
@@ -98,6 +101,26 @@ pub enum PostError {
         /// What the sink says.
         kind: io::ErrorKind,
     },
+    /// An orientation that the feed mode does not allow.
+    #[error("the tool's orientation as vectors or planes needs feed mode tcp: there X Y Z are the tip")]
+    Orientation,
+    /// A rewind, which directions cannot say.
+    #[error(
+        "CL move {index}: the rotary joints must be rewound here, and directions of the tool do not say to which turn: \
+         write joints instead of vectors"
+    )]
+    Rewind {
+        /// The CL move.
+        index: usize,
+    },
+    /// The tool turns at feed.
+    #[error(
+        "CL move {index}: the tool axis turns at feed, which tilted planes cannot say: write joints or vectors"
+    )]
+    Turns {
+        /// The CL move.
+        index: usize,
+    },
     /// A position beyond what an axis word holds.
     #[error("CL move {index}: a position of {value} does not fit an axis word")]
     Position {
@@ -134,7 +157,7 @@ impl PostError {
     pub const fn index(&self) -> Option<usize> {
         match self {
             Self::Solve(e) => e.index(),
-            Self::Position { index, .. } => Some(*index),
+            Self::Position { index, .. } | Self::Rewind { index } | Self::Turns { index } => Some(*index),
             _ => None,
         }
     }
@@ -198,10 +221,12 @@ where
     check(options)?;
     let tcp = options.feed == FeedMode::Tcp;
     let spindle_rpm = options.spindle_rpm;
+    let planes = options.orientation == Orientation::Planes;
     let program = Program {
+        orientation: options.orientation,
         name: options.program_name.clone(),
-        comments: comments(machine, setup, tcp),
-        tcp,
+        comments: comments(machine, setup, (tcp, planes)),
+        tcp: tcp && !planes,
         linuxcnc_tcp: machine.control().linuxcnc_tcp.clone(),
         tool_number: options.tool_number,
         spindle_rpm,
@@ -269,6 +294,9 @@ fn flush(writer: &mut Writer, sink: &mut dyn io::Write) -> Result<(), PostError>
 }
 
 fn check(options: &PostOptions) -> Result<(), PostError> {
+    if options.orientation != Orientation::Joints && options.feed != FeedMode::Tcp {
+        return Err(PostError::Orientation);
+    }
     let radius = match options.feed {
         FeedMode::Kv { fgref_mm } | FeedMode::Kz { fgref_mm, .. } => fgref_mm,
         _ => None,
@@ -305,12 +333,16 @@ fn rotary_name(machine: &Machine, place: usize) -> RotaryName {
     RotaryName { letter: joint.letter.clone(), endless: joint.is_endless() }
 }
 
-fn comments(machine: &Machine, setup: &Setup, tcp: bool) -> Vec<String> {
+fn comments(machine: &Machine, setup: &Setup, (tcp, planes): (bool, bool)) -> Vec<String> {
     let t = setup.part_zero.translation.vector;
     let place = format!("X{:.4} Y{:.4} Z{:.4}", t.x + 0.0, t.y + 0.0, t.z + 0.0);
     let mut lines = vec![format!("machine {}", machine.name())];
     if tcp {
-        lines.push("tool-centre-point control: X Y Z are the tip relative to the part".into());
+        lines.push(if planes {
+            "tilted planes: X Y Z are the tip in the plane".into()
+        } else {
+            "tool-centre-point control: X Y Z are the tip relative to the part".into()
+        });
         lines.push(format!("program zero: the part's origin, {place} from the table's reference point"));
     } else {
         lines.push("no tool-centre-point control: X Y Z are joints".into());

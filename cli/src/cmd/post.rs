@@ -7,7 +7,7 @@ use crate::output;
 use crate::render::{self, Table, number};
 use osculate_geom::{Diagnostic, Vec3};
 use osculate_postproc::cldata::{ClReadOptions, ClStream};
-use osculate_postproc::{PostOptions, Setup, built_in_names, post_from};
+use osculate_postproc::{Orientation, PostOptions, Setup, built_in_names, post_from};
 use osculate_tools::Cutter;
 use serde::Serialize;
 use std::io::{self, BufRead, BufReader};
@@ -80,7 +80,13 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     };
     let setup = Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), gauge);
     let name = args.out.file_stem().map_or_else(|| "OSCULATE".into(), |s| s.to_string_lossy().into_owned());
-    let options = PostOptions { spindle_rpm: head.spindle_rpm(), ..nc::post_options(&control, &name) };
+    let orientation = match args.orientation.as_str() {
+        "vectors" => Orientation::Vectors,
+        "planes" => Orientation::Planes,
+        _ => Orientation::Joints,
+    };
+    let options =
+        PostOptions { spindle_rpm: head.spindle_rpm(), orientation, ..nc::post_options(&control, &name) };
     let posted = output::stream(&args.out, |file| {
         post_from(&cl, &control.machine, &setup, &options, file).map_err(|e| {
             let place = e.index().and_then(|i| cl.locate(&[i]).ok()?.pop());

@@ -1,5 +1,6 @@
 //! A program before any dialect: moves in counts of the output resolution, and what stands around them.
 
+use super::orientation::Orientation;
 use crate::feed::PathMetric;
 use crate::machine::spec::TcpWords;
 
@@ -17,10 +18,13 @@ pub enum FeedWord {
 pub struct NcMove {
     /// G0.
     pub rapid: bool,
-    /// Linear words: X Y Z of the tip with tool-centre-point control, else the linear joints in chain order.
+    /// Linear words: X Y Z of the tip with tool-centre-point control or in a tilted plane, else the linear joints in
+    /// chain order.
     pub linear: [i64; 3],
     /// Rotary words, outer first.
     pub rotary: [i64; 2],
+    /// The tool's direction or the angles of the plane across it, where the program says those.
+    pub orientation: [i64; 3],
     /// F; not read in rapid moves.
     pub feed: f64,
 }
@@ -43,6 +47,8 @@ pub struct Program {
     pub comments: Vec<String>,
     /// Tool-centre-point control is on.
     pub tcp: bool,
+    /// How it says where the tool points.
+    pub orientation: Orientation,
     /// LinuxCNC's kinematics switch of this machine.
     pub linuxcnc_tcp: Option<TcpWords>,
     /// Tool in the spindle.
@@ -78,6 +84,14 @@ pub enum WriteError {
         /// The name.
         letter: String,
     },
+    /// No words for directions or planes.
+    #[error("{dialect} has no words for the tool's orientation as {what}: choose joints")]
+    Orientation {
+        /// The dialect.
+        dialect: &'static str,
+        /// What it lacks.
+        what: &'static str,
+    },
     /// No switch for tool-centre-point control.
     #[error(
         "the machine file has no control.linuxcnc_tcp (the words that switch its kinematics): add it or choose a feed \
@@ -101,6 +115,16 @@ impl Program {
     /// The name of the linear word along the spindle for the retracts at start and end, if there is one called Z.
     pub(crate) fn has_z(&self) -> bool {
         self.linear_names.iter().any(|n| n == "Z")
+    }
+
+    /// It works in tilted planes.
+    pub(crate) fn in_planes(&self) -> bool {
+        self.orientation == Orientation::Planes
+    }
+
+    /// It says directions.
+    pub(crate) fn in_vectors(&self) -> bool {
+        self.orientation == Orientation::Vectors
     }
 
     /// Refuses axis names of more than one letter.

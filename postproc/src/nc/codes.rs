@@ -26,9 +26,9 @@ impl<S: Sink> Interpreter<'_, S> {
                 s.rapid = Some(false);
                 s.clockwise = Some(code == 20);
             }
-            170 => s.plane = ["X", "Y"],
-            180 => s.plane = ["Z", "X"],
-            190 => s.plane = ["Y", "Z"],
+            170 => s.arc_plane = ["X", "Y"],
+            180 => s.arc_plane = ["Z", "X"],
+            190 => s.arc_plane = ["Y", "Z"],
             // A dwell's words are times.
             40 => asked.dwell = true,
             200 | 700 | 7000 => s.unit_mm = 25.4,
@@ -38,8 +38,17 @@ impl<S: Sink> Interpreter<'_, S> {
             930 => self.reading(FeedReading::Inverse),
             940 => self.reading(FeedReading::PerMinute),
             950 => self.reading(FeedReading::PerTurn),
-            434 => self.switch(true),
-            490 | 430 => self.switch(false),
+            434 | 435 => {
+                s.vectors = code == 435;
+                self.switch(true);
+            }
+            490 | 430 => {
+                s.vectors = false;
+                self.switch(false);
+            }
+            682 if self.dialect == Dialect::Fanuc => asked.plane = true,
+            531 if self.dialect == Dialect::Fanuc => asked.turn_to_plane = true,
+            690 if self.dialect == Dialect::Fanuc => self.level(),
             530 if self.dialect != Dialect::Sinumerik => asked.machine_frame = true,
             // Planes, compensations off, offsets, path modes, exact stop.
             600 | 610 => asked.path = Some(PathWord::ExactPath),
@@ -80,7 +89,10 @@ impl<S: Sink> Interpreter<'_, S> {
             // Outputs switched along with the motion.
             (62..=65, Dialect::LinuxCnc) => {}
             (91, Dialect::Heidenhain) => asked.machine_frame = true,
-            (128, Dialect::Heidenhain) => self.switch(true),
+            (128, Dialect::Heidenhain) => {
+                self.state.great_circle = false;
+                self.switch(true);
+            }
             (129, Dialect::Heidenhain) => self.switch(false),
             _ => return self.refuse(line, &word),
         }
@@ -115,6 +127,16 @@ impl<S: Sink> Interpreter<'_, S> {
         {
             asked.vector[k] = Some(given.0);
             return Ok(());
+        }
+        if self.dialect == Dialect::Heidenhain {
+            if let Some(k) = ["TX", "TY", "TZ"].iter().position(|n| *n == name) {
+                asked.vector[k] = Some(given.0);
+                return Ok(());
+            }
+            // The surface's normal, for the cutter's compensation; without a difference of radii it moves nothing.
+            if matches!(name, "NX" | "NY" | "NZ") {
+                return Ok(());
+            }
         }
         match name {
             "I" => asked.centre[0] = Some(given.0 * self.state.unit_mm),
@@ -151,19 +173,27 @@ impl<S: Sink> Interpreter<'_, S> {
                     self.state.group = None;
                 }
             }
-            // Tolerance of smoothing; CYCLE800() ends a swivelled plane, with arguments it begins one.
+            // Tolerance of smoothing.
             "CYCLE832" => {}
-            "CYCLE800" if arguments.trim().is_empty() => {}
+            "CYCLE800" => return self.cycle800(line, arguments),
+            "PLANE" if klartext => return self.klartext_plane(line, arguments),
+            "ORIVECT" | "ORIPLANE" => self.state.great_circle = true,
+            "ORIAXES" => self.state.great_circle = false,
             "CYCL" if klartext && arguments.starts_with("DEF 32.") => {}
-            "ORIWKS" | "ORIVECT" | "ORIMKS" | "ORIAXES" | "MSG" | "FNORM" | "FFWON" | "FFWOF" | "SOFT"
-            | "BRISK" | "COMPOF" | "T" => {}
+            "ORIWKS" | "ORIMKS" | "MSG" | "FNORM" | "FFWON" | "FFWOF" | "SOFT" | "BRISK" | "COMPOF" | "T" => {
+            }
             "L" if klartext => asked.klartext_move = true,
             "R0" | "TOOL" if klartext => {}
             "FMAX" if klartext => asked.rapid_once = true,
             "FUNCTION" if klartext && arguments == "RESET TCPM" => {
                 self.switch(false);
             }
-            "FUNCTION" if klartext && arguments.starts_with("TCPM F TCP AXIS POS PATHCTRL AXIS") => {
+            "FUNCTION" if klartext && arguments == "TCPM F TCP AXIS POS PATHCTRL AXIS" => {
+                self.state.great_circle = false;
+                self.switch(true);
+            }
+            "FUNCTION" if klartext && arguments == "TCPM F TCP AXIS SPAT PATHCTRL VECTOR" => {
+                self.state.great_circle = true;
                 self.switch(true);
             }
             "BEGIN" if klartext => self.state.unit_mm = if arguments.ends_with("INCH") { 25.4 } else { 1.0 },

@@ -22,10 +22,10 @@ impl Frame<'_> {
             let joints = known.joints(self.machine, self.setup).unwrap_or_default();
             return self.machine.forward(&joints, self.setup);
         }
-        let axis = self.machine.axis_at(&known.rotary);
+        let axis = known.axis.unwrap_or_else(|| self.machine.axis_at(&known.rotary));
         let back = self.setup.part_zero.rotation.inverse();
         Pose {
-            tip: self.setup.from_program(&known.linear.into()),
+            tip: self.setup.from_program(&known.tip()),
             axis: Unit3::new_normalize(back * axis.into_inner()),
         }
     }

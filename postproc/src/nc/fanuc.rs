@@ -1,6 +1,9 @@
 //! Fanuc 30i and its like.
 //!
 //! - Tool-centre-point control is `G43.4 H`, off by `G49`; without it `G43 H` applies the tool's length.
+//! - `G43.5 H` is the same with directions of the tool, `I J K`, instead of rotary axes.
+//! - `G68.2 X Y Z I J K` tilts the working plane, `G53.1` turns the tool there (the program has positioned the rotary axes
+//!   before, so that nothing is left to turn), `G69` ends it.
 //! - Endless axes are rollover axes that take the shortest way to a position inside one turn (parameter 1008).
 //! - `G5.1 Q1` is contour control with look-ahead over many blocks, off by `G5.1 Q0`.
 //! - F in G94 is read over all axes, a degree as a mm. G93 wants F in every block.
@@ -10,7 +13,8 @@ use super::modal::{Modal, Which, Wording, in_turn, plain};
 use super::number;
 use super::writer::Lines;
 
-pub(super) const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
+pub(super) const WORDING: Wording =
+    Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary, vector: (["I", "J", "K"], false) };
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     plain(text, &name.letter, if name.endless { in_turn(counts) } else { counts });
@@ -37,7 +41,14 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
 
 pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines: &mut Lines) {
     modal.approach(program, &WORDING, first, &[Which::Rotary]).iter().for_each(|l| lines.line(l));
-    let tcp = if program.tcp { "G43.4" } else { "G43" };
+    if program.in_planes() {
+        plane(first, lines);
+    }
+    let tcp = match (program.tcp, program.in_vectors()) {
+        (true, true) => "G43.5",
+        (true, false) => "G43.4",
+        (false, _) => "G43",
+    };
     lines.line(&format!("{tcp} H{}", program.tool_number));
     modal
         .approach(program, &WORDING, first, &[Which::Across, Which::Along])
@@ -49,11 +60,34 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
     }
 }
 
+fn plane(m: &NcMove, lines: &mut Lines) {
+    let [i, j, k] = m.orientation.map(number::fixed);
+    lines.line(&format!("G68.2 X0 Y0 Z0 I{i} J{j} K{k}"));
+    lines.line("G53.1");
+}
+
+/// Goes from one plane to another: away in machine coordinates, rotary axes, plane, back.
+pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines: &mut Lines) {
+    lines.line("G49");
+    lines.line("G69");
+    if program.has_z() {
+        lines.line("G53 G0 Z0");
+    }
+    modal.forget();
+    modal.approach(program, &WORDING, m, &[Which::Rotary]).iter().for_each(|l| lines.line(l));
+    plane(m, lines);
+    lines.line(&format!("G43 H{}", program.tool_number));
+    modal.approach(program, &WORDING, m, &[Which::Across, Which::Along]).iter().for_each(|l| lines.line(l));
+}
+
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
     lines.line("G94");
     lines.line("G5.1 Q0");
     lines.line("M5");
     lines.line("G49");
+    if program.in_planes() {
+        lines.line("G69");
+    }
     if program.has_z() {
         lines.line("G53 G0 Z0");
     }

@@ -2,6 +2,8 @@
 //!
 //! - Tool-centre-point control is `FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`: F at the tip, rotary axes interpolate
 //!   linearly. `FUNCTION RESET TCPM` turns it off.
+//! - Directions of the tool are `LN X Y Z TX TY TZ`, with `FUNCTION TCPM` on.
+//! - `PLANE SPATIAL ... STAY` tilts the working plane without motion: the program positions the rotary axes before.
 //! - Every position carries a sign; `FMAX` holds for its own block only.
 //! - `CYCL DEF 32` bounds what smoothing may do to the path (finishing).
 //! - `M126` makes endless axes take the shortest way. There is no inverse time feed. `M91` is machine coordinates.
@@ -11,7 +13,11 @@ use super::modal::{Modal, Which, Wording, in_turn};
 use super::number;
 use super::writer::Lines;
 
-pub(super) const WORDING: Wording = Wording { rapid: "L", feed: "L", modal: false, axis, rotary };
+pub(super) const WORDING: Wording =
+    Wording { rapid: "L", feed: "L", modal: false, axis, rotary, vector: (["TX", "TY", "TZ"], true) };
+
+/// Lines that say the direction of the tool.
+pub(super) const DIRECTED: Wording = Wording { rapid: "LN", feed: "LN", ..WORDING };
 
 fn axis(text: &mut String, name: &str, counts: i64) {
     text.push_str(name);
@@ -56,7 +62,12 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
     };
     approach(lines, &[Which::Rotary]);
     if program.tcp {
-        lines.line("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS");
+        let axis = if program.in_vectors() { "SPAT" } else { "POS" };
+        let way = if program.in_vectors() { "VECTOR" } else { "AXIS" };
+        lines.line(&format!("FUNCTION TCPM F TCP AXIS {axis} PATHCTRL {way}"));
+    }
+    if program.in_planes() {
+        lines.line(&plane(first));
     }
     approach(lines, &[Which::Across, Which::Along]);
     lines.line("CYCL DEF 32.0 TOLERANCE");
@@ -64,8 +75,37 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
     lines.line("CYCL DEF 32.2 HSC-MODE:0");
 }
 
+fn plane(m: &NcMove) -> String {
+    let mut text = String::from("PLANE SPATIAL");
+    for (name, c) in ["SPA", "SPB", "SPC"].iter().zip(m.orientation) {
+        text.push(' ');
+        axis(&mut text, name, c);
+    }
+    text + " STAY"
+}
+
+/// Goes from one plane to another: away in machine coordinates, rotary axes, plane, back.
+pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines: &mut Lines) {
+    lines.line("PLANE RESET STAY");
+    if program.has_z() {
+        lines.line("L Z+0.0000 R0 FMAX M91");
+    }
+    modal.forget();
+    let mut approach = |lines: &mut Lines, which: &[Which]| {
+        for words in modal.approach(program, &WORDING, m, which) {
+            lines.line(&format!("{words} FMAX"));
+        }
+    };
+    approach(lines, &[Which::Rotary]);
+    lines.line(&plane(m));
+    approach(lines, &[Which::Across, Which::Along]);
+}
+
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
     lines.line("M5");
+    if program.in_planes() {
+        lines.line("PLANE RESET STAY");
+    }
     lines.line("FUNCTION RESET TCPM");
     if program.has_z() {
         lines.line("L Z+0.0000 R0 FMAX M91");

@@ -52,7 +52,10 @@ pub(super) struct Asked {
     /// I, J, K and R (or CR), mm.
     pub centre: [Option<f64>; 3],
     pub radius: Option<f64>,
-    /// A3, B3, C3.
+    /// G68.2, G53.1.
+    pub plane: bool,
+    pub turn_to_plane: bool,
+    /// A3, B3, C3, or what else gives the tool's direction.
     pub vector: [Option<f64>; 3],
     /// F, P, Q, L, S in the program's units.
     pub f: Option<f64>,
@@ -116,7 +119,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
 
     /// An axis that the text never names stays where it is; it is taken to be at zero, and the reader says so.
     pub fn rest_unnamed(&mut self, named: &BTreeSet<String>) {
-        let vector = ["A3", "B3", "C3"].iter().any(|n| named.contains(*n));
+        let vector = ["A3", "B3", "C3", "TX", "TY", "TZ"].iter().any(|n| named.contains(*n));
         let mut rest = |slot: &mut Option<f64>, place: usize, rotary: bool| {
             let letter = &self.machine.joints()[place].letter;
             if !(named.contains(letter) || rotary && vector) {
@@ -213,6 +216,18 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             }
         }
         self.settle(&asked);
+        if asked.plane {
+            self.g68_2(line, &asked)?;
+            return Ok(false);
+        }
+        if asked.turn_to_plane {
+            self.turn_to_plane(line)?;
+        }
+        if self.state.vectors && self.state.clockwise.is_none() {
+            // Read as centres they have been scaled.
+            let unit = self.state.unit_mm;
+            asked.vector = std::mem::take(&mut asked.centre).map(|c| c.map(|c| c / unit));
+        }
         let circles = self.state.clockwise.is_some() && asked.centre.iter().any(Option::is_some);
         let turns = asked.vector.iter().any(Option::is_some);
         if (circles || turns || !asked.axes.is_empty()) && !(asked.other_use || asked.dwell) {
@@ -275,7 +290,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         let (clockwise, asked) = asked;
         let names = self.linear_names();
         let mut words = ArcWords { clockwise, plane: [0; 2], centre_mm: [None; 2], radius_mm: asked.radius };
-        for (k, name) in self.state.plane.into_iter().enumerate() {
+        for (k, name) in self.state.arc_plane.into_iter().enumerate() {
             let slot = names.iter().position(|n| *n == name);
             words.plane[k] =
                 slot.ok_or_else(|| ReadError::Word { line, word: format!("an arc in {name}") })?;
@@ -288,10 +303,11 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         Arc::new(from, to, &words).map_err(|off_mm| ReadError::Arc { line, off_mm })
     }
 
-    /// `A3= B3= C3=`: the tool's direction, in the axes of X Y Z. The control turns the rotary axes there by the
+    /// The tool's direction, in the axes of X Y Z. The control turns the rotary axes there by the
     /// nearest way.
     fn point(&mut self, line: usize, vector: &[Option<f64>; 3]) -> Result<(), ReadError> {
         let v = Vec3::new(vector[0].unwrap_or(0.0), vector[1].unwrap_or(0.0), vector[2].unwrap_or(0.0));
+        let v = self.state.plane.map_or(v, |plane| plane.rotation * v);
         let axis = Unit3::try_new(v, 1e-6).filter(|_| self.state.tcp);
         let near = self.state.rotary.map(|q| q.unwrap_or(0.0));
         let wish = NearWish { rotary_rad: near, cone_rad: 0.0 };
@@ -300,7 +316,10 @@ impl<'a, S: Sink> Interpreter<'a, S> {
                 self.state.rotary = rotary.map(Some);
                 Ok(())
             }
-            None => self.refuse(line, "a tool direction that the machine does not reach, or without TRAORI,"),
+            None => self.refuse(
+                line,
+                "a tool direction that the machine does not reach, or without tool-centre-point control,",
+            ),
         }
     }
 
@@ -311,7 +330,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
 
     /// Names of the linear words now in force, by slot.
     fn linear_names(&self) -> [&str; 3] {
-        if self.state.tcp {
+        if self.state.of_tip() {
             ["X", "Y", "Z"]
         } else {
             self.machine.linear().map(|place| self.machine.joints()[place].letter.as_str())

@@ -9,9 +9,11 @@
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
 use super::modal::{Modal, Which, Wording, plain};
 use super::number;
+use super::orientation::Orientation;
 use super::writer::Lines;
 
-pub(super) const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
+pub(super) const WORDING: Wording =
+    Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary, vector: (["", "", ""], false) };
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     plain(text, &name.letter, counts);
@@ -19,6 +21,14 @@ fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
 
 pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
     program.single_letters("linuxcnc")?;
+    let what = match program.orientation {
+        Orientation::Joints => None,
+        Orientation::Vectors => Some("a direction"),
+        Orientation::Planes => Some("a tilted plane"),
+    };
+    if let Some(what) = what {
+        return Err(WriteError::Orientation { dialect: "linuxcnc", what });
+    }
     let switch = program.linuxcnc_tcp.as_ref();
     if program.tcp && switch.is_none() {
         return Err(WriteError::NoTcpSwitch);

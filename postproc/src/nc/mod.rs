@@ -4,11 +4,13 @@ pub mod block;
 mod codes;
 mod event;
 mod fanuc;
+mod frames;
 mod heidenhain;
 mod interpret;
 mod linuxcnc;
 mod modal;
 pub mod number;
+pub mod orientation;
 pub mod readback;
 mod sinumerik;
 mod state;
@@ -21,6 +23,7 @@ use std::fmt;
 use std::str::FromStr;
 
 pub use block::{FeedWord, NcMove, Program, WriteError};
+pub use orientation::Orientation;
 
 /// The language of a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

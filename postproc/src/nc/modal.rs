@@ -2,6 +2,7 @@
 
 use super::block::{FeedWord, NcMove, Program, RotaryName};
 use super::number;
+use super::orientation::VECTOR_DECIMALS;
 
 /// How a dialect words a move.
 pub(super) struct Wording {
@@ -15,6 +16,8 @@ pub(super) struct Wording {
     pub axis: fn(text: &mut String, name: &str, counts: i64),
     /// A rotary position word.
     pub rotary: fn(text: &mut String, name: &RotaryName, counts: i64),
+    /// Names of the components of the tool's direction, and whether a plus stands before them.
+    pub vector: ([&'static str; 3], bool),
 }
 
 /// What is in force.
@@ -23,6 +26,7 @@ pub(super) struct Modal {
     rapid: Option<bool>,
     linear: [Option<i64>; 3],
     rotary: [Option<i64>; 2],
+    orientation: Option<[i64; 3]>,
     feed: String,
     spare: String,
     /// Linear and rotary words in the order of their names.
@@ -57,7 +61,22 @@ impl Modal {
                 }
             }
         }
-        if matches!(which, Which::All | Which::Rotary) {
+        let vectors = program.in_vectors();
+        // Where nothing is modal (LN), a direction stands in every block.
+        let turned = self.orientation != Some(m.orientation) || !wording.modal;
+        if vectors && which == Which::All && turned {
+            let (names, plus) = wording.vector;
+            for (name, c) in names.iter().zip(m.orientation) {
+                text.push(' ');
+                text.push_str(name);
+                if plus && c >= 0 {
+                    text.push('+');
+                }
+                number::push_count(text, c, VECTOR_DECIMALS);
+            }
+        }
+        self.orientation = Some(m.orientation);
+        if which == Which::Rotary || (which == Which::All && !vectors) {
             for &i in &self.order.1 {
                 if self.rotary[i] != Some(m.rotary[i]) {
                     self.rotary[i] = Some(m.rotary[i]);
@@ -66,6 +85,11 @@ impl Modal {
                 }
             }
         }
+    }
+
+    /// After positions in the machine's own coordinates.
+    pub fn forget(&mut self) {
+        (self.rapid, self.linear) = (None, [None; 3]);
     }
 
     fn motion(&mut self, wording: &Wording, rapid: bool, text: &mut String) {

@@ -65,6 +65,14 @@ fn push_decimal(text: &mut String, digits: u64, decimals: usize) {
     text.extend(buffer[at..].iter().map(|b| char::from(*b)));
 }
 
+/// Adds a count with the given decimals.
+pub(crate) fn push_count(text: &mut String, counts: i64, decimals: usize) {
+    if counts < 0 {
+        text.push('-');
+    }
+    push_decimal(text, counts.unsigned_abs(), decimals);
+}
+
 /// Adds a whole number.
 pub fn push_whole(text: &mut String, value: u64) {
     push_decimal(text, value, 0);

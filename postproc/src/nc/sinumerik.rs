@@ -1,6 +1,9 @@
 //! Siemens Sinumerik 840D.
 //!
 //! - Tool-centre-point control is `TRAORI`; `ORIMKS` and `ORIAXES` make the rotary axes interpolate linearly.
+//! - Directions of the tool are `A3= B3= C3=`: with `ORIWKS` in the axes of X Y Z, with `ORIVECT` the tool goes on a great
+//!   circle from one to the next.
+//! - Tilted planes are `CYCLE800` without motion of its own (direction 0): the program positions the rotary axes.
 //! - Endless axes are modulo axes: `C=DC(...)` takes the shortest way, so no block turns one by half a turn or more.
 //! - F is read over the axes of `FGROUP`, a rotary one as an arc of radius `FGREF`: the program says both, so that it
 //!   does not depend on machine data. Rotary axes alone, outside of `FGROUP`, are read in deg/min.
@@ -14,7 +17,14 @@ use super::number;
 use super::writer::Lines;
 use crate::feed::PathMetric;
 
-pub(super) const WORDING: Wording = Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary };
+pub(super) const WORDING: Wording = Wording {
+    rapid: "G0",
+    feed: "G1",
+    modal: true,
+    axis: plain,
+    rotary,
+    vector: (["A3=", "B3=", "C3="], false),
+};
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     if name.endless {
@@ -51,8 +61,11 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
     }
     if program.tcp {
         lines.line("TRAORI");
-        lines.line("ORIMKS ORIAXES");
+        lines.line(if program.in_vectors() { "ORIWKS ORIVECT" } else { "ORIMKS ORIAXES" });
         lines.line("G54");
+    }
+    if program.in_planes() {
+        lines.line(&plane(first));
     }
     for line in modal.approach(program, &WORDING, first, &[Which::Across, Which::Along]) {
         lines.line(&line);
@@ -61,11 +74,30 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
     feed_head(lines, program);
 }
 
+/// `CYCLE800(retract, data set, new plane, mode, X0 Y0 Z0, A B C, X1 Y1 Z1, direction)`.
+fn plane(m: &NcMove) -> String {
+    let [a, b, c] = m.orientation.map(number::fixed);
+    format!("CYCLE800(0,\"\",0,57,0,0,0,{a},{b},{c},0,0,0,0)")
+}
+
+/// Goes from one plane to another: away in machine coordinates, rotary axes, plane, back.
+pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines: &mut Lines) {
+    retract(lines, program);
+    lines.line("D1");
+    modal.forget();
+    modal.approach(program, &WORDING, m, &[Which::Rotary]).iter().for_each(|l| lines.line(l));
+    lines.line(&plane(m));
+    modal.approach(program, &WORDING, m, &[Which::Across, Which::Along]).iter().for_each(|l| lines.line(l));
+}
+
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
     if program.feed_word == FeedWord::Inverse {
         lines.line("G94");
     }
     lines.line("M5");
+    if program.in_planes() {
+        lines.line("CYCLE800()");
+    }
     lines.line("TRAFOOF");
     retract(lines, program);
     lines.line("M30");

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use osculate_geom::Vec3;
+use nalgebra::Isometry3;
+use osculate_geom::{Unit3, Vec3};
 
 use crate::feed::{DEGREE_AS_MM, PathMetric, Step};
+use crate::linearize::slerp;
 use crate::machine::{JointValues, MAX_JOINTS, Machine};
 use crate::setup::Setup;
 
@@ -34,13 +36,19 @@ pub(super) struct State {
     /// On an arc, and which way.
     pub clockwise: Option<bool>,
     /// Axes of the plane of arcs.
-    pub plane: [&'static str; 2],
+    pub arc_plane: [&'static str; 2],
     pub reading: FeedReading,
     pub feed: Option<f64>,
     /// mm per unit of length when F was said: a change of units leaves it alone.
     pub feed_unit_mm: f64,
     pub speed: Option<f64>,
     pub tcp: bool,
+    /// The tilted plane: X Y Z of the tip in its axes.
+    pub plane: Option<Isometry3<f64>>,
+    /// The tool goes on a great circle from one direction to the next.
+    pub great_circle: bool,
+    /// I J K are a direction.
+    pub vectors: bool,
     /// Programmed positions: linear in mm (in chain order, or X Y Z with tool-centre-point control), rotary in rad.
     pub linear: [Option<f64>; 3],
     pub rotary: [Option<f64>; 2],
@@ -52,7 +60,12 @@ pub(super) struct State {
 pub(super) struct Known {
     pub linear: [f64; 3],
     pub rotary: [f64; 2],
+    /// X Y Z are of the tip.
     pub tcp: bool,
+    /// In the axes of a tilted plane.
+    pub plane: Option<Isometry3<f64>>,
+    /// The tool's direction in the table's frame, where it and not the rotary axes is what goes evenly.
+    pub axis: Option<Unit3>,
 }
 
 impl State {
@@ -62,12 +75,15 @@ impl State {
             absolute: true,
             rapid: None,
             clockwise: None,
-            plane: ["X", "Y"],
+            arc_plane: ["X", "Y"],
             reading: FeedReading::PerMinute,
             feed: None,
             feed_unit_mm: 1.0,
             speed: None,
             tcp: false,
+            plane: None,
+            great_circle: false,
+            vectors: false,
             linear: [None; 3],
             rotary: [None; 2],
             group: None,
@@ -76,14 +92,31 @@ impl State {
 
     /// The place, once every axis of the machine has been named.
     pub fn known(&self, machine: &Machine) -> Option<Known> {
-        let mut known = Known { linear: [0.0; 3], rotary: [0.0; 2], tcp: self.tcp };
+        let mut known =
+            Known { linear: [0.0; 3], rotary: [0.0; 2], tcp: self.of_tip(), plane: self.plane, axis: None };
         for (to, from) in known.linear.iter_mut().zip(self.linear) {
             *to = from?;
         }
         for slot in 0..machine.rotary().len() {
             known.rotary[slot] = self.rotary[slot]?;
         }
+        if self.great_circle && self.tcp {
+            known.axis = Some(machine.axis_at(&known.rotary));
+        }
         Some(known)
+    }
+
+    /// X Y Z are of the tip.
+    pub const fn of_tip(&self) -> bool {
+        self.tcp || self.plane.is_some()
+    }
+
+    /// Another plane, or none. What X Y Z are there is not known before they are named.
+    pub fn tilt(&mut self, plane: Option<Isometry3<f64>>) {
+        if self.plane != plane {
+            self.plane = plane;
+            self.linear = [None; 3];
+        }
     }
 
     /// Turns tool-centre-point control on or off. The machine stands still; what X Y Z mean changes.
@@ -93,7 +126,7 @@ impl State {
         }
         let joints = self.known(machine).and_then(|k| k.joints(machine, setup));
         self.tcp = on;
-        self.linear = match joints {
+        self.linear = match joints.filter(|_| self.plane.is_none()) {
             None => [None; 3],
             Some(q) if on => {
                 let xyz = setup.to_program(&machine.forward(&q, setup).tip);
@@ -116,7 +149,7 @@ impl State {
                     _ => PathMetric::Linear,
                 }
             }
-            None if self.tcp => PathMetric::Linear,
+            None if self.of_tip() => PathMetric::Linear,
             None => machine.control().feed_reading.into(),
         }
     }
@@ -155,6 +188,7 @@ impl Known {
         for k in 0..2 {
             at.rotary[k] += (to.rotary[k] - self.rotary[k]) * t;
         }
+        at.axis = self.axis.zip(to.axis).map(|(a, b)| slerp(&a, &b, t));
         at
     }
 
@@ -165,10 +199,16 @@ impl Known {
         Step { linear_mm: d.norm(), rotary_rad }
     }
 
+    /// Programmed X Y Z of the tip, out of the plane.
+    pub fn tip(&self) -> Vec3 {
+        let words = Vec3::from(self.linear);
+        self.plane.map_or(words, |plane| plane.rotation * words + plane.translation.vector)
+    }
+
     /// The joints at this place.
     pub fn joints(&self, machine: &Machine, setup: &Setup) -> Option<JointValues> {
         if self.tcp {
-            let tip = setup.part_zero * setup.from_program(&Vec3::from(self.linear));
+            let tip = setup.part_zero * setup.from_program(&self.tip());
             return machine.with_tip(&self.rotary, &tip, setup.gauge_length_mm);
         }
         let mut joints = [0.0; MAX_JOINTS];

@@ -197,7 +197,7 @@ impl Planned {
     }
 
     fn place(&self, known: &Known) -> ([f64; 3], [f64; 2]) {
-        let xyz = if known.tcp { known.linear } else { self.order.map(|s| known.linear[s]) };
+        let xyz = if known.tcp { known.tip().into() } else { self.order.map(|s| known.linear[s]) };
         (xyz, known.rotary.map(f64::to_degrees))
     }
 

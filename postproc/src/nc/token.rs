@@ -262,7 +262,7 @@ fn klartext(line: &str) -> Result<Vec<Word>, BadWord> {
     let Some(first) = parts.first() else { return Ok(Vec::new()) };
     let name = |name: &str, rest: &[String]| Word::Name { name: name.into(), arguments: rest.join(" ") };
     match first.as_str() {
-        "L" => {}
+        "L" | "LN" => {}
         "BEGIN" | "END" | "FUNCTION" => return Ok(vec![name(first, &parts[1..])]),
         "TOOL" => {
             let speed = parts.iter().filter_map(|p| p.strip_prefix('S')).find_map(|s| s.parse().ok());
@@ -289,7 +289,8 @@ fn klartext_word(part: &str) -> Result<Word, BadWord> {
     let split = name.find(|c: char| !c.is_ascii_alphabetic()).ok_or_else(bad)?;
     let (letters, number) = name.split_at(split);
     let value: f64 = number.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(bad)?;
-    if letters.len() != 1 {
+    let of_direction = matches!(letters, "TX" | "TY" | "TZ" | "NX" | "NY" | "NZ");
+    if letters.len() != 1 && !of_direction {
         return Err(bad());
     }
     Ok(match lettered(letters, value) {

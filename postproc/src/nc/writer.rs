@@ -40,6 +40,8 @@ pub(crate) struct Writer<'a> {
     lines: Lines,
     words: String,
     started: bool,
+    /// The plane in force, and the rotary axes there.
+    plane: ([i64; 3], [i64; 2]),
 }
 
 impl<'a> Writer<'a> {
@@ -56,12 +58,21 @@ impl<'a> Writer<'a> {
             Dialect::LinuxCnc => linuxcnc::head(program, &mut lines)?,
         }
         let modal = Modal::new(program);
-        Ok(Self { dialect, program, modal, lines, words: String::new(), started: false })
+        Ok(Self {
+            dialect,
+            program,
+            modal,
+            lines,
+            words: String::new(),
+            started: false,
+            plane: ([0; 3], [0; 2]),
+        })
     }
 
     /// Words the next move; the first one leads from an unknown place.
     pub fn take(&mut self, m: &NcMove) {
         let (program, modal, lines) = (self.program, &mut self.modal, &mut self.lines);
+        let plane = std::mem::replace(&mut self.plane, (m.orientation, m.rotary));
         if !self.started {
             self.started = true;
             match self.dialect {
@@ -72,7 +83,18 @@ impl<'a> Writer<'a> {
             }
             return;
         }
+        if program.in_planes() && plane != self.plane {
+            match self.dialect {
+                Dialect::Sinumerik => sinumerik::next_plane(program, modal, m, lines),
+                Dialect::Heidenhain => heidenhain::next_plane(program, modal, m, lines),
+                Dialect::Fanuc => fanuc::next_plane(program, modal, m, lines),
+                // Its head has refused planes.
+                Dialect::LinuxCnc => {}
+            }
+            return;
+        }
         let wording: &Wording = match self.dialect {
+            Dialect::Heidenhain if program.in_vectors() => &heidenhain::DIRECTED,
             Dialect::Sinumerik => &sinumerik::WORDING,
             Dialect::Heidenhain => &heidenhain::WORDING,
             Dialect::Fanuc => &fanuc::WORDING,
