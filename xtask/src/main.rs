@@ -27,6 +27,8 @@ usage: cargo xtask COMMAND
   tidy          the rules of the workspace that neither the compiler nor clippy checks
   interop linuxcnc
                 LinuxCNC's interpreter and kinematics, and pygcode, on our programs (Debian: apt-get, dpkg, gcc, pip)
+  interop roundtrip
+                CL to NC and back on a real blade, for every machine, dialect and feed mode: a table of what is off
   ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
   bench [--peers]
                 times of the kernel; with --peers OpenCASCADE and SISL beside them (Debian: g++, libocct-*-dev, libsisl-dev)
@@ -45,11 +47,12 @@ fn main() -> ExitCode {
         ["tidy"] => tidy::run(),
         ["ci"] => ci::run(),
         ["interop", "linuxcnc"] => interop::linuxcnc(),
+        ["interop", "roundtrip"] => postproc_example("roundtrip", &[]),
         ["bench"] => bench::run(false),
         ["bench", "--peers"] => bench::run(true),
         ["reference", rest @ ..] => example("reference", rest),
         ["truth", rest @ ..] => example("truth", rest),
-        ["papers", "z17"] => z17(),
+        ["papers", "z17"] => postproc_example("z17", &["docs/papers"]),
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),
         ["interop", "occt", rest @ ..] => interop::occt(rest),
@@ -78,10 +81,10 @@ fn example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
     cmd::run(cmd::cargo(&cmd::root()?, &[&example, rest].concat()))
 }
 
-/// Runs the study of feed modes, an example of the postprocessor.
-fn z17() -> Result<(), cmd::Failure> {
-    let example = ["run", "--locked", "-p", "osculate-postproc", "--example", "z17", "--", "docs/papers"];
-    cmd::run(cmd::cargo(&cmd::root()?, &example))
+/// Runs an example of the postprocessor.
+fn postproc_example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
+    let example = ["run", "--locked", "-p", "osculate-postproc", "--example", name, "--"];
+    cmd::run(cmd::cargo(&cmd::root()?, &[&example, rest].concat()))
 }
 
 fn wrong_usage(why: &str) -> ExitCode {

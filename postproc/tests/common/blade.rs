@@ -5,6 +5,7 @@
 #![allow(dead_code)]
 
 use osculate_geom::{Point3, Unit3, Vec3};
+use osculate_postproc::FeedMode;
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 
@@ -145,4 +146,50 @@ pub fn five_axis() -> [(&'static str, ClPath); 3] {
 pub fn mill_turn(rounds: usize, feed_mm_min: f64) -> ClPath {
     let at = Blade::rotor_37().rounds(0.4, rounds, 0.02);
     path(at.iter().map(|a| radial(a, 10f64.to_radians())), feed_mm_min)
+}
+
+/// Three paths for a turning centre: rounds at two heights and leads, and a zigzag with the lead turning back.
+pub fn four_axis() -> [(&'static str, ClPath); 3] {
+    let blade = Blade::rotor_37();
+    let lead = |at: &At, deg: f64| radial(at, deg.to_radians());
+    [
+        ("rounds", mill_turn(1, 500.0)),
+        ("upper", path(blade.rounds(0.8, 1, 0.05).iter().map(|a| lead(a, -8.0)), 800.0)),
+        ("zigzag", path(blade.zigzag(40, 4, 5, 40).iter().map(|a| lead(a, 15.0)), 300.0)),
+    ]
+}
+
+/// Three paths with the tool upright: rounds, zigzag, and the section from the side.
+pub fn three_axis() -> [(&'static str, ClPath); 3] {
+    let blade = Blade::rotor_37();
+    let upright = |at: &At| touching(at, Vec3::z());
+    [
+        ("rounds", path(blade.rounds(0.45, 1, 0.02).iter().map(upright), 600.0)),
+        ("zigzag", path(blade.zigzag(40, 4, 5, 40).iter().map(upright), 900.0)),
+        ("upper", path(blade.rounds(0.8, 1, 0.1).iter().map(upright), 400.0)),
+    ]
+}
+
+/// The paths for a machine with so many rotary axes.
+pub fn for_rotary_axes(count: usize) -> [(&'static str, ClPath); 3] {
+    match count {
+        2 => five_axis(),
+        1 => four_axis(),
+        _ => three_axis(),
+    }
+}
+
+/// Every feed mode of the postprocessor.
+pub fn feed_modes() -> [(&'static str, FeedMode); 9] {
+    [
+        ("tcp", FeedMode::Tcp),
+        ("none", FeedMode::None),
+        ("kf", FeedMode::Kf),
+        ("kv", FeedMode::Kv { fgref_mm: None }),
+        ("kv, fgref 30", FeedMode::Kv { fgref_mm: Some(30.0) }),
+        ("kz", FeedMode::Kz { step_mm_min: 200.0, fgref_mm: None }),
+        ("rotary", FeedMode::RotaryOnly),
+        ("inverse_time", FeedMode::InverseTime),
+        ("fastest", FeedMode::Fastest { tip_mm_min: None }),
+    ]
 }
