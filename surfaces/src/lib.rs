@@ -67,7 +67,9 @@ pub use nurbs_curve::{CurveError, CurveJet, NurbsCurve, NurbsCurve2, NurbsCurve3
 pub use nurbs_degree::{RemovedCurve, RemovedSurface};
 pub use nurbs_edit::{BezierPatch, EditError};
 pub use part::{Colour, CurvatureRange, Face, FaceKind, Format, ImportError, NotUsed, Part, detect, read};
-pub use ruled::{RuledError, ruled};
+pub use ruled::{
+    Band, Mate, RuledBand, RuledError, Ruling, RulingError, RulingOptions, ruled, ruled_bands, ruling,
+};
 pub use trim::analytic::{Analytic, Shape};
 pub use trim::carrier::FaceSurface;
 pub use trimmed::{Loop, TrimError, TrimmedSurface};

@@ -1,8 +1,15 @@
-//! The ruled surface between two curves.
+//! The ruled surface between two curves; rules found in faces ([`rulings`], [`mates`]).
 //!
 //! `S(u, v)` runs along the straight line from `A(u)` at v = 0 to `B(u)` at v = 1. It is exact: the curves'
 //! poles are the two rows of its net. Where the curves have different weights the point at v does not divide
 //! the ruling as v to 1 - v, but it lies on it.
+
+mod mates;
+mod rulings;
+
+pub use mates::Mate;
+use rulings::border;
+pub use rulings::{Band, RuledBand, Ruling, RulingError, RulingOptions, ruled_bands, ruling};
 
 use crate::knots::Knots;
 use crate::nurbs::{Net, NurbsSurface};
