@@ -1,5 +1,5 @@
 //! The optimum at random places of three real faces against a brute-force scan of direction, lead and tilt, and the searches
-//! a second: `cargo run --release -p osculate-productivity --example optimum_bench -- [PLACES]` from the repository's root.
+//! a second: `cargo run --release -p osculate-productivity --example optimum_bench -- [PLACES [speed]]` from the repository's root; `speed` leaves the scan out.
 #![allow(clippy::print_stdout)]
 
 use osculate_geom::{Surface, Uv};
@@ -21,8 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let lead = Range { least_rad: 3f64.to_radians(), most_rad: 40f64.to_radians() };
     let tilt = Range { least_rad: -0.4, most_rad: 0.4 };
     println!(
-        "{:>24}  {:>16}  {:>6}  {:>9}  {:>11}  {:>11}  {:>9}",
-        "face", "tool", "places", "none", "worst miss %", "mean gain %", "per s"
+        "{:>24}  {:>16}  {:>6}  {:>9}  {:>11}  {:>11}  {:>9}  {:>13}",
+        "face", "tool", "places", "none", "worst miss %", "mean gain %", "per s", "per CPU second"
     );
     for (file, face, diameter_mm, corner_radius_mm) in [
         ("examples/eee-hpt-rotor2/blade.igs", "F1", 3.0, 0.5),
@@ -34,16 +34,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let cutter = [Cutter::try_from(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm })?];
         let limits = Limits { scallop_mm: 0.01, gouge_mm: 0.002, lead, tilt, axis: None, caps };
         let at = inside(face, places);
-        let start = Instant::now();
+        let (start, used) = (Instant::now(), cpu_s());
         let best: Vec<Result<Optimum, OptimumError>> =
             at.par_iter().map(|p| optimum::at(face, *p, &cutter, &limits)).collect();
         let rate = at.len() as f64 / start.elapsed().as_secs_f64();
+        let by_cpu = at.len() as f64 / (cpu_s() - used).max(1e-9);
+        let exact = best.iter().flatten().map(|b| b.exact).sum::<u32>() / at.len() as u32;
+        let scanning = std::env::args().nth(2).as_deref() != Some("speed");
         let results: Vec<Option<[f64; 2]>> = at
             .par_iter()
             .zip(&best)
             .map(|(p, b)| {
-                let (scanned, first) = scan(face, *p, &cutter[0], &limits);
                 let own = b.as_ref().ok()?.rate.area_mm2_min;
+                if !scanning {
+                    return Some([f64::NAN; 2]);
+                }
+                let (scanned, first) = scan(face, *p, &cutter[0], &limits);
                 Some([scanned / own - 1.0, own / first - 1.0])
             })
             .collect();
@@ -54,7 +60,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let over = misses.iter().filter(|m| **m > 0.005).count();
         let gain: Vec<f64> = results.iter().flatten().map(|r| r[1]).filter(|g| g.is_finite()).collect();
         println!(
-            "{:>24}  {:>16}  {:>6}  {none:>9}  {:>11.3}  {:>11.1}  {rate:>9.0}   over 0.5 %: {over}, evaluations {}",
+            "{:>24}  {:>16}  {:>6}  {none:>9}  {:>11.3}  {:>11.1}  {rate:>9.0}  {by_cpu:>13.0}   over 0.5 %: {over}, evaluations {} ({exact} exact)",
             file.rsplit('/').next().unwrap_or(file),
             format!("D{diameter_mm} r{corner_radius_mm}"),
             at.len(),
@@ -74,6 +80,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     Ok(())
+}
+
+/// Processor time of this process, s: under load more telling than the clock. Zero where the system does not say.
+fn cpu_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after = stat.rsplit(") ").next().unwrap_or_default();
+    let ticks: f64 = after.split(' ').skip(11).take(2).filter_map(|t| t.parse::<f64>().ok()).sum();
+    ticks / 100.0
 }
 
 /// Places inside a face, evenly strewn.

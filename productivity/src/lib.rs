@@ -7,6 +7,8 @@
 //!   between tooth marks and scallops that makes it greatest.
 //! - [`optimum`]: the tool, feed direction, lead and tilt of greatest productivity at a point.
 //! - [`levels`]: productivity at an instant, along a pass and over the whole face.
+//! - [`finish`], [`rough`]: area and volume of stock per minute under any change of parameters; [`given`]: tolerance and stock
+//!   that vary over the face; [`engagement`]: what a cutter takes out of real stock at an instant.
 //!
 //! ```
 //! use osculate_productivity::closed_form::{Section, leading_order, width_37};
@@ -19,8 +21,12 @@
 //! ```
 
 pub mod closed_form;
+pub mod engagement;
+pub mod finish;
+pub mod given;
 pub mod levels;
 pub mod optimum;
 pub mod plan;
 pub mod rate;
+pub mod rough;
 pub mod split;

@@ -111,8 +111,10 @@ pub struct Optimum {
     pub undercut_mm: f64,
     /// What binds the posture.
     pub binding: Binding,
-    /// Exact postures measured.
+    /// Postures measured.
     pub evaluations: u32,
+    /// How many of them by the exact strip, the others on a chart.
+    pub exact: u32,
 }
 
 /// Why there is no posture.
@@ -237,24 +239,35 @@ fn share_of(
     tolerance_mm: f64,
     mark_of: impl Fn(&Contact<'_>, f64) -> Result<f64, StripError>,
 ) -> Result<(Share, f64), StripError> {
+    let along = contact.relative().along(&contact.frame.tangent);
+    share_by(along, cap_mm, tolerance_mm, |height| mark_of(contact, height))
+}
+
+/// As [`share_of`] with q(d) along the feed and the mark as a function of the height.
+fn share_by<E>(
+    along_per_mm: f64,
+    cap_mm: f64,
+    tolerance_mm: f64,
+    mark_of: impl Fn(f64) -> Result<f64, E>,
+) -> Result<(Share, f64), E> {
     /// Least share looked at: below it the strip gains less than the fourth digit.
     const LEAST: f64 = 1e-4;
     /// Marks grow between the first power (a sharp edge) and the root of the height.
     const POWERS: u32 = 4;
-    let along = contact.relative().along(&contact.frame.tangent);
-    let start = if along.is_finite() { leading_share(along, cap_mm, tolerance_mm) } else { 0.25 };
+    let smooth = along_per_mm.is_finite();
+    let start = if smooth { leading_share(along_per_mm, cap_mm, tolerance_mm) } else { 0.25 };
     let mut share = Share { tolerance_mm, chi: start.clamp(LEAST, 0.5) };
-    let mut mark = mark_of(contact, share.along_mm())?;
+    let mut mark = mark_of(share.along_mm())?;
     for _ in 0..POWERS {
         let enough = mark >= cap_mm * (1.0 - 1e-6);
         let settled = if enough { mark <= cap_mm * 1.02 || share.chi <= LEAST } else { share.chi >= 0.5 };
         if settled {
             break;
         }
-        let power = if along.is_finite() { 2.0 } else { 1.0 };
+        let power = if smooth { 2.0 } else { 1.0 };
         // A touch more than the power law says, so that the next mark reaches the cap.
         share.chi = (share.chi * (cap_mm / mark).powf(power) * 1.01).clamp(LEAST, 0.5);
-        mark = mark_of(contact, share.along_mm())?;
+        mark = mark_of(share.along_mm())?;
     }
     Ok((share, mark))
 }
@@ -265,11 +278,10 @@ fn share_of(
 /// [`OptimumError`].
 pub fn at(surface: &dyn Surface, at: Uv, tools: &[Cutter], limits: &Limits) -> Result<Optimum, OptimumError> {
     check(tools, limits)?;
-    let forms = surface.jet2(at).forms()?;
     let mut best: Option<Optimum> = None;
     let mut last = StripError::Tolerance { got: limits.scallop_mm };
     for (tool, cutter) in tools.iter().enumerate() {
-        let mut search = Search { surface, at, cutter, limits, forms: &forms, evaluations: 0, last: None };
+        let mut search = Search::new(surface, at, cutter, limits)?;
         if let Some((posture, m)) = search.run() {
             let better = best.is_none_or(|b| m.rate.area_mm2_min > b.rate.area_mm2_min);
             if better {
@@ -283,6 +295,7 @@ pub fn at(surface: &dyn Surface, at: Uv, tools: &[Cutter], limits: &Limits) -> R
                     undercut_mm: m.undercut_mm,
                     binding: search.binding(&posture, &m),
                     evaluations: search.evaluations,
+                    exact: search.exact,
                 });
             }
         }

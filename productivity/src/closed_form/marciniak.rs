@@ -47,6 +47,34 @@ pub fn three_axis_flat(
     Ok(2.0 * (2.0 * scallop_mm / sum).sqrt())
 }
 
+/// 3C with a corner: a toroidal end whose disc has the radius `core_mm`, on the offset of the part by `corner_mm`. Leading order.
+///
+/// # Errors
+/// As [`three_axis_flat`], and [`DomainError::Value`] where the corner does not fit into the hollow part.
+pub fn three_axis_toroidal(
+    core_mm: f64,
+    corner_mm: f64,
+    lead_rad: f64,
+    across_per_mm: f64,
+    scallop_mm: f64,
+) -> Result<f64, DomainError> {
+    let scale = positive("1 + r k across", 1.0 + corner_mm * across_per_mm)?;
+    Ok(three_axis_flat(core_mm, lead_rad, across_per_mm / scale, scallop_mm)? / scale)
+}
+
+/// Curvature, 1/mm, convex positive, of the contour line (the section across the tool axis) through a place whose normal
+/// leans by `lead_rad` from the axis and whose curvature across the feed is `across_per_mm`: Meusnier's `k / sin(lead)`.
+///
+/// A flat end of radius R cannot machine the place in 3C where this is below `-1 / R`: where a hollow contour line's
+/// *radius* of curvature is smaller than the tool's ([`three_axis_flat`] then says [`DomainError::DoesNotFit`]). M86 prints
+/// 'curvature smaller than 1/r'.
+///
+/// # Errors
+/// [`DomainError::Value`] without a lead: there is no contour line at a place that is level.
+pub fn contour_per_mm(across_per_mm: f64, lead_rad: f64) -> Result<f64, DomainError> {
+    Ok(across_per_mm / positive("the sine of the lead", lead_rad.sin().abs())?)
+}
+
 /// A two-contact posture of a flat or toroidal end on a hollow place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiveAxis {

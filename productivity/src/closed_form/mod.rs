@@ -7,7 +7,9 @@
 mod marciniak;
 mod radzevich;
 
-pub use marciniak::{FiveAxis, five_axis_flat, three_axis_flat, two_axis_ball};
+pub use marciniak::{
+    FiveAxis, contour_per_mm, five_axis_flat, three_axis_flat, three_axis_toroidal, two_axis_ball,
+};
 pub use radzevich::{Section, acos_37, chord_38, leading_order, leading_order_swept, linear_40, width_37};
 
 /// Why a closed form has no value.

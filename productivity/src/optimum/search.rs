@@ -1,23 +1,32 @@
 //! The search for the best posture: a ranked grid, the brink of two contacts, coordinate searches.
+//!
+//! Postures are compared on a [`Chart`] of the place, which costs some microseconds each; where a strip reaches beyond the chart the exact
+//! strip is taken. What is found is measured exactly, so that the chart's error costs quality but never truth.
 
-use super::{Binding, Limits, Measured, Posture, Range, compare, measure};
-use crate::closed_form::leading_order_swept;
-use osculate_geom::{Forms, Relative, Surface, SymEigen, Unit3, Uv, Vec3};
-use osculate_tools::strip::StripError;
+use super::{Binding, Limits, Measured, Posture, Range, compare, measure, share_by};
+use crate::closed_form::{Section, leading_order_swept, width_37};
+use osculate_geom::{Degenerate, Relative, Surface, SymEigen, Uv, Vec3};
+use osculate_tools::strip::{Chart, ChartError, StripError, Within};
 use osculate_tools::{Cutter, Lean};
 use std::f64::consts::{PI, TAU};
 
 /// Directions, leads and tilts of the grid that is ranked.
-const GRID: [usize; 3] = [16, 7, 5];
-/// Postures of the grid above the least lead that are measured exactly, and how many of all are settled.
-const MEASURED: usize = 6;
-const SETTLED: usize = 2;
+const GRID: [usize; 3] = [24, 7, 5];
+/// Postures of the grid above the least lead that are measured, and how many of all are settled.
+const MEASURED: usize = 12;
+const SETTLED: usize = 3;
 /// Leads tried above an impossible one in the first look, and in each round of settling.
-const CLIMBS: u32 = 6;
+const CLIMBS: u32 = 5;
 const BRINK: u32 = 7;
 /// Rounds of coordinate searches; steps shrink in each.
-const ROUNDS: u32 = 4;
+const ROUNDS: u32 = 3;
 const SHRINK: f64 = 0.35;
+/// Steps of the last, exact round, of a step of the grid.
+const POLISH: f64 = 0.1;
+/// Radius of the chart, in the cutter's radius: strips are hardly ever wider.
+const REACH: f64 = 1.2;
+/// Misfit of the chart that is accepted, of the tolerance.
+const MISFIT: f64 = 5e-2;
 
 /// A search at one place with one tool.
 pub(super) struct Search<'a> {
@@ -25,28 +34,55 @@ pub(super) struct Search<'a> {
     pub at: Uv,
     pub cutter: &'a Cutter,
     pub limits: &'a Limits,
-    pub forms: &'a Forms,
+    pub chart: Chart,
+    pub side: f64,
+    /// Whether postures are measured by the exact strip.
+    exactly: bool,
     pub evaluations: u32,
+    pub exact: u32,
     pub last: Option<StripError>,
 }
 
 type Found = (Posture, Measured);
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        surface: &'a dyn Surface,
+        at: Uv,
+        cutter: &'a Cutter,
+        limits: &'a Limits,
+    ) -> Result<Self, Degenerate> {
+        let chart = Chart::new(surface, at, REACH * cutter.radius_mm(), MISFIT * limits.scallop_mm)?;
+        let side = surface.jet2(at).side.sign();
+        Ok(Self {
+            surface,
+            at,
+            cutter,
+            limits,
+            chart,
+            side,
+            exactly: false,
+            evaluations: 0,
+            exact: 0,
+            last: None,
+        })
+    }
+
     /// The tool axis of a posture, as `Contact` makes it.
     fn axis(&self, p: &Posture) -> Vec3 {
         let tangent = self.tangent(p.direction_rad);
-        let left = self.forms.normal.cross(&tangent);
+        let normal = self.chart.forms.normal;
+        let left = normal.cross(&tangent);
         let (s, c) = p.lean.tilt_rad.sin_cos();
         let heading = tangent * c + left * s;
         let (s, c) = p.lean.lead_rad.sin_cos();
-        self.forms.normal.into_inner() * c + heading * s
+        normal.into_inner() * c + heading * s
     }
 
     fn tangent(&self, direction_rad: f64) -> Vec3 {
-        let side = self.surface.jet2(self.at).side.sign();
         let (s, c) = direction_rad.sin_cos();
-        self.forms.frame[0].into_inner() * c + self.forms.frame[1].into_inner() * (s * side)
+        let frame = &self.chart.forms.frame;
+        frame[0].into_inner() * c + frame[1].into_inner() * (s * self.side)
     }
 
     fn allowed(&self, p: &Posture) -> bool {
@@ -62,7 +98,20 @@ impl Search<'_> {
             return None;
         }
         self.evaluations += 1;
-        match compare(self.surface, self.at, self.cutter, p, self.limits) {
+        let on_chart =
+            if self.exactly { Err(ChartError::Beyond { radius_mm: 0.0 }) } else { self.on_chart(&p) };
+        let measured = match on_chart {
+            Err(ChartError::Beyond { .. }) => {
+                self.exact += 1;
+                compare(self.surface, self.at, self.cutter, p, self.limits)
+            }
+            Err(ChartError::Above { standoff_mm }) => {
+                Err(StripError::AboveTolerance { standoff_mm, scallop_mm: self.limits.scallop_mm })
+            }
+            Err(ChartError::Contact(e)) => Err(e.into()),
+            Ok(m) => Ok(m),
+        };
+        match measured {
             Ok(m) => Some(m),
             Err(e) => {
                 self.last = Some(e);
@@ -71,19 +120,34 @@ impl Search<'_> {
         }
     }
 
+    fn on_chart(&self, p: &Posture) -> Result<Measured, ChartError> {
+        let (limits, cutter) = (self.limits, self.cutter);
+        let (cap, _) = limits.caps.greatest_per_tooth();
+        let tangent = self.tangent(p.direction_rad);
+        let along = self.chart.relative(cutter, p.direction_rad, p.lean).along(&tangent);
+        let planar = along > 0.0 && along.is_finite();
+        let part_per_mm = self.chart.forms.normal_curvature(&tangent);
+        let (share, mark) = share_by(along, cap, limits.scallop_mm, |height_mm| {
+            if planar {
+                let section =
+                    Section { part_per_mm, tool_per_mm: along - part_per_mm, scallop_mm: height_mm };
+                Ok(width_37(section).unwrap_or_else(|_| 2.0 * (2.0 * height_mm / along).sqrt()))
+            } else {
+                self.chart.mark_mm(cutter, p.direction_rad, p.lean, height_mm)
+            }
+        })?;
+        let within = Within { scallop_mm: share.across_mm(), gouge_mm: limits.gouge_mm };
+        let strip = self.chart.strip(cutter, p.direction_rad, p.lean, within)?;
+        let rate = limits.caps.rate(strip.width_mm, mark);
+        Ok(Measured { lift_mm: strip.lift_mm, undercut_mm: strip.undercut_mm, share, rate })
+    }
+
     /// Leading order of the productivity: the smaller Q's eigenvalue, the better, to where two contacts begin.
     fn rank(&self, p: &Posture) -> f64 {
         let limits = self.limits;
         let tangent = self.tangent(p.direction_rad);
-        let left = Unit3::new_unchecked(self.forms.normal.cross(&tangent));
-        let frame = osculate_geom::Darboux {
-            point: osculate_geom::Point3::origin(),
-            tangent: Unit3::new_unchecked(tangent),
-            left,
-            normal: self.forms.normal,
-            turn: Vec3::zeros(),
-        };
-        let q = Relative::new(self.forms, &p.lean.tool_curvature(self.cutter, &frame));
+        let left = self.chart.forms.normal.cross(&tangent);
+        let q = self.chart.relative(self.cutter, p.direction_rad, p.lean);
         // Where the part is hollower than the tool the strip saturates near the tool's own size.
         let floor = limits.scallop_mm / (self.cutter.radius_mm() * self.cutter.radius_mm());
         let dip = (-q.min).max(0.0);
@@ -127,12 +191,28 @@ impl Search<'_> {
             }
         }
         found.sort_by(|a, b| b.1.rate.area_mm2_min.total_cmp(&a.1.rate.area_mm2_min));
-        found.truncate(SETTLED);
-        found
-            .into_iter()
-            .map(|f| self.settle(f))
-            .max_by(|a, b| a.1.rate.area_mm2_min.total_cmp(&b.1.rate.area_mm2_min))
-            .and_then(|(p, _)| Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).ok()?)))
+        // The best of each neighbourhood.
+        let mut best: Vec<Found> = Vec::with_capacity(SETTLED);
+        for f in &found {
+            if best.len() < SETTLED && !best.iter().any(|b| near(&b.0, &f.0)) {
+                best.push(*f);
+            }
+        }
+        let found = best;
+        let settled: Vec<Found> = found.into_iter().map(|f| self.settle(f)).collect();
+        // On the chart two may be level that are not: all are measured exactly, and the best is settled once more.
+        self.exactly = true;
+        let mut best: Option<Found> = None;
+        for (p, _) in settled {
+            if let Some(m) = self.measure(p)
+                && best.is_none_or(|b| m.rate.area_mm2_min > b.1.rate.area_mm2_min)
+            {
+                best = Some((p, m));
+            }
+        }
+        let (p, m) = self.polish(best?);
+        // The search compares planar tooth marks; the answer has the exact one.
+        Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).unwrap_or(m)))
     }
 
     /// The least lead above an impossible posture that leaves a strip: widest where two contacts just hold.
@@ -181,8 +261,8 @@ impl Search<'_> {
 
     /// A principal direction of the part: these are often the answer.
     fn first_direction(&self) -> f64 {
-        let d = SymEigen::of(&self.forms.curvature).d_max;
-        d[1].atan2(d[0]) * self.surface.jet2(self.at).side.sign()
+        let d = SymEigen::of(&self.chart.forms.curvature).d_max;
+        d[1].atan2(d[0]) * self.side
     }
 
     fn grid(&self) -> Vec<(Posture, f64)> {
@@ -244,6 +324,17 @@ impl Search<'_> {
                 best = self.along(best, 3, step[0]);
             }
             step = step.map(|s| s * SHRINK);
+        }
+        best
+    }
+
+    /// A last round with small steps.
+    fn polish(&mut self, from: Found) -> Found {
+        let limits = self.limits;
+        let widths = [TAU / GRID[0] as f64, limits.lead.width() / GRID[1] as f64, limits.tilt.width()];
+        let mut best = from;
+        for (k, w) in widths.into_iter().enumerate().filter(|(_, w)| *w > 0.0) {
+            best = self.along(best, k, POLISH * w);
         }
         best
     }

@@ -1,11 +1,13 @@
 //! Exact strip width at one contact.
 
 use super::ContactMotion;
-use super::local::{LocalMotion, Near, deepest};
-use crate::contact::{Contact, ContactError};
+use super::local::{LocalMotion, Near, Pace, deepest};
+use super::traced::Traced;
+use crate::contact::{Contact, ContactError, ContactLine};
 use crate::cutter::{Cutter, Line};
 use crate::sweep::{Reach, SweptMotion, reach_from};
 use osculate_geom::geodesic::GeodesicState;
+use osculate_geom::line::SurfaceLine;
 use osculate_geom::roots::{End, RootError, bracketed};
 use osculate_geom::{Axis, Degenerate, Surface, Uv};
 
@@ -84,11 +86,20 @@ const STEPS_PER_SIDE: f64 = 6.0;
 const MAX_STEPS: u32 = 4000;
 /// Rounding in the standoff at the contact itself, relative to the tolerance.
 const CLOSED_BAND: f64 = 1e-6;
-/// Cuts of a step of the cross line over a knot: the error falls with their cube.
+/// Knots that a step may meet one after the other.
+const MOST_KNOTS: u32 = 4;
+/// How near a knot a state is taken to be on it, of the step: what a kink that near does is of its cube.
+const KNOT_FOUND: f64 = 1e-6;
+const KNOT_SLACK: f64 = 1e-5;
+/// Cuts of a step of the cross line over a knot that is not found: the error falls with their cube.
 const CUTS: u32 = 16;
 /// Accuracy of the strip's edge relative to the half width.
 const EDGE_TOLERANCE: f64 = 1e-13;
 
+/// Most steps towards the deepest place across.
+const MOST_PARABOLAS: u32 = 30;
+/// Height above the deepest instant that counts as none, of the tool's radius.
+const SETTLED: f64 = 1e-15;
 /// Half the length of a piece of motion that is fitted at once, in leading-order half widths.
 const MOTION_PIECE: f64 = 1.0;
 /// Disagreement accepted of a fitted piece, relative to the tolerance: the strip's edge moves by half as much,
@@ -106,8 +117,12 @@ pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError
         return Err(StripError::Tolerance { got: scallop_mm });
     }
     let (feed_line, t0) = contact.line()?;
+    let traced = match &feed_line {
+        ContactLine::Geodesic(line) => Some(Traced::new(contact, line)?),
+        ContactLine::Iso(_) => None,
+    };
     let motion = ContactMotion {
-        line: &feed_line,
+        line: traced.as_ref().map_or(&feed_line as &dyn SurfaceLine, |t| t),
         cutter: contact.cutter,
         lean: contact.lean,
         lift_mm: contact.lift_mm,
@@ -162,6 +177,28 @@ struct Side<'a, M> {
     breaks: [Vec<f64>; 2],
 }
 
+/// The state on a knot within a step of length `x`, and the way there; None where Newton's method does not find it.
+fn on_knot(
+    surface: &dyn Surface,
+    from: &GeodesicState,
+    (axis, knot): (Axis, f64),
+    x: f64,
+) -> Result<Option<(GeodesicState, f64)>, Degenerate> {
+    let mut way = (knot - from.at.get(axis)) / from.rate.get(axis);
+    for _ in 0..4 {
+        if !(way / x > 0.0 && way / x < 1.0) {
+            return Ok(None);
+        }
+        let state = from.step(surface, way)?;
+        let off = (knot - state.at.get(axis)) / state.rate.get(axis);
+        if off.abs() <= KNOT_FOUND * x.abs() {
+            return Ok(Some((state, way)));
+        }
+        way += off;
+    }
+    Ok(None)
+}
+
 struct HalfStrip {
     edge: f64,
     undercut: f64,
@@ -173,26 +210,48 @@ impl<M: SweptMotion> Side<'_, M> {
     fn standoff(&self, at: Uv, near: Near) -> Result<Option<(Reach, Near)>, Degenerate> {
         let jet = self.contact.surface.jet2(at);
         let line = Line { origin: jet.point, direction: jet.normal()? };
-        Ok(deepest(self.contact.cutter, &line, self.motion, near, self.t_step))
+        let pace = Pace { step: self.t_step, settled_mm: SETTLED * self.contact.cutter.radius_mm() };
+        Ok(deepest(self.contact.cutter, &line, self.motion, near, pace))
     }
 
-    /// The cross line `x` further on. A step over a knot, where the line's own equation has a kink, is cut small.
+    /// The cross line `x` further on. A step over knots, where the line's own equation has a kink, is taken from knot to
+    /// knot, and cut small where these are not found.
     fn advance(&self, here: &GeodesicState, x: f64) -> Result<GeodesicState, Degenerate> {
         let surface = self.contact.surface;
-        let whole = here.step(surface, x)?;
-        let crosses = [Axis::U, Axis::V].iter().zip(&self.breaks).any(|(axis, breaks)| {
-            let (a, b) = (here.at.get(*axis), whole.at.get(*axis));
-            let (lo, hi) = (a.min(b), a.max(b));
-            breaks.get(breaks.partition_point(|t| *t <= lo)).is_some_and(|t| *t < hi)
-        });
-        if !crosses {
-            return Ok(whole);
+        let (mut state, mut left) = (*here, x);
+        for _ in 0..MOST_KNOTS {
+            let whole = state.step(surface, left)?;
+            let Some((axis, knot)) = self.first_knot(&state, &whole) else { return Ok(whole) };
+            let Some((at, way)) = on_knot(surface, &state, (axis, knot), left)? else { break };
+            (state, left) = (at, left - way);
         }
-        let mut state = *here;
         for _ in 0..CUTS {
-            state = state.step(surface, x / f64::from(CUTS))?;
+            state = state.step(surface, left / f64::from(CUTS))?;
         }
         Ok(state)
+    }
+
+    /// The knot that a step meets first, by the share of the way in its parameter.
+    fn first_knot(&self, from: &GeodesicState, to: &GeodesicState) -> Option<(Axis, f64)> {
+        let mut first: Option<(f64, Axis, f64)> = None;
+        for (axis, breaks) in [Axis::U, Axis::V].into_iter().zip(&self.breaks) {
+            let (a, b) = (from.at.get(axis), to.at.get(axis));
+            // A start on the knot itself, to rounding, has passed it.
+            let slack = KNOT_SLACK * (b - a).abs();
+            let knot = if b > a {
+                breaks.get(breaks.partition_point(|t| *t <= a + slack)).filter(|t| **t < b)
+            } else {
+                let below = breaks.partition_point(|t| *t < a - slack);
+                below.checked_sub(1).map(|k| &breaks[k]).filter(|t| **t > b)
+            };
+            if let Some(t) = knot {
+                let share = (t - a) / (b - a);
+                if first.is_none_or(|f| share < f.0) {
+                    first = Some((share, axis, *t));
+                }
+            }
+        }
+        first.map(|f| (f.1, f.2))
     }
 
     /// Walks from the contact to the left (`sign = 1`) or right until the standoff exceeds the tolerance.
@@ -344,21 +403,48 @@ impl Undercut {
 
     /// Depth below the part, the minimum between places found by golden section over the two steps around it.
     fn deepest<M: SweptMotion>(&self, side: &Side<'_, M>) -> Result<f64, Degenerate> {
-        const RATIO: f64 = 0.618_033_988_749_894_9;
         let Some(a) = self.before_lowest else { return Ok((-self.lowest).max(0.0)) };
         let height = |x: f64| -> Result<f64, Degenerate> {
             let at = side.advance(&a.state, x)?.at;
             Ok(side.standoff(at, a.t)?.map_or(f64::INFINITY, |(r, _)| r.at_mm))
         };
-        let (mut lo, mut hi) = (0.0, 2.0 * side.step);
-        let mut lowest = self.lowest;
-        // A minimum's height is settled once its place is known to half of double precision's digits.
-        for _ in 0..40 {
-            let (x, y) = (hi - RATIO * (hi - lo), lo + RATIO * (hi - lo));
-            let (fx, fy) = (height(x)?, height(y)?);
-            lowest = lowest.min(fx).min(fy);
-            if fx < fy { hi = y } else { lo = x }
+        // Three places around the minimum, closed in on by parabolas, by halves where these stand still.
+        let mut x = [0.0, side.step, 2.0 * side.step];
+        let mut f = [a.height, height(x[1])?, height(x[2])?];
+        for round in 0..MOST_PARABOLAS {
+            let (da, dc) = (x[1] - x[0], x[1] - x[2]);
+            let (fa, fc) = (f[1] - f[0], f[1] - f[2]);
+            let bottom = da * fc - dc * fa;
+            let by = 0.5 * (da * da * fc - dc * dc * fa) / bottom;
+            let inside = bottom != 0.0 && x[1] - by > x[0] && x[1] - by < x[2];
+            // Every third step halves the longer side.
+            let new = if inside && round % 3 != 2 {
+                x[1] - by
+            } else if da > -dc {
+                x[1] - 0.5 * da
+            } else {
+                x[1] - 0.5 * dc
+            };
+            // A height is flat at its minimum: its place to half of double precision's digits is enough.
+            if (new - x[1]).abs() < 1e-7 * side.step {
+                break;
+            }
+            let g = height(new)?;
+            let above = new > x[1];
+            if g < f[1] {
+                if above {
+                    (x[0], f[0]) = (x[1], f[1]);
+                } else {
+                    (x[2], f[2]) = (x[1], f[1]);
+                }
+                (x[1], f[1]) = (new, g);
+            } else if above {
+                (x[2], f[2]) = (new, g);
+            } else {
+                (x[0], f[0]) = (new, g);
+            }
         }
+        let lowest = self.lowest.min(f[1]);
         Ok((-lowest).max(0.0))
     }
 }

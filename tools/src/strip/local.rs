@@ -161,6 +161,15 @@ pub(super) struct Near {
     pub bend: Option<f64>,
 }
 
+/// How the deepest instant is looked for.
+#[derive(Clone, Copy)]
+pub(super) struct Pace {
+    /// Longest step, in the motion's parameter.
+    pub step: f64,
+    /// How far above the minimum the entry may be left, mm.
+    pub settled_mm: f64,
+}
+
 /// Secant steps towards the deepest instant; more happen only where the cutter's outline has an edge there.
 const MAX_SECANTS: u32 = 8;
 
@@ -170,15 +179,15 @@ pub(super) fn deepest(
     line: &Line,
     motion: &impl SweptMotion,
     near: Near,
-    step: f64,
+    pace: Pace,
 ) -> Option<(Reach, Near)> {
     let found = if cutter.is_end_mill() && cutter.corner_mm() == 0.0 {
-        on_rim(cutter, line, motion, near, step)
+        on_rim(cutter, line, motion, near, pace)
     } else {
-        by_secants(cutter, line, motion, near, step)
+        by_secants(cutter, line, motion, near, pace)
     };
     found.or_else(|| {
-        let reach = reach_from(cutter, line, motion, near.t, step)?;
+        let reach = reach_from(cutter, line, motion, near.t, pace.step)?;
         Some((reach, Near { t: reach.t, bend: None }))
     })
 }
@@ -188,14 +197,13 @@ fn by_secants(
     line: &Line,
     motion: &impl SweptMotion,
     near: Near,
-    step: f64,
+    Pace { step, settled_mm: settled }: Pace,
 ) -> Option<(Reach, Near)> {
     let hit = |t: f64| match state(cutter, line, motion, t) {
         State::Hit { s, rate, .. } => Some((s, rate)),
         _ => None,
     };
     // Half the square of the rate over the bend is how far the entry lies above its minimum.
-    let settled = 1e-15 * cutter.radius_mm();
     let mut bend = near.bend;
     let mut t = near.t;
     let (mut s, mut rate) = hit(t)?;
@@ -229,7 +237,7 @@ fn on_rim(
     line: &Line,
     motion: &impl SweptMotion,
     near: Near,
-    step: f64,
+    Pace { step, settled_mm: settled }: Pace,
 ) -> Option<(Reach, Near)> {
     // How far outside the rim the line meets the plane of the bottom, and where.
     let outside = |t: f64| -> Option<(f64, f64)> {
@@ -241,7 +249,6 @@ fn on_rim(
         let s = (pose.tip - line.origin).dot(&pose.axis) / along;
         Some(((line.point(s) - pose.tip).norm() - cutter.radius_mm(), s))
     };
-    let settled = 1e-15 * cutter.radius_mm();
     let mut slope = near.bend;
     let mut t = near.t;
     let (mut f, mut s) = outside(t)?;

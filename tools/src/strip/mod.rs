@@ -6,10 +6,13 @@
 //! included. The strip reaches as far as this standoff stays at or below the tolerance. Nothing is expanded in the
 //! tolerance: the closed forms of strip width are approximations of this.
 
+mod chart;
 mod exact;
 mod local;
 mod mark;
+mod traced;
 
+pub use chart::{Chart, ChartError, Nearly, Within};
 pub use exact::{Strip, StripError, exact, standoff};
 pub use mark::{Mark, mark};
 

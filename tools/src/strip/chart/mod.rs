@@ -1,0 +1,362 @@
+//! Strips of many postures at one place, quickly and nearly: the surface around it tabulated once.
+//!
+//! Feed line and cross line of a contact are geodesics through one point, whatever the feed. A [`Chart`] follows geodesics
+//! from there in equally spaced directions and keeps point, normal and their derivatives along the way at equal distances.
+//! Lines in directions between are interpolated over six neighbours, places between nodes by Hermite's cubics. A strip on a
+//! chart then costs no evaluation of the surface.
+//!
+//! *Error.* [`Chart::error_mm`] is the largest deviation found midway between nodes of some rays, the normal's times the
+//! chart's radius: heights are off by about as much at most, the width by that over twice the tolerance, relative. Outside
+//! the surface's rectangle it goes on by its Taylor polynomial; strips end at the rectangle. For a final figure take
+//! [`super::exact`].
+
+mod posture;
+mod walk;
+
+pub use posture::{ChartError, Nearly, Within};
+
+use crate::contact::Lean;
+use crate::cutter::{Cutter, Line};
+use osculate_geom::geodesic::GeodesicState;
+use osculate_geom::{
+    Darboux, Degenerate, Domain, Forms, Jet2, Point3, Relative, Surface, Taylor, Unit3, Uv, Vec3, uv,
+};
+use std::cell::RefCell;
+use std::f64::consts::TAU;
+use std::rc::Rc;
+
+/// Directions, and nodes on each.
+const RAYS: usize = 36;
+const NODES: usize = 16;
+/// Every so manieth ray is looked at midway between nodes.
+const CHECKED: usize = 6;
+/// Point, normal, parameters and the derivatives of the first two along the ray.
+const PARTS: usize = 14;
+/// Rays that are kept: feed and both sides of several postures.
+const KEPT: usize = 8;
+/// Neighbours of a direction that are interpolated, and places before it.
+const NEIGHBOURS: usize = 6;
+const BEFORE: usize = 2;
+/// Most turn of the normal from node to node, rad, by the curvature at the place.
+const TURN: f64 = 0.25;
+/// Order of the continuation outside the rectangle.
+const BEYOND: usize = 4;
+
+/// A surface around a place.
+pub struct Chart {
+    /// Forms of the surface at the place.
+    pub forms: Forms,
+    centre: Point3,
+    at: Uv,
+    domain: Domain,
+    /// +1 where (S_u, S_v, n) is right-handed.
+    side: f64,
+    /// As far as it is tabulated, and as far as it is good.
+    radius: f64,
+    reach: f64,
+    /// Whether all of it lies in the surface's rectangle.
+    whole: bool,
+    error: f64,
+    /// By ray and node; the place itself, which all rays share, first.
+    table: Vec<[f64; PARTS]>,
+    /// The last rays made.
+    rays: RefCell<[Option<KeptRay>; KEPT]>,
+}
+
+/// The surface, beyond its rectangle by Taylor polynomials at the nearest place of it.
+struct Extended<'a>(&'a dyn Surface);
+
+impl Surface for Extended<'_> {
+    fn domain(&self) -> Domain {
+        self.0.domain()
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        let domain = self.0.domain();
+        if domain.contains(at) {
+            return self.0.jet2(at);
+        }
+        let edge = domain.bring(at);
+        let t = self.0.taylor(edge, BEYOND);
+        let (x, y) = (at.u - edge.u, at.v - edge.v);
+        let sum = |i: usize, j: usize| {
+            let mut total = Vec3::zeros();
+            for a in i..=t.order() {
+                for b in j..=t.order() - a {
+                    let steps = x.powi((a - i) as i32) * y.powi((b - j) as i32);
+                    total += t.derivative(a, b) * (steps / (factorial(a - i) * factorial(b - j)));
+                }
+            }
+            total
+        };
+        Jet2 {
+            uv: at,
+            point: sum(0, 0).into(),
+            du: sum(1, 0),
+            dv: sum(0, 1),
+            duu: sum(2, 0),
+            duv: sum(1, 1),
+            dvv: sum(0, 2),
+            side: t.side,
+        }
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        self.0.taylor(at, order)
+    }
+}
+
+fn factorial(n: usize) -> f64 {
+    (2..=n).map(|k| k as f64).product()
+}
+
+impl Chart {
+    /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm`; tabulated anew to 0.4 of the radius, three
+    /// times at most, where that is less than a third.
+    ///
+    /// # Errors
+    /// [`Degenerate`] without a tangent plane at the place.
+    pub fn new(surface: &dyn Surface, at: Uv, radius_mm: f64, tolerance_mm: f64) -> Result<Self, Degenerate> {
+        let p = surface.jet2(at).forms()?.principal();
+        let bend = p.k_max.abs().max(p.k_min.abs());
+        let mut radius = radius_mm.min(TURN * NODES as f64 / bend);
+        let mut chart = Self::of_radius(surface, at, radius, tolerance_mm)?;
+        for _ in 0..3 {
+            if 3.0 * chart.reach >= radius {
+                break;
+            }
+            radius *= 0.4;
+            chart = Self::of_radius(surface, at, radius, tolerance_mm)?;
+        }
+        Ok(chart)
+    }
+
+    /// Largest deviation found midway between nodes, mm.
+    #[must_use]
+    pub const fn error_mm(&self) -> f64 {
+        self.error
+    }
+
+    /// How far the chart reaches, mm.
+    #[must_use]
+    pub const fn radius_mm(&self) -> f64 {
+        self.reach
+    }
+
+    fn of_radius(surface: &dyn Surface, at: Uv, radius: f64, tolerance_mm: f64) -> Result<Self, Degenerate> {
+        let domain = surface.domain();
+        let extended = Extended(surface);
+        let jet = surface.jet2(at);
+        let forms = jet.forms()?;
+        let side = jet.side.sign();
+        let [e1, e2] = [forms.frame[0].into_inner(), forms.frame[1].into_inner() * side];
+        let step = radius / NODES as f64;
+        let mut table = vec![[0.0; PARTS]; RAYS * (NODES + 1)];
+        let mut halfway: Vec<(usize, usize, [f64; PARTS])> = Vec::with_capacity(RAYS / CHECKED * NODES);
+        let mut whole = true;
+        let mut lost = false;
+        for ray in 0..RAYS {
+            let (s, c) = (TAU * ray as f64 / RAYS as f64).sin_cos();
+            let mut state = GeodesicState::start(surface, at, &(e1 * c + e2 * s))?;
+            for node in 0..=NODES {
+                let jet_here = extended.jet2(state.at);
+                match parts(&jet, &jet_here, &forms, state) {
+                    Ok(values) => table[ray * (NODES + 1) + node] = values,
+                    Err(_) => lost = true,
+                }
+                whole &= domain.contains(state.at);
+                if node == NODES {
+                    break;
+                }
+                let next = if ray % CHECKED == 0 {
+                    state.step(&extended, 0.5 * step).and_then(|half| {
+                        let there = extended.jet2(half.at);
+                        halfway.push((ray, node, parts(&jet, &there, &forms, half)?));
+                        half.step(&extended, 0.5 * step)
+                    })
+                } else {
+                    state.step(&extended, step)
+                };
+                // A geodesic that meets a pole goes no further, and the error says so.
+                match next {
+                    Ok(next) => state = next,
+                    Err(_) => lost = true,
+                }
+            }
+        }
+        let mut chart = Self {
+            forms,
+            centre: jet.point,
+            at,
+            domain,
+            side,
+            radius,
+            reach: radius,
+            whole,
+            error: 0.0,
+            table,
+            rays: RefCell::new([const { None }; KEPT]),
+        };
+        let mut errors = [if lost { f64::INFINITY } else { 0.0f64 }; NODES];
+        for (ray, node, want) in halfway {
+            let (s, c) = (TAU * ray as f64 / RAYS as f64).sin_cos();
+            let got = chart.ray_of([c, s]).values((node as f64 + 0.5) / NODES as f64);
+            let off = |k: usize| (got[k] - want[k]).powi(2);
+            let way = step * (node + 1) as f64;
+            let height = (off(0) + off(1) + off(2)).sqrt() + way * (off(3) + off(4) + off(5)).sqrt();
+            errors[node] = if height.is_finite() { errors[node].max(height) } else { f64::INFINITY };
+        }
+        let good = errors.iter().position(|e| *e > tolerance_mm).unwrap_or(NODES);
+        chart.reach = step * good as f64;
+        chart.error = errors[..good].iter().copied().fold(0.0, f64::max);
+        Ok(chart)
+    }
+
+    /// Frame of the feed at an angle from S_u towards S_v.
+    #[must_use]
+    pub fn frame(&self, angle_rad: f64) -> Darboux {
+        let (s, c) = angle_rad.sin_cos();
+        let e2 = self.forms.frame[1].into_inner() * self.side;
+        let tangent = Unit3::new_normalize(self.forms.frame[0].into_inner() * c + e2 * s);
+        let left = Unit3::new_unchecked(self.forms.normal.cross(&tangent));
+        Darboux { point: self.centre, tangent, left, normal: self.forms.normal, turn: Vec3::zeros() }
+    }
+
+    /// The relative form of a posture.
+    #[must_use]
+    pub fn relative(&self, cutter: &Cutter, angle_rad: f64, lean: Lean) -> Relative {
+        Relative::new(&self.forms, &lean.tool_curvature(cutter, &self.frame(angle_rad)))
+    }
+
+    /// The line through the place in a direction, (cos, sin) of its angle from S_u towards S_v; the last ones are kept.
+    fn ray(&self, direction: [f64; 2]) -> Rc<Ray> {
+        let mut kept = self.rays.borrow_mut();
+        if let Some(k) = kept.iter().position(|r| r.as_ref().is_some_and(|r| r.0 == direction)) {
+            kept[..=k].rotate_right(1);
+        } else {
+            kept.rotate_right(1);
+            kept[0] = Some((direction, Rc::new(self.ray_of(direction))));
+        }
+        kept[0].as_ref().map_or_else(|| Rc::new(self.ray_of(direction)), |r| Rc::clone(&r.1))
+    }
+
+    fn ray_of(&self, [c, s]: [f64; 2]) -> Ray {
+        let mut nodes = [[0.0; PARTS]; 2 * NODES + 1];
+        for back in [true, false] {
+            let turn = if back { (-s).atan2(-c) } else { s.atan2(c) };
+            let x = turn.rem_euclid(TAU) / TAU * RAYS as f64;
+            let (low, share) = (x.floor(), x - x.floor());
+            let weights = lagrange(share);
+            for (k, weight) in weights.into_iter().enumerate() {
+                let ray = (low as usize + RAYS + k - BEFORE) % RAYS;
+                let from = &self.table[ray * (NODES + 1)..(ray + 1) * (NODES + 1)];
+                for (node, values) in from.iter().enumerate().skip(usize::from(back)) {
+                    let into = &mut nodes[if back { NODES - node } else { NODES + node }];
+                    for (i, v) in into.iter_mut().zip(values) {
+                        *i += weight * v;
+                    }
+                }
+            }
+        }
+        for node in &mut nodes[..NODES] {
+            // Behind the place the way runs against the ray.
+            for v in &mut node[DERIVATIVES..] {
+                *v = -*v;
+            }
+        }
+        let step = self.radius / NODES as f64;
+        for node in &mut nodes {
+            for v in &mut node[DERIVATIVES..] {
+                *v *= step;
+            }
+        }
+        Ray { nodes }
+    }
+
+    fn line(&self, ray: &Ray, q: f64) -> Line {
+        let v = ray.values(q / self.radius);
+        let normal = self.forms.normal.into_inner() + Vec3::new(v[3], v[4], v[5]);
+        Line { origin: self.centre + Vec3::new(v[0], v[1], v[2]), direction: Unit3::new_normalize(normal) }
+    }
+
+    fn inside(&self, ray: &Ray, q: f64) -> bool {
+        self.whole || {
+            let v = ray.values(q / self.radius);
+            self.domain.contains(uv(self.at.u + v[6], self.at.v + v[7]))
+        }
+    }
+}
+
+/// A ray by its direction.
+type KeptRay = ([f64; 2], Rc<Ray>);
+
+/// Where the derivatives begin among the parts.
+const DERIVATIVES: usize = 8;
+
+/// The parts of a node, less those of the place.
+fn parts(place: &Jet2, here: &Jet2, forms: &Forms, state: GeodesicState) -> Result<[f64; PARTS], Degenerate> {
+    let own = here.forms()?;
+    let tangent = here.tangent(state.rate);
+    // Weingarten: the normal turns with the frame.
+    let frame = Darboux::with_forms(here, &own, &tangent, 0.0);
+    let n_rate = frame.turn.cross(&own.normal);
+    let (x, n) = (here.point - place.point, own.normal.into_inner() - forms.normal.into_inner());
+    let (u, v) = (state.at.u - place.uv.u, state.at.v - place.uv.v);
+    let d = frame.tangent;
+    Ok([x.x, x.y, x.z, n.x, n.y, n.z, u, v, d.x, d.y, d.z, n_rate.x, n_rate.y, n_rate.z])
+}
+
+/// Weights of equally spaced neighbours for a place `share` behind the one with `BEFORE` others before it.
+fn lagrange(share: f64) -> [f64; NEIGHBOURS] {
+    let x = share + BEFORE as f64;
+    std::array::from_fn(|i| {
+        let others = (0..NEIGHBOURS).filter(|j| *j != i);
+        others.map(|j| (x - j as f64) / (i as f64 - j as f64)).product()
+    })
+}
+
+/// A line through the chart's centre by nodes, the centre in the middle; derivatives are per step of nodes.
+struct Ray {
+    nodes: [[f64; PARTS]; 2 * NODES + 1],
+}
+
+impl Ray {
+    /// The piece at `x` (length over the chart's radius) and the place in it from 0 to 1.
+    fn piece(&self, x: f64) -> (&[f64; PARTS], &[f64; PARTS], f64) {
+        let at = (x + 1.0) * NODES as f64;
+        let k = (at.floor().max(0.0) as usize).min(2 * NODES - 1);
+        (&self.nodes[k], &self.nodes[k + 1], at - k as f64)
+    }
+
+    /// Point, normal and parameters, less those of the place; parameters by chords.
+    fn values(&self, x: f64) -> [f64; DERIVATIVES] {
+        let (a, b, t) = self.piece(x);
+        let (u, tt) = (1.0 - t, t * t);
+        let (h1, h2, h3) = (tt * (3.0 - 2.0 * t), t * u * u, -tt * u);
+        let mut out = [0.0; DERIVATIVES];
+        for k in 0..6 {
+            let (da, db) = (a[DERIVATIVES + k], b[DERIVATIVES + k]);
+            out[k] = a[k] + (b[k] - a[k]) * h1 + da * h2 + db * h3;
+        }
+        for k in 6..DERIVATIVES {
+            out[k] = a[k] + (b[k] - a[k]) * t;
+        }
+        out
+    }
+
+    /// Point and normal with two derivatives of the one and one of the other, per step of nodes.
+    fn moving(&self, x: f64) -> ([f64; 6], [f64; 6], [f64; 3]) {
+        let (a, b, t) = self.piece(x);
+        let (mut p, mut d, mut dd) = ([0.0; 6], [0.0; 6], [0.0; 3]);
+        for k in 0..6 {
+            let (da, db) = (a[DERIVATIVES + k], b[DERIVATIVES + k]);
+            let rise = b[k] - a[k];
+            // a + t (da + t (c2 + t c3)).
+            let (c2, c3) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
+            p[k] = a[k] + t * (da + t * (c2 + t * c3));
+            d[k] = da + t * (2.0 * c2 + 3.0 * t * c3);
+            if k < 3 {
+                dd[k] = 2.0 * c2 + 6.0 * t * c3;
+            }
+        }
+        (p, d, dd)
+    }
+}

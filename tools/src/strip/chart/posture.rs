@@ -1,0 +1,215 @@
+//! Strip and tooth mark of one posture on a chart.
+
+use super::Chart;
+use super::walk::{ChartMotion, Profile, Side};
+use crate::contact::{ContactError, Lean};
+use crate::cutter::Cutter;
+use crate::strip::local::Pace;
+use osculate_geom::roots::{End, bracketed};
+use std::cell::Cell;
+
+/// What is asked of a strip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within {
+    /// Height that may be left, mm.
+    pub scallop_mm: f64,
+    /// Undercut that may stay; where the tool would dip deeper it is lifted by the rest, mm.
+    pub gouge_mm: f64,
+}
+
+/// A strip on a chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearly {
+    /// Width, mm.
+    pub width_mm: f64,
+    /// Undercut after the lift, mm.
+    pub undercut_mm: f64,
+    /// Lift, mm.
+    pub lift_mm: f64,
+}
+
+/// Why a chart has no strip.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ChartError {
+    /// The strip, or the instant at which the tool is deepest, lies outside the chart.
+    #[error("the strip reaches beyond the chart's radius of {radius_mm} mm")]
+    Beyond {
+        /// The chart's radius.
+        radius_mm: f64,
+    },
+    /// The tool stands above the tolerance at the contact.
+    #[error("at the contact the tool stands {standoff_mm} mm above the part")]
+    Above {
+        /// Standoff, mm.
+        standoff_mm: f64,
+    },
+    /// An impossible lean.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+}
+
+impl Chart {
+    /// How far along the feed the standing tool stays within `height_mm`: as [`super::mark`].
+    ///
+    /// # Errors
+    /// [`ChartError`].
+    pub fn mark_mm(
+        &self,
+        cutter: &Cutter,
+        angle_rad: f64,
+        lean: Lean,
+        height_mm: f64,
+    ) -> Result<f64, ChartError> {
+        let lean = lean.checked()?;
+        let (s, c) = angle_rad.sin_cos();
+        let pose = lean.pose(cutter, &self.frame(angle_rad), 0.0);
+        let ray = self.ray([c, s]);
+        let radius = cutter.radius_mm();
+        let excess = |t: f64| {
+            let entry = cutter.entry(&pose, &self.line(&ray, t));
+            entry.map_or(radius, |e| e.at_mm - height_mm)
+        };
+        let mut total = 0.0;
+        for sign in [1.0, -1.0] {
+            let mut near = 0.0;
+            let mut step = 0.02 * radius.min(self.reach);
+            let far = loop {
+                let next = near + step;
+                if next > self.reach {
+                    return Err(ChartError::Beyond { radius_mm: self.reach });
+                }
+                if excess(sign * next) > 0.0 {
+                    break next;
+                }
+                near = next;
+                step *= 1.6;
+            };
+            let ends = [near, far].map(|x| End { x, f: excess(sign * x) });
+            let first = End { f: ends[0].f.min(0.0), ..ends[0] };
+            total += bracketed(first, ends[1], 1e-4 * far, |t| excess(sign * t)).map_or(near, |r| r.x);
+        }
+        Ok(total)
+    }
+
+    /// The strip of a posture, its feed at `angle_rad` from S_u towards S_v.
+    ///
+    /// # Errors
+    /// [`ChartError`].
+    pub fn strip(
+        &self,
+        cutter: &Cutter,
+        angle_rad: f64,
+        lean: Lean,
+        within: Within,
+    ) -> Result<Nearly, ChartError> {
+        let lean = lean.checked()?;
+        let (s, c) = angle_rad.sin_cos();
+        let motion = ChartMotion {
+            chart: self,
+            feed: self.ray([c, s]),
+            lean,
+            arc: cutter.touching(lean.lead_rad),
+            beyond: Cell::new(false),
+        };
+        let q = self.relative(cutter, angle_rad, lean);
+        let frame = self.frame(angle_rad);
+        let (a, b) = (frame.left.dot(&q.d_min), frame.left.dot(&q.d_max));
+        let inverse = a * a / q.min + if q.max.is_finite() { b * b / q.max } else { 0.0 };
+        let radius = cutter.radius_mm();
+        let half = (2.0 * within.scallop_mm * inverse).sqrt();
+        let step = if q.min > 0.0 { (0.6 * half).min(0.2 * radius) } else { 0.15 * radius };
+        let side = Side {
+            motion: &motion,
+            cutter,
+            pace: Pace { step: 0.05 * radius, settled_mm: 2e-4 * within.scallop_mm },
+            h: within.scallop_mm,
+            step,
+            fits: q.min > 0.0,
+        };
+        // n x t in the chart's coordinates.
+        let left = self.ray([-s * self.side, c * self.side]);
+        let right = self.ray([s * self.side, -c * self.side]);
+        let mut profiles = [Profile::new(left), Profile::new(right)];
+        let mut undercut = 0.0f64;
+        for profile in &mut profiles {
+            side.walk(profile)?;
+            undercut = undercut.max(side.undercut(profile));
+        }
+        let lift = (undercut - within.gouge_mm).max(0.0);
+        let mut width = 0.0;
+        for profile in &profiles {
+            width += side.edge(profile, within.scallop_mm - lift)?;
+        }
+        if motion.beyond.get() {
+            return Err(ChartError::Beyond { radius_mm: self.reach });
+        }
+        Ok(Nearly { width_mm: width, undercut_mm: undercut - lift, lift_mm: lift })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Contact, FeedLine};
+    use crate::spec::CutterSpec;
+    use crate::strip::{exact, mark};
+    use osculate_geom::Flipped;
+    use osculate_geom::analytic::{Ellipsoid, Torus};
+    use osculate_geom::{Surface, uv};
+    use proptest::prelude::*;
+
+    fn toroidal(diameter_mm: f64, corner_radius_mm: f64) -> Cutter {
+        Cutter::try_from(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm: 80.0 }).unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        /// Width, undercut and mark are those of the exact strip to the error that the misfit allows.
+        #[test]
+        fn agrees_with_the_exact_strip(
+            fu in 0.0..1.0f64, fv in 0.2..0.8f64, angle in 0.0..6.3f64, lead in 0.05..0.5f64, tilt in -0.4..0.4f64,
+            hollow: bool
+        ) {
+            let ellipsoid = Ellipsoid::new([90.0, 60.0, 40.0]).unwrap();
+            let groove = Flipped(Torus::new(200.0, 60.0).unwrap());
+            let part: &dyn Surface = if hollow { &groove } else { &ellipsoid };
+            let at = part.domain().at(fu, if hollow { 0.4 + 0.2 * fv } else { fv });
+            let cutter = toroidal(12.0, 2.0);
+            let lean = Lean { lead_rad: lead, tilt_rad: tilt };
+            let h = 0.01;
+            let chart = Chart::new(part, at, 8.0, 1e-3 * h).unwrap();
+            prop_assert!(chart.error_mm() <= 1e-3 * h);
+            let contact = Contact::new(part, at, &cutter, FeedLine::Angle(angle), lean).unwrap();
+            let want = exact(&contact, h).unwrap();
+            // No lift: any undercut is accepted.
+            let got = chart.strip(&cutter, angle, lean, Within { scallop_mm: h, gouge_mm: 1.0 });
+            match got {
+                Ok(got) => {
+                    prop_assert!((got.width_mm / want.width_mm - 1.0).abs() < 2e-3, "{got:?} {want:?}");
+                    prop_assert!((got.undercut_mm - want.undercut_mm).abs() < 5e-3 * h, "{got:?} {want:?}");
+                }
+                Err(e) => prop_assert!(matches!(e, ChartError::Beyond { .. }) && want.width_mm > 6.0, "{e} {want:?}"),
+            }
+            let long = chart.mark_mm(&cutter, angle, lean, h).unwrap();
+            prop_assert!((long / mark(&contact, h).unwrap().length_mm() - 1.0).abs() < 2e-3);
+        }
+    }
+
+    /// With an accepted undercut the tool is lifted by the rest, and the strip is that of the lifted contact.
+    #[test]
+    fn lifts_what_dips() {
+        let groove = Flipped(Torus::new(200.0, 60.0).unwrap());
+        let at = uv(0.2, std::f64::consts::PI);
+        let cutter = toroidal(20.0, 2.0);
+        let angle = 0.0;
+        let lean = Lean { lead_rad: 0.122, tilt_rad: 0.0 };
+        let within = Within { scallop_mm: 0.01, gouge_mm: 1e-3 };
+        let got = Chart::new(&groove, at, 12.0, 1e-5).unwrap().strip(&cutter, angle, lean, within).unwrap();
+        assert!(got.lift_mm > 1e-4, "{got:?}");
+        let contact = Contact::new(&groove, at, &cutter, FeedLine::Angle(angle), lean).unwrap();
+        let want = exact(&contact.lifted(got.lift_mm), 0.01).unwrap();
+        assert!((want.undercut_mm - 1e-3).abs() < 1e-4, "{want:?}");
+        assert!((got.width_mm / want.width_mm - 1.0).abs() < 1e-2, "{got:?} {want:?}");
+    }
+}

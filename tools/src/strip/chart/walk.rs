@@ -1,0 +1,193 @@
+//! The contact motion on a chart, and the walk across the strip.
+
+use super::posture::ChartError;
+use super::{Chart, NODES, Ray};
+use crate::contact::Lean;
+use crate::cutter::Cutter;
+use crate::meridian::Arc;
+use crate::pose::Pose;
+use crate::strip::local::{Near, Pace, deepest};
+use crate::sweep::{Moving, SweptMotion};
+use osculate_geom::roots::{End, bracketed};
+use osculate_geom::{Unit3, Vec3};
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// The contact motion along a line of the chart.
+pub(super) struct ChartMotion<'a> {
+    pub chart: &'a Chart,
+    pub feed: Rc<Ray>,
+    pub lean: Lean,
+    pub arc: Arc,
+    /// Set when an instant outside the chart was asked for.
+    pub beyond: Cell<bool>,
+}
+
+impl SweptMotion for ChartMotion<'_> {
+    fn at(&self, t: f64) -> Option<Moving> {
+        let x = t / self.chart.radius;
+        if t.abs() > self.chart.reach {
+            self.beyond.set(true);
+            return None;
+        }
+        let (p, d, dd) = self.feed.moving(x);
+        let rate = NODES as f64 / self.chart.radius;
+        let point = self.chart.centre + Vec3::new(p[0], p[1], p[2]);
+        let velocity = Vec3::new(d[0], d[1], d[2]) * rate;
+        let speed = velocity.norm();
+        let tangent = velocity / speed;
+        let bend = Vec3::new(dd[0], dd[1], dd[2]) * (rate * rate / speed);
+        let tangent_rate = bend - tangent * tangent.dot(&bend);
+        let raw = self.chart.forms.normal.into_inner() + Vec3::new(p[3], p[4], p[5]);
+        let length = raw.norm();
+        let n = raw / length;
+        let turn = Vec3::new(d[3], d[4], d[5]) * (rate / length);
+        let n_rate = turn - n * n.dot(&turn);
+        let (left, left_rate) = (n.cross(&tangent), n_rate.cross(&tangent) + n.cross(&tangent_rate));
+        let (s, c) = self.lean.tilt_rad.sin_cos();
+        let (heading, heading_rate) = (tangent * c + left * s, tangent_rate * c + left_rate * s);
+        let (s, c) = self.lean.lead_rad.sin_cos();
+        let (axis, axis_rate) = (n * c + heading * s, n_rate * c + heading_rate * s);
+        let sign = if s < 0.0 { -1.0 } else { 1.0 };
+        let (low, low_rate) = ((heading * c - n * s) * sign, (heading_rate * c - n_rate * s) * sign);
+        let Arc { radius_mm, centre_rho_mm, centre_z_mm, .. } = self.arc;
+        let tip = point + n * radius_mm - low * centre_rho_mm - axis * centre_z_mm;
+        let tip_rate = velocity + n_rate * radius_mm - low_rate * centre_rho_mm - axis_rate * centre_z_mm;
+        Some(Moving {
+            pose: Pose { tip, axis: Unit3::new_normalize(axis) },
+            tip_rate,
+            turn: axis.cross(&axis_rate),
+        })
+    }
+}
+
+/// Most places of a profile.
+const PLACES: usize = 40;
+
+/// Heights along one side, until they exceed the tolerance.
+pub(super) struct Profile {
+    ray: Rc<Ray>,
+    places: [(f64, f64, Near); PLACES],
+    count: usize,
+    at_edge: bool,
+}
+
+impl Profile {
+    pub(super) fn new(ray: Rc<Ray>) -> Self {
+        let places = [(0.0, 0.0, Near { t: 0.0, bend: None }); PLACES];
+        Self { ray, places, count: 0, at_edge: false }
+    }
+
+    fn seen(&self) -> &[(f64, f64, Near)] {
+        &self.places[..self.count]
+    }
+}
+
+pub(super) struct Side<'a> {
+    pub motion: &'a ChartMotion<'a>,
+    pub cutter: &'a Cutter,
+    pub pace: Pace,
+    pub h: f64,
+    pub step: f64,
+    /// Whether Q is positive definite.
+    pub fits: bool,
+}
+
+impl Side<'_> {
+    fn height(&self, ray: &Ray, q: f64, near: Near) -> (f64, Near) {
+        let line = self.motion.chart.line(ray, q);
+        // A tool that does not pass over the place stands above it by more than any tolerance.
+        deepest(self.cutter, &line, self.motion, near, self.pace)
+            .map_or((self.cutter.radius_mm(), near), |(reach, near)| (reach.at_mm, near))
+    }
+
+    pub(super) fn walk(&self, profile: &mut Profile) -> Result<(), ChartError> {
+        let chart = self.motion.chart;
+        let (mut q, mut near, mut step) = (0.0, Near { t: 0.0, bend: None }, self.step);
+        while profile.count < PLACES {
+            // A tool that fits touches where it is.
+            let touches = profile.count == 0 && self.fits;
+            let (f, found) = if touches { (0.0, near) } else { self.height(&profile.ray, q, near) };
+            if self.motion.beyond.get() {
+                return Err(ChartError::Beyond { radius_mm: chart.reach });
+            }
+            near = found;
+            profile.places[profile.count] = (q, f, near);
+            profile.count += 1;
+            if profile.count == 1 && f > self.h {
+                return Err(ChartError::Above { standoff_mm: f });
+            }
+            if f > self.h || profile.at_edge {
+                return Ok(());
+            }
+            if q + step > chart.reach {
+                return Err(ChartError::Beyond { radius_mm: chart.reach });
+            }
+            if !chart.inside(&profile.ray, q + step) {
+                // Bisection to a thousandth of the step.
+                let (mut lo, mut hi) = (0.0, step);
+                for _ in 0..10 {
+                    let m = 0.5 * (lo + hi);
+                    if chart.inside(&profile.ray, q + m) { lo = m } else { hi = m }
+                }
+                step = lo;
+                profile.at_edge = true;
+            }
+            q += step;
+        }
+        Err(ChartError::Beyond { radius_mm: chart.reach })
+    }
+
+    /// Depth below the part: the lowest place, and the parabola through it and its neighbours.
+    pub(super) fn undercut(&self, profile: &Profile) -> f64 {
+        let seen = profile.seen();
+        let Some((k, _)) = seen.iter().enumerate().min_by(|a, b| a.1.1.total_cmp(&b.1.1)) else { return 0.0 };
+        let mut lowest = seen[k].1;
+        if k > 0 && k + 1 < seen.len() {
+            let [mut a, mut b, mut c] = [seen[k - 1], seen[k], seen[k + 1]];
+            for _ in 0..3 {
+                let (da, dc) = (b.0 - a.0, b.0 - c.0);
+                let (fa, fc) = (b.1 - a.1, b.1 - c.1);
+                let bottom = da * fc - dc * fa;
+                if bottom == 0.0 {
+                    break;
+                }
+                let x = b.0 - 0.5 * (da * da * fc - dc * dc * fa) / bottom;
+                if !(x > a.0 && x < c.0) || (x - b.0).abs() < 1e-3 * self.step {
+                    break;
+                }
+                let (f, near) = self.height(&profile.ray, x, b.2);
+                lowest = lowest.min(f);
+                let new = (x, f, near);
+                if f < b.1 {
+                    if x > b.0 {
+                        a = b
+                    } else {
+                        c = b
+                    }
+                    b = new;
+                } else if x > b.0 {
+                    c = new;
+                } else {
+                    a = new;
+                }
+            }
+        }
+        (-lowest).max(0.0)
+    }
+
+    /// Where the profile first exceeds the height.
+    pub(super) fn edge(&self, profile: &Profile, height: f64) -> Result<f64, ChartError> {
+        let seen = profile.seen();
+        let Some(k) = seen.iter().position(|p| p.1 > height) else {
+            return Ok(seen.last().map_or(0.0, |p| p.0));
+        };
+        if k == 0 {
+            return Err(ChartError::Above { standoff_mm: seen[0].1 + self.h - height });
+        }
+        let (a, b) = (seen[k - 1], seen[k]);
+        let ends = [End { x: a.0, f: a.1 - height }, End { x: b.0, f: b.1 - height }];
+        let root = bracketed(ends[0], ends[1], 1e-4 * b.0, |q| self.height(&profile.ray, q, a.2).0 - height);
+        Ok(root.map_or(a.0, |r| r.x))
+    }
+}
