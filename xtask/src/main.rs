@@ -35,6 +35,7 @@ usage: cargo xtask COMMAND
   reference [--data FOLDER]
                 the kernel against reference vectors and samples to 1e-12 and 1e-9
   papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
+  papers d98    docs/papers/d98.md: the values, errata and figures of D98, ours beside theirs
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         ["reference", rest @ ..] => example("reference", rest),
         ["truth", rest @ ..] => example("truth", rest),
         ["papers", "z17"] => postproc_example("z17", &["docs/papers"]),
+        ["papers", "d98"] => d98(),
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),
         ["interop", "occt", rest @ ..] => interop::occt(rest),
@@ -85,6 +87,12 @@ fn example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
 fn postproc_example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
     let example = ["run", "--locked", "-p", "osculate-postproc", "--example", name, "--"];
     cmd::run(cmd::cargo(&cmd::root()?, &[&example, rest].concat()))
+}
+
+/// Runs the study of side milling, an example of the tools.
+fn d98() -> Result<(), cmd::Failure> {
+    let example = ["run", "--locked", "-p", "osculate-tools", "--example", "d98", "--", "docs/papers"];
+    cmd::run(cmd::cargo(&cmd::root()?, &example))
 }
 
 fn wrong_usage(why: &str) -> ExitCode {
