@@ -158,6 +158,9 @@ pub struct PostArgs {
     /// The largest rise of F from block to block, for --feed kz, mm/min.
     #[arg(long)]
     pub kz_step: Option<f64>,
+    /// Put the moves into a subprogram that the main program calls (sinumerik).
+    #[arg(long)]
+    pub subprogram: bool,
     /// Where the tool points, in words: rotary joints, directions (A3= B3= C3=, TX TY TZ, I J K), or a tilted plane per
     /// position (CYCLE800, PLANE SPATIAL, G68.2).
     #[arg(long, value_parser = ["joints", "vectors", "planes"], default_value = "joints")]

@@ -101,7 +101,7 @@ fn main() -> io::Result<()> {
             each_line(&nc, |line| names.line(line)).expect("reads");
             let mut clock = Clock::new(&names, &machine, &setup, true).expect("a setup");
             each_line(&nc, |line| clock.line(line).expect("our own words")).expect("reads");
-            clock.finish()
+            clock.finish().expect("a whole program")
         });
         let mut points = 0;
         step("read back to the tool's way, from NC file", || {

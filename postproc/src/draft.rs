@@ -9,7 +9,7 @@ use crate::machine::{JointValues, Machine};
 use crate::motion::rapid_time_min;
 use crate::nc::orientation::{plane, plane_counts, vector_counts};
 use crate::nc::{Dialect, NcMove, Orientation, Program, number};
-use crate::post::{PostError, PostOptions};
+use crate::post::{PostError, PostOptions, linear_decimals};
 use crate::setup::Setup;
 
 /// Moves being made from joints, with what is counted on the way.
@@ -17,6 +17,7 @@ pub(crate) struct Draft<'a> {
     machine: &'a Machine,
     setup: &'a Setup,
     options: &'a PostOptions,
+    linear_decimals: [usize; 3],
     /// Blocks that a joint's speed made longer, per joint.
     slowed: Vec<usize>,
     /// Blocks whose F would not have fitted the control's format.
@@ -39,6 +40,7 @@ impl<'a> Draft<'a> {
             machine,
             setup,
             options,
+            linear_decimals: linear_decimals(machine, options.feed == FeedMode::Tcp),
             slowed: vec![0; machine.joints().len()],
             limited: 0,
             time_min: 0.0,
@@ -129,12 +131,13 @@ impl<'a> Draft<'a> {
             }
         };
         let mut linear = [0; 3];
-        for (to, value) in linear.iter_mut().zip(xyz) {
-            *to = counts(value)?;
+        for ((to, value), decimals) in linear.iter_mut().zip(xyz).zip(self.linear_decimals) {
+            *to = number::to_decimals(counts(value)?, decimals);
         }
         let mut rotary = [0; 2];
         for (to, place) in rotary.iter_mut().zip(self.machine.rotary()) {
-            *to = counts(block.joints[*place].to_degrees())?;
+            let decimals = self.machine.joints()[*place].decimals;
+            *to = number::to_decimals(counts(block.joints[*place].to_degrees())?, decimals);
         }
         Ok(NcMove { rapid: block.motion == Motion::Rapid, linear, rotary, orientation, feed: 0.0 })
     }

@@ -27,6 +27,8 @@ pub struct PostOptions {
     pub feed: FeedMode,
     /// How the program says where the tool points; other than by joints only with [`FeedMode::Tcp`].
     pub orientation: Orientation,
+    /// The moves stand in a subprogram that the main program calls (Sinumerik).
+    pub subprogram: bool,
     /// Tolerances and what else the kinematics need. Its `tcp` is not read: the feed mode says it.
     pub solve: SolveOptions,
     /// Name of the program.
@@ -45,6 +47,7 @@ impl PostOptions {
             dialect,
             feed,
             orientation: Orientation::Joints,
+            subprogram: false,
             solve: SolveOptions::default(),
             program_name: "OSCULATE".into(),
             tool_number: 1,
@@ -227,6 +230,7 @@ where
         name: options.program_name.clone(),
         comments: comments(machine, setup, (tcp, planes)),
         tcp: tcp && !planes,
+        subprogram: options.subprogram,
         linuxcnc_tcp: machine.control().linuxcnc_tcp.clone(),
         tool_number: options.tool_number,
         spindle_rpm,
@@ -237,6 +241,7 @@ where
         } else {
             machine.linear().map(|p| machine.joints()[p].letter.clone())
         },
+        linear_decimals: linear_decimals(machine, tcp),
         rotary_names: machine.rotary().iter().map(|p| rotary_name(machine, *p)).collect(),
     };
     let mut writer = Writer::new(options.dialect, &program)?;
@@ -328,9 +333,20 @@ fn feed_word(options: &PostOptions, machine: &Machine) -> FeedWord {
     }
 }
 
+/// Decimals of the linear words: of the joints, or of those called X, Y, Z where the words are the tip's.
+pub(crate) fn linear_decimals(machine: &Machine, of_tip: bool) -> [usize; 3] {
+    let joints = machine.joints();
+    let own = machine.linear().map(|p| joints[p].decimals);
+    if !of_tip {
+        return own;
+    }
+    let finest = own.into_iter().fold(1, usize::max);
+    ["X", "Y", "Z"].map(|name| machine.joint_named(name).map_or(finest, |p| joints[p].decimals))
+}
+
 fn rotary_name(machine: &Machine, place: usize) -> RotaryName {
     let joint = &machine.joints()[place];
-    RotaryName { letter: joint.letter.clone(), endless: joint.is_endless() }
+    RotaryName { letter: joint.letter.clone(), endless: joint.is_endless(), decimals: joint.decimals }
 }
 
 fn comments(machine: &Machine, setup: &Setup, (tcp, planes): (bool, bool)) -> Vec<String> {

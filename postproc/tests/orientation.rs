@@ -220,3 +220,65 @@ fn great_circles() {
     assert!(off(text) < 1e-9, "{}", off(text));
     assert!(off(&text.replace("ORIVECT", "ORIAXES")) > 0.05);
 }
+
+/// The moves in a subprogram: an archive that reads back like the plain program, with all its lines in order.
+#[test]
+fn subprograms() {
+    let (path, setup) = (wave(40, 0.3), Setup::at(Vec3::new(12.0, -7.0, 30.0), 90.0));
+    let machine = Machine::built_in("trunnion-ac").expect("built in");
+    let plain = PostOptions::new(Dialect::Sinumerik, FeedMode::InverseTime);
+    let split = PostOptions { subprogram: true, program_name: "part 7".into(), ..plain.clone() };
+    let one = post(&path, &machine, &setup, &plain).expect("posts");
+    let two = post(&path, &machine, &setup, &split).expect("posts");
+    let text = &two.text;
+    assert!(text.starts_with("%_N_PART_7_MPF\n") && text.ends_with(" M17\n"), "{text}");
+    assert!(
+        text.find("PART_7_WAY\n") < text.find("M30\n")
+            && text.find("M30\n") < text.find("%_N_PART_7_WAY_SPF\n")
+    );
+    let options = ReadOptions::default();
+    let all = |text: &str| read(text, Dialect::Sinumerik, &machine, &setup, &options);
+    let (a, b) = (all(&one.text).expect("reads"), all(text).expect("reads"));
+    assert_eq!((a.cl_path(), a.blocks.len()), (b.cl_path(), b.blocks.len()));
+    let timed = |text: &str| {
+        osculate_postproc::nc::timing::time(text, Dialect::Sinumerik, &machine, &setup, true)
+            .expect("times")
+            .time
+    };
+    assert_eq!(timed(&one.text), timed(text));
+    let lost = text.replace("%_N_PART_7_WAY_SPF", "%_N_OTHER_SPF");
+    let e = all(&lost).expect_err("a call of nothing");
+    assert!(e.to_string().contains("PART_7_WAY"), "{e}");
+    let e = post(&path, &machine, &setup, &PostOptions { dialect: Dialect::Fanuc, ..split })
+        .expect_err("one program");
+    assert!(e.to_string().contains("sinumerik"), "{e}");
+}
+
+/// Decimals are data of the machine file.
+#[test]
+fn decimals_of_the_machine() {
+    let text = include_str!("../machines/trunnion-ac.toml");
+    let coarse = text.replace("max_jerk_mm_s3 = 50000", "max_jerk_mm_s3 = 50000\ndecimals = 3");
+    let coarse = coarse.replace("max_jerk_deg_s3 = 20000", "max_jerk_deg_s3 = 20000\ndecimals = 2");
+    let machine = Machine::from_toml(&coarse).expect("a machine");
+    let (path, setup) = (wave(20, 0.3), Setup::default());
+    for (dialect, feed) in
+        [(Dialect::Sinumerik, FeedMode::Tcp), (Dialect::Heidenhain, FeedMode::Kv { fgref_mm: None })]
+    {
+        let posted = post(&path, &machine, &setup, &PostOptions::new(dialect, feed)).expect("posts");
+        let decimals = |letter: char| -> Vec<usize> {
+            let way =
+                posted.text.lines().skip_while(|l| !l.contains("CYCLE832") && !l.contains("CYCL DEF 32.2"));
+            let words = way.skip(1).filter(|l| !l.contains("M91")).flat_map(str::split_whitespace);
+            let own = words.filter(|w| w.starts_with(letter) && w.contains('.'));
+            own.map(|w| w.trim_end_matches(')').len() - w.find('.').map_or(0, |at| at + 1)).collect()
+        };
+        assert!(decimals('X').iter().all(|d| *d == 3) && decimals('X').len() > 3, "{}", posted.text);
+        assert!(decimals('C').iter().all(|d| *d == 2) && decimals('A').iter().all(|d| *d == 4));
+        let back = read(&posted.text, dialect, &machine, &setup, &ReadOptions::default()).expect("reads");
+        let rad = 0.5e-2f64.to_radians() + 0.5e-4f64.to_radians();
+        meets(&path, &back, (0.5e-3 * 3f64.sqrt() + 60.0 * rad, rad), "coarse");
+    }
+    let e = Machine::from_toml(&coarse.replace("decimals = 2", "decimals = 0")).expect_err("no decimals");
+    assert!(e.to_string().contains("from 1 to 4"), "{e}");
+}

@@ -24,6 +24,7 @@ fn linear(letter: &str, direction: [f64; 3], side: CarriedSide) -> JointSpec {
         max_velocity_mm_s: 1e5,
         max_acceleration_mm_s2: 1e6,
         max_jerk_mm_s3: None,
+        decimals: 4,
     }
 }
 
@@ -39,6 +40,7 @@ fn rotary(letter: &str, direction: Unit3, side: CarriedSide, sense: Sense) -> Jo
         max_velocity_deg_s: 1e6,
         max_acceleration_deg_s2: 1e7,
         max_jerk_deg_s3: None,
+        decimals: 4,
     }
 }
 

@@ -6,6 +6,7 @@ use crate::render::{self, Table};
 use osculate_postproc::machine::spec::CarriedSide;
 use osculate_postproc::machine::{Joint, JointKind};
 use osculate_postproc::nc::Dialect;
+use osculate_postproc::nc::reading::FeedRow;
 use osculate_postproc::{Machine, built_in_names};
 use serde::Serialize;
 
@@ -72,21 +73,30 @@ fn chain(m: &Machine) -> String {
 
 /// Runs `dialects`.
 pub fn dialects(json: bool) -> Outcome {
-    let rows: Vec<[&str; 2]> = Dialect::ALL.iter().map(|d| [d.name(), d.extension()]).collect();
     if json {
-        render::json(
-            &rows
-                .iter()
-                .map(|[name, extension]| serde_json::json!({ "name": name, "extension": extension }))
-                .collect::<Vec<_>>(),
-        )?;
+        let feed = |d: Dialect| -> Vec<_> {
+            let row = |r: &FeedRow| serde_json::json!({ "words": r.words, "meaning": r.meaning, "source": r.source });
+            d.feed_rows().iter().map(row).collect()
+        };
+        let one =
+            |d: Dialect| serde_json::json!({ "name": d.name(), "extension": d.extension(), "feed": feed(d) });
+        render::json(&Dialect::ALL.map(one))?;
         return Ok(Done::Yes);
     }
-    let mut t = Table::new(["dialect", "extension"]);
-    for [name, extension] in rows {
-        t.row([name.to_owned(), extension.to_owned()]);
+    for d in Dialect::ALL {
+        let mut t = Table::new(["words", "F is"]);
+        let mut sources: Vec<&str> = Vec::new();
+        for r in d.feed_rows() {
+            t.row([r.words.to_owned(), r.meaning.to_owned()]);
+            if !sources.contains(&r.source) {
+                sources.push(r.source);
+            }
+        }
+        render::text(&format!("\n{} (.{})\n{}\n", d.name(), d.extension(), t.render()));
+        for source in sources {
+            render::text(&format!("  {source}\n"));
+        }
     }
-    render::text(&format!("\n{}\n", t.render()));
     Ok(Done::Yes)
 }
 

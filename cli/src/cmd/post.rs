@@ -85,8 +85,12 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
         "planes" => Orientation::Planes,
         _ => Orientation::Joints,
     };
-    let options =
-        PostOptions { spindle_rpm: head.spindle_rpm(), orientation, ..nc::post_options(&control, &name) };
+    let options = PostOptions {
+        spindle_rpm: head.spindle_rpm(),
+        orientation,
+        subprogram: args.subprogram,
+        ..nc::post_options(&control, &name)
+    };
     let posted = output::stream(&args.out, |file| {
         post_from(&cl, &control.machine, &setup, &options, file).map_err(|e| {
             let place = e.index().and_then(|i| cl.locate(&[i]).ok()?.pop());

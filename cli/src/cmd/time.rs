@@ -37,7 +37,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     let here = |e| Failure::file(file, e);
     let mut clock = Clock::new(&names, &machine, &setup, args.strict).map_err(here)?;
     each_line(file, |line| clock.line(line).map_err(here))?;
-    let timed = clock.finish();
+    let timed = clock.finish().map_err(here)?;
     let t = &timed.time;
     let answer = Answer {
         time_min: t.time_min(),

@@ -49,6 +49,8 @@ pub struct Joint {
     pub letter: String,
     /// Slide or rotary axis.
     pub kind: JointKind,
+    /// Decimals of its positions in NC programs.
+    pub decimals: usize,
     /// What it carries.
     pub side: CarriedSide,
     /// Direction of positive values, tool relative to part (the sense is already applied).

@@ -303,6 +303,14 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
             1f64.to_radians(),
         ),
     };
+    let decimals = match *spec {
+        JointSpec::Linear { decimals, .. } | JointSpec::Rotary { decimals, .. } => decimals,
+    };
+    // Without a decimal some controls read a number in their smallest unit.
+    if !(1..=4).contains(&decimals) {
+        let (what, value) = ("decimals", f64::from(decimals));
+        return Err(MachineError::Value { whose, what, value, wanted: "from 1 to 4" });
+    }
     limits(&whose, min, max)?;
     if let Some(bad) = point.into_iter().find(|c| !c.is_finite()) {
         return Err(MachineError::Value {
@@ -315,6 +323,7 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
     Ok(Joint {
         letter: letter.clone(),
         kind,
+        decimals: usize::from(decimals),
         side,
         direction,
         point: Point3::from(point),

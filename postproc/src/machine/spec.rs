@@ -60,6 +60,9 @@ pub enum JointSpec {
         max_acceleration_mm_s2: f64,
         /// Greatest jerk; absent: acceleration may step.
         max_jerk_mm_s3: Option<f64>,
+        /// Decimals of its positions in NC programs, 1 to 4.
+        #[serde(default = "default_decimals")]
+        decimals: u8,
     },
     /// A rotary axis.
     Rotary {
@@ -85,6 +88,9 @@ pub enum JointSpec {
         max_acceleration_deg_s2: f64,
         /// Greatest jerk; absent: acceleration may step.
         max_jerk_deg_s3: Option<f64>,
+        /// Decimals of its positions in NC programs, 1 to 4.
+        #[serde(default = "default_decimals")]
+        decimals: u8,
     },
 }
 
@@ -127,6 +133,11 @@ pub struct ControlSpec {
     pub max_path_velocity_mm_s: Option<f64>,
     /// LinuxCNC's kinematics switch, where this machine has one.
     pub linuxcnc_tcp: Option<TcpWords>,
+}
+
+/// A tenth of a micrometre, or of a thousandth of a degree.
+const fn default_decimals() -> u8 {
+    4
 }
 
 /// Five digits before the point, which every control of the last decades takes.

@@ -193,6 +193,7 @@ fn random_machine() -> impl Strategy<Value = Machine> {
                     max_velocity_deg_s: 100.0,
                     max_acceleration_deg_s2: 1000.0,
                     max_jerk_deg_s3: None,
+                    decimals: 4,
                 };
             let linear = |letter: &str, direction: [f64; 3]| JointSpec::Linear {
                 letter: letter.into(),
@@ -204,6 +205,7 @@ fn random_machine() -> impl Strategy<Value = Machine> {
                 max_velocity_mm_s: 100.0,
                 max_acceleration_mm_s2: 1000.0,
                 max_jerk_mm_s3: None,
+                decimals: 4,
             };
             let slides =
                 [linear("X", [1.0, 0.0, 0.0]), linear("Y", [0.0, 1.0, 0.0]), linear("Z", [0.0, 0.0, 1.0])];

@@ -36,6 +36,8 @@ pub struct RotaryName {
     pub letter: String,
     /// It turns without end.
     pub endless: bool,
+    /// Decimals of its positions.
+    pub decimals: usize,
 }
 
 /// What stands around the moves of a program, and how they are worded.
@@ -51,6 +53,8 @@ pub struct Program {
     pub orientation: Orientation,
     /// LinuxCNC's kinematics switch of this machine.
     pub linuxcnc_tcp: Option<TcpWords>,
+    /// The moves stand in a subprogram of their own.
+    pub subprogram: bool,
     /// Tool in the spindle.
     pub tool_number: u32,
     /// Spindle speed, clockwise; `None` leaves the spindle alone.
@@ -61,6 +65,8 @@ pub struct Program {
     pub blend_mm: f64,
     /// Names of the linear words.
     pub linear_names: [String; 3],
+    /// Decimals of the linear words.
+    pub linear_decimals: [usize; 3],
     /// Names of the rotary words, outer first.
     pub rotary_names: Vec<RotaryName>,
 }
@@ -91,6 +97,12 @@ pub enum WriteError {
         dialect: &'static str,
         /// What it lacks.
         what: &'static str,
+    },
+    /// No subprograms.
+    #[error("{dialect} programs are written as one: subprograms are for sinumerik")]
+    Subprogram {
+        /// The dialect.
+        dialect: &'static str,
     },
     /// No switch for tool-centre-point control.
     #[error(

@@ -9,7 +9,7 @@
 //! - F in G94 is read over all axes, a degree as a mm. G93 wants F in every block.
 
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
-use super::modal::{Modal, Which, Wording, in_turn, plain};
+use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
 use super::writer::Lines;
 
@@ -17,7 +17,7 @@ pub(super) const WORDING: Wording =
     Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary, vector: (["I", "J", "K"], false) };
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
-    plain(text, &name.letter, if name.endless { in_turn(counts) } else { counts });
+    plain(text, &name.letter, Position::of(name, counts));
 }
 
 pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteError> {

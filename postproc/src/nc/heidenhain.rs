@@ -9,7 +9,7 @@
 //! - `M126` makes endless axes take the shortest way. There is no inverse time feed. `M91` is machine coordinates.
 
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
-use super::modal::{Modal, Which, Wording, in_turn};
+use super::modal::{Modal, Position, Which, Wording};
 use super::number;
 use super::writer::Lines;
 
@@ -19,16 +19,16 @@ pub(super) const WORDING: Wording =
 /// Lines that say the direction of the tool.
 pub(super) const DIRECTED: Wording = Wording { rapid: "LN", feed: "LN", ..WORDING };
 
-fn axis(text: &mut String, name: &str, counts: i64) {
+fn axis(text: &mut String, name: &str, position: Position) {
     text.push_str(name);
-    if counts >= 0 {
+    if position.counts >= 0 {
         text.push('+');
     }
-    number::push_fixed(text, counts);
+    number::push_rounded(text, position.counts, position.decimals);
 }
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
-    axis(text, &name.letter, if name.endless { in_turn(counts) } else { counts });
+    axis(text, &name.letter, Position::of(name, counts));
 }
 
 pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
@@ -79,7 +79,7 @@ fn plane(m: &NcMove) -> String {
     let mut text = String::from("PLANE SPATIAL");
     for (name, c) in ["SPA", "SPB", "SPC"].iter().zip(m.orientation) {
         text.push(' ');
-        axis(&mut text, name, c);
+        axis(&mut text, name, Position { counts: c, decimals: number::DECIMALS });
     }
     text + " STAY"
 }

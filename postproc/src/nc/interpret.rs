@@ -10,6 +10,7 @@ use osculate_geom::{Diagnostic, Unit3, Vec3};
 use super::Dialect;
 use super::event::{Event, FeedNow, Frame, Moved, Sink};
 use super::readback::ReadError;
+use super::sections::Sections;
 use super::state::{FeedReading, Known, State};
 use super::token::{BadWord, Manner, Word, words};
 use super::way::{Arc, ArcWords, Way};
@@ -32,6 +33,7 @@ pub(super) struct Interpreter<'a, S> {
     pub diagnostics: Vec<Diagnostic>,
     pub spindle_rpm: Option<f64>,
     unlisted: usize,
+    pub(super) sections: Sections,
     /// The sink knows where the machine stands.
     placed: bool,
 }
@@ -91,12 +93,13 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             diagnostics: Vec::new(),
             spindle_rpm: None,
             unlisted: 0,
+            sections: Sections::default(),
             placed: false,
         }
     }
 
     /// Works through one line, counted from 1; true at the end of the program.
-    pub fn text_line(&mut self, number: usize, line: &str) -> Result<bool, ReadError> {
+    pub(super) fn program_line(&mut self, number: usize, line: &str) -> Result<bool, ReadError> {
         let line = if number == 1 { line.trim_start_matches('\u{feff}') } else { line };
         match words(line, self.dialect) {
             Ok(words) => self.line(number, &words),
@@ -109,12 +112,14 @@ impl<'a, S: Sink> Interpreter<'a, S> {
     }
 
     /// The end of the text: what was only counted is said.
-    pub fn end(&mut self) {
+    pub fn end(&mut self) -> Result<(), ReadError> {
+        self.close_sections()?;
         self.tell(&Event::Halt);
         if self.unlisted > 0 {
             let text = format!("{} more words are not interpreted", self.unlisted);
             self.diagnostics.push(Diagnostic::loss("program", text));
         }
+        Ok(())
     }
 
     /// An axis that the text never names stays where it is; it is taken to be at zero, and the reader says so.

@@ -7,7 +7,7 @@
 //! - `G64 P` bounds how far blending may leave the programmed corner. `G53` moves in machine coordinates.
 
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
-use super::modal::{Modal, Which, Wording, plain};
+use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
 use super::orientation::Orientation;
 use super::writer::Lines;
@@ -16,7 +16,7 @@ pub(super) const WORDING: Wording =
     Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary, vector: (["", "", ""], false) };
 
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
-    plain(text, &name.letter, counts);
+    plain(text, &name.letter, Position { counts, decimals: name.decimals });
 }
 
 pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteError> {

@@ -12,6 +12,8 @@ mod modal;
 pub mod number;
 pub mod orientation;
 pub mod readback;
+pub mod reading;
+mod sections;
 mod sinumerik;
 mod state;
 pub mod timing;

@@ -13,11 +13,26 @@ pub(super) struct Wording {
     /// The two words above hold until changed.
     pub modal: bool,
     /// A position word.
-    pub axis: fn(text: &mut String, name: &str, counts: i64),
+    pub axis: fn(text: &mut String, name: &str, position: Position),
     /// A rotary position word.
     pub rotary: fn(text: &mut String, name: &RotaryName, counts: i64),
     /// Names of the components of the tool's direction, and whether a plus stands before them.
     pub vector: ([&'static str; 3], bool),
+}
+
+/// A position with the decimals in which it is written.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Position {
+    pub counts: i64,
+    pub decimals: usize,
+}
+
+impl Position {
+    /// Of a rotary axis: inside one turn where it turns without end and the control takes the shortest way.
+    pub fn of(name: &RotaryName, counts: i64) -> Self {
+        let counts = if name.endless { in_turn(counts) } else { counts };
+        Self { counts, decimals: name.decimals }
+    }
 }
 
 /// What is in force.
@@ -57,7 +72,8 @@ impl Modal {
                 if !skipped && self.linear[i] != Some(m.linear[i]) {
                     self.linear[i] = Some(m.linear[i]);
                     text.push(' ');
-                    (wording.axis)(text, name, m.linear[i]);
+                    let (counts, decimals) = (m.linear[i], program.linear_decimals[i]);
+                    (wording.axis)(text, name, Position { counts, decimals });
                 }
             }
         }
@@ -165,16 +181,16 @@ pub(super) enum Which {
 }
 
 /// `X1.0000`, or `CA1=1.0000` where the name ends with a digit.
-pub(super) fn plain(text: &mut String, name: &str, counts: i64) {
+pub(super) fn plain(text: &mut String, name: &str, position: Position) {
     text.push_str(name);
     if name.len() > 1 {
         text.push('=');
     }
-    number::push_fixed(text, counts);
+    number::push_rounded(text, position.counts, position.decimals);
 }
 
 /// Position of an endless axis inside one turn.
-pub(super) fn in_turn(counts: i64) -> i64 {
+fn in_turn(counts: i64) -> i64 {
     // A turn in counts; the product of two small integers is exact.
     counts.rem_euclid(360 * 10_000)
 }

@@ -43,6 +43,23 @@ pub fn push_fixed(text: &mut String, counts: i64) {
     push_decimal(text, counts.unsigned_abs(), DECIMALS);
 }
 
+/// Adds a position with fewer decimals than counts have; the count is a multiple of what is left out.
+pub(crate) fn push_rounded(text: &mut String, counts: i64, decimals: usize) {
+    let step = 10i64.pow(u32::try_from(DECIMALS.saturating_sub(decimals)).unwrap_or_default());
+    if counts < 0 {
+        text.push('-');
+    }
+    push_decimal(text, (counts / step).unsigned_abs(), decimals.min(DECIMALS));
+}
+
+/// The count rounded to so many decimals.
+#[must_use]
+pub(crate) fn to_decimals(counts: i64, decimals: usize) -> i64 {
+    let step = 10i64.pow(u32::try_from(DECIMALS.saturating_sub(decimals)).unwrap_or_default());
+    let half = if counts < 0 { -step / 2 } else { step / 2 };
+    (counts + half) / step * step
+}
+
 /// `digits` with the point before the last `decimals` of them.
 fn push_decimal(text: &mut String, digits: u64, decimals: usize) {
     // 20 digits are all of u64, and 17 decimals are the most that are asked for.

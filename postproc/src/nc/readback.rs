@@ -249,7 +249,7 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// Where nothing has moved.
     pub fn end(&mut self) -> Result<(), ReadError> {
-        self.control.end();
+        self.control.end()?;
         if self.moved {
             return Ok(());
         }

@@ -4,6 +4,8 @@
 //! - Directions of the tool are `A3= B3= C3=`: with `ORIWKS` in the axes of X Y Z, with `ORIVECT` the tool goes on a great
 //!   circle from one to the next.
 //! - Tilted planes are `CYCLE800` without motion of its own (direction 0): the program positions the rotary axes.
+//! - With a subprogram the text is an archive: `%_N_NAME_MPF` is the main program with everything around the moves, it
+//!   calls `NAME_WAY`, and `%_N_NAME_WAY_SPF` holds the moves and ends with `M17`.
 //! - Endless axes are modulo axes: `C=DC(...)` takes the shortest way, so no block turns one by half a turn or more.
 //! - F is read over the axes of `FGROUP`, a rotary one as an arc of radius `FGREF`: the program says both, so that it
 //!   does not depend on machine data. Rotary axes alone, outside of `FGROUP`, are read in deg/min.
@@ -12,7 +14,7 @@
 //! - `SUPA` with `D0` moves in machine coordinates without tool length: Z0 is the top of the Z axis.
 
 use super::block::{FeedWord, NcMove, Program, RotaryName};
-use super::modal::{Modal, Which, Wording, in_turn, plain};
+use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
 use super::writer::Lines;
 use crate::feed::PathMetric;
@@ -30,15 +32,19 @@ fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     if name.endless {
         text.push_str(&name.letter);
         text.push_str("=DC(");
-        number::push_fixed(text, in_turn(counts));
+        let position = Position::of(name, counts);
+        number::push_rounded(text, position.counts, position.decimals);
         text.push(')');
     } else {
-        plain(text, &name.letter, counts);
+        plain(text, &name.letter, Position::of(name, counts));
     }
 }
 
 pub(super) fn head(program: &Program, lines: &mut Lines) {
     (lines.numbered, lines.next, lines.step) = (Some("N"), 10, 10);
+    if program.subprogram {
+        lines.plain(&format!("%_N_{}_MPF", program.safe_name()));
+    }
     lines.plain(&format!("; {}", program.safe_name()));
     for line in program.safe_comments() {
         lines.plain(&format!("; {line}"));
@@ -72,6 +78,14 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
     }
     lines.line(&format!("CYCLE832({:.4},1,1)", program.blend_mm));
     feed_head(lines, program);
+    if program.subprogram {
+        // The main program is complete before its moves: nothing has to be held back.
+        let name = format!("{}_WAY", program.safe_name());
+        lines.line(&name);
+        end(program, lines);
+        lines.plain(&format!("%_N_{name}_SPF"));
+        lines.next = 10;
+    }
 }
 
 /// `CYCLE800(retract, data set, new plane, mode, X0 Y0 Z0, A B C, X1 Y1 Z1, direction)`.
@@ -91,6 +105,14 @@ pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines
 }
 
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
+    if program.subprogram {
+        lines.line("M17");
+    } else {
+        end(program, lines);
+    }
+}
+
+fn end(program: &Program, lines: &mut Lines) {
     if program.feed_word == FeedWord::Inverse {
         lines.line("G94");
     }

@@ -98,9 +98,11 @@ impl<'a> Clock<'a> {
     }
 
     /// The end of the text.
-    #[must_use]
-    pub fn finish(mut self) -> Timed {
-        self.control.end();
+    ///
+    /// # Errors
+    /// Where a subprogram is missing, with `strict`.
+    pub fn finish(mut self) -> Result<Timed, ReadError> {
+        self.control.end()?;
         let planned = self.control.sink;
         let mut time = planned.time;
         if let Some(stretch) = &planned.stretch {
@@ -120,7 +122,7 @@ impl<'a> Clock<'a> {
                 time.limited_by.insert(letter.clone(), count);
             }
         }
-        Timed { time, diagnostics: self.control.diagnostics }
+        Ok(Timed { time, diagnostics: self.control.diagnostics })
     }
 }
 
@@ -141,7 +143,7 @@ pub fn time(
     for line in text.lines() {
         clock.line(line)?;
     }
-    Ok(clock.finish())
+    clock.finish()
 }
 
 fn letters(machine: &Machine, order: &[usize; 3]) -> Vec<String> {

@@ -51,6 +51,9 @@ impl<'a> Writer<'a> {
     /// Where the dialect cannot say the program.
     pub fn new(dialect: Dialect, program: &'a Program) -> Result<Self, WriteError> {
         let mut lines = Lines::default();
+        if program.subprogram && dialect != Dialect::Sinumerik {
+            return Err(WriteError::Subprogram { dialect: dialect.name() });
+        }
         match dialect {
             Dialect::Sinumerik => sinumerik::head(program, &mut lines),
             Dialect::Heidenhain => heidenhain::head(program, &mut lines)?,
