@@ -43,7 +43,7 @@ pub use feed::{FeedMode, PathMetric};
 pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
 pub use machine::{Machine, MachineError, built_in_names};
 pub use nc::readback;
-pub use nc::{Dialect, Orientation};
+pub use nc::{Coolant, Dialect, Orientation};
 pub use post::{PostError, PostOptions, PostReport, PostSummary, Posted, post, post_from, post_to};
 pub use setup::{Setup, SetupError};
 pub use solve::SolveOptions;

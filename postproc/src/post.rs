@@ -12,7 +12,7 @@ use crate::joint_path::JointBlock;
 use crate::machine::Machine;
 use crate::nc::block::RotaryName;
 use crate::nc::writer::Writer;
-use crate::nc::{Dialect, FeedWord, Orientation, Program, WriteError};
+use crate::nc::{Coolant, Dialect, FeedWord, Orientation, Program, WriteError};
 use crate::setup::Setup;
 use crate::solve::SolveOptions;
 use crate::solve_error::SolveError;
@@ -35,6 +35,8 @@ pub struct PostOptions {
     pub program_name: String,
     /// Number of the tool.
     pub tool_number: u32,
+    /// Coolant.
+    pub coolant: Option<Coolant>,
     /// Spindle speed; absent: the path's own.
     pub spindle_rpm: Option<f64>,
 }
@@ -51,6 +53,7 @@ impl PostOptions {
             solve: SolveOptions::default(),
             program_name: "OSCULATE".into(),
             tool_number: 1,
+            coolant: None,
             spindle_rpm: None,
         }
     }
@@ -234,6 +237,7 @@ where
         linuxcnc_tcp: machine.control().linuxcnc_tcp.clone(),
         tool_number: options.tool_number,
         spindle_rpm,
+        coolant: options.coolant,
         feed_word: feed_word(options, machine),
         blend_mm: options.solve.tip_tol_mm,
         linear_names: if tcp {

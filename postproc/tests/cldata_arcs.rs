@@ -10,7 +10,7 @@ use osculate_postproc::cldata::{
     ClReadOptions, ClReader, ClStream, ClStreamError, ClWriteOptions, read, write,
 };
 use osculate_postproc::{
-    Dialect, FeedMode, Machine, PostError, PostOptions, Setup, SolveError, post, post_from,
+    Coolant, Dialect, FeedMode, Machine, PostError, PostOptions, Setup, SolveError, post, post_from,
 };
 use osculate_tools::cl::Motion;
 
@@ -149,6 +149,7 @@ fn streams() {
     let whole = post(&read(&text).unwrap().path, &machine, &setup, &options).unwrap();
     let cl = stream(&text);
     let head = cl.head().unwrap();
+    assert_eq!(head.coolant(), None);
     let options = PostOptions { spindle_rpm: head.spindle_rpm(), ..options };
     let mut sink = Vec::new();
     let report = post_from(&cl, &machine, &setup, &options, &mut sink).unwrap();
@@ -185,4 +186,22 @@ fn a_reader_keeps_nothing() {
         assert_eq!((reader.take_moves().count(), reader.waiting()), (1, 0));
     }
     reader.end().unwrap();
+}
+
+/// Coolant goes from the CL data into every dialect, and off at the end.
+#[test]
+fn coolant() {
+    let text =
+        "COOLNT/MIST\nSPINDL/900\nCUTTER/6\nRAPID\nGOTO/0,0,5\nFEDRAT/100\nGOTO/1,0,0\nCOOLNT/OFF\nFINI\n";
+    let head = stream(text).head().unwrap();
+    assert_eq!(head.coolant(), Some(Coolant::Mist));
+    let (machine, setup) = (Machine::built_in("3-axis").unwrap(), Setup::default());
+    for dialect in Dialect::ALL {
+        let options = PostOptions { coolant: head.coolant(), ..PostOptions::new(dialect, FeedMode::Kf) };
+        let posted = post(&read(text).unwrap().path, &machine, &setup, &options).unwrap();
+        let at = |word: &str| posted.text.lines().position(|l| l.split(' ').any(|w| w == word)).unwrap();
+        assert!(at("M3") <= at("M7") && at("M7") < at("M9") && at("M9") < at("M5"), "{}", posted.text);
+        let options = osculate_postproc::readback::ReadOptions::default();
+        osculate_postproc::readback::read(&posted.text, dialect, &machine, &setup, &options).unwrap();
+    }
 }

@@ -11,6 +11,7 @@ mod fields;
 mod read;
 mod statement;
 mod stream;
+mod ways;
 mod words;
 mod write;
 

@@ -14,11 +14,12 @@ use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use osculate_tools::{CutterSpec, Pose};
 
-use super::arc::{self, Arc};
-use super::cycle::{self, Cycle};
+use super::arc::Arc;
+use super::cycle::Cycle;
 use super::error::ClReadError;
 use super::fields::{axis, count, is_identity, numbers, place, unit, vector};
 use super::statement::{Item, Joiner, Statement};
+use crate::nc::Coolant;
 
 /// A path and what was noticed on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +37,6 @@ const HARMLESS: &[&str] = &[
     "TPRINT",
     "OPNAME",
     "REMARK",
-    "COOLNT",
     "LOAD",
     "SELECT",
     "SELECTL",
@@ -99,7 +99,7 @@ pub(super) struct Feed {
 
 /// How a word that is not a plain point was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Taken {
+pub(super) enum Taken {
     /// It may change the way.
     Lost,
     /// It does not.
@@ -131,25 +131,26 @@ pub struct ClReader {
     pub(super) first: bool,
     ended: bool,
     joiner: Joiner,
-    options: ClReadOptions,
+    pub(super) options: ClReadOptions,
     pub(super) diagnostics: Vec<Diagnostic>,
     /// mm per unit of length.
     pub(super) unit_mm: f64,
-    axis: Unit3,
-    tip: Option<Point3>,
+    pub(super) axis: Unit3,
+    pub(super) tip: Option<Point3>,
     pub(super) feed: Option<Feed>,
     /// Surface speed of the part under the tool, mm/min.
     pub(super) surface_mm_min: Option<f64>,
+    pub(super) coolant: Option<Coolant>,
     pub(super) rapid: bool,
     pub(super) loaded: Option<String>,
     /// The way to the next point.
-    arc: Option<Arc>,
+    pub(super) arc: Option<Arc>,
     /// The initial direction of a CATIA arc.
-    heading: Option<Vec3>,
+    pub(super) heading: Option<Vec3>,
     /// What happens at the points to come.
-    cycle: Option<Cycle>,
+    pub(super) cycle: Option<Cycle>,
     /// Between CYCLE/ and CYCLE/OFF, where points are holes.
-    in_cycle: bool,
+    pub(super) in_cycle: bool,
     /// Points are in the world's frame: coordinate systems are for people.
     world: bool,
     /// Word and how it was taken -> lines listed, count.
@@ -192,6 +193,7 @@ impl ClReader {
             tip: None,
             feed: None,
             surface_mm_min: None,
+            coolant: None,
             rapid: false,
             loaded: None,
             arc: None,
@@ -254,6 +256,18 @@ impl ClReader {
         self.path.spindle_rpm
     }
 
+    /// The first coolant that the text has turned on.
+    #[must_use]
+    pub const fn coolant(&self) -> Option<Coolant> {
+        self.coolant
+    }
+
+    /// No point has come yet.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.first
+    }
+
     /// Lines seen.
     #[must_use]
     pub const fn lines(&self) -> usize {
@@ -298,6 +312,7 @@ impl ClReader {
             "SPINDL" => self.spindle(s)?,
             "CUTTER" => self.cutter_word(s)?,
             "LOADTL" => self.load(s),
+            "COOLNT" => self.coolant_word(s),
             "TLAXIS" => self.axis = axis(s, &numbers(s, &s.fields)?)?,
             "CIRCLE" | "MOVARC" => self.arc(s)?,
             "INDIRV" => self.heading = Some(vector(s, &numbers(s, &s.fields)?)?),
@@ -320,74 +335,12 @@ impl ClReader {
         Ok(())
     }
 
-    fn other(&mut self, word: &str, line: usize, taken: Taken) {
+    pub(super) fn other(&mut self, word: &str, line: usize, taken: Taken) {
         let entry = self.others.entry((word.to_string(), taken)).or_default();
         if entry.0.len() < LISTED_LINES {
             entry.0.push(line);
         }
         entry.1 += 1;
-    }
-
-    fn arc(&mut self, s: &Statement) -> Result<(), ClReadError> {
-        self.open_arc()?;
-        self.arc = Some(arc::circle(s, self.unit_mm)?);
-        self.other(&s.word, s.line, Taken::Chords);
-        Ok(())
-    }
-
-    /// `TLON,GOFWD/(CIRCLE/ ...),ON,(LINE/ ...)`: an arc that carries its end.
-    fn catia_arc(&mut self, s: &Statement) -> Result<(), ClReadError> {
-        self.open_arc()?;
-        match (self.tip, self.heading.take(), arc::gofwd(s, self.unit_mm)?) {
-            (Some(from), Some(heading), Some((mut arc, to))) => {
-                arc.axis = Unit3::try_new((from - arc.centre).cross(&heading), 1e-9);
-                self.arc = Some(arc);
-                self.other("TLON,GOFWD", s.line, Taken::Chords);
-                self.arrive(s.line, to)
-            }
-            _ => {
-                self.other(&s.word, s.line, Taken::Lost);
-                Ok(())
-            }
-        }
-    }
-
-    /// An arc after which no point came: by its angle it ends nevertheless.
-    fn open_arc(&mut self) -> Result<(), ClReadError> {
-        let Some(arc) = self.arc.take() else { return Ok(()) };
-        match self.tip.and_then(|from| arc.end_by_angle(&from)) {
-            Some(to) => {
-                let line = arc.line;
-                self.arc = Some(arc);
-                self.arrive(line, to)
-            }
-            None => {
-                let text = "an arc without a GOTO/ behind it has no end: it is left out";
-                self.diagnostics.push(Diagnostic::loss(place(arc.line), text));
-                Ok(())
-            }
-        }
-    }
-
-    fn cycle(&mut self, s: &Statement) -> Result<(), ClReadError> {
-        self.open_arc()?;
-        let first = s.fields.first().map_or("", String::as_str);
-        self.in_cycle = first != "OFF";
-        match first {
-            "INIT" => {}
-            "OFF" => self.cycle = None,
-            "ON" if self.cycle.is_some() => {}
-            _ => {
-                self.cycle = cycle::cycle(s, self.unit_mm)?;
-                let taken = if self.cycle.is_some() { Taken::Moves } else { Taken::Lost };
-                self.other(&format!("CYCLE/{first}"), s.line, taken);
-                if self.cycle.as_ref().is_some_and(|c| c.kind == cycle::Kind::Tap) {
-                    let text = "CYCLE/TAP: a path has one spindle direction, the reversal is left out";
-                    self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-                }
-            }
-        }
-        Ok(())
     }
 
     fn goto(&mut self, s: &Statement) -> Result<(), ClReadError> {
@@ -411,7 +364,7 @@ impl ClReader {
         self.arrive(s.line, from + by * self.unit_mm)
     }
 
-    fn arrive(&mut self, line: usize, tip: Point3) -> Result<(), ClReadError> {
+    pub(super) fn arrive(&mut self, line: usize, tip: Point3) -> Result<(), ClReadError> {
         if let Some(cycle) = self.cycle.clone() {
             return self.hole(line, tip, &cycle);
         }
@@ -435,42 +388,10 @@ impl ClReader {
         Ok(())
     }
 
-    fn push(&mut self, tip: Point3, motion: Motion) {
+    pub(super) fn push(&mut self, tip: Point3, motion: Motion) {
         self.first = false;
         self.tip = Some(tip);
         self.path.moves.push(ClMove { pose: Pose { tip, axis: self.axis }, motion });
-    }
-
-    /// The points on the arc before its end.
-    fn round(&mut self, line: usize, arc: &Arc, end: (Point3, Motion)) -> Result<(), ClReadError> {
-        let Some(from) = self.tip else {
-            let text = "an arc before the first point: where it starts is not known, its end is kept";
-            self.diagnostics.push(Diagnostic::loss(place(arc.line), text));
-            return Ok(());
-        };
-        match arc.chords(&from, &end.0, self.options.arc_tol_mm) {
-            Ok(points) => points.into_iter().for_each(|p| self.push(p, end.1)),
-            Err(off_mm) => {
-                let text = format!(
-                    "the arc of line {} misses its ends by {off_mm:.4} mm: it is taken as a straight line",
-                    arc.line
-                );
-                self.diagnostics.push(Diagnostic::loss(place(line), text));
-            }
-        }
-        Ok(())
-    }
-
-    /// A drilling cycle at a point of the part.
-    fn hole(&mut self, line: usize, tip: Point3, cycle: &Cycle) -> Result<(), ClReadError> {
-        self.rapid = false;
-        let feed = cycle.feed.or(self.feed).ok_or(ClReadError::NoFeed { line })?;
-        let feed = Motion::Feed(self.feed_mm_min(&feed, &tip)?);
-        for (above_mm, rapid) in cycle.heights() {
-            let motion = if rapid { Motion::Rapid } else { feed };
-            self.push(tip + self.axis.into_inner() * above_mm, motion);
-        }
-        Ok(())
     }
 
     fn note(&mut self, line: usize, text: &str) {

@@ -61,7 +61,7 @@ impl<R: BufRead, O: Fn() -> io::Result<R>> ClStream<O> {
         self.found.borrow().clone()
     }
 
-    /// Reads until cutter and spindle speed are known, or to the end.
+    /// Reads until cutter and spindle speed are known and the first point has come, or to the end.
     ///
     /// # Errors
     /// Where the text cannot be read.
@@ -70,7 +70,7 @@ impl<R: BufRead, O: Fn() -> io::Result<R>> ClStream<O> {
         feed(&self.open, &mut reader, |reader| {
             reader.take_moves();
             match (reader.cutter(), reader.spindle_rpm()) {
-                (Some(_), Some(_)) => ControlFlow::Break(()),
+                (Some(_), Some(_)) if !reader.is_empty() => ControlFlow::Break(()),
                 _ => ControlFlow::Continue(()),
             }
         })?;

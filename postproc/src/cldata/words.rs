@@ -5,8 +5,9 @@ use osculate_geom::{Diagnostic, Point3};
 use super::cutter::{self, Found};
 use super::error::ClReadError;
 use super::fields::{count, is_word, numbers, place};
-use super::read::{ClReader, Feed, LEAST_RADIUS_MM};
+use super::read::{ClReader, Feed, LEAST_RADIUS_MM, Taken};
 use super::statement::Statement;
+use crate::nc::Coolant;
 
 impl ClReader {
     pub(super) fn feed(&mut self, s: &Statement) -> Result<(), ClReadError> {
@@ -135,5 +136,19 @@ impl ClReader {
             self.diagnostics.push(Diagnostic::loss(place(s.line), text));
         }
         self.loaded = self.loaded.take().or(tool);
+    }
+
+    /// `COOLNT/ON`, `FLOOD`, `MIST`, `OFF`: a program has one coolant, the first, from its start to its end.
+    pub(super) fn coolant_word(&mut self, s: &Statement) {
+        let asked = match s.fields.first().map(String::as_str) {
+            Some("MIST") => Some(Coolant::Mist),
+            Some("OFF") => None,
+            _ => Some(Coolant::Flood),
+        };
+        match (self.coolant, asked) {
+            (None, _) => self.coolant = asked,
+            (Some(now), Some(other)) if now == other => {}
+            (Some(_), _) => self.other("COOLNT", s.line, Taken::Harmless),
+        }
     }
 }

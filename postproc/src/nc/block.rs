@@ -40,6 +40,25 @@ pub struct RotaryName {
     pub decimals: usize,
 }
 
+/// Coolant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coolant {
+    /// M8.
+    Flood,
+    /// M7.
+    Mist,
+}
+
+impl Coolant {
+    /// The word that turns it on; `M9` turns it off.
+    pub(crate) const fn word(self) -> &'static str {
+        match self {
+            Self::Flood => "M8",
+            Self::Mist => "M7",
+        }
+    }
+}
+
 /// What stands around the moves of a program, and how they are worded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
@@ -59,6 +78,8 @@ pub struct Program {
     pub tool_number: u32,
     /// Spindle speed, clockwise; `None` leaves the spindle alone.
     pub spindle_rpm: Option<f64>,
+    /// Coolant, from the first approach to the end.
+    pub coolant: Option<Coolant>,
     /// How F is written.
     pub feed_word: FeedWord,
     /// How far the control may round corners, mm.

@@ -36,6 +36,9 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} M3", number::feed(rpm)));
     }
+    if let Some(coolant) = program.coolant {
+        lines.line(coolant.word());
+    }
     Ok(())
 }
 
@@ -83,6 +86,9 @@ pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
     lines.line("G94");
     lines.line("G5.1 Q0");
+    if program.coolant.is_some() {
+        lines.line("M9");
+    }
     lines.line("M5");
     lines.line("G49");
     if program.in_planes() {

@@ -51,6 +51,9 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if program.spindle_rpm.is_some() {
         lines.line("M3");
     }
+    if let Some(coolant) = program.coolant {
+        lines.line(coolant.word());
+    }
     Ok(())
 }
 
@@ -102,6 +105,9 @@ pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines
 }
 
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
+    if program.coolant.is_some() {
+        lines.line("M9");
+    }
     lines.line("M5");
     if program.in_planes() {
         lines.line("PLANE RESET STAY");

@@ -51,6 +51,9 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} M3", number::feed(rpm)));
     }
+    if let Some(coolant) = program.coolant {
+        lines.line(coolant.word());
+    }
     Ok(())
 }
 
@@ -72,6 +75,9 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
     let switch = program.linuxcnc_tcp.as_ref();
     lines.line("G94");
+    if program.coolant.is_some() {
+        lines.line("M9");
+    }
     lines.line("M5");
     if let Some(words) = switch {
         lines.line(&words.off);

@@ -24,7 +24,7 @@ pub(crate) mod writer;
 use std::fmt;
 use std::str::FromStr;
 
-pub use block::{FeedWord, NcMove, Program, WriteError};
+pub use block::{Coolant, FeedWord, NcMove, Program, WriteError};
 pub use orientation::Orientation;
 
 /// The language of a control.

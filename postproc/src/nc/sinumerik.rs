@@ -59,6 +59,9 @@ pub(super) fn head(program: &Program, lines: &mut Lines) {
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} M3", number::feed(rpm)));
     }
+    if let Some(coolant) = program.coolant {
+        lines.line(coolant.word());
+    }
 }
 
 pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines: &mut Lines) {
@@ -115,6 +118,9 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 fn end(program: &Program, lines: &mut Lines) {
     if program.feed_word == FeedWord::Inverse {
         lines.line("G94");
+    }
+    if program.coolant.is_some() {
+        lines.line("M9");
     }
     lines.line("M5");
     if program.in_planes() {
