@@ -330,6 +330,15 @@ fn widest(directions: impl Iterator<Item = Unit3>) -> f64 {
 
 /// The outward unit normal at any place: that of the jet, or its limit.
 ///
+/// ```
+/// use osculate_geom::{analytic::Sphere, limit, uv};
+/// use std::f64::consts::FRAC_PI_2;
+/// let (ball, pole) = (Sphere::new(10.0)?, uv(0.4, FRAC_PI_2));
+/// let n = limit::normal(&ball, pole, &limit::Tolerance::ROUNDING)?;
+/// assert!((n.z - 1.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`LimitError`] where normals from different sides differ by more than the tolerance.
 pub fn normal(surface: &dyn Surface, at: Uv, tolerance: &Tolerance) -> Result<Unit3, LimitError> {

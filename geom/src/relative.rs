@@ -33,6 +33,15 @@ pub struct Relative {
 
 impl Relative {
     /// Q of a part's forms and a tool's curvature at the same contact.
+    ///
+    /// ```
+    /// use osculate_geom::{Relative, Surface, ToolCurvature, analytic::Sphere, uv};
+    /// let part = Sphere::new(40.0)?.jet2(uv(0.2, 0.1)).forms()?;
+    /// let ball = ToolCurvature { along: 1.0 / 10.0, across: 1.0 / 10.0, direction: part.frame[0] };
+    /// let q = Relative::new(&part, &ball);
+    /// assert!((q.min - (1.0 / 40.0 + 1.0 / 10.0)).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn new(part: &Forms, tool: &ToolCurvature) -> Self {
         let across = Unit3::new_unchecked(part.normal.cross(&tool.direction));

@@ -102,6 +102,18 @@ const PERPENDICULAR: f64 = 1e-6;
 /// The first search of a surface builds its index. Queries for which whole regions are equally far (the
 /// centre of a sphere) end after a bounded amount of work with [`Foot::gap_mm`] above zero.
 ///
+/// ```
+/// use osculate_geom::{Point3, Surface, Vec3, uv};
+/// use osculate_surfaces::{FootKind, closest, gallery};
+/// let s = gallery::m86(3);
+/// let jet = s.jet2(uv(0.3, 0.6));
+/// let above = jet.point + jet.normal()?.into_inner() * 2.0;
+/// let foot = closest(&s, &above, None)?;
+/// assert!((foot.distance_mm - 2.0).abs() < 1e-9 && foot.kind == FootKind::Interior);
+/// assert!(foot.residual < 1e-9 && foot.gap_mm < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ClosestError`] for numbers that are not finite, and for a descent from a hint that does not converge.
 pub fn closest(surface: &NurbsSurface, query: &Point3, hint: Option<Uv>) -> Result<Foot, ClosestError> {

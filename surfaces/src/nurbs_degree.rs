@@ -105,6 +105,17 @@ impl<const D: usize> NurbsCurve<D> {
 impl NurbsSurface {
     /// The same surface with its degree along an axis `by` higher; clamped there where it was not.
     ///
+    /// ```
+    /// use osculate_geom::{Axis, Surface, uv};
+    /// use osculate_surfaces::gallery;
+    /// let s = gallery::m86(1);
+    /// let finer = s.elevated(Axis::U, 1)?.insert_knot(Axis::V, 0.4, 1)?;
+    /// assert!((finer.point(uv(0.3, 0.7)) - s.point(uv(0.3, 0.7))).norm() < 1e-12);
+    /// let back = finer.remove_knot(Axis::V, 0.4, 1)?;
+    /// assert!(back.bound_mm < 1e-11);
+    /// # Ok::<(), osculate_surfaces::EditError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`EditError::Degree`] above [`MAX_DEGREE`].
     pub fn elevated(&self, axis: Axis, by: usize) -> Result<Self, EditError> {

@@ -76,6 +76,26 @@ fn distances_from_a_sphere_are_exact_at_every_scale() {
     }
 }
 
+/// A part a kilometre from its origin, with queries close to it: rounding of coordinates is 1e-10 mm there, and
+/// that must not end a descent early.
+#[test]
+fn a_part_far_from_the_origin_is_found_from_near_it() {
+    let shift = Vec3::new(1e6, -7e5, 3e5);
+    for rational in [false, true] {
+        let s = moved(&reference(rational), 1.0, shift);
+        for k in 0..400 {
+            let t = f64::from(k);
+            let at = uv((t * 0.618_034).fract(), (t * 0.754_878).fract());
+            let jet = s.jet2(at);
+            let above = 0.001 + 0.1 * (t * 0.1).fract();
+            let q = jet.point + jet.normal().unwrap().into_inner() * above;
+            let foot = closest(&s, &q, None).unwrap();
+            assert!(foot.distance_mm <= above + 1e-8, "{k}: {foot:?}");
+            assert!(foot.residual <= 1e-6, "{k}: {foot:?}");
+        }
+    }
+}
+
 #[test]
 fn the_axis_of_a_sphere_ends_at_its_pole() {
     let s = sphere(20.0);

@@ -52,11 +52,15 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// it.
 const BLIND: f64 = 1e-10;
 
-/// After a step of Newton's below this fraction of the coordinates the next one, which goes like its square,
-/// would be lost in rounding. The place that it leads to needs no jet of its own: what Taylor's second-order
+/// After a step of Newton's below this fraction of the coordinates, or of the piece's size times
+/// [`PIECE`] where the part lies far from the origin, the next one, which goes like its square, would be lost in
+/// rounding. The place that it leads to needs no jet of its own: what Taylor's second-order
 /// polynomial leaves out of the point goes like the cube, 1e-15 of the coordinates where pieces are as small as
 /// 1e-4 of them.
 const LAST_STEP: f64 = 1e-9;
+
+/// Pieces are seldom smaller than this part of the coordinates of a face around its origin.
+const PIECE: f64 = 16.0;
 
 /// Squared sine between the columns of a step's matrix (in its own metric) below which it is not solved.
 const SINGULAR: f64 = 1e-13;
@@ -105,6 +109,8 @@ fn state(jet: Jet2, rect: &Domain, query: &Point3) -> State {
 pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: Uv) -> Found {
     let mut here = state(jets.jet(place(rect, start)), rect, query);
     let size = here.jet.point.coords.norm() + query.coords.norm();
+    let last_square = square(LAST_STEP) * square(size).min(piece_square(rect, &here));
+    let settled = |s: &State| s.along_square() <= square(ROUNDING * size);
     let mut steps = 0;
     while steps < MAX_STEPS {
         steps += 1;
@@ -123,9 +129,12 @@ pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: U
             break;
         }
         let inside = to == uv_minus(here.jet.uv, step, 1.0);
-        if newton && inside && length_square <= square(LAST_STEP * size) {
-            here = state(moved(&here.jet, to, step), rect, query);
-            break;
+        if newton && inside && length_square <= last_square {
+            let last = state(moved(&here.jet, to, step), rect, query);
+            if settled(&last) {
+                here = last;
+                break;
+            }
         }
         let mut scale = 1.0;
         let mut at = to;
@@ -151,7 +160,8 @@ pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: U
             Some(there) => here = there,
             None => break,
         }
-        if length_square * scale * scale <= square(if newton { LAST_STEP } else { ROUNDING } * size) {
+        let done = length_square * scale * scale;
+        if done <= square(ROUNDING * size) || (newton && done <= last_square && settled(&here)) {
             break;
         }
     }
@@ -164,6 +174,16 @@ pub(super) fn descend<J: Jets>(jets: &J, rect: &Domain, query: &Point3, start: U
     };
     let gradient = here.gradient;
     Found { uv: here.jet.uv, point: here.jet.point, distance_mm, residual, gradient, steps }
+}
+
+/// The square of [`PIECE`] times the size of the rectangle's image, as the start sees it; infinite for an
+/// unlimited one.
+#[inline(always)]
+fn piece_square(rect: &Domain, start: &State) -> f64 {
+    let wide = |i: &Interval, metric: f64| metric * square(i.hi - i.lo);
+    let sum = square(PIECE) * (wide(&rect.u, start.metric[0]) + wide(&rect.v, start.metric[1]));
+    // A collapsed start says nothing about the size.
+    if sum > 0.0 { sum } else { f64::INFINITY }
 }
 
 /// The parameters in the rectangle, at its end where they are only rounding away from it: a parameter just

@@ -31,6 +31,18 @@ pub struct LoftOptions {
 /// Sections may have different numbers of points. Corresponding places are those of equal parameters, so that
 /// all sections should begin at corresponding places and run the same way.
 ///
+/// ```
+/// use osculate_geom::{Point3, Surface, uv};
+/// use osculate_surfaces::fit::{LoftOptions, Spacing, loft};
+/// let section = |z: f64| (0..9).map(|k| 0.7 * f64::from(k)).map(|t| Point3::new(t, t.sin(), z)).collect();
+/// let sections: Vec<Vec<Point3>> = vec![section(0.0), section(1.0), section(2.0), section(3.0)];
+/// let options =
+///     LoftOptions { degree: [3, 3], spacing: Spacing::Chord, closed: false, tolerance_mm: None };
+/// let surface = loft(&sections, &options)?.surface;
+/// assert!((surface.point(uv(1.0, 1.0)) - sections[3][8]).norm() < 1e-12);
+/// # Ok::<(), osculate_surfaces::fit::FitError>(())
+/// ```
+///
 /// # Errors
 /// [`FitError`]. Sections of equal counts with `tolerance_mm: None` are better served by
 /// [`super::interpolate_grid`], which shares one set of knots.

@@ -4,7 +4,8 @@
 //!   points; the points here are of our own design, with the same features: see [`m86`].
 //! - `d98-eq18`, `d98-liu` and `d98-hyperbolic` are the ruled surfaces of D98, in the paper's parameters: see
 //!   [`d98_eq18`].
-//! - The monkey saddle and Enneper's surface have lines of curvature in closed form.
+//! - The monkey saddle and Enneper's surface have lines of curvature in closed form, and so have [`Ellipsoid`] and
+//!   [`Torus`], which are analytic surfaces of their own.
 
 mod bicubic;
 mod directrices;
@@ -14,6 +15,7 @@ pub use bicubic::{enneper, m86, monkey_saddle};
 pub use directrices::{
     FormulaCurve, LiuSize, ParaboloidSize, eq18_directrices, liu_directrices, paraboloid_directrices,
 };
+pub use osculate_geom::analytic::{Ellipsoid, Torus};
 pub use ruled::{Eq18, HyperbolicSize, d98_eq18, d98_hyperbolic, d98_liu};
 
 /// What is special about a surface of the gallery.

@@ -9,6 +9,22 @@
 //! - [`trace`] follows a [`Course`] from a point: lines of curvature, gradient lines, asymptotic lines; [`cover`]
 //!   spreads such lines evenly over the face.
 //!
+//! The four umbilics of an ellipsoid, and its horizontal sections:
+//!
+//! ```
+//! use osculate_geom::{Unit3, Vec3, analytic::Ellipsoid};
+//! use osculate_surfaces::lines::{Chart, Height, LineTolerance, UmbilicKind, contours, umbilics};
+//! let e = Ellipsoid::new([3.0, 2.0, 1.0])?;
+//! let chart = Chart::new(&e, LineTolerance::for_size(7.5))?;
+//! let found = umbilics(&chart);
+//! assert!(found.confirmed() && found.index_sum_twice == Some(4) && found.points.len() == 4);
+//! assert!(found.points.iter().all(|u| u.kind == UmbilicKind::Lemon));
+//! let height = Height { axis: Unit3::new_normalize(Vec3::z()) };
+//! let sections = contours(&chart, &height, &[-0.5, 0.5], None);
+//! assert_eq!(sections.lines.iter().filter(|l| l.line.is_closed()).count(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Curvature is positive where the body is convex. Lines are polylines of points on the surface with their
 //! parameters; [`LineTolerance`] says how close.
 
