@@ -44,8 +44,7 @@ impl Geometry<'_> {
         if let Some((shape, kind, placement)) = self.shape(id, &record)? {
             let made =
                 Analytic::new(shape, placement).map_err(|e| Unread::Malformed { id, what: e.to_string() })?;
-            let reversed = matches!(shape, Shape::Lemon { .. });
-            return Ok(Carried { surface: FaceSurface::Analytic(Arc::new(made)), kind, reversed });
+            return plain(FaceSurface::Analytic(Arc::new(made)), kind);
         }
         if let Some((n, kind)) = self.spline_surface(id, &record)? {
             return plain(FaceSurface::Nurbs(Arc::new(n)), kind);

@@ -197,6 +197,20 @@ impl Analytic {
         Self::new(shape, placement)
     }
 
+    /// The nappe of a cone on the other side of its apex, as a cone of its own, and the v of the apex here: the
+    /// parameters (u, v) of the file's cone are (-u, apex - v) on that one, with the same natural normal.
+    #[must_use]
+    pub fn other_nappe(&self) -> Option<(Self, f64)> {
+        let Shape::Cone { radius_mm, half_angle_rad } = self.shape else { return None };
+        let (s, c) = half_angle_rad.sin_cos();
+        let apex = -radius_mm / s;
+        let p = &self.placement;
+        let origin = p.origin + p.z.into_inner() * (apex * c);
+        let placement = Placement::new(origin, -p.z, Some(-p.x.into_inner()));
+        let made = Self::new(Shape::Cone { radius_mm: 0.0, half_angle_rad }, placement).ok()?;
+        apex.is_finite().then_some((made, apex))
+    }
+
     /// The largest radius in the shape, mm.
     fn reach_mm(&self) -> f64 {
         match self.shape {
@@ -315,6 +329,24 @@ mod tests {
             // Coordinates of size ten.
             assert!((there - foot).norm() < 1e-14, "{shape:?}");
         }
+    }
+
+    #[test]
+    fn the_other_nappe_is_the_same_cone() {
+        for half_angle_rad in [0.4, -0.4] {
+            let shape = Shape::Cone { radius_mm: 2.0, half_angle_rad };
+            let placement = Placement::new(Point3::new(5.0, -3.0, 8.0), Vec3::x_axis(), None);
+            let cone = Analytic::new(shape, placement).unwrap();
+            let (other, apex) = cone.other_nappe().unwrap();
+            for (u, beyond) in [(0.3, 1.0), (2.9, 4.0)] {
+                // The formula of the cone holds beyond its apex as well.
+                let v = apex - beyond * half_angle_rad.signum();
+                let (a, b) = (cone.jet2(uv(u, v)), other.jet2(uv(-u, apex - v)));
+                let normal = |j: &Jet2| j.du.cross(&j.dv).normalize();
+                assert!((a.point - b.point).norm() < 1e-14 && (normal(&a) - normal(&b)).norm() < 1e-14);
+            }
+        }
+        assert!(Analytic::new(Shape::Plane, Placement::identity()).unwrap().other_nappe().is_none());
     }
 
     #[test]

@@ -15,6 +15,8 @@ pub(crate) struct Assembled {
     pub(crate) surface: TrimmedSurface,
     pub(crate) carrier: FaceSurface,
     pub(crate) consistent: bool,
+    /// Chains left out because they go around the carrier and separate nothing.
+    pub(crate) idle: usize,
 }
 
 /// Limits the carrier by the chains.
@@ -27,6 +29,7 @@ pub(crate) fn assemble(carrier: &Carrier, joined: &Joined, side: Side) -> Result
     {
         return Err(TrimError::NotFinite { index, at });
     }
+    let mut idle = 0;
     let mut domain = carrier.domain;
     // Unlimited directions end where the chains do.
     for axis in [Axis::U, Axis::V] {
@@ -46,7 +49,14 @@ pub(crate) fn assemble(carrier: &Carrier, joined: &Joined, side: Side) -> Result
     let mut closes = carrier.closes;
     let mut known = carrier.known;
     let mut region = Region::new(domain, closes, &chains, known);
-    let consistent = region.consistent;
+    let mut consistent = region.consistent;
+    if let Some(bounding) = without_idle_turns(carrier, &chains, &region) {
+        let rest = Region::new(domain, closes, &bounding, known);
+        if rest.consistent {
+            (consistent, idle) = (true, chains.len() - bounding.len());
+            (chains, region) = (bounding, rest);
+        }
+    }
     if matches!(carrier.surface, FaceSurface::Analytic(_)) && !chains.is_empty() {
         for axis in [Axis::U, Axis::V] {
             let k = index(axis);
@@ -87,7 +97,24 @@ pub(crate) fn assemble(carrier: &Carrier, joined: &Joined, side: Side) -> Result
     };
     let shared = carrier.shared();
     let surface = TrimmedSurface::from_region(shared, domain, region, side, joined.chains.len())?;
-    Ok(Assembled { surface, carrier, consistent })
+    Ok(Assembled { surface, carrier, consistent, idle })
+}
+
+/// The chains that enclose something by themselves, where others go around a carrier that is outside at both ends without
+/// a partner: those separate nothing.
+fn without_idle_turns(carrier: &Carrier, chains: &[Chain], region: &Region) -> Option<Vec<Chain>> {
+    let Known { below_out, above_out, oriented } = carrier.known;
+    if region.consistent || !(below_out && above_out && oriented) {
+        return None;
+    }
+    let turns = |c: &&Chain| {
+        let w = c.winding();
+        w.u == 0.0 && w.v == 0.0
+    };
+    let kept: Vec<Chain> = chains.iter().filter(turns).cloned().collect();
+    // Holes in what the others should have bounded would leave the wrong side.
+    let area = |c: &Chain| c.points.windows(2).map(|w| 0.5 * (w[0].u * w[1].v - w[1].u * w[0].v)).sum::<f64>();
+    (kept.len() < chains.len() && kept.iter().map(area).sum::<f64>() > 0.0).then_some(kept)
 }
 
 const fn index(axis: Axis) -> usize {

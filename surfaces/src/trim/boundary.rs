@@ -3,11 +3,14 @@
 use super::assemble::{Assembled, assemble};
 use super::carrier::{Carrier, FaceSurface};
 use super::chain::{EdgeUse, join};
-use super::curve::{Curve, Piece};
+use super::analytic::Shape;
+use super::curve::{Curve, Motion, Moved, Piece};
 use super::edge::FaceEdge;
 use super::pull::{Tolerance, flatten, pull};
 use crate::trimmed::TrimError;
-use osculate_geom::{Box3, Point3, Side, Surface, Uv, uv};
+use nalgebra::Matrix3;
+use osculate_geom::{Box3, Point3, Side, Surface, Uv, Vec3, uv};
+use std::sync::Arc;
 
 /// A boundary curve of a loop, in the loop's sense.
 pub(crate) enum Boundary {
@@ -44,6 +47,10 @@ const NEAR: f64 = 1e-4;
 /// together. Real files of poor quality stay below a hundredth.
 const FAR: f64 = 0.1;
 
+/// A boundary that reaches less than this fraction of its extent to the near side of a cone's apex lies beyond it:
+/// files carry seven digits or more.
+const SAME_APEX: f64 = 1e-6;
+
 /// Builds the trimmed surface of a face. Loops have the inside on their left, seen against the carrier's normal, if
 /// `oriented`.
 pub(crate) fn build(
@@ -52,6 +59,11 @@ pub(crate) fn build(
     side: Side,
     oriented: bool,
 ) -> Result<Built, TrimError> {
+    let turned = beyond_apex(&surface, loops);
+    let (surface, loops) = match &turned {
+        Some((surface, loops)) => (surface.clone(), loops.as_slice()),
+        None => (surface, loops),
+    };
     let carrier = Carrier::new(surface, oriented);
     let size = size_mm(&carrier, loops);
     let tolerance = Tolerance { chord_mm: CHORD * size, near_mm: NEAR * size, far_mm: FAR * size };
@@ -63,13 +75,13 @@ pub(crate) fn build(
                 Boundary::Space { piece, key } => {
                     let pulled = pull(piece, &carrier, tolerance);
                     gap_mm = gap_mm.max(pulled.gap_mm);
-                    EdgeUse { points: pulled.points, ends: piece.end_points(), key: *key, owner }
+                    EdgeUse { points: pulled.points, ends: piece.end_points(), key: *key, owner, own: false }
                 }
                 Boundary::Parameter { piece } => {
                     let points = flatten(piece, &carrier, tolerance);
                     let end = |at: Option<&Uv>| carrier.surface.point(at.copied().unwrap_or_default());
                     let ends = [end(points.first()), end(points.last())];
-                    EdgeUse { points, ends, key: None, owner }
+                    EdgeUse { points, ends, key: None, owner, own: true }
                 }
             });
         }
@@ -101,10 +113,50 @@ pub(crate) fn build(
     }
     let mut assembled = assemble(&carrier, &joined, side)?;
     assembled.surface = assembled.surface.with_edges(kept);
+    if assembled.idle > 0 {
+        findings.push(format!(
+            "{} of its loops go once around the surface without a partner and bound nothing; they are left out",
+            assembled.idle
+        ));
+    }
     if !assembled.consistent {
         findings.push("the loops do not separate an inside from an outside on this surface".into());
     }
     Ok(Built { assembled, findings })
+}
+
+/// The other nappe of a cone, with the loops in its parameters, where the whole boundary lies beyond the apex.
+fn beyond_apex(surface: &FaceSurface, loops: &[Vec<Boundary>]) -> Option<(FaceSurface, Vec<Vec<Boundary>>)> {
+    let FaceSurface::Analytic(cone) = surface else { return None };
+    let (other, apex) = cone.other_nappe()?;
+    let Shape::Cone { half_angle_rad, .. } = cone.shape() else { return None };
+    let slope = half_angle_rad.cos() * half_angle_rad.signum();
+    // How far a point is beyond the apex, along the axis.
+    let beyond = |b: &Boundary, t: f64| match b {
+        Boundary::Space { piece, .. } => {
+            half_angle_rad.signum() * other.placement().local(&piece.point(t)).z
+        }
+        Boundary::Parameter { piece } => slope * (apex - piece.point(t).y),
+    };
+    let ways: Vec<f64> =
+        loops.iter().flatten().flat_map(|b| (0..=8).map(|k| beyond(b, f64::from(k) / 8.0))).collect();
+    let (least, most) = ways.iter().fold((0.0_f64, 0.0_f64), |r, w| (r.0.min(*w), r.1.max(*w)));
+    if !(most > 0.0 && -least <= SAME_APEX * most) {
+        return None;
+    }
+    let motion =
+        Motion { linear: Matrix3::from_diagonal(&Vec3::new(-1.0, -1.0, 1.0)), shift: Vec3::new(0.0, apex, 0.0) };
+    let mapped = |b: &Boundary| match b {
+        Boundary::Space { piece, key } => Boundary::Space { piece: piece.clone(), key: *key },
+        Boundary::Parameter { piece } => Boundary::Parameter {
+            piece: Piece {
+                curve: Arc::new(Moved { curve: piece.curve.clone(), motion }),
+                ends: piece.ends,
+            },
+        },
+    };
+    let loops = loops.iter().map(|l| l.iter().map(mapped).collect()).collect();
+    Some((FaceSurface::Analytic(Arc::new(other)), loops))
 }
 
 /// Size of a face: the box around its boundary, or around its surface where there is none.

@@ -20,6 +20,8 @@ pub(crate) struct EdgeUse {
     pub(crate) key: Option<u64>,
     /// The loop it belongs to.
     pub(crate) owner: usize,
+    /// Whether the parameters are the file's own. Those jump by whole periods only; any other jump crosses a pole.
+    pub(crate) own: bool,
 }
 
 /// Joined chains and the largest jump between consecutive ends, mm.
@@ -43,6 +45,7 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
         let start = kept[first].ends[0];
         let mut last = first;
         let mut points = kept[first].points.clone();
+        let mut own = kept[first].own;
         loop {
             let end = kept[last].ends[1];
             let gap = |k: usize| (kept[k].ends[0] - end).norm();
@@ -51,8 +54,12 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
             let following =
                 (last + 1 < kept.len() && !used[last + 1] && kept[last + 1].owner == kept[last].owner)
                     .then_some(last + 1);
+            // Back at the first vertex after a turn around a closing direction the chain is whole: what follows, the same
+            // loop or not, has an inside of its own.
+            let turned = closing <= slack_mm
+                && points.first().zip(points.last()).is_some_and(|(a, b)| unwrap(carrier, *a, *b) != *a);
             let next = match following {
-                Some(k) if gap(k) <= slack_mm => Some(k),
+                Some(k) if gap(k) <= slack_mm && !turned => Some(k),
                 _ if closing <= slack_mm => None,
                 _ => (0..kept.len())
                     .filter(|k| !used[*k] && kept[*k].owner == kept[last].owner)
@@ -65,10 +72,11 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
             };
             used[next] = true;
             jump_mm = jump_mm.max(gap(next));
-            append(carrier, &mut points, &kept[next].points);
+            own &= kept[next].own;
+            append(carrier, &mut points, &kept[next].points, own);
             last = next;
         }
-        close(carrier, &mut points);
+        close(carrier, &mut points, own);
         if points.len() > 1 {
             chains.push(Chain { points });
         }
@@ -88,12 +96,12 @@ fn without_slits(edges: Vec<EdgeUse>) -> Vec<EdgeUse> {
 }
 
 /// Appends a piece, shifted by whole periods so that it begins near the end.
-pub(crate) fn append(carrier: &Carrier, points: &mut Vec<Uv>, piece: &[Uv]) {
+fn append(carrier: &Carrier, points: &mut Vec<Uv>, piece: &[Uv], own: bool) {
     let (Some(end), Some(begin)) = (points.last().copied(), piece.first().copied()) else {
         points.extend_from_slice(piece);
         return;
     };
-    let moved = unwrap(carrier, begin, end);
+    let moved = continued(carrier, begin, end, own);
     let shift = uv(moved.u - begin.u, moved.v - begin.v);
     let meets = same_place(carrier, moved, end);
     for (k, p) in piece.iter().enumerate() {
@@ -105,15 +113,31 @@ pub(crate) fn append(carrier: &Carrier, points: &mut Vec<Uv>, piece: &[Uv]) {
 }
 
 /// Ends a chain at its first point, shifted by the whole periods it winds.
-fn close(carrier: &Carrier, points: &mut Vec<Uv>) {
+fn close(carrier: &Carrier, points: &mut Vec<Uv>, own: bool) {
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
         return;
     };
-    let target = unwrap(carrier, first, last);
+    let target = continued(carrier, first, last, own);
     if points.len() > 1 && same_place(carrier, target, last) {
         points.pop();
     }
     points.push(target);
+}
+
+/// `at` shifted by whole periods to continue at `near`; the file's own parameters only where that closes the jump.
+fn continued(carrier: &Carrier, at: Uv, near: Uv, own: bool) -> Uv {
+    /// Jumps that miss a whole number of periods by more than this fraction of one cross a pole.
+    const WHOLE: f64 = 1e-3;
+    let moved = unwrap(carrier, at, near);
+    if !own {
+        return moved;
+    }
+    let settle = |m: f64, t: f64, n: f64, length: f64| if (m - n).abs() <= WHOLE * length { m } else { t };
+    let domain = carrier.domain;
+    uv(
+        settle(moved.u, at.u, near.u, domain.u.length()),
+        settle(moved.v, at.v, near.v, domain.v.length()),
+    )
 }
 
 /// Whether two parameter pairs are the same but for rounding.

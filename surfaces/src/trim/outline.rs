@@ -79,14 +79,22 @@ pub(crate) fn outline(sheet: &Sheet<'_>) -> Vec<Vec<[f64; 2]>> {
     loops
 }
 
-/// Polylines of consecutive segments; open ones are joined where they meet inside the rectangle.
+/// Polylines of consecutive segments, cut where they meet the rim; open ones are joined where they meet inside the
+/// rectangle. Segments along the rim are left out: which parts of it bound the region is asked from inside, since on
+/// a closing direction the region may lie on the other side of the cut.
 fn pieces(sheet: &Sheet<'_>) -> Vec<Vec<[f64; 2]>> {
     let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut cut = true;
     for s in sheet.segments {
+        if along_rim(sheet, s) {
+            cut = true;
+            continue;
+        }
         match pieces.last_mut() {
-            Some(last) if last.last() == Some(&s.a) => last.push(s.b),
+            Some(last) if !cut && last.last() == Some(&s.a) => last.push(s.b),
             _ => pieces.push(vec![s.a, s.b]),
         }
+        cut = on_rim(sheet, s.b);
     }
     let mut joined: Vec<Vec<[f64; 2]>> = Vec::new();
     for piece in pieces {
@@ -129,27 +137,17 @@ fn rim(sheet: &Sheet<'_>, open: &[Vec<[f64; 2]>]) -> Rim {
         let (t0, next) = (places[k], (k + 1) % places.len());
         let t1 = if next == 0 { 4.0 } else { places[next] };
         let middle = at(sheet, 0.5 * (t0 + t1));
-        if (sheet.inside)(middle) && !runs_along(sheet, middle) {
+        if (sheet.inside)(middle) {
             intervals.push((k, next));
         }
     }
     Rim { places, intervals }
 }
 
-/// Whether a boundary segment lies on the rim at this rim point.
-fn runs_along(sheet: &Sheet<'_>, p: [f64; 2]) -> bool {
-    let f = fraction(sheet, p);
-    sheet.segments.iter().any(|s| {
-        let (a, b) = (fraction(sheet, s.a), fraction(sheet, s.b));
-        (0..2).any(|k| {
-            let other = 1 - k;
-            (f[k] == 0.0 || f[k] == 1.0)
-                && (a[k] - f[k]).abs() <= SAME
-                && (b[k] - f[k]).abs() <= SAME
-                && a[other].min(b[other]) <= f[other]
-                && f[other] <= a[other].max(b[other])
-        })
-    })
+/// Whether a segment runs along a side of the rectangle.
+fn along_rim(sheet: &Sheet<'_>, s: &Segment) -> bool {
+    let (a, b) = (fraction(sheet, s.a), fraction(sheet, s.b));
+    (0..2).any(|k| [0.0, 1.0].iter().any(|side| (a[k] - side).abs() <= SAME && (b[k] - side).abs() <= SAME))
 }
 
 fn fraction(sheet: &Sheet<'_>, p: [f64; 2]) -> [f64; 2] {

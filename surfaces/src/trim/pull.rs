@@ -6,7 +6,7 @@
 
 use super::carrier::Carrier;
 use super::curve::Curve;
-use osculate_geom::{Uv, uv};
+use osculate_geom::{Axis, Uv, uv};
 use std::cell::Cell;
 
 /// Lengths that a pull compares with, mm.
@@ -34,6 +34,9 @@ const START_PIECES: usize = 8;
 
 /// Halvings of a start piece at most: an eighth of a circle takes seven; below 2^-10 a kink is being chased.
 const MAX_DEPTH: u32 = 10;
+
+/// Points nearer to the end of a range than this fraction of it are asked whether they lie in a pole.
+const POLE: f64 = 1e-6;
 
 /// Samples of one curve at most, a bound for hostile input. A curve of a hundred spans takes 5000.
 const MAX_POINTS: usize = 20_000;
@@ -71,31 +74,64 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
     for k in middle + 1..ts.len() {
         start[k] = locate(ts[k], Some(start[k - 1]));
     }
-    let mut points = vec![start[0]];
+    // Where the surface shrinks to a point, a curve arrives with one value of the lost parameter and leaves with another.
+    let mut ends: Vec<[Uv; 2]> = start.iter().map(|p| [*p, *p]).collect();
+    for k in 0..start.len() {
+        if let Some(axis) = lost(carrier, start[k], tolerance.chord_mm) {
+            let with = |n: usize| Uv::from_axis(axis, start[n].get(axis), start[k].get(axis.other()));
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(start.len() - 1));
+            ends[k] = [with(if k == 0 { after } else { before }), with(if after == k { before } else { after })];
+        }
+    }
+    let mut points = vec![ends[0][1]];
     let near = gap_mm.get() <= tolerance.far_mm;
     for k in 1..ts.len() {
         // A stack of pending right ends instead of recursion.
-        let mut pending = vec![(ts[k], start[k], 0_u32)];
-        let (mut t0, mut p0) = (ts[k - 1], start[k - 1]);
-        while let Some((t1, p1, depth)) = pending.pop() {
+        let mut pending = vec![(ts[k], ends[k], 0_u32)];
+        let (mut t0, mut p0) = (ts[k - 1], ends[k - 1][1]);
+        while let Some((t1, [p1, leave], depth)) = pending.pop() {
             let tm = 0.5 * (t0 + t1);
             let guess = uv(0.5 * (p0.u + p1.u), 0.5 * (p0.v + p1.v));
             let room = near && depth < MAX_DEPTH && points.len() + pending.len() < MAX_POINTS;
             let middle = room.then(|| locate(tm, Some(guess))).map(|pm| (pm, rise_mm(carrier, pm, guess)));
             match middle {
                 Some((pm, off)) if off > tolerance.chord_mm => {
-                    pending.push((t1, p1, depth + 1));
-                    pending.push((tm, pm, depth + 1));
+                    let both = match lost(carrier, pm, tolerance.chord_mm) {
+                        Some(axis) => [p0, p1].map(|p| Uv::from_axis(axis, p.get(axis), pm.get(axis.other()))),
+                        None => [pm, pm],
+                    };
+                    pending.push((t1, [p1, leave], depth + 1));
+                    pending.push((tm, both, depth + 1));
                 }
                 _ => {
                     points.extend(middle.map(|(pm, _)| apex(guess, pm)));
                     points.push(p1);
-                    (t0, p0) = (t1, p1);
+                    if leave != p1 && !(k + 1 == ts.len() && t1 == ts[k]) {
+                        points.push(leave);
+                    }
+                    (t0, p0) = (t1, leave);
                 }
             }
         }
     }
     Pulled { points: simplify(carrier, &points, 0.05 * tolerance.chord_mm), gap_mm: gap_mm.get() }
+}
+
+/// The parameter that makes no difference at a point, which lies in a pole to a tenth of the chord tolerance.
+fn lost(carrier: &Carrier, at: Uv, chord_mm: f64) -> Option<Axis> {
+    [Axis::U, Axis::V].into_iter().find(|axis| {
+        let across = carrier.domain.get(axis.other());
+        let along = carrier.domain.get(*axis);
+        let t = at.get(axis.other());
+        let slack = POLE * across.length();
+        // A cheap question first; surfaces with an unlimited range are cheap anyway.
+        let end = !slack.is_finite() || (t - across.lo).abs() <= slack || (t - across.hi).abs() <= slack;
+        end && along.length().is_finite() && {
+            let jet = osculate_geom::Surface::jet2(&carrier.surface, at);
+            let d = if *axis == Axis::U { jet.du } else { jet.dv };
+            d.norm() * along.length() <= 0.1 * chord_mm
+        }
+    })
 }
 
 /// Distance on the surface between a curve's point and the middle of its chord.
