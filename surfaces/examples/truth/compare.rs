@@ -70,6 +70,18 @@ impl Difference {
 }
 
 impl Difference {
+    /// By how much of the reference's an area differs; zero for any other difference, and for a reference of zero.
+    pub fn relative_area(&self) -> f64 {
+        match self {
+            Self::FaceArea { ours_mm2, reference_mm2, .. } | Self::Area { ours_mm2, reference_mm2, .. }
+                if *reference_mm2 > 0.0 =>
+            {
+                (ours_mm2 / reference_mm2 - 1.0).abs()
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Whether it is an area that differs by no more than the collection's notes recommend to allow.
     pub fn is_small_area(&self) -> bool {
         match self {

@@ -211,7 +211,8 @@ fn free_surface(geometry: &Geometry<'_>, occurrence: &Occurrence) -> Result<Made
         Vec::new()
     };
     let carried = geometry.surface(id, &[], 0)?;
-    let built = build(carried.surface, &loops, Side::Along, false)?;
+    // Boundary curves have the surface on their left, seen against its normal (ISO 10303-42, curve_bounded_surface).
+    let built = build(carried.surface, &loops, Side::Along, true)?;
     let mut made = made(occurrence, String::new(), carried.kind, built);
     made.face.oriented = false;
     Ok(made)

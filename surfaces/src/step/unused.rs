@@ -137,6 +137,9 @@ fn reason(record: &Record<'_>, kind: &str) -> &'static str {
     if record.is("FACE") {
         return "a face without surface";
     }
-    let found = REASONS.iter().find(|(words, _)| words.iter().any(|w| kind.contains(w)));
+    // Words of the keyword, or their beginnings: a CONTEXT is no TEXT.
+    let begins =
+        |w: &str| kind.match_indices(w).any(|(k, _)| k == 0 || matches!(kind.as_bytes()[k - 1], b'_' | b'+'));
+    let found = REASONS.iter().find(|(words, _)| words.iter().any(|w| begins(w)));
     found.map_or("no face refers to it", |(_, why)| why)
 }

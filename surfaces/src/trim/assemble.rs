@@ -113,7 +113,8 @@ fn without_idle_turns(carrier: &Carrier, chains: &[Chain], region: &Region) -> O
     };
     let kept: Vec<Chain> = chains.iter().filter(turns).cloned().collect();
     // Holes in what the others should have bounded would leave the wrong side.
-    let area = |c: &Chain| c.points.windows(2).map(|w| 0.5 * (w[0].u * w[1].v - w[1].u * w[0].v)).sum::<f64>();
+    let area =
+        |c: &Chain| c.points.windows(2).map(|w| 0.5 * (w[0].u * w[1].v - w[1].u * w[0].v)).sum::<f64>();
     (kept.len() < chains.len() && kept.iter().map(area).sum::<f64>() > 0.0).then_some(kept)
 }
 

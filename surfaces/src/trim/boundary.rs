@@ -1,9 +1,9 @@
 //! Faces from a surface and the curves of its loops, the same for both formats.
 
+use super::analytic::Shape;
 use super::assemble::{Assembled, assemble};
 use super::carrier::{Carrier, FaceSurface};
 use super::chain::{EdgeUse, join};
-use super::analytic::Shape;
 use super::curve::{Curve, Motion, Moved, Piece};
 use super::edge::FaceEdge;
 use super::pull::{Tolerance, flatten, pull};
@@ -107,6 +107,12 @@ pub(crate) fn build(
     if gap_mm > tolerance.near_mm {
         findings.push(format!("the boundary lies up to {gap_mm:.3e} mm off the surface"));
     }
+    if joined.turned_edges > 0 {
+        findings.push(format!(
+            "{} of its edges run against their loop and are turned round",
+            joined.turned_edges
+        ));
+    }
     if joined.jump_mm > tolerance.near_mm {
         findings
             .push(format!("the boundary has a gap of {:.3e} mm, closed by a straight line", joined.jump_mm));
@@ -133,9 +139,7 @@ fn beyond_apex(surface: &FaceSurface, loops: &[Vec<Boundary>]) -> Option<(FaceSu
     let slope = half_angle_rad.cos() * half_angle_rad.signum();
     // How far a point is beyond the apex, along the axis.
     let beyond = |b: &Boundary, t: f64| match b {
-        Boundary::Space { piece, .. } => {
-            half_angle_rad.signum() * other.placement().local(&piece.point(t)).z
-        }
+        Boundary::Space { piece, .. } => half_angle_rad.signum() * other.placement().local(&piece.point(t)).z,
         Boundary::Parameter { piece } => slope * (apex - piece.point(t).y),
     };
     let ways: Vec<f64> =
@@ -144,15 +148,14 @@ fn beyond_apex(surface: &FaceSurface, loops: &[Vec<Boundary>]) -> Option<(FaceSu
     if !(most > 0.0 && -least <= SAME_APEX * most) {
         return None;
     }
-    let motion =
-        Motion { linear: Matrix3::from_diagonal(&Vec3::new(-1.0, -1.0, 1.0)), shift: Vec3::new(0.0, apex, 0.0) };
+    let motion = Motion {
+        linear: Matrix3::from_diagonal(&Vec3::new(-1.0, -1.0, 1.0)),
+        shift: Vec3::new(0.0, apex, 0.0),
+    };
     let mapped = |b: &Boundary| match b {
         Boundary::Space { piece, key } => Boundary::Space { piece: piece.clone(), key: *key },
         Boundary::Parameter { piece } => Boundary::Parameter {
-            piece: Piece {
-                curve: Arc::new(Moved { curve: piece.curve.clone(), motion }),
-                ends: piece.ends,
-            },
+            piece: Piece { curve: Arc::new(Moved { curve: piece.curve.clone(), motion }), ends: piece.ends },
         },
     };
     let loops = loops.iter().map(|l| l.iter().map(mapped).collect()).collect();

@@ -24,16 +24,18 @@ pub(crate) struct EdgeUse {
     pub(crate) own: bool,
 }
 
-/// Joined chains and the largest jump between consecutive ends, mm.
+/// Joined chains, the largest jump between consecutive ends, mm, and how many edges had to be turned round.
 #[derive(Clone, Debug)]
 pub(crate) struct Joined {
     pub(crate) chains: Vec<Chain>,
     pub(crate) jump_mm: f64,
+    pub(crate) turned_edges: usize,
 }
 
 /// Joins the edges of all loops of a face. Ends within `slack_mm` are the same vertex.
 pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joined {
-    let kept = without_slits(edges);
+    let mut kept = without_slits(edges);
+    let mut turned_edges = 0;
     let mut used = vec![false; kept.len()];
     let mut chains = Vec::new();
     let mut jump_mm = 0.0_f64;
@@ -66,12 +68,27 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
                     .min_by(|a, b| gap(*a).total_cmp(&gap(*b)))
                     .filter(|k| gap(*k) < closing),
             };
+            let next = match next.filter(|k| gap(*k) <= slack_mm) {
+                None if closing > slack_mm => {
+                    // An edge that runs against its loop, for all that its ends say.
+                    let mine = |k: &usize| !used[*k] && kept[*k].owner == kept[last].owner;
+                    let against =
+                        (0..kept.len()).filter(mine).find(|k| (kept[*k].ends[1] - end).norm() <= slack_mm);
+                    if let Some(k) = against {
+                        kept[k].ends.reverse();
+                        kept[k].points.reverse();
+                        turned_edges += 1;
+                    }
+                    against.or(next)
+                }
+                _ => next,
+            };
             let Some(next) = next else {
                 jump_mm = jump_mm.max(closing);
                 break;
             };
             used[next] = true;
-            jump_mm = jump_mm.max(gap(next));
+            jump_mm = jump_mm.max((kept[next].ends[0] - end).norm());
             own &= kept[next].own;
             append(carrier, &mut points, &kept[next].points, own);
             last = next;
@@ -81,7 +98,7 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
             chains.push(Chain { points });
         }
     }
-    Joined { chains, jump_mm }
+    Joined { chains, jump_mm, turned_edges }
 }
 
 /// The edges that the face uses once (or an odd number of times).
@@ -134,10 +151,7 @@ fn continued(carrier: &Carrier, at: Uv, near: Uv, own: bool) -> Uv {
     }
     let settle = |m: f64, t: f64, n: f64, length: f64| if (m - n).abs() <= WHOLE * length { m } else { t };
     let domain = carrier.domain;
-    uv(
-        settle(moved.u, at.u, near.u, domain.u.length()),
-        settle(moved.v, at.v, near.v, domain.v.length()),
-    )
+    uv(settle(moved.u, at.u, near.u, domain.u.length()), settle(moved.v, at.v, near.v, domain.v.length()))
 }
 
 /// Whether two parameter pairs are the same but for rounding.

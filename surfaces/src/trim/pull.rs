@@ -80,7 +80,8 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
         if let Some(axis) = lost(carrier, start[k], tolerance.chord_mm) {
             let with = |n: usize| Uv::from_axis(axis, start[n].get(axis), start[k].get(axis.other()));
             let (before, after) = (k.saturating_sub(1), (k + 1).min(start.len() - 1));
-            ends[k] = [with(if k == 0 { after } else { before }), with(if after == k { before } else { after })];
+            ends[k] =
+                [with(if k == 0 { after } else { before }), with(if after == k { before } else { after })];
         }
     }
     let mut points = vec![ends[0][1]];
@@ -97,7 +98,9 @@ pub(crate) fn pull(curve: &dyn Curve, carrier: &Carrier, tolerance: Tolerance) -
             match middle {
                 Some((pm, off)) if off > tolerance.chord_mm => {
                     let both = match lost(carrier, pm, tolerance.chord_mm) {
-                        Some(axis) => [p0, p1].map(|p| Uv::from_axis(axis, p.get(axis), pm.get(axis.other()))),
+                        Some(axis) => {
+                            [p0, p1].map(|p| Uv::from_axis(axis, p.get(axis), pm.get(axis.other())))
+                        }
                         None => [pm, pm],
                     };
                     pending.push((t1, [p1, leave], depth + 1));

@@ -1,0 +1,228 @@
+//! Loops that go through poles, around a surface without a partner, against their edges or beyond an apex, with areas and
+//! boxes in closed form.
+
+#![allow(clippy::unwrap_used)]
+
+mod part21;
+
+use osculate_surfaces::{Face, FaceKind, step};
+use part21::{AREA, file};
+use std::f64::consts::PI;
+
+fn only(data: &str) -> (Face, Vec<String>) {
+    let mut part = step::read(file(data).as_bytes()).unwrap();
+    let said = part.diagnostics.iter().map(ToString::to_string).collect();
+    assert_eq!(part.faces.len(), 1, "{said:?}");
+    (part.faces.remove(0), said)
+}
+
+/// Records of a vertex, `n` its point and `n + 1` the vertex.
+fn vertex(n: u64, p: [f64; 3]) -> String {
+    let [x, y, z] = p;
+    format!("#{n}=CARTESIAN_POINT('',({x:?},{y:?},{z:?}));\n#{}=VERTEX_POINT('',#{n});\n", n + 1)
+}
+
+/// Records of an edge on a circle about the origin with the given axis and start direction, and its use: the curve is
+/// `n + 3`, the edge `n + 4`, its oriented use `n + 5`.
+fn arc(n: u64, axis: [f64; 3], x: [f64; 3], radius: f64, ends: [u64; 2], forward: bool) -> String {
+    let [d, e] = [axis, x].map(|d| format!("({:?},{:?},{:?})", d[0], d[1], d[2]));
+    let sense = if forward { ".T." } else { ".F." };
+    format!(
+        "#{n}=DIRECTION('',{d});\n#{}=DIRECTION('',{e});\n#{}=AXIS2_PLACEMENT_3D('',#6,#{n},#{});\n\
+         #{}=CIRCLE('',#{},{radius:?});\n#{}=EDGE_CURVE('',#{},#{},#{},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},{sense});\n",
+        n + 1,
+        n + 2,
+        n + 1,
+        n + 3,
+        n + 2,
+        n + 4,
+        ends[0],
+        ends[1],
+        n + 3,
+        n + 5,
+        n + 4,
+    )
+}
+
+/// A face over a loop of oriented edges on the surface of number 900.
+fn face(edges: &[u64], surface: &str) -> String {
+    let edges: Vec<String> = edges.iter().map(|e| format!("#{e}")).collect();
+    format!(
+        "#900={surface};\n#901=EDGE_LOOP('',({}));\n#902=FACE_OUTER_BOUND('',#901,.T.);\n\
+         #903=ADVANCED_FACE('',(#902),#900,.T.);\n#904=OPEN_SHELL('',(#903));\n\
+         #905=SHELL_BASED_SURFACE_MODEL('',(#904));\n#906=SHAPE_REPRESENTATION('',(#7,#905),#3);\n",
+        edges.join(",")
+    )
+}
+
+#[test]
+fn an_edge_through_a_pole_of_its_sphere() {
+    // An octant of a sphere whose poles are at +-y; one of its edges runs through the pole +y and on to -x: a quarter of
+    // the half z > 0, y > 0, which has two corners at +-x and whose third edge is the half circle in z = 0.
+    let r = 3.0;
+    let data = vertex(10, [r, 0.0, 0.0])
+        + &vertex(20, [-r, 0.0, 0.0])
+        + &arc(30, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], r, [11, 21], true)
+        + &arc(40, [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], r, [11, 21], false)
+        + "#50=DIRECTION('',(0.,1.,0.));\n#51=AXIS2_PLACEMENT_3D('',#6,#50,#5);\n"
+        + &face(&[35, 45], "SPHERICAL_SURFACE('',#51,3.)");
+    let (f, said) = only(&data);
+    // The loop runs along +y below and back over +z: the quarter is on its left.
+    assert!((f.area_mm2() / (PI * r * r) - 1.0).abs() < AREA, "{} {said:?}", f.area_mm2());
+    let b = f.bbox();
+    for (got, want) in [(b.min, [-r, 0.0, 0.0]), (b.max, [r, r, r])] {
+        for k in 0..3 {
+            // Loops follow their curves to 2e-6 of the size.
+            assert!((got[k] - want[k]).abs() < 1e-5 * r, "{b:?}");
+        }
+    }
+}
+
+#[test]
+fn a_turn_without_partner_bounds_nothing() {
+    // A patch of 0.2 rad and 5 mm on a cylinder of 10 mm; before it the loop goes once around from the same vertex.
+    let (r, h) = (10.0_f64, 5.0);
+    let (x, y) = (r * 0.2_f64.cos(), r * 0.2_f64.sin());
+    let circle = |n: u64, at: f64, ends: [u64; 2], sense: &str| {
+        format!(
+            "#{n}=CARTESIAN_POINT('',(0.,0.,{at:?}));\n#{}=AXIS2_PLACEMENT_3D('',#{n},#4,#5);\n\
+             #{}=CIRCLE('',#{},{r:?});\n#{}=EDGE_CURVE('',#{},#{},#{},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},{sense});\n",
+            n + 1,
+            n + 2,
+            n + 1,
+            n + 3,
+            ends[0],
+            ends[1],
+            n + 2,
+            n + 4,
+            n + 3,
+        )
+    };
+    let rise = |n: u64, ends: [u64; 2], sense: &str| {
+        format!(
+            "#{n}=VECTOR('',#4,1.);\n#{}=LINE('',#{},#{n});\n#{}=EDGE_CURVE('',#{},#{},#{},.T.);\n\
+             #{}=ORIENTED_EDGE('',*,*,#{},{sense});\n",
+            n + 1,
+            ends[0] - 1,
+            n + 2,
+            ends[0],
+            ends[1],
+            n + 1,
+            n + 3,
+            n + 2,
+        )
+    };
+    let data = vertex(10, [r, 0.0, 0.0])
+        + &vertex(12, [x, y, 0.0])
+        + &vertex(14, [x, y, h])
+        + &vertex(16, [r, 0.0, h])
+        + &circle(20, 0.0, [11, 11], ".T.")
+        + &circle(30, 0.0, [11, 13], ".T.")
+        + &rise(40, [13, 15], ".T.")
+        + &circle(50, h, [17, 15], ".F.")
+        + &rise(60, [11, 17], ".F.")
+        + &face(&[24, 34, 43, 54, 63], "CYLINDRICAL_SURFACE('',#7,10.)");
+    let (f, said) = only(&data);
+    assert!((f.area_mm2() - 0.2 * r * h).abs() < AREA * r * h, "{} {said:?}", f.area_mm2());
+    assert!(said.iter().any(|s| s.contains("without a partner")), "{said:?}");
+}
+
+#[test]
+fn an_edge_that_runs_against_its_loop_is_turned_and_told() {
+    let r = 2.0;
+    // The upper half of a disc in the plane z = 0: its arc from +x to -x, and the diameter, flagged the wrong way.
+    let data = vertex(10, [r, 0.0, 0.0])
+        + &vertex(20, [-r, 0.0, 0.0])
+        + &arc(30, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], r, [11, 21], true)
+        + "#40=VECTOR('',#5,1.);\n#41=LINE('',#20,#40);\n#42=EDGE_CURVE('',#21,#11,#41,.T.);\n\
+           #43=ORIENTED_EDGE('',*,*,#42,.F.);\n"
+        + &face(&[35, 43], "PLANE('',#7)");
+    let (f, said) = only(&data);
+    assert!((f.area_mm2() / (0.5 * PI * r * r) - 1.0).abs() < AREA, "{said:?}");
+    assert!(said.iter().any(|s| s.contains("against their loop")), "{said:?}");
+}
+
+#[test]
+fn a_cone_beyond_its_apex() {
+    // Half of the nappe below the apex of a cone of 30 degrees, 20 mm high, by parameter curves: area pi r s / 2 with
+    // the radius h tan 30 and the slant h / cos 30.
+    let line = |n: u64, from: [f64; 2], way: [f64; 2]| {
+        format!(
+            "#{n}=DIRECTION('',({:?},{:?}));\n#{}=VECTOR('',#{n},1.);\n#{}=CARTESIAN_POINT('',({:?},{:?}));\n\
+             #{}=LINE('',#{},#{});\n#{}=TRIMMED_CURVE('',#{},(PARAMETER_VALUE(0.)),(PARAMETER_VALUE({:?})),.T.,\
+             .PARAMETER.);\n#{}=DEFINITIONAL_REPRESENTATION('',(#{}),#8);\n#{}=PCURVE('',#900,#{});\n\
+             #{}=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#{});\n",
+            way[0],
+            way[1],
+            n + 1,
+            n + 2,
+            from[0],
+            from[1],
+            n + 3,
+            n + 2,
+            n + 1,
+            n + 4,
+            n + 3,
+            way[0].hypot(way[1]),
+            n + 5,
+            n + 4,
+            n + 6,
+            n + 5,
+            n + 7,
+            n + 6,
+        )
+    };
+    let h = 20.0;
+    let data = format!(
+        "#8=PARAMETRIC_REPRESENTATION_CONTEXT('','');\n#900=CONICAL_SURFACE('',#7,0.,{:?});\n",
+        PI / 6.0
+    ) + &line(100, [0.0, 0.0], [0.0, -h])
+        + &line(110, [0.0, -h], [PI, 0.0])
+        + &line(120, [PI, -h], [0.0, h])
+        + "#130=OUTER_BOUNDARY_CURVE('',(#107,#117,#127),.F.);\n#131=CURVE_BOUNDED_SURFACE('',#900,(#130),.F.);\n\
+           #132=GEOMETRIC_SET('',(#131));\n#133=SHAPE_REPRESENTATION('',(#7,#132),#3);\n";
+    let (f, said) = only(&data);
+    let (radius, slant) = (h * (PI / 6.0).tan(), h / (PI / 6.0).cos());
+    assert_eq!(f.kind, FaceKind::Cone);
+    assert!((f.area_mm2() / (0.5 * PI * radius * slant) - 1.0).abs() < AREA, "{} {said:?}", f.area_mm2());
+    let b = f.bbox();
+    // The file's u is an angle of the nappe above: below, the half with y < 0 belongs to u from 0 to pi.
+    assert!((b.min.z + h).abs() < 1e-9 && b.max.z.abs() < 1e-9 && b.max.y < 1e-9 && b.min.y < -radius + 1e-3);
+}
+
+#[test]
+fn the_inside_of_a_spindle_torus() {
+    // Tube of 2 mm about a circle of 1 mm; the sheet between the apexes at z = +-sqrt 3, the half on the left of a loop
+    // down at x = -1 and up at x = 1. The natural normal points to the axis, so that is the half with y > 0.
+    let z = 3.0_f64.sqrt();
+    let meridian = |n: u64, centre: f64, ends: [u64; 2]| {
+        format!(
+            "#{n}=CARTESIAN_POINT('',({centre:?},0.,0.));\n#{}=DIRECTION('',(0.,1.,0.));\n\
+             #{}=AXIS2_PLACEMENT_3D('',#{n},#{},#5);\n#{}=CIRCLE('',#{},2.);\n#{}=EDGE_CURVE('',#{},#{},#{},.F.);\n\
+             #{}=ORIENTED_EDGE('',*,*,#{},.T.);\n",
+            n + 1,
+            n + 2,
+            n + 1,
+            n + 3,
+            n + 2,
+            n + 4,
+            ends[0],
+            ends[1],
+            n + 3,
+            n + 5,
+            n + 4,
+        )
+    };
+    let data = vertex(10, [0.0, 0.0, z])
+        + &vertex(20, [0.0, 0.0, -z])
+        + &meridian(30, 1.0, [11, 21])
+        + &meridian(40, -1.0, [21, 11])
+        + &face(&[35, 45], "DEGENERATE_TOROIDAL_SURFACE('',#7,1.,2.,.F.)");
+    let (f, said) = only(&data);
+    let b = f.bbox();
+    assert!(b.min.y > -1e-5 && (b.max.y - 1.0).abs() < 1e-5, "{b:?} {said:?}");
+    // Pappus for the arc of 120 degrees between the apexes: its centroid is 2 sin 60 / (pi / 3) from the tube's centre.
+    let (arc, half) = (2.0 * PI / 3.0, PI / 3.0);
+    let want = PI * (2.0 * half.sin() / half - 1.0) * 2.0 * arc;
+    assert!((f.area_mm2() / want - 1.0).abs() < AREA, "{} {want}", f.area_mm2());
+}
