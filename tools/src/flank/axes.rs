@@ -197,6 +197,12 @@ impl AxisSurface {
         Pose { tip: (j.lower + j.direction * tip_mm).into(), axis }
     }
 
+    /// The same axes with the spindle at the other end: Q0 and Q1 exchanged.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self { range: self.range, lower: self.upper.clone(), upper: self.lower.clone() }
+    }
+
     /// The same motion on knots `times` as dense: the family of surfaces that holds this one and more.
     #[must_use]
     pub fn refined(&self) -> Self {

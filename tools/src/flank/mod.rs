@@ -48,6 +48,7 @@ pub mod global;
 mod largest;
 mod lp;
 mod minimax;
+pub mod path;
 mod rule;
 mod ruled;
 mod search;
