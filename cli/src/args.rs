@@ -49,6 +49,14 @@ pub enum Verb {
         #[arg(long)]
         out: PathBuf,
     },
+    /// The side of a cutter on a ruled face: every positioning side by side, the chosen one as path, NC program and report.
+    Flank {
+        /// The job file, with its flank table.
+        job: PathBuf,
+        /// Folder for path, program and report; without it only the table is made.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// CL data to NC code.
     Post(PostArgs),
     /// Material removal against the part: scallop, gouge, uncut area.

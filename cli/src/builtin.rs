@@ -1,8 +1,11 @@
 //! Built-in surfaces as written in jobs and on the command line.
 
 use osculate_geom::analytic::{Cone, Cylinder, Ellipsoid, Paraboloid, Plane, Sphere, Torus};
-use osculate_geom::{Domain, Interval, Patch, Side, Surface};
-use osculate_surfaces::{NurbsSurface, gallery};
+use osculate_geom::{Curve, Domain, Interval, Patch, Point3, Side, Surface};
+use osculate_surfaces::gallery::{
+    self, FormulaCurve, LiuSize, ParaboloidSize, liu_directrices, paraboloid_directrices,
+};
+use osculate_surfaces::{Net, NurbsSurface};
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -67,11 +70,21 @@ enum Keys {
     #[serde(rename = "d98-eq18")]
     D98Eq18(Cut),
     #[serde(rename = "d98-liu")]
-    D98Liu(Cut),
+    D98Liu {
+        line_mm: Option<f64>,
+        bend_per_mm: Option<f64>,
+        height_mm: Option<f64>,
+        end_mm: Option<f64>,
+        #[serde(default)]
+        material: Material,
+        u_range: Option<[f64; 2]>,
+        v_range: Option<[f64; 2]>,
+    },
     #[serde(rename = "d98-hyperbolic")]
     D98Hyperbolic {
         h_mm: f64,
         alpha_deg: f64,
+        extent_mm: Option<f64>,
         #[serde(default)]
         material: Material,
         u_range: Option<[f64; 2]>,
@@ -170,6 +183,32 @@ fn spline(kind: &'static str, surface: NurbsSurface, cut: Cut) -> Result<Builtin
     Ok(Builtin { kind, surface: piece.clone(), spline: Some(piece) })
 }
 
+/// The ruled spline between two polynomial curves of a degree over the same range.
+fn between(
+    kind: &'static str,
+    curves: [FormulaCurve; 2],
+    degree: usize,
+    cut: Cut,
+) -> Result<Builtin, String> {
+    let i = curves[0].domain();
+    // Bezier poles of a polynomial of degree 1 or 2 from its ends and the derivative at its start.
+    let poles = curves.map(|c| {
+        let t = c.taylor(i.lo, 1);
+        let mut p = vec![Point3::from(t.derivative(0))];
+        if degree == 2 {
+            p.push(p[0] + t.derivative(1) * (0.5 * i.length()));
+        }
+        p.push(c.point(i.hi));
+        p
+    });
+    let points: Vec<Point3> = poles[0].iter().zip(&poles[1]).flat_map(|(a, b)| [*a, *b]).collect();
+    let net = Net { count: [degree + 1, 2], points, weights: None };
+    let knots = |lo: f64, hi: f64, n: usize| [vec![lo; n], vec![hi; n]].concat();
+    let surface = NurbsSurface::new([degree, 1], [knots(i.lo, i.hi, degree + 1), knots(0.0, 1.0, 2)], net)
+        .map_err(|e| e.to_string())?;
+    spline(kind, surface, cut)
+}
+
 /// The surface that the keys describe.
 pub fn build(keys: &toml::Table) -> Result<Builtin, String> {
     let keys: Keys = keys.clone().try_into().map_err(|e: toml::de::Error| e.message().to_owned())?;
@@ -213,16 +252,27 @@ pub fn build(keys: &toml::Table) -> Result<Builtin, String> {
         Keys::D98Eq18(cut) => {
             patch("d98-eq18", gallery::d98_eq18(), cut.material, [cut.u_range, cut.v_range])
         }
-        Keys::D98Liu(cut) => spline("d98-liu", gallery::d98_liu(), cut),
-        Keys::D98Hyperbolic { h_mm, alpha_deg, material, u_range, v_range } => {
-            let s = gallery::d98_hyperbolic(h_mm, alpha_deg.to_radians()).map_err(|e| {
-                if e.what == "alpha" {
-                    format!("alpha_deg = {alpha_deg} must be {}", e.need)
-                } else {
-                    e.to_string()
-                }
+        Keys::D98Liu { line_mm, bend_per_mm, height_mm, end_mm, material, u_range, v_range } => {
+            let d = LiuSize::default();
+            let given = LiuSize {
+                line_mm: line_mm.unwrap_or(d.line_mm),
+                bend_per_mm: bend_per_mm.unwrap_or(d.bend_per_mm),
+                height_mm: size("height_mm", height_mm.unwrap_or(d.height_mm))?,
+                end_mm: size("end_mm", end_mm.unwrap_or(d.end_mm))?,
+            };
+            between("d98-liu", liu_directrices(given), 2, Cut { material, u_range, v_range })
+        }
+        Keys::D98Hyperbolic { h_mm, alpha_deg, extent_mm, material, u_range, v_range } => {
+            let given = ParaboloidSize {
+                height_mm: size("h_mm", h_mm)?,
+                half_twist_rad: alpha_deg.to_radians(),
+                extent_mm: size("extent_mm", extent_mm.unwrap_or(h_mm))?,
+            };
+            let curves = paraboloid_directrices(given).map_err(|e| match e.what {
+                "half_twist" => format!("alpha_deg = {alpha_deg} must be {}", e.need),
+                _ => e.to_string(),
             })?;
-            spline("d98-hyperbolic", s, Cut { material, u_range, v_range })
+            between("d98-hyperbolic", curves, 1, Cut { material, u_range, v_range })
         }
         Keys::MonkeySaddle(cut) => spline("monkey_saddle", gallery::monkey_saddle(), cut),
         Keys::Enneper(cut) => spline("enneper", gallery::enneper(), cut),

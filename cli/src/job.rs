@@ -37,6 +37,9 @@ pub struct Job {
     pub stock: Option<crate::stock_keys::StockTable>,
     /// What holds the part, for `verify`.
     pub fixture: Option<crate::stock_keys::FixtureTable>,
+    /// For `flank`.
+    #[serde(default)]
+    pub flank: crate::flank::keys::FlankTable,
     /// How densely to verify.
     #[serde(default)]
     pub verification: VerificationTable,
@@ -51,6 +54,8 @@ pub struct Job {
 pub struct PartTable {
     /// STEP or IGES file, relative to the job file.
     pub file: Option<String>,
+    /// Millimetres in a unit of a file of point sections that names none, or another than is meant.
+    pub unit_mm: Option<f64>,
     /// Faces to machine.
     pub faces: Option<FaceChoice>,
     /// Faces that the tool must not touch.
@@ -60,6 +65,8 @@ pub struct PartTable {
     pub normals: Normals,
     /// A built-in surface instead of a file.
     pub builtin: Option<toml::Table>,
+    /// The surface between two curves instead of a file.
+    pub ruled: Option<crate::flank::keys::RuledTable>,
 }
 
 /// Which side of a face the outward normal is on.
@@ -284,14 +291,19 @@ impl Job {
                 format!("format = {}: this version reads format = {FORMAT}", job.format),
             ));
         }
-        match (&job.part.file, &job.part.builtin) {
-            (None, None) => {
-                return Err(Failure::file(path, "[part] needs file = \"...\" or builtin = { ... }"));
+        let p = &job.part;
+        match [p.file.is_some(), p.builtin.is_some(), p.ruled.is_some()].iter().filter(|x| **x).count() {
+            0 => {
+                let need = "[part] needs file = \"...\", builtin = { ... } or [part.ruled]";
+                return Err(Failure::file(path, need));
             }
-            (Some(_), Some(_)) => {
-                return Err(Failure::file(path, "[part] has both file and builtin; keep one of them"));
+            1 => {}
+            _ => {
+                return Err(Failure::file(
+                    path,
+                    "[part] has several of file, builtin and ruled; keep one of them",
+                ));
             }
-            _ => {}
         }
         job.tolerance()?;
         job.cutter()?;

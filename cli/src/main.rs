@@ -9,6 +9,7 @@ mod cmd;
 mod cutter_keys;
 mod failure;
 mod figure;
+mod flank;
 mod job;
 mod nc;
 mod output;
@@ -37,6 +38,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Lines(options) => cmd::lines::run(options, cli.json),
         Verb::Strip { job } => cmd::strip::run(job, cli.json),
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
+        Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
         Verb::Verify { file, job, lenient, ply } => cmd::verify::run(
             file,

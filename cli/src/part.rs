@@ -104,9 +104,23 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
     })
 }
 
-fn from_file(path: &Path) -> Result<Loaded, Failure> {
+fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
     let bytes = read(path)?;
-    let part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
+    let mut part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
+    match unit_mm {
+        None => {}
+        Some(u) if !(u.is_finite() && u > 0.0) => {
+            return Err(Failure::file(path, format!("[part] unit_mm = {u} must be a positive number")));
+        }
+        Some(_) if part.format != osculate_surfaces::Format::Sections => {
+            let text = "[part] unit_mm goes with point sections; this file says its unit itself";
+            return Err(Failure::file(path, text));
+        }
+        Some(_) => {
+            part =
+                osculate_surfaces::sections::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?;
+        }
+    }
     let format = match part.format {
         osculate_surfaces::Format::Step => "step",
         osculate_surfaces::Format::Iges => "iges",
@@ -154,7 +168,7 @@ pub fn whole(part: Loaded) -> Result<Loaded, Failure> {
 /// The part of a command line.
 pub fn load(args: &PartArgs) -> Result<Loaded, Failure> {
     match (&args.part, &args.builtin) {
-        (Some(path), None) => from_file(path),
+        (Some(path), None) => from_file(path, None),
         (None, Some(keys)) => from_builtin(builtin::parse(keys).map_err(Failure::Usage)?),
         _ => Err(Failure::Usage("give either a part file or --builtin".to_owned())),
     }
@@ -173,10 +187,14 @@ pub struct JobFaces {
 /// The faces of a job, with their material sides settled.
 pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
     let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
-    let mut part = match (&job.part.file, &job.part.builtin) {
-        (Some(file), _) => whole(from_file(&beside(&job.path, file))?)?,
-        (None, Some(table)) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?)?,
-        (None, None) => return Err(Failure::file(&job.path, "[part] needs file or builtin")),
+    let mut part = match (&job.part.file, &job.part.builtin, &job.part.ruled) {
+        (Some(file), ..) => whole(from_file(&beside(&job.path, file), job.part.unit_mm)?)?,
+        (None, Some(table), _) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?)?,
+        (None, None, Some(table)) => {
+            let strip = crate::flank::keys::strip(table).map_err(|e| Failure::file(&job.path, e))?;
+            from_builtin(Builtin { kind: "ruled", surface: strip, spline: None })?
+        }
+        (None, None, None) => return Err(Failure::file(&job.path, "[part] needs file, builtin or ruled")),
     };
     let mut faces = choose(&part, job.part.faces.as_ref(), "faces").map_err(here)?;
     if faces.is_empty() {

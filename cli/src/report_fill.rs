@@ -45,6 +45,29 @@ pub struct Story<'a> {
     pub diagnostics: &'a [Diagnostic],
     /// The program read back.
     pub time_by_move: &'a Motions,
+    /// What this report shows beside what every report shows.
+    pub extras: &'a Extras<'a>,
+}
+
+/// A value of a place of a machined face, given by its number; NaN where there is none.
+pub type Field<'a> = Box<dyn Fn(usize, &Point3) -> f64 + Sync + 'a>;
+
+/// Tables and maps of one kind of report.
+#[derive(Default)]
+pub struct Extras<'a> {
+    /// Maps over the machined faces, with name and unit.
+    pub maps: Vec<(report::Scalar, Field<'a>)>,
+    /// Tables, first on the page.
+    pub tables: Vec<Table>,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Extras<'_> {
+    /// Whether there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.maps.is_empty() && self.tables.is_empty()
+    }
 }
 
 /// The report's pages.
@@ -76,6 +99,11 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         if !check {
             m.deviation_mm = deviation(&m, k as u32, &lookup, &story.verified.samples, &story.verified.cuts);
         }
+        let point = |p: &[f32; 3]| Point3::from(p.map(f64::from));
+        for (_, field) in &story.extras.maps {
+            let value = |p: &[f32; 3]| if check { f32::NAN } else { field(k, &point(p)) as f32 };
+            m.scalars.push(m.positions.par_iter().map(value).collect());
+        }
         faces.push(m);
         progress(0.6 * (k + 1) as f64 / (story.faces.faces.len() + story.faces.check.len()) as f64);
     }
@@ -84,7 +112,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         subtitle: format!("{}, {}, feed {}", s.machine, s.dialect, s.feed),
         verdict: verdict(story),
         faces,
-        scalars: Vec::new(),
+        scalars: story.extras.maps.iter().map(|m| m.0.clone()).collect(),
         passes: passes(story.passes),
         path_points: PathPoints::Contact,
         links: links(story.linked),
@@ -95,7 +123,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
             weights: story.verified.verdict.histogram.iter().map(|b| b.area_mm2).collect(),
             unit: "mm2".to_owned(),
         },
-        tables: tables(story),
+        tables: story.extras.tables.iter().cloned().chain(tables(story)).collect(),
         diagnostics: story.diagnostics.to_vec(),
         stages: [
             ("import", s.wall_s.import),

@@ -6,7 +6,6 @@ use common::{Scratch, job, osculate};
 #[test]
 fn wrong_usage_is_exit_code_two() {
     for args in [
-        vec!["flank", "job.toml"],
         vec!["plan"],
         vec!["plan", "job.toml"],
         vec!["inspect"],

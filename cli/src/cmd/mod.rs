@@ -1,6 +1,7 @@
 //! The verbs.
 
 pub mod export;
+pub mod flank;
 pub mod gallery;
 pub mod inspect;
 pub mod lines;

@@ -7,7 +7,7 @@ use crate::output;
 use crate::part::{self, JobFaces};
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
-use crate::report_fill::{self, Story};
+use crate::report_fill::{self, Extras, Story};
 use crate::verify::{self, Verification, Verified};
 use osculate_geom::{Axis, Box3, Diagnostic};
 use osculate_productivity::levels::{Totals, levels};
@@ -77,19 +77,23 @@ pub struct Summary {
 }
 
 /// A plan before it is posted.
-struct Planned {
-    passes: Passes,
-    linked: Linked,
-    strategy: &'static str,
-    lean: Lean,
+pub struct Planned<'a> {
+    /// The passes.
+    pub passes: Passes,
+    /// The passes joined.
+    pub linked: Linked,
+    /// Its name.
+    pub strategy: String,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// What the report shows beside what every report shows.
+    pub extras: Extras<'a>,
 }
 
 /// Runs the verb.
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let job = Job::load(path)?;
-    let (control, control_notes) = nc::control(&job)?;
     let mut wall_s = WallS::default();
-
     let stage = Stage::begin("import");
     let faces = part::of_job(&job)?;
     wall_s.import = stage.end();
@@ -98,8 +102,27 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let planned = planned(&job, &faces, &|f| stage.at(f))?;
     wall_s.plan = stage.end();
 
+    let (summary, text, _) = execute(&job, &faces, &planned, wall_s, out)?;
+    if json {
+        render::json(&summary)?;
+    } else {
+        render::text(&text);
+    }
+    Ok(if summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+/// Posts a plan, verifies the program and writes everything; the summary comes back with its text and what was measured.
+pub fn execute(
+    job: &Job,
+    faces: &JobFaces,
+    planned: &Planned<'_>,
+    mut wall_s: WallS,
+    out: &Path,
+) -> Result<(Summary, String, Verified), Failure> {
+    let path = job.path.as_path();
+    let (control, control_notes) = nc::control(job)?;
     let stage = Stage::begin("post");
-    let (setup, setup_notes) = nc::setup(&job, &faces)?;
+    let (setup, setup_notes) = nc::setup(job, faces)?;
     let mut cl = planned.linked.path.clone();
     cl.cutter = Some(job.cutter_spec()?);
     cl.holder = job.tool.holder;
@@ -114,14 +137,15 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     wall_s.post = stage.end();
 
     let stage = Stage::begin("verify");
-    let strip = narrow_strip(&planned.passes);
-    let verified = verify::run(&job, &faces, &read.motions, "nc", strip, &|f| stage.at(f))?;
+    let strip = if planned.extras.is_empty() { narrow_strip(&planned.passes) } else { None };
+    let verified = verify::run(job, faces, &read.motions, "nc", strip, &|f| stage.at(f))?;
     wall_s.verify = stage.end();
 
     let stage = Stage::begin("report");
     let diagnostics: Vec<Diagnostic> = [
         &faces.part.diagnostics,
         &planned.passes.diagnostics,
+        &planned.extras.diagnostics,
         &control_notes,
         &setup_notes,
         &posted.diagnostics,
@@ -138,7 +162,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let l = levels(&planned.passes.passes, feed, totals);
     let mut summary = Summary {
         format: 1,
-        strategy: planned.strategy.to_owned(),
+        strategy: planned.strategy.clone(),
         tool: serde_json::to_value(job.cutter_spec()?).map_err(Failure::job)?,
         lead_deg: planned.lean.lead_rad.to_degrees(),
         tilt_deg: planned.lean.tilt_rad.to_degrees(),
@@ -165,14 +189,15 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     };
     let story = Story {
         title: &title,
-        job: &job,
-        faces: &faces,
+        job,
+        faces,
         passes: &planned.passes,
         linked: &planned.linked,
         verified: &verified,
         summary: &summary,
         diagnostics: &diagnostics,
         time_by_move: &read,
+        extras: &planned.extras,
     };
     let pages = report_fill::pages(&story, &|f| stage.at(f));
     output::write(&out.join("path.cl"), cl_text.as_bytes())?;
@@ -183,12 +208,8 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
     output::write(&out.join("summary.json"), text.as_bytes())?;
 
-    if json {
-        render::json(&summary)?;
-    } else {
-        render::text(&describe(&summary, &verified, &diagnostics, out, &control));
-    }
-    Ok(if summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+    let text = describe(&summary, &verified, &diagnostics, out, &control);
+    Ok((summary, text, verified))
 }
 
 /// The strip that samples must resolve: the width that nine tenths of the path exceed.
@@ -200,7 +221,11 @@ fn narrow_strip(passes: &Passes) -> Option<f64> {
 }
 
 /// Passes and links by the job's strategy.
-fn planned(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> Result<Planned, Failure> {
+fn planned(
+    job: &Job,
+    faces: &JobFaces,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Planned<'static>, Failure> {
     let cutter = job.cutter()?;
     let (strategy, passes, lean) = match job.strategy.kind.as_str() {
         "auto" | "isoparametric" => {
@@ -233,11 +258,11 @@ fn planned(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> Resu
         }
     };
     let linked = linked(job, faces, &passes, &cutter)?;
-    Ok(Planned { passes, linked, strategy, lean })
+    Ok(Planned { passes, linked, strategy: strategy.to_owned(), lean, extras: Extras::default() })
 }
 
 /// Passes joined to a path.
-fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
+pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
     let mut obstacles = Box3::empty();
     for f in faces.faces.iter().chain(&faces.check) {
         obstacles = obstacles.union(&part::bounds(f));

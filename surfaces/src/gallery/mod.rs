@@ -72,7 +72,7 @@ pub const ENTRIES: [Entry; 12] = [
     Entry {
         name: "d98-hyperbolic",
         source: "D98, fig. 7",
-        properties: "hyperbolic paraboloid; the normals at both ends of the middle rule enclose alpha",
+        properties: "hyperbolic paraboloid; the normals at both ends of the middle rule enclose alpha with their bisector",
         keys: "h_mm = 80, alpha_deg = 30",
     },
     Entry {

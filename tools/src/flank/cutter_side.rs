@@ -60,6 +60,13 @@ impl CutterSide {
         lo
     }
 
+    /// Angle between the side and the axis at a height, rad: positive where it opens towards the spindle.
+    #[must_use]
+    pub fn taper_at_rad(&self, z_mm: f64) -> f64 {
+        let n = self.near(self.radius_at_mm(z_mm), z_mm);
+        (-n.by_z).atan2(n.by_rho)
+    }
+
     pub(crate) fn near(&self, rho: f64, z: f64) -> Near {
         match &self.meridian {
             None => Near { distance: rho - self.radius, by_rho: 1.0, by_z: 0.0 },

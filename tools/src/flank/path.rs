@@ -5,7 +5,7 @@
 //! the directions that both guiding curves have at its ends.
 
 use crate::cutter::Cutter;
-use crate::flank::axes::AxisSurface;
+use crate::flank::axes::{AxisPoints, AxisSurface};
 use crate::flank::envelope::{Envelope, Scratch};
 use crate::pose::Pose;
 use osculate_geom::{Interval, Point3, Surface, Unit3, Vec3, uv};
@@ -94,13 +94,30 @@ fn pose(axes: &AxisSurface, tau: f64, tip_mm: f64) -> Pose {
     Pose { tip: Point3::from(lower + direction * tip_mm), axis: Unit3::new_unchecked(direction) }
 }
 
+/// The axis at a parameter, straight on beyond the range of a surface.
+#[must_use]
+pub fn beyond(axes: &AxisSurface, tau: f64) -> AxisPoints {
+    let (lower, direction) = axis(axes, tau);
+    let length = axes.jet(tau).length;
+    AxisPoints { lower: lower.into(), upper: (lower + direction * length).into() }
+}
+
+/// By how much of the parameter the straight ways of a length at Q0 reach beyond both ends of the range.
+#[must_use]
+pub fn way_parameter(axes: &AxisSurface, lead_mm: f64) -> [f64; 2] {
+    let range = axes.range();
+    [range.lo, range.hi].map(|tau| {
+        let rate = axes.jet(tau).lower_rate.norm();
+        if lead_mm > 0.0 && rate > 0.0 { lead_mm / rate } else { 0.0 }
+    })
+}
+
 /// Poses along a motion, straight ways before and after it included.
 #[must_use]
 pub fn poses(axes: &AxisSurface, s: &Stepping) -> Vec<Placed> {
     let range = axes.range();
-    let rate = |tau: f64| axes.jet(tau).lower_rate.norm();
-    let beyond = |tau: f64| if s.lead_mm > 0.0 && rate(tau) > 0.0 { s.lead_mm / rate(tau) } else { 0.0 };
-    let (first, last) = (range.lo - beyond(range.lo), range.hi + beyond(range.hi));
+    let ways = way_parameter(axes, s.lead_mm);
+    let (first, last) = (range.lo - ways[0], range.hi + ways[1]);
     let mut marks: Vec<f64> = (0..=FIRST_STEPS).map(|k| range.at(k as f64 / FIRST_STEPS as f64)).collect();
     // The straight ways turn the axis a little, too: halving takes care of it.
     if first < range.lo {
@@ -138,7 +155,6 @@ fn halve(axes: &AxisSurface, s: &Stepping, [a, b]: [f64; 2], depth: u32, see: &m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flank::axes::AxisPoints;
 
     #[test]
     fn poses_keep_the_chord_tolerance_and_lead_in_straight() {

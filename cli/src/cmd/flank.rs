@@ -1,0 +1,258 @@
+//! `flank`: the side of a cutter on a ruled face, every positioning side by side, the chosen one as path and program.
+
+use crate::cmd::plan::{self, Planned, WallS};
+use crate::failure::{Done, Failure, Outcome};
+use crate::flank::face::{FlankFace, range};
+use crate::flank::keys::least_mm;
+use crate::flank::methods::{Answer, Method, Motion, NAMES, Study};
+use crate::flank::path::{self, Work};
+use crate::job::Job;
+use crate::output;
+use crate::part;
+use crate::progress::Stage;
+use crate::render::{self, Table, number};
+use crate::report::{self, Column};
+use crate::report_fill::{Extras, Field};
+use osculate_geom::{Axis, Diagnostic, Point3, Surface, uv};
+use osculate_tools::flank::RuledStrip;
+use osculate_tools::flank::envelope::{Envelope, Scratch};
+use osculate_tools::flank::global::Options;
+use osculate_tools::{CutterSpec, Lean};
+use serde::Serialize;
+use std::path::Path;
+
+/// What `--json` prints and `flank.json` holds.
+#[derive(Debug, Serialize)]
+struct Comparison {
+    rule_length_mm: f64,
+    normals_angle_deg: f64,
+    at_u: f64,
+    span_u: [f64; 2],
+    judge_u: [f64; 2],
+    along: &'static str,
+    /// How far the lines across the face stray from straight ones.
+    ruled_error_mm: f64,
+    methods: Vec<Method>,
+    chosen: String,
+    /// The program's heights as verified against those of the envelope.
+    program: Option<path::Agreement>,
+    diagnostics: Vec<String>,
+}
+
+/// Runs the verb.
+pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
+    let job = Job::load(path)?;
+    let table = &job.flank;
+    let wrong = |text: String| Failure::file(&job.path, format!("[flank] {text}"));
+    let Some(chosen) = NAMES.iter().position(|n| *n == table.method) else {
+        return Err(wrong(format!("method = \"{}\" is none of {}", table.method, NAMES.join(", "))));
+    };
+    if !(4..=20_000).contains(&table.positions) {
+        return Err(wrong(format!("positions = {} must lie between 4 and 20000", table.positions)));
+    }
+    if !(table.below_mm.is_finite() && table.below_mm >= 0.0) {
+        return Err(wrong(format!("below_mm = {} must be a number of 0 or more", table.below_mm)));
+    }
+    let mut wall_s = WallS::default();
+    let stage = Stage::begin("import");
+    let FlankFace { face, along, straying_mm, faces } = FlankFace::of(&job, part::of_job(&job)?)?;
+    wall_s.import = stage.end();
+
+    let stage = Stage::begin("plan");
+    let whole = face.domain().u;
+    let span = range(&job, "span_u", table.span_u, whole)?;
+    let judge = range(&job, "judge_u", table.judge_u, whole)?;
+    let at_u = table.at_u.unwrap_or_else(|| whole.at(0.5));
+    if !(at_u >= whole.lo && at_u <= whole.hi) {
+        return Err(wrong(format!(
+            "at_u = {at_u} is off the face, whose u runs from {} to {}",
+            whole.lo, whole.hi
+        )));
+    }
+    let length = |u: f64| (face.point(uv(u, 1.0)) - face.point(uv(u, 0.0))).norm();
+    let longest = [0.0, 0.5, 1.0].map(|t| length(whole.at(t))).into_iter().fold(0.0, f64::max);
+    let strip = RuledStrip::between_borders(&*face, Axis::U, least_mm(longest)).map_err(|e| {
+        Failure::file(&job.path, format!("[part] {e}: choose another range, or along = \"u\" or \"v\""))
+    })?;
+    let rule = strip.rule(at_u).map_err(|e| wrong(e.to_string()))?;
+    let cutter = job.cutter()?;
+    let tolerance = job.tolerance()?;
+    let bulge_per_mm = match job.cutter_spec()? {
+        CutterSpec::Barrel { barrel_radius_mm, .. } => 1.0 / barrel_radius_mm,
+        _ => 0.0,
+    };
+    let options = Options {
+        gouge_weight: table.gouge_weight,
+        smoothness_per_mm: table.smoothness_per_mm,
+        ..Options::default()
+    };
+    let study = Study {
+        face: &*face,
+        strip: &strip,
+        cutter,
+        bulge_per_mm,
+        below_mm: table.below_mm,
+        at_u,
+        span,
+        judge,
+        positions: table.positions,
+        spans: table.spans,
+        options,
+        tolerance: [tolerance.scallop_mm, tolerance.gouge_mm],
+    };
+    let answers: Vec<Answer> = NAMES
+        .iter()
+        .enumerate()
+        .map(|(k, name)| {
+            stage.at(k as f64 / NAMES.len() as f64);
+            study.run(name)
+        })
+        .collect();
+    let mut diagnostics = notes(&job, straying_mm, &rule);
+    diagnostics.extend(faces.part.diagnostics.iter().cloned());
+    let mut comparison = Comparison {
+        rule_length_mm: rule.length_mm,
+        normals_angle_deg: rule.twist_rad().abs().to_degrees(),
+        at_u,
+        span_u: [span.lo, span.hi],
+        judge_u: [judge.lo, judge.hi],
+        along: if along == Axis::U { "u" } else { "v" },
+        ruled_error_mm: straying_mm,
+        methods: answers.iter().map(|a| a.row.clone()).collect(),
+        chosen: table.method.clone(),
+        program: None,
+        diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
+    };
+    let answer = &answers[chosen];
+    let Some(out) = out else {
+        stage.end();
+        show(&comparison, json, "")?;
+        return Ok(Done::Yes);
+    };
+    let Some(motion) = &answer.motion else {
+        return Err(wrong(format!("method = \"{}\": {}", table.method, answer.row.why)));
+    };
+    let motion = path::oriented(&job, motion)?;
+    let work = Work {
+        job: &job,
+        face: &*face,
+        judge,
+        cutter: &cutter,
+        motion: &motion,
+        check: &faces.check,
+        chord_mm: tolerance.chord_mm,
+    };
+    let passes = path::pass(&work)?;
+    let linked = plan::linked(&job, &faces, &passes, &cutter)?;
+    wall_s.plan = stage.end();
+    let extras = Extras { maps: maps(&answers), tables: vec![page_table(&comparison)], diagnostics };
+    let strategy = format!("flank, {}", table.method);
+    let planned = Planned { passes, linked, strategy, lean: Lean::default(), extras };
+    let (summary, text, verified) = plan::execute(&job, &faces, &planned, wall_s, out)?;
+    comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter)?, &verified));
+    let text_json = serde_json::to_string_pretty(&comparison).map_err(Failure::job)? + "\n";
+    output::write(&out.join("flank.json"), text_json.as_bytes())?;
+    show(&comparison, json, &text)?;
+    Ok(if summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+/// What is to be known about the face.
+fn notes(job: &Job, straying_mm: f64, rule: &osculate_tools::flank::Rule) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    if job.flank.face == "borders" {
+        out.push(Diagnostic::warning(
+            "flank",
+            format!("milled as the straight lines between the face's borders; the face itself strays from them by up to {straying_mm:.4} mm"),
+        ));
+    } else if straying_mm > job.flank.ruled_tolerance_mm {
+        out.push(Diagnostic::warning(
+            "flank",
+            format!(
+                "the face is not ruled: lines across it stray by up to {straying_mm:.4} mm from straight ones; the settings at a \
+                 rule see the strip between its borders, every envelope is held against the face itself"
+            ),
+        ));
+    }
+    if rule.twist_rad().abs() < 1e-9 {
+        out.push(Diagnostic::note(
+            "flank",
+            "the end normals of the rule are parallel: developable there, all settings agree",
+        ));
+    }
+    out
+}
+
+/// A map of the deviation of each method, for the report.
+fn maps(answers: &[Answer]) -> Vec<(report::Scalar, Field<'_>)> {
+    answers
+        .iter()
+        .filter_map(|a| {
+            let Motion { pieces, side, .. } = a.motion.as_ref()?;
+            let envelope = Envelope::new(*side, pieces);
+            let field = move |_: usize, p: &Point3| envelope.distance_mm(p, &mut Scratch::default());
+            let name = format!("{} envelope", a.row.name.replace('_', " "));
+            Some((report::Scalar { name, unit: "mm".to_owned() }, Box::new(field) as Field<'_>))
+        })
+        .collect()
+}
+
+fn cells(m: &Method) -> [String; 8] {
+    let one = |x: Option<f64>, d: usize| x.map_or_else(|| "-".to_owned(), |x| number(x, d));
+    let two = |r: Option<crate::flank::methods::Range>| {
+        r.map_or_else(|| "-".to_owned(), |r| format!("{:+.6} {:+.6}", r.min, r.max))
+    };
+    [
+        m.name.to_owned(),
+        if m.valid { "yes" } else { "no" }.to_owned(),
+        one(m.gamma_deg, 7),
+        two(m.static_mm),
+        two(m.envelope_mm),
+        one(m.lower_bound_mm, 6),
+        m.share_within.map_or_else(|| "-".to_owned(), |s| format!("{:.1}", 100.0 * s)),
+        m.why.clone(),
+    ]
+}
+
+const HEADINGS: [&str; 8] =
+    ["method", "valid", "gamma deg", "static mm", "envelope mm", "bound mm", "within %", "verdict"];
+
+/// The table as it stands in the report.
+fn page_table(c: &Comparison) -> report::Table {
+    report::Table {
+        caption: format!("Positionings, rule of {:.4} mm at u = {}", c.rule_length_mm, c.at_u),
+        columns: HEADINGS.iter().map(|h| Column { name: (*h).to_owned(), unit: String::new() }).collect(),
+        rows: c.methods.iter().map(|m| cells(m).to_vec()).collect(),
+    }
+}
+
+fn show(c: &Comparison, json: bool, more: &str) -> Result<(), Failure> {
+    if json {
+        return render::json(c);
+    }
+    let mut t = Table::new(HEADINGS);
+    for m in &c.methods {
+        t.row(cells(m));
+    }
+    let mut text = format!(
+        "\n  rule at u = {}: {} mm long, its end normals enclose {} deg; judged over u = {} to {}\n\n{}",
+        c.at_u,
+        number(c.rule_length_mm, 9),
+        number(c.normals_angle_deg, 9),
+        c.judge_u[0],
+        c.judge_u[1],
+        t.render()
+    );
+    if let Some(p) = &c.program {
+        text.push_str(&format!(
+            "\n  the program as verified and the envelope differ by at most {:.6} mm at {} samples ({:.6} mm at 99 %)\n",
+            p.max_mm, p.samples, p.p99_mm
+        ));
+    }
+    for d in &c.diagnostics {
+        text.push_str(&format!("  {d}\n"));
+    }
+    text.push_str(more);
+    text.push('\n');
+    render::text(&text);
+    Ok(())
+}
