@@ -13,7 +13,7 @@ use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::report::{self, Column};
 use crate::report_fill::{Extras, Field};
-use osculate_geom::{Axis, Diagnostic, Point3, Surface, uv};
+use osculate_geom::{Axis, Diagnostic, Interval, Point3, Surface, uv};
 use osculate_tools::flank::RuledStrip;
 use osculate_tools::flank::envelope::{Envelope, Scratch};
 use osculate_tools::flank::global::Options;
@@ -94,6 +94,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         below_mm: table.below_mm,
         at_u,
         span,
+        longer: longer(table.span_u.is_some(), span, &*face, cutter.radius_mm()),
         judge,
         positions: table.positions,
         spans: table.spans,
@@ -154,6 +155,22 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     output::write(&out.join("flank.json"), text_json.as_bytes())?;
     show(&comparison, json, &text)?;
     Ok(if summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+/// Way in radii that a motion of least deviation goes on beyond the span's ends: the ends of a face are cut from there.
+const BEYOND: f64 = 0.5;
+
+/// The span, longer at both ends where the job leaves it to the program.
+fn longer(given: bool, span: Interval, face: &dyn Surface, radius_mm: f64) -> Interval {
+    if given {
+        return span;
+    }
+    let beyond = |u: f64| {
+        let rate = face.jet2(uv(u, 0.5)).du.norm();
+        let way = BEYOND * radius_mm / rate;
+        if way.is_finite() { way.min(0.5 * span.length()) } else { 0.0 }
+    };
+    Interval::new(span.lo - beyond(span.lo), span.hi + beyond(span.hi))
 }
 
 /// What is to be known about the face.

@@ -102,6 +102,8 @@ pub struct Study<'a> {
     pub at_u: f64,
     /// Positions.
     pub span: Interval,
+    /// Where the motions of least deviation go.
+    pub longer: Interval,
     /// Judged.
     pub judge: Interval,
     /// How many positions.
@@ -146,7 +148,7 @@ impl Study<'_> {
     }
 
     fn spans(&self) -> usize {
-        let by_length = SPANS * self.span.length() / self.judge.length();
+        let by_length = SPANS * self.longer.length() / self.judge.length();
         self.spans.unwrap_or(2 * ((0.5 * by_length).round() as usize).clamp(2, MOST_SPANS / 2))
     }
 
@@ -280,7 +282,7 @@ impl Study<'_> {
     fn global(&self, name: &'static str, goal: Goal) -> Answer {
         let mut row = empty(name);
         let side = self.side();
-        let task = Task { surface: self.face, side, positions: self.span, judged: self.patch(ACROSS[0]) };
+        let task = Task { surface: self.face, side, positions: self.longer, judged: self.patch(ACROSS[0]) };
         let options = Options { goal, spans: self.spans(), ..self.options };
         match optimise(&task, &options, &[]) {
             Err(e) => {

@@ -124,10 +124,11 @@ pub fn pass(work: &Work<'_>) -> Result<Passes, Failure> {
     let placed = poses(axes, &stepping(tip_mm));
     let mut points = Vec::with_capacity(placed.len());
     for p in placed {
-        let at = uv(p.tau, 0.5);
-        let jet = work.face.jet2(uv(work.judge.bring(p.tau), 0.5));
+        let u = work.judge.bring(p.tau);
+        let at = uv(u, 0.5);
+        let jet = work.face.jet2(at);
         let normal = jet.normal().map_err(|e| fail(format!("no normal at u = {}: {e}", p.tau)))?;
-        let width_mm = (work.face.point(uv(p.tau, 1.0)) - work.face.point(uv(p.tau, 0.0))).norm();
+        let width_mm = (work.face.point(uv(u, 1.0)) - work.face.point(uv(u, 0.0))).norm();
         points.push(CcPoint { uv: at, point: jet.point, normal, pose: p.pose, width_mm });
     }
     Ok(Passes { passes: vec![Pass { points, closed: false }], diagnostics: notes })
