@@ -4,7 +4,7 @@ use crate::failure::{Failure, beside, read_text};
 use crate::job::Job;
 use crate::part::{self, JobFaces};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
-use osculate_geom::{Diagnostic, Vec3};
+use osculate_geom::{Diagnostic, Unit3, Vec3};
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
@@ -135,8 +135,9 @@ pub fn control(job: &Job) -> Result<(Control, Vec<Diagnostic>), Failure> {
     Ok((control, Vec::new()))
 }
 
-/// Where the part of a job sits on the machine, as the job says or as [`suggest`] has it.
-pub fn setup(job: &Job, faces: &JobFaces) -> Result<(Setup, Vec<Diagnostic>), Failure> {
+/// Where the part of a job sits on the machine, as the job says or as [`suggest`] has it: turned so that the faces look up, or
+/// the tool axes where there are any.
+pub fn setup(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<Diagnostic>), Failure> {
     let s = &job.setup;
     let finite = |key: &str, v: &[f64; 3]| {
         if v.iter().all(|c| c.is_finite()) {
@@ -150,6 +151,9 @@ pub fn setup(job: &Job, faces: &JobFaces) -> Result<(Setup, Vec<Diagnostic>), Fa
     for (_, p, n) in faces.faces.iter().flat_map(|f| part::grid(&*f.surface, 24)) {
         points.push(p);
         normals.push(n);
+    }
+    if !axes.is_empty() {
+        normals = axes.to_vec();
     }
     // A given turn leaves only the place to be found.
     let given = s.rotate_deg.map(|deg| {

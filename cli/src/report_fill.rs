@@ -10,7 +10,7 @@ use crate::report::{
     ToolPose, Verdict, View, Worst,
 };
 use crate::verify::Verified;
-use osculate_geom::{Diagnostic, Point3};
+use osculate_geom::{Diagnostic, Point3, Unit3};
 use osculate_productivity::plan::{Linked, Passes};
 use osculate_surfaces::tessellate;
 use osculate_tools::cl::Motion;
@@ -59,6 +59,8 @@ pub struct Extras<'a> {
     pub maps: Vec<(report::Scalar, Field<'a>)>,
     /// Tables, first on the page.
     pub tables: Vec<Table>,
+    /// Tool axes, for a setup in which they look up.
+    pub axes: Vec<Unit3>,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
 }

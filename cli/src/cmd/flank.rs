@@ -109,8 +109,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
             study.run(name)
         })
         .collect();
-    let mut diagnostics = notes(&job, straying_mm, &rule);
-    diagnostics.extend(faces.part.diagnostics.iter().cloned());
+    let diagnostics = notes(&job, straying_mm, &rule);
     let mut comparison = Comparison {
         rule_length_mm: rule.length_mm,
         normals_angle_deg: rule.twist_rad().abs().to_degrees(),
@@ -146,7 +145,8 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let passes = path::pass(&work)?;
     let linked = plan::linked(&job, &faces, &passes, &cutter)?;
     wall_s.plan = stage.end();
-    let extras = Extras { maps: maps(&answers), tables: vec![page_table(&comparison)], diagnostics };
+    let axes = passes.passes.iter().flat_map(|p| &p.points).map(|p| p.pose.axis).collect();
+    let extras = Extras { axes, maps: maps(&answers), tables: vec![page_table(&comparison)], diagnostics };
     let strategy = format!("flank, {}", table.method);
     let planned = Planned { passes, linked, strategy, lean: Lean::default(), extras };
     let (summary, text, verified) = plan::execute(&job, &faces, &planned, wall_s, out)?;

@@ -122,7 +122,7 @@ pub fn execute(
     let path = job.path.as_path();
     let (control, control_notes) = nc::control(job)?;
     let stage = Stage::begin("post");
-    let (setup, setup_notes) = nc::setup(job, faces)?;
+    let (setup, setup_notes) = nc::setup(job, faces, &planned.extras.axes)?;
     let mut cl = planned.linked.path.clone();
     cl.cutter = Some(job.cutter_spec()?);
     cl.holder = job.tool.holder;

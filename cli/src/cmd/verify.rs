@@ -111,7 +111,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         } else {
             diagnostics.extend(notes);
         }
-        let (setup, notes) = nc::setup(&job, &faces)?;
+        let (setup, notes) = nc::setup(&job, &faces, &[])?;
         diagnostics.extend(notes);
         let read =
             nc::read_back(&text, &control, &setup, options.lenient).map_err(|e| Failure::file(file, e))?;
