@@ -11,7 +11,7 @@
 //! Where rules need not reach the corners, the longest run of them within the tolerance is kept.
 
 use super::{Band, RulingError, RulingOptions, border};
-use crate::closest_near;
+use crate::closest::{ClosestError, closest_near};
 use osculate_geom::{Point3, Surface, Uv};
 
 /// One rule: where it begins and ends on the borders of a band, and how far it strays from the face.
@@ -47,9 +47,19 @@ impl Segments<'_> {
             let hint =
                 Uv::from_axis(self.band.along, along.at(t + (s - t) * share), self.band.across.at(share));
             let p = a + (b - a) * share;
-            worst = worst.max(closest_near(self.surface, &p, hint)?.distance_mm);
+            worst = worst.max(distance(self.surface, &p, hint)?);
         }
         Ok(worst)
+    }
+}
+
+/// Distance of a point from the face near a hint, mm: never too small. A descent that stops short (points that all but lie
+/// on the face have no offset to be perpendicular) has found a point of the face all the same.
+pub(super) fn distance(surface: &dyn Surface, p: &Point3, hint: Uv) -> Result<f64, ClosestError> {
+    match closest_near(surface, p, hint) {
+        Ok(foot) => Ok(foot.distance_mm),
+        Err(ClosestError::NotConverged { distance_mm, .. }) => Ok(distance_mm),
+        Err(why) => Err(why),
     }
 }
 

@@ -4,10 +4,9 @@
 //! looked for between two opposite borders ([`super::mates`]). A face that is not ruled within the tolerance is cut
 //! across its rules into bands, halved until each is: the error of a band falls with the square of its width.
 
-use super::mates::{Mate, Segments, chain};
+use super::mates::{Mate, Segments, chain, distance};
 use super::{RuledError, ruled};
 use crate::closest::ClosestError;
-use crate::closest_near;
 use crate::fit::{Ends, FitError, Spacing, interpolate};
 use crate::nurbs::NurbsSurface;
 use osculate_geom::{Axis, Interval, Point3, Surface, Uv, uv};
@@ -208,7 +207,7 @@ fn over(
                 band.across.at(v),
             );
             let p = made.point(uv(t, v));
-            error_mm = error_mm.max(closest_near(surface, &p, hint)?.distance_mm);
+            error_mm = error_mm.max(distance(surface, &p, hint)?);
         }
     }
     Ok(RuledBand { band, mates, surface: made, error_mm })
