@@ -19,9 +19,9 @@ pub(crate) struct Draft<'a> {
     options: &'a PostOptions,
     linear_decimals: [usize; 3],
     /// Blocks that a joint's speed made longer, per joint.
-    slowed: Vec<usize>,
+    slowed: Vec<Slowed>,
     /// Blocks whose F would not have fitted the control's format.
-    limited: usize,
+    limited: Slowed,
     pub time_min: f64,
     /// Least and greatest feed of the tip, as a share of what was asked for.
     shares: [f64; 2],
@@ -41,8 +41,8 @@ impl<'a> Draft<'a> {
             setup,
             options,
             linear_decimals: linear_decimals(machine, options.feed == FeedMode::Tcp),
-            slowed: vec![0; machine.joints().len()],
-            limited: 0,
+            slowed: vec![Slowed::default(); machine.joints().len()],
+            limited: Slowed::default(),
             time_min: 0.0,
             shares: [f64::INFINITY, 0.0],
             last: None,
@@ -93,10 +93,16 @@ impl<'a> Draft<'a> {
                 };
                 let capped = capped_duration(self.machine, &from, &block.joints, asked_min);
                 if let Some(place) = capped.joint {
-                    self.slowed[place] += 1;
+                    let factor = if asked_min > 0.0 { capped.duration_min / asked_min } else { 1.0 };
+                    self.slowed[place].add(index, factor);
                 }
                 let step = step(&before, &m);
-                m.feed = self.feed(&step, wanted, (capped.duration_min, capped.joint.is_some()));
+                let f = self.feed(&step, wanted, (capped.duration_min, capped.joint.is_some()));
+                let largest = self.machine.control().largest_feed;
+                if f > largest {
+                    self.limited.add(index, f / largest);
+                }
+                m.feed = f.min(largest);
                 let read_min = self.control_time(&step, m.feed);
                 if length > 0.0 && read_min > 0.0 {
                     let share = capped.duration_min / read_min;
@@ -145,7 +151,7 @@ impl<'a> Draft<'a> {
     /// F of a block that shall take this long.
     fn feed(&mut self, step: &Step, wanted: f64, duration: (f64, bool)) -> f64 {
         let (duration_min, slowed) = duration;
-        let f = match self.options.feed {
+        match self.options.feed {
             FeedMode::InverseTime => inverse_time_per_min(duration_min),
             FeedMode::None => wanted,
             // The tip's feed is F itself, whatever rounding does to the length.
@@ -163,13 +169,7 @@ impl<'a> Draft<'a> {
                     _ => f,
                 }
             }
-        };
-        let largest = self.machine.control().largest_feed;
-        if f > largest {
-            self.limited += 1;
-            return largest;
         }
-        f
     }
 
     /// How long the control takes, by its own reading of F, min.
@@ -189,21 +189,21 @@ impl<'a> Draft<'a> {
 
     pub fn report(&self, diagnostics: &mut Vec<Diagnostic>, program: &Program) {
         for (count, joint) in self.slowed.iter().zip(self.machine.joints()) {
-            if *count > 0 {
+            if let Some(place) = count.place() {
                 let text = format!(
-                    "{count} blocks are slower than asked: joint {} is at its greatest speed",
-                    joint.letter
+                    "{} blocks from here on are slower than asked, at worst {:.1} times: joint {} is at its greatest speed",
+                    count.blocks, count.worst, joint.letter
                 );
-                diagnostics.push(Diagnostic::warning("feed", text));
+                diagnostics.push(Diagnostic::warning(place, text));
             }
         }
-        if self.limited > 0 {
+        if let Some(place) = self.limited.place() {
             let largest = self.machine.control().largest_feed;
             let text = format!(
-                "{} blocks are slower than asked: F is cut to the control's largest, {largest}",
-                self.limited
+                "{} blocks from here on are slower than asked, at worst {:.1} times: F is cut to the control's largest, {largest}",
+                self.limited.blocks, self.limited.worst
             );
-            diagnostics.push(Diagnostic::warning("feed", text));
+            diagnostics.push(Diagnostic::warning(place, text));
         }
         let own = PathMetric::from(self.machine.control().feed_reading);
         let wanted =
@@ -226,6 +226,30 @@ impl<'a> Draft<'a> {
             );
             diagnostics.push(Diagnostic::warning("feed", text));
         }
+    }
+}
+
+/// Blocks that take longer than asked.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slowed {
+    blocks: usize,
+    /// The CL move of the first of them.
+    first: usize,
+    /// By what factor at worst.
+    worst: f64,
+}
+
+impl Slowed {
+    fn add(&mut self, index: usize, factor: f64) {
+        if self.blocks == 0 {
+            self.first = index;
+        }
+        self.blocks += 1;
+        self.worst = self.worst.max(factor);
+    }
+
+    fn place(&self) -> Option<String> {
+        (self.blocks > 0).then(|| format!("CL move {}", self.first))
     }
 }
 

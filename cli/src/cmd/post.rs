@@ -30,15 +30,14 @@ fn located<R: BufRead, O: Fn() -> io::Result<R>>(
     cl: &ClStream<O>,
     mut notes: Vec<Diagnostic>,
 ) -> Vec<Diagnostic> {
-    let moves: Vec<(usize, usize)> = notes
+    let mut moves: Vec<(usize, usize)> = notes
         .iter()
         .enumerate()
         .filter_map(|(k, d)| Some((d.place.strip_prefix("CL move ")?.parse().ok()?, k)))
         .collect();
+    moves.sort_unstable();
     let indices: Vec<usize> = moves.iter().map(|(index, _)| *index).collect();
-    if indices.is_sorted()
-        && let Ok(places) = cl.locate(&indices)
-    {
+    if let (false, Ok(places)) = (indices.is_empty(), cl.locate(&indices)) {
         for ((index, k), place) in moves.into_iter().zip(places) {
             notes[k].place =
                 format!("CL line {} (move {index}, {:.3} mm on the way)", place.line, place.length_mm);
