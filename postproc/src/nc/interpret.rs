@@ -32,7 +32,8 @@ pub(super) struct Interpreter<'a, S> {
     pub sink: S,
     pub diagnostics: Vec<Diagnostic>,
     pub spindle_rpm: Option<f64>,
-    unlisted: usize,
+    /// Losses that are only counted, with the first and the last line of them.
+    unlisted: (usize, usize, usize),
     pub(super) sections: Sections,
     /// The sink knows where the machine stands.
     placed: bool,
@@ -92,7 +93,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             sink,
             diagnostics: Vec::new(),
             spindle_rpm: None,
-            unlisted: 0,
+            unlisted: (0, 0, 0),
             sections: Sections::default(),
             placed: false,
         }
@@ -115,9 +116,10 @@ impl<'a, S: Sink> Interpreter<'a, S> {
     pub fn end(&mut self) -> Result<(), ReadError> {
         self.close_sections()?;
         self.tell(&Event::Halt);
-        if self.unlisted > 0 {
-            let text = format!("{} more words are not interpreted", self.unlisted);
-            self.diagnostics.push(Diagnostic::loss("program", text));
+        let (count, first, last) = self.unlisted;
+        if count > 0 {
+            let text = format!("{count} more words are not interpreted and may change the tool's way");
+            self.diagnostics.push(Diagnostic::loss(format!("lines {first} to {last}"), text));
         }
         Ok(())
     }
@@ -148,7 +150,8 @@ impl<'a, S: Sink> Interpreter<'a, S> {
 
     pub(super) fn lost(&mut self, line: usize, word: &str) {
         if self.diagnostics.len() >= LISTED {
-            self.unlisted += 1;
+            let (count, first, _) = self.unlisted;
+            self.unlisted = (count + 1, if count == 0 { line } else { first }, line);
             return;
         }
         let text = format!("{word} is not interpreted and may change the tool's way");
