@@ -3,42 +3,51 @@
 //! `cargo run --release -p osculate-postproc --example mutate -- [FAULTS] [SEED]` (200 and 1 where not given); exits 1 where
 //! a harmful fault was not found or a harmless one was called a fault.
 
-#![allow(clippy::print_stdout, dead_code, reason = "a study prints its table")]
+#![allow(clippy::print_stdout, reason = "a study prints its table")]
 
-#[path = "../tests/mutation/study.rs"]
+#[path = "../tests/mutation/study/mod.rs"]
 mod study;
 
 use std::process::ExitCode;
+use study::Count;
 
 /// Places of the reference along each side of the patch.
-const SIDE: u32 = 81;
+const SIDE: u32 = 49;
+
+fn line(kind: &str, c: &Count) -> String {
+    let counts = [c.faults, c.harmful, c.found, c.harmless, c.alarms, c.garbled, c.close];
+    let cells: Vec<String> = counts.iter().map(|n| format!("{n:>9}")).collect();
+    format!("{kind:<16}{}", cells.join(""))
+}
 
 fn main() -> ExitCode {
     let mut args = std::env::args().skip(1).map(|a| a.parse::<u64>());
     let mut number = |default: u64| args.next().and_then(Result::ok).unwrap_or(default);
     let (count, seed) = (number(200), number(1));
     let programs = study::programs();
-    study::check_good(&programs, SIDE);
+    println!("good programs, largest share of a limit by the reference:");
+    for g in &programs {
+        let (r, share) = (&g.recipe, study::check_good(g, SIDE));
+        let tool = if g.cutter.is_ball() { "ball" } else { "toroidal" };
+        println!("  {:<18} {:<11} {:<9} {:<7} {share:.2}", r.machine, r.dialect, tool, r.part.name());
+    }
     let rows = study::study(&programs, count as usize, seed, SIDE);
     println!(
-        "{:<16} {:>6} {:>8} {:>6} {:>9} {:>12} {:>6}",
-        "kind", "faults", "harmful", "found", "harmless", "false alarms", "close"
+        "\n{:<16}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
+        "kind", "faults", "harmful", "found", "harmless", "alarms", "garbled", "close"
     );
-    let mut sum = [0; 6];
+    let mut sum = Count::default();
     for (kind, c) in study::table(&rows) {
-        println!("{kind:<16} {:>6} {:>8} {:>6} {:>9} {:>12} {:>6}", c[0], c[1], c[2], c[3], c[4], c[5]);
-        sum = std::array::from_fn(|k| sum[k] + c[k]);
+        println!("{}", line(kind, &c));
     }
-    println!(
-        "{:<16} {:>6} {:>8} {:>6} {:>9} {:>12} {:>6}",
-        "all", sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]
-    );
+    rows.iter().for_each(|row| sum.add(row));
+    println!("{}\n", line("all", &sum));
     for row in rows.iter().filter(|r| r.right() != Some(true)) {
-        let share = row.truth.map_or(f64::NAN, |t| t.share);
         let word = if row.right().is_none() { "close" } else { "WRONG" };
+        let share = row.truth.unwrap_or(f64::INFINITY);
         println!(
-            "{word}: {} tcp {} {}: {:?}, reference {share:.3} of the limit; {}",
-            row.dialect, row.tcp, row.kind, row.says, row.fault
+            "{word}: {} {} {}, {}: {:?}, reference {share:.4} of the limit; {}",
+            row.machine, row.dialect, row.part, row.kind, row.says, row.note
         );
     }
     ExitCode::from(u8::from(rows.iter().any(|r| r.right() == Some(false))))

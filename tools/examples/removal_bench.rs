@@ -1,7 +1,8 @@
 //! Time of `removal::cut` and of `removal::stock` on passes over waves: samples, motions, seconds, memory.
 //!
-//! `cargo run --release -p osculate-tools --example removal_bench -- SAMPLES MOTIONS RAYS`, RAYS being the number of rays
-//! along each side of the stock; `1000000 100000 512` are the figures to keep: below 10 s each for the faces and below
+//! `cargo run --release -p osculate-tools --example removal_bench -- SAMPLES MOTIONS RAYS [SIDE_MM] [CASE]`, RAYS being the
+//! number of rays along each side of the stock, SIDE_MM the side of the part (100) and CASE one of `3-axis`, `5-axis`,
+//! `thick` and `stock` (all); `1000000 100000 512` are the figures to keep: below 10 s each for the faces and below
 //! 60 s for the stock on two cores. CPU seconds are of the whole process, all threads.
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
@@ -84,6 +85,14 @@ fn cpu_s() -> f64 {
     after_name.split_whitespace().nth(11).and_then(|t| t.parse::<f64>().ok()).map_or(f64::NAN, |t| t / 100.0)
 }
 
+/// Most memory that this process has held, MB, where the system tells.
+fn peak_mb() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let kb = line.and_then(|l| l.split_whitespace().next()).and_then(|n| n.parse::<f64>().ok());
+    kb.map_or(f64::NAN, |kb| kb / 1024.0)
+}
+
 /// Roughing: the same passes 2 mm above the waves in a block, then over the waves themselves.
 fn roughing(waves: &Waves, cutter: &Cutter, motions: usize, rays: usize) -> Result<(), Box<dyn Error>> {
     let mut path = passes(waves, cutter, motions / 2, true)?;
@@ -120,7 +129,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
     let mut number = |default: usize| args.next().map_or(Ok(default), |s| s.parse());
     let (samples, count, rays) = (number(300_000)?, number(30_000)?, number(256)?);
-    let waves = Waves { side_mm: 100.0, height_mm: 4.0, per_mm: 0.1 };
+    let side_mm = number(100)? as f64;
+    let only = args.next();
+    let asked = |case: &str| only.as_ref().is_none_or(|o| o == case);
+    let waves = Waves { side_mm, height_mm: 4.0, per_mm: 0.1 };
     let begin = Instant::now();
     let sampling = sample_surface(&waves, 0, 1e-3, samples)?;
     println!("sampling   {:>9} samples {:>27.2} s", sampling.samples.len(), begin.elapsed().as_secs_f64());
@@ -131,6 +143,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, cutter, five_axis, stock_mm) in
         [("3-axis", &ball, false, 0.3), ("5-axis", &bull, true, 0.3), ("thick", &bull, true, 3.0)]
     {
+        if !asked(name) {
+            continue;
+        }
         let motions = passes(&waves, cutter, count, five_axis)?;
         let (begin, cpu) = (Instant::now(), cpu_s());
         let job = Job {
@@ -156,5 +171,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             verdict.uncut_area_mm2,
         );
     }
-    roughing(&waves, &bull, count, rays)
+    if asked("stock") {
+        roughing(&waves, &bull, count, rays)?;
+    }
+    println!("at most {:.0} MB of memory held at any time", peak_mb());
+    Ok(())
 }

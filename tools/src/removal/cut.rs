@@ -3,10 +3,10 @@
 use super::body::Body as Moved;
 use super::cluster::{Cluster, clusters};
 use super::deepest::{EXACT, Passage};
-use super::job::{Body, By, Cut, Job, JobError, Sample, Touch};
+use super::job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
 use super::piece::{Approach, FINE_MM, Passes, Piece, pieces};
 use super::target::Target;
-use super::tree::Tree;
+use super::tree::{Tree, Which};
 use crate::cutter::Line;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -76,13 +76,18 @@ struct Candidate {
 }
 
 impl World<'_> {
-    fn candidates(&self, target: &Target) -> Vec<Candidate> {
+    fn candidates(&self, target: &Target, which: Which) -> Vec<Candidate> {
         let mut found = Vec::new();
-        self.tree.near(&self.bodies, target, |k, body, index| {
+        self.tree.near(&self.bodies, target, which, |k, body, index| {
             let piece = &self.pieces[k as usize];
             let swept = &self.job.motions[piece.motion as usize];
+            match which {
+                Which::Cutting if swept.rapid => return,
+                Which::Intruding if index == 0 && !swept.rapid => return,
+                _ => {}
+            }
             let approach = Approach::new(swept, piece);
-            if let Passes::Near { distance, .. } = approach.passes(body, target) {
+            if let Passes::Near { distance, .. } = approach.passes(body, target, 0.0) {
                 found.push(Candidate {
                     piece: k,
                     body: index,
@@ -100,27 +105,45 @@ impl World<'_> {
         let mut work: Vec<Work<'_>> =
             group.members.iter().map(|k| Work::new(self, &samples[*k as usize])).collect();
         let target = |work: &[Work<'_>]| group.target(samples, |k| work[k].cut.standoff_mm);
-        let in_order = {
-            let mut all = self.candidates(&target(&work));
-            // Within a motion, which may have several pieces, the cutter before the holder.
-            all.sort_unstable_by_key(|c| (self.pieces[c.piece as usize].motion, c.body, c.piece));
-            all
-        };
         // Material is not supposed to meet these: what they take depends on what was cut before them.
-        let intruders: Vec<&Candidate> = in_order.iter().filter(|c| c.rapid || c.body != 0).collect();
+        let intruders = self.candidates(&target(&work), Which::Intruding);
         for one in &mut work {
             one.in_order = intruders.iter().any(|c| one.lowered_by(c).is_some());
-            if one.in_order {
-                for c in &in_order {
+        }
+        if work.iter().any(|one| one.in_order) {
+            let mut all = self.candidates(&target(&work), Which::All);
+            // Within a motion, which may have several pieces, the cutter before the holder.
+            all.sort_unstable_by_key(|c| (self.pieces[c.piece as usize].motion, c.body, c.piece));
+            for one in work.iter_mut().filter(|one| one.in_order) {
+                for c in &all {
                     one.take(c);
                 }
             }
         }
-        // Elsewhere the height is a minimum, whatever the order: the deepest first spares most of the others.
-        let mut rest: Vec<&Candidate> = in_order.iter().filter(|c| !c.rapid && c.body == 0).collect();
-        rest.sort_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.piece.cmp(&b.piece)));
-        while !rest.is_empty() {
-            let (now, later) = rest.split_at(rest.len().min(FIRST));
+        // Elsewhere the height is a minimum, whatever the order. What comes near the lowest layer alone settles most
+        // samples, and there is much less of it than of what comes near all material.
+        let thin = self.job.stock_mm * THIN;
+        let layer = group.target(samples, |k| work[k].cut.standoff_mm.min(thin));
+        self.lower(group, &mut work, self.candidates(&layer, Which::Cutting));
+        if work.iter().any(|one| !one.in_order && one.cut.standoff_mm > thin) {
+            let whole = target(&work);
+            self.lower(group, &mut work, self.candidates(&whole, Which::Cutting));
+        }
+        work.into_iter().map(|one| one.cut).collect()
+    }
+
+    /// Cuts those samples of a group for which the order of motions does not matter.
+    fn lower(&self, group: &Cluster, work: &mut [Work<'_>], mut found: Vec<Candidate>) {
+        // The deepest first spares most of the others.
+        found.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.piece.cmp(&b.piece)));
+        let mut rest: Vec<&Candidate> = found.iter().collect();
+        let mut count = FIRST;
+        // At their greatest depth samples are done, however many motions still pass there.
+        let open = |one: &Work<'_>| !one.in_order && one.cut.standoff_mm > -self.job.depth_mm;
+        while !rest.is_empty() && work.iter().any(open) {
+            let (now, later) = rest.split_at(rest.len().min(count));
+            // Looked at again after ever longer stretches, so that many that all come near do not cost their square.
+            count *= 2;
             // What cut the sample before most likely cuts its neighbour.
             let mut likely = 0;
             for one in work.iter_mut().filter(|one| !one.in_order) {
@@ -133,17 +156,18 @@ impl World<'_> {
                 }
             }
             // What is left of the material is thinner now.
-            let target = target(&work);
+            let target = group.target(self.job.samples, |k| work[k].cut.standoff_mm);
             rest = later
                 .iter()
-                .filter(|c| c.approach.passes(&self.bodies[c.body], &target) != Passes::Clear)
+                .filter(|c| c.approach.passes(&self.bodies[c.body], &target, 0.0) != Passes::Clear)
                 .copied()
                 .collect();
         }
-        work.into_iter().map(|one| one.cut).collect()
     }
 }
 
+/// Share of the stock's height that is looked at first.
+const THIN: f64 = 0.0625;
 /// Candidates tried on a group before the others are looked at again.
 const FIRST: usize = 8;
 
@@ -178,17 +202,39 @@ impl<'a> Work<'a> {
         }
         let (middle, radius) = if height > 0.0 { (0.5 * height, 0.5 * height) } else { (height, 0.0) };
         let swept = &self.world.job.motions[piece.motion as usize];
-        match approach.passes(body, &Target::segment(self.line.point(middle), &self.line.direction, radius)) {
-            Passes::Clear => None,
-            Passes::Near { sagitta, .. } if sagitta <= FINE_MM => {
-                Passage { body: *body, swept, piece: *piece, line: self.line, instant: EXACT }
-                    .height(height, depth)
-            }
-            Passes::Near { .. } => piece.halves().iter().fold(None, |lower, half| {
-                let height = lower.unwrap_or(height);
-                self.lowered(body, half, &Approach::new(swept, half), height).or(lower)
-            }),
+        let target = Target::segment(self.line.point(middle), &self.line.direction, radius);
+        let Passes::Near { sagitta, .. } = approach.passes(body, &target, 0.0) else { return None };
+        let passage = Passage { body: *body, swept, piece: *piece, line: self.line, instant: EXACT };
+        let first = passage.height(height, depth);
+        if sagitta <= FINE_MM {
+            return first;
         }
+        // That was one deepest instant. Whether there is a deeper one is asked half by half, which mostly is no.
+        self.deeper(body, swept, piece, first.unwrap_or(height)).or(first)
+    }
+
+    /// The height to which the halves of a piece lower it further, by more than [`FINE_MM`].
+    fn deeper(&self, body: &Moved<'_>, swept: &Swept, piece: &Piece, height: f64) -> Option<f64> {
+        let depth = self.world.job.depth_mm;
+        let mut lower = None;
+        for half in piece.halves() {
+            let height = lower.unwrap_or(height);
+            if height <= -depth {
+                break;
+            }
+            let (middle, radius) = if height > 0.0 { (0.5 * height, 0.5 * height) } else { (height, 0.0) };
+            let target = Target::segment(self.line.point(middle), &self.line.direction, radius);
+            match Approach::new(swept, &half).passes(body, &target, FINE_MM) {
+                Passes::Clear => {}
+                Passes::Near { sagitta, .. } if sagitta <= FINE_MM => {
+                    let passage =
+                        Passage { body: *body, swept, piece: half, line: self.line, instant: EXACT };
+                    lower = passage.height(height, depth).or(lower);
+                }
+                Passes::Near { .. } => lower = self.deeper(body, swept, &half, height).or(lower),
+            }
+        }
+        lower
     }
 
     /// Cuts by a candidate; whether that lowered the height.

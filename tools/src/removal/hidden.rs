@@ -26,7 +26,7 @@ use super::job::{Cut, Job, JobError};
 use super::piece::{Approach, Passes, Piece, pieces};
 use super::sampling::Patch;
 use super::target::Target;
-use super::tree::Tree;
+use super::tree::{Tree, Which};
 use crate::cutter::Line;
 use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
 use rayon::prelude::*;
@@ -201,10 +201,10 @@ impl Cell<'_> {
         let raised = normal.into_inner() * height;
         let target = Target::around(corners.into_iter().flat_map(|p| [p, p + raised]), &normal);
         let mut found = Vec::new();
-        tree.near(std::slice::from_ref(body), &target, |k, body, _| {
+        tree.near(std::slice::from_ref(body), &target, Which::Cutting, |k, body, _| {
             let piece = &pieces[k as usize];
             let swept = &job.motions[piece.motion as usize];
-            if !swept.rapid && Approach::new(swept, piece).passes(body, &target) != Passes::Clear {
+            if !swept.rapid && Approach::new(swept, piece).passes(body, &target, 0.0) != Passes::Clear {
                 found.push(piece.motion);
             }
         });

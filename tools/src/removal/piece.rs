@@ -156,8 +156,8 @@ impl Approach {
         }
     }
 
-    /// Whether the moving body may touch the target at some instant of the piece.
-    pub fn passes(&self, body: &Body<'_>, target: &Target) -> Passes {
+    /// Whether the moving body may come into the target, deeper than `ignored` mm, at some instant of the piece.
+    pub fn passes(&self, body: &Body<'_>, target: &Target, ignored: f64) -> Passes {
         /// Tangents drawn before the answer is left open. Three settle nearly all.
         const TANGENTS: u32 = 8;
         let w = target.centre - self.tip;
@@ -170,7 +170,7 @@ impl Approach {
             (sagitta, 0.5 * self.turning.rate * target.radius)
         };
         // Slack for the rounding of coordinates.
-        let need = sagitta + skew + 1e-12 * (1.0 + w.amax());
+        let need = sagitta + skew + 1e-12 * (1.0 + w.amax()) - ignored;
         let uu = u.norm_squared();
         let mut x = if uu > 0.0 { (-w.dot(&u) / uu).clamp(-0.5, 0.5) } else { 0.0 };
         let mut left: Option<Tangent> = None;

@@ -20,6 +20,8 @@ struct Node {
     axis: Unit3,
     /// Largest angle between an axis of the node and `axis`, rad.
     swing: f64,
+    /// Whether any of its motions is a rapid.
+    rapid: bool,
     /// Range of `order` in a leaf.
     leaf: Option<std::ops::Range<usize>>,
     /// The node that follows this one's whole subtree.
@@ -38,6 +40,18 @@ struct Poses {
     ends: Vec<[Pose; 2]>,
     /// Middles of tips and axes; the axes scaled by `arm_mm` to compare with the tips.
     middles: Vec<[f64; 6]>,
+    rapid: Vec<bool>,
+}
+
+/// Which pieces are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Which {
+    /// Every one.
+    All,
+    /// The first body's in feed motions.
+    Cutting,
+    /// Rapids, and bodies other than the first in any motion; a leaf with one of them gives the others as well.
+    Intruding,
 }
 
 impl Tree {
@@ -50,7 +64,8 @@ impl Tree {
             let axis = 0.5 * arm_mm * (a.axis.into_inner() + b.axis.into_inner());
             [tip.x, tip.y, tip.z, axis.x, axis.y, axis.z]
         };
-        let poses = Poses { middles: ends.iter().map(middle).collect(), ends };
+        let rapid = pieces.iter().map(|p| motions[p.motion as usize].rapid).collect();
+        let poses = Poses { middles: ends.iter().map(middle).collect(), ends, rapid };
         // There are fewer pieces than u32 counts: `pieces` refuses more.
         let mut order: Vec<u32> = (0..pieces.len() as u32).collect();
         let mut nodes = Vec::with_capacity(pieces.len() / LEAF * 4 + 1);
@@ -65,13 +80,19 @@ impl Tree {
         &self,
         bodies: &[Body<'b>],
         target: &Target,
+        which: Which,
         mut found: impl FnMut(u32, &Body<'b>, usize),
     ) {
         let mut k = 0;
         while let Some(node) = self.nodes.get(k) {
             let mut any = false;
             for (index, body) in bodies.iter().enumerate() {
-                if node.rejects(body, target) {
+                let asked = match which {
+                    Which::All => true,
+                    Which::Cutting => index == 0,
+                    Which::Intruding => index != 0 || node.rapid,
+                };
+                if !asked || node.rejects(body, target) {
                     continue;
                 }
                 any = true;
@@ -88,8 +109,17 @@ impl Tree {
 fn add(nodes: &mut Vec<Node>, poses: &Poses, order: &mut [u32], start: usize) -> usize {
     let me = nodes.len();
     let leaf = (order.len() <= LEAF).then(|| start..start + order.len());
-    nodes.push(Node { tips: Box3::empty(), axis: Vec3::z_axis(), swing: 0.0, leaf: leaf.clone(), next: 0 });
+    nodes.push(Node {
+        tips: Box3::empty(),
+        axis: Vec3::z_axis(),
+        swing: 0.0,
+        rapid: false,
+        leaf: leaf.clone(),
+        next: 0,
+    });
+    let rapid;
     let (tips, axes): (Box3, Vec<(Unit3, f64)>) = if leaf.is_some() {
+        rapid = order.iter().any(|k| poses.rapid[*k as usize]);
         let ends = || order.iter().flat_map(|k| &poses.ends[*k as usize]);
         (Box3::around(ends().map(|p| &p.tip)), ends().map(|p| (p.axis, 0.0)).collect())
     } else {
@@ -101,6 +131,7 @@ fn add(nodes: &mut Vec<Node>, poses: &Poses, order: &mut [u32], start: usize) ->
         let a = add(nodes, poses, low, start);
         let b = add(nodes, poses, high, start + middle);
         let (a, b) = (&nodes[a], &nodes[b]);
+        rapid = a.rapid || b.rapid;
         (a.tips.union(&b.tips), vec![(a.axis, a.swing), (b.axis, b.swing)])
     };
     let sum: Vec3 = axes.iter().map(|(a, _)| a.into_inner()).sum();
@@ -119,6 +150,7 @@ fn add(nodes: &mut Vec<Node>, poses: &Poses, order: &mut [u32], start: usize) ->
     let next = nodes.len();
     let node = &mut nodes[me];
     (node.tips, node.axis, node.swing, node.next) = (tips, axis, swing, next);
+    node.rapid = rapid;
     me
 }
 

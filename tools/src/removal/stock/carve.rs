@@ -8,7 +8,7 @@ use crate::removal::body::Body as Moved;
 use crate::removal::deepest::Passage;
 use crate::removal::piece::{Approach, Passes, Piece, moving, pieces};
 use crate::removal::target::Target;
-use crate::removal::tree::Tree;
+use crate::removal::tree::{Tree, Which};
 use crate::removal::{Body, JobError, Swept};
 use osculate_geom::roots::{End, bracketed};
 use osculate_geom::{Point3, Unit3, Vec3, any_perpendicular};
@@ -200,7 +200,7 @@ impl<'a> Rays<'a> {
         let Some(whole) = self.whole else { return bites };
         let world = self.world;
         let mut near: Vec<(u32, u8, u32)> = Vec::new();
-        world.tree.near(&world.bodies, &whole, |k, _, body| {
+        world.tree.near(&world.bodies, &whole, Which::All, |k, _, body| {
             // Few bodies: cutter, shank, holder.
             near.push((world.pieces[k as usize].motion, body as u8, k));
         });
@@ -212,13 +212,13 @@ impl<'a> Rays<'a> {
             let swept = &world.job.motions[motion as usize];
             let approach = Approach::new(swept, &piece);
             let moved = &world.bodies[usize::from(body)];
-            if approach.passes(moved, &whole) == Passes::Clear {
+            if approach.passes(moved, &whole, 0.0) == Passes::Clear {
                 continue;
             }
             let mut bite = Bite::none(motion, body);
             for part in 0..self.parts.len() {
                 let Some(target) = self.parts[part] else { continue };
-                if approach.passes(moved, &target) == Passes::Clear {
+                if approach.passes(moved, &target, 0.0) == Passes::Clear {
                     continue;
                 }
                 let before = bite.volume;
@@ -331,7 +331,7 @@ impl Sweep<'_> {
         let [lo, hi] = span;
         let target = Target::segment(self.line.point(0.5 * (lo + hi)), &self.line.direction, 0.5 * (hi - lo));
         let swept = &self.world.job.motions[piece.motion as usize];
-        match approach.passes(self.moved, &target) {
+        match approach.passes(self.moved, &target, 0.0) {
             Passes::Clear => {}
             Passes::Near { sagitta, .. } if sagitta <= TURNING_MM => {
                 let passage =
