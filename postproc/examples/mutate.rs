@@ -34,7 +34,7 @@ fn main() -> ExitCode {
     let rows = study::study(&programs, count as usize, seed, SIDE);
     println!(
         "\n{:<16}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
-        "kind", "faults", "harmful", "found", "harmless", "alarms", "garbled", "close"
+        "kind", "faults", "harmful", "found", "harmless", "alarms", "refused", "close"
     );
     let mut sum = Count::default();
     for (kind, c) in study::table(&rows) {
@@ -42,6 +42,9 @@ fn main() -> ExitCode {
     }
     rows.iter().for_each(|row| sum.add(row));
     println!("{}\n", line("all", &sum));
+    for row in rows.iter().filter(|r| r.garbled() && r.kind != "garbled word") {
+        println!("refused: {}: {}", row.kind, row.refused.as_deref().unwrap_or_default());
+    }
     for row in rows.iter().filter(|r| r.right() != Some(true)) {
         let word = if row.right().is_none() { "close" } else { "WRONG" };
         let share = row.truth.unwrap_or(f64::INFINITY);

@@ -158,12 +158,10 @@ pub fn planted() -> bool {
         let near = project(t.lowest(&t.at(0.0, 0.0)) + Vec3::x() * (d * b.sin()));
         let motions = posted(&path(None), spec, [&trunnion(0.0), &trunnion(d)], [setup; 2]);
         row("pivot, trunnion A lower", depth, deepest(&t.cutter, &motions, depth, near), None);
-        // A head that is shorter by d, set right with the spindle upright: the tool goes d (1 - cos b) deeper.
+        // A tool shorter by d than what the head is told: the control makes up for it upright, and leaned by b the tip goes
+        // d (1 - cos b) deeper.
         let head = Machine::built_in("head-ca").expect("built in");
-        let shorter = Setup {
-            gauge_length_mm: setup.gauge_length_mm - d,
-            part_zero: Setup::at(Vector3::new(0.0, 0.0, 30.0 + d), 150.0).part_zero,
-        };
+        let shorter = Setup { gauge_length_mm: setup.gauge_length_mm - d, ..setup };
         let motions = posted(&path(None), spec, [&head; 2], [setup, shorter]);
         row("pivot, head too short", depth, deepest(&t.cutter, &motions, depth, near), None);
     }

@@ -50,6 +50,8 @@ pub struct Row {
     pub kind: &'static str,
     pub note: String,
     pub says: Says,
+    /// Why strict reading refused the text.
+    pub refused: Option<String>,
     /// The largest share of a limit, None where not even lenient reading can follow.
     pub truth: Option<f64>,
 }
@@ -64,9 +66,11 @@ impl Row {
             Some(_) => None,
         }
     }
-    /// A text that is none is refused, whatever would become of the part.
+    /// Whether the text was refused after a change that may make it no program: a letter among digits, a G93 block without F.
+    /// Which it was is printed; after the other changes a refusal is a false alarm.
     pub fn garbled(&self) -> bool {
-        self.kind == "garbled word" && self.says == Says::Refused
+        let intact = ["comment", "slower feed", "line twice", "gauge length", "part zero", "tool radius"];
+        self.refused.is_some() && !intact.contains(&self.kind)
     }
     pub fn right(&self) -> Option<bool> {
         if self.garbled() {
@@ -76,21 +80,19 @@ impl Row {
     }
 }
 
-/// Motions of a text, or None where it is refused.
-fn motions(g: &Good, text: &str, setup: &Setup, strict: bool) -> Option<Vec<Swept>> {
+/// Motions of a text, or why it is refused.
+fn motions(g: &Good, text: &str, setup: &Setup, strict: bool) -> Result<Vec<Swept>, String> {
     let options = ReadOptions { strict, ..ReadOptions::default() };
-    let found = read(text, g.recipe.dialect, &g.machine, setup, &options).ok()?;
+    let found = read(text, g.recipe.dialect, &g.machine, setup, &options).map_err(|e| e.to_string())?;
     let pairs = found.moves.windows(2);
-    Some(
-        pairs
-            .map(|w| Swept {
-                from: w[0].pose,
-                to: w[1].pose,
-                rapid: matches!(w[1].motion, Motion::Rapid),
-                block: w[1].line as u32,
-            })
-            .collect(),
-    )
+    Ok(pairs
+        .map(|w| Swept {
+            from: w[0].pose,
+            to: w[1].pose,
+            rapid: matches!(w[1].motion, Motion::Rapid),
+            block: w[1].line as u32,
+        })
+        .collect())
 }
 
 fn verify(g: &Good, motions: &[Swept], cutter: &Cutter) -> Says {
@@ -119,11 +121,14 @@ pub fn check_good(g: &Good, side: u32) -> f64 {
 
 /// What becomes of one fault.
 fn outcome(g: &Good, f: Fault, side: u32) -> Row {
-    let says = motions(g, &f.text, &f.setup, true).map_or(Says::Refused, |m| verify(g, &m, &f.cutter));
+    let strict = motions(g, &f.text, &f.setup, true);
+    let says = strict.as_ref().map_or(Says::Refused, |m| verify(g, m, &f.cutter));
+    let refused = strict.err();
     let truth = motions(g, &f.text, &f.setup, false)
+        .ok()
         .map(|m| reference(&m, Shape::of(g, f.larger_mm), g.recipe.part, side));
     let (dialect, machine, part) = (g.recipe.dialect, g.recipe.machine, g.recipe.part.name());
-    Row { dialect, machine, part, kind: f.kind, note: f.note, says, truth }
+    Row { dialect, machine, part, kind: f.kind, note: f.note, says, refused, truth }
 }
 
 /// `count` faults of all kinds over the programs in turn.
@@ -150,7 +155,7 @@ pub struct Count {
     pub harmless: usize,
     /// Harmless ones called a fault.
     pub alarms: usize,
-    /// Texts that are none, refused.
+    /// Texts that are no programs, refused.
     pub garbled: usize,
     /// Within the band.
     pub close: usize,

@@ -75,7 +75,7 @@ fn freeze<'a>(swept: &'a Swept, shape: &Shape) -> Steps<'a> {
     // Lengths of arcs are below 1.6 times their chords for turns below a right angle.
     let way = straight + 1.6 * (b - a).norm() * (shape.length + shape.core + shape.corner);
     let near = straight + 1.6 * (b - a).norm() * 2.0 * (shape.core + shape.corner);
-    let count = ((near / STEP_MM).ceil() as usize).clamp(1, 20_000);
+    let count = ((near / STEP_MM).ceil() as usize).clamp(1, 2_000_000);
     let poses = (0..=count).map(|k| {
         let t = k as f64 / count as f64;
         let axis = a * (1.0 - t) + b * t;
