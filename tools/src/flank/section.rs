@@ -130,6 +130,10 @@ fn settle(
             best = Least { u, v, deviation_mm: near.deviation_mm };
         }
         let slope = near.normal.dot(&j.first);
+        // Falling outwards at an end of the strip: the end itself is lowest.
+        if (u == lo && slope >= 0.0) || (u == hi && slope <= 0.0) {
+            return best;
+        }
         if slope > 0.0 {
             hi = u;
         } else {
@@ -144,18 +148,13 @@ fn settle(
         let next = if bend > 0.0 && newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
         let step = (next - u).abs();
         u = next;
-        // A step of 1e-9 of a station leaves 1e-18 of the value; an end of the strip is met exactly.
-        if step <= 1e-9 * whole {
+        // A step of 1e-8 of a station leaves 1e-16 of the value.
+        if step <= 1e-8 * whole {
             break;
         }
     }
-    for end in [lo, hi, u] {
-        let d = tool.deviation_mm(axis, &across(strip, end, v).point);
-        if d < best.deviation_mm {
-            best = Least { u: end, v, deviation_mm: d };
-        }
-    }
-    best
+    let d = tool.deviation_mm(axis, &across(strip, u, v).point);
+    if d < best.deviation_mm { Least { u, v, deviation_mm: d } } else { best }
 }
 
 /// The least deviation on directrix 0 or 1.
