@@ -28,7 +28,7 @@ fn near(v: &Value, want: f64, within: f64) {
 #[test]
 fn table_of_lius_surface() {
     let scratch = Scratch::new();
-    let flank = "at_u = 23.014\nspan_u = [-5, 28]\npositions = 91\nspans = 16";
+    let flank = "at_u = 23.014\nspan_u = [-5, 28]\npositions = 61\nspans = 14";
     let path = scratch.write("job.toml", &job(LIU, CYLINDER, flank));
     let run = osculate(&["flank", path.to_str().unwrap(), "--json"]);
     assert_eq!(run.code, 0, "{}", run.err);
@@ -60,9 +60,9 @@ fn programs_leave_what_the_envelope_says() {
                   c1 = { degree = 2, knots = [0, 0, 0, 1, 1, 1], poles = [[0, 4, 25], [22, 8, 27], [46, -2, 25]] }";
     let cone = "kind = \"cone\"\ndiameter_mm = 16\ntaper_deg = 3\ntip_diameter_mm = 8\ncorner_radius_mm = 1\nlength_mm = 90";
     for (part, tool, flank) in [
-        (LIU, CYLINDER, "spans = 12\npositions = 61"),
-        (hyperbolic, CYLINDER, "spans = 12\npositions = 61\nmethod = \"double_point_offset\""),
-        (points, cone, "spans = 12\npositions = 61\nside = -1"),
+        (LIU, CYLINDER, "spans = 8\npositions = 41"),
+        (hyperbolic, CYLINDER, "spans = 8\npositions = 41\nmethod = \"double_point_offset\""),
+        (points, cone, "spans = 8\npositions = 41\nside = -1"),
     ] {
         let scratch = Scratch::new();
         let path = scratch.write("job.toml", &job(part, tool, flank));
@@ -84,7 +84,7 @@ fn programs_leave_what_the_envelope_says() {
 fn developable_faces_leave_nothing_by_any_method() {
     let scratch = Scratch::new();
     let cylinder = "builtin = { kind = \"cylinder\", radius_mm = 40, height_mm = 30, u_range = [0, 1.2] }";
-    let path = scratch.write("job.toml", &job(cylinder, CYLINDER, "spans = 12\npositions = 61"));
+    let path = scratch.write("job.toml", &job(cylinder, CYLINDER, "spans = 4\npositions = 21"));
     let v = osculate(&["flank", path.to_str().unwrap(), "--json"]).json();
     for m in v["methods"].as_array().unwrap() {
         for key in ["min", "max"] {

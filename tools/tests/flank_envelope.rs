@@ -180,7 +180,7 @@ fn best(
     u: Interval,
     options: Options,
 ) -> (f64, Option<f64>, AxisSurface) {
-    let judged = Patch { u, v: UNIT, count: [121, 17] };
+    let judged = Patch { u, v: UNIT, count: [101, 15] };
     let task = Task { surface, side: cylinder(10.0), positions, judged };
     let found = optimise(&task, &options, &[]).unwrap();
     // Judged anew on a denser grid.

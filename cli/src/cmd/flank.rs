@@ -109,7 +109,8 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
             study.run(name)
         })
         .collect();
-    let diagnostics = notes(&job, straying_mm, &rule);
+    let mut diagnostics = notes(&job, straying_mm, &rule);
+    diagnostics.extend(outside(&answers[chosen].row));
     let mut comparison = Comparison {
         rule_length_mm: rule.length_mm,
         normals_angle_deg: rule.twist_rad().abs().to_degrees(),
@@ -171,6 +172,19 @@ fn longer(given: bool, span: Interval, face: &dyn Surface, radius_mm: f64) -> In
         if way.is_finite() { way.min(0.5 * span.length()) } else { 0.0 }
     };
     Interval::new(span.lo - beyond(span.lo), span.hi + beyond(span.hi))
+}
+
+/// The share of the face that a method cannot hold, as a finding.
+fn outside(row: &Method) -> Option<Diagnostic> {
+    let (share, range) = (row.share_within?, row.envelope_mm?);
+    (share < 1.0).then(|| {
+        let (outside, name) = (100.0 * (1.0 - share), row.name);
+        let (min, max) = (range.min, range.max);
+        Diagnostic::warning(
+            "flank",
+            format!("{name}: {outside:.1} % of the judged face is out of tolerance, from {min:.4} to {max:.4} mm; the map shows where"),
+        )
+    })
 }
 
 /// What is to be known about the face.
