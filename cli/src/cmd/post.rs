@@ -86,6 +86,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     };
     let options = PostOptions {
         spindle_rpm: head.spindle_rpm(),
+        coolant: head.coolant(),
         orientation,
         subprogram: args.subprogram,
         ..nc::post_options(&control, &name)
