@@ -1,4 +1,4 @@
-//! The ruled surface between two curves; rules found in faces ([`rulings`], [`mates`]).
+//! The ruled surface between two curves; rules found in faces (`rulings`, `mates`).
 //!
 //! `S(u, v)` runs along the straight line from `A(u)` at v = 0 to `B(u)` at v = 1. It is exact: the curves'
 //! poles are the two rows of its net. Where the curves have different weights the point at v does not divide

@@ -1,7 +1,7 @@
 //! Ruled faces found, and free-form faces as ruled ones within a tolerance, in bands across.
 //!
 //! A face is ruled along one of its parameters where the lines of constant other parameter are straight; else its rules are
-//! looked for between two opposite borders ([`super::mates`]). A face that is not ruled within the tolerance is cut
+//! looked for between two opposite borders (`mates`). A face that is not ruled within the tolerance is cut
 //! across its rules into bands, halved until each is: the error of a band falls with the square of its width.
 
 use super::mates::{Mate, Segments, chain, distance};

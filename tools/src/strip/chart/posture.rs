@@ -49,7 +49,7 @@ pub enum ChartError {
 }
 
 impl Chart {
-    /// How far along the feed the standing tool stays within `height_mm`: as [`super::mark`].
+    /// How far along the feed the standing tool stays within `height_mm`: as [`mark`](crate::strip::mark()).
     ///
     /// # Errors
     /// [`ChartError`].
