@@ -226,3 +226,54 @@ fn the_inside_of_a_spindle_torus() {
     let want = PI * (2.0 * half.sin() / half - 1.0) * 2.0 * arc;
     assert!((f.area_mm2() / want - 1.0).abs() < AREA, "{} {want}", f.area_mm2());
 }
+
+#[test]
+fn edges_along_the_sides_of_a_patch_leave_the_whole_rectangle() {
+    // A rational bicubic patch, bent, with the curves of its outer poles as edges, one of them given backwards and its
+    // weights doubled, which changes no curve.
+    let (mut data, mut rows, mut weights) = (String::new(), Vec::new(), Vec::new());
+    for i in 0..4_u32 {
+        for j in 0..4_u32 {
+            let (x, y) = (f64::from(i), f64::from(j));
+            let w = 1.0 + 0.1 * f64::from((i + 2 * j) % 3);
+            data += &format!("#{}=CARTESIAN_POINT('',({x:?},{y:?},{:?}));\n", 100 + 4 * i + j, 0.2 * x * y);
+            weights.push(w);
+        }
+        rows.push(format!("(#{},#{},#{},#{})", 100 + 4 * i, 101 + 4 * i, 102 + 4 * i, 103 + 4 * i));
+    }
+    let w = |k: usize| format!("{:?}", weights[k]);
+    let all: Vec<String> = (0..4)
+        .map(|i| format!("({},{},{},{})", w(4 * i), w(4 * i + 1), w(4 * i + 2), w(4 * i + 3)))
+        .collect();
+    let surface = format!(
+        "(BOUNDED_SURFACE()B_SPLINE_SURFACE(3,3,({}),.UNSPECIFIED.,.F.,.F.,.F.)B_SPLINE_SURFACE_WITH_KNOTS((4,4),(4,4),\
+         (0.,1.),(0.,2.),.UNSPECIFIED.)GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_SURFACE(({}))\
+         REPRESENTATION_ITEM('')SURFACE())",
+        rows.join(","),
+        all.join(",")
+    );
+    let corners = [100_u64, 112, 115, 103];
+    for (k, c) in corners.iter().enumerate() {
+        data += &format!("#{}=VERTEX_POINT('',#{c});\n", 200 + k);
+    }
+    // Outer poles of the four sides in the sense of the loop; the third is written against it.
+    let sides = [[0, 4, 8, 12], [12, 13, 14, 15], [3, 7, 11, 15], [3, 2, 1, 0]];
+    for (k, side) in sides.iter().enumerate() {
+        let n = 210 + 10 * k;
+        let points: Vec<String> = side.iter().map(|i| format!("#{}", 100 + i)).collect();
+        let weights: Vec<String> = side.iter().map(|i| format!("{:?}", 2.0 * weights[*i])).collect();
+        let (a, b, sense) = if k == 2 { (203, 202, ".F.") } else { (200 + k, 200 + (k + 1) % 4, ".T.") };
+        data += &format!(
+            "#{n}=(BOUNDED_CURVE()B_SPLINE_CURVE(3,({}),.UNSPECIFIED.,.F.,.F.)B_SPLINE_CURVE_WITH_KNOTS((4,4),(5.,9.),\
+             .UNSPECIFIED.)CURVE()GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE(({}))\
+             REPRESENTATION_ITEM(''));\n#{}=EDGE_CURVE('',#{a},#{b},#{n},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},{sense});\n",
+            points.join(","),
+            weights.join(","),
+            n + 1,
+            n + 2,
+            n + 1
+        );
+    }
+    let (f, said) = only(&(data + &face(&[212, 222, 232, 242], &surface)));
+    assert!(!f.surface.is_trimmed() && said.is_empty(), "{said:?}");
+}

@@ -1,13 +1,15 @@
 """What OpenCASCADE reads from STEP and IGES files: faces with kind and area, validity, seconds.
 
 usage: occt.py FILE...   prints one JSON object a line
-       occt.py --time N FILE   reads the file N times and prints the least seconds
+       occt.py --time N FILE   reads the file N times and prints the least seconds and the most memory, in sizes of the file
        occt.py --compare INSPECT.json ORIGINAL EXPORT...
            compares every export with the original and with our own areas, one line each; exit 1 where they differ
 Needs the PyPI package cadquery-ocp-novtk (or cadquery-ocp).
 """
 
 import json
+import os
+import resource
 import sys
 import time
 
@@ -115,8 +117,10 @@ def main(arguments):
         sys.exit(0 if compare(arguments[1], arguments[2], arguments[3:]) else 1)
     if arguments[:1] == ["--time"]:
         times, path = int(arguments[1]), arguments[2]
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         best = min(read(path)[1:] for _ in range(times))
-        print(json.dumps({"file": path, "parse_s": best[0], "read_s": best[1]}))
+        grown = 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / os.path.getsize(path)
+        print(json.dumps({"file": path, "parse_s": best[0], "read_s": best[1], "peak_of_file": grown}))
         return
     for path in arguments:
         try:

@@ -6,7 +6,8 @@ use super::carrier::{Carrier, FaceSurface};
 use super::chain::{EdgeUse, join};
 use super::curve::{Curve, Motion, Moved, Piece};
 use super::edge::FaceEdge;
-use super::pull::{Tolerance, flatten, pull};
+use super::pull::{Pulled, Tolerance, flatten, pull};
+use super::side::along_side;
 use crate::trimmed::TrimError;
 use nalgebra::Matrix3;
 use osculate_geom::{Box3, Point3, Side, Surface, Uv, Vec3, uv};
@@ -73,7 +74,12 @@ pub(crate) fn build(
         for b in l {
             edges.push(match b {
                 Boundary::Space { piece, key } => {
-                    let pulled = pull(piece, &carrier, tolerance);
+                    // A curve that is a side of the surface needs no search.
+                    let side = carrier.surface.nurbs().and_then(|n| along_side(piece, n));
+                    let pulled = match side {
+                        Some(ends) => Pulled { points: ends.to_vec(), gap_mm: 0.0 },
+                        None => pull(piece, &carrier, tolerance),
+                    };
                     gap_mm = gap_mm.max(pulled.gap_mm);
                     EdgeUse { points: pulled.points, ends: piece.end_points(), key: *key, owner, own: false }
                 }

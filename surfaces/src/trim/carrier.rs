@@ -9,7 +9,7 @@ use crate::nurbs::{Net, NurbsSurface};
 use crate::part::PlaceError;
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Axis, Box3, Domain, Jet2, Jet3, Offset, Point3, Surface, Taylor, Unit3, Uv};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The untrimmed surface of a face.
 #[derive(Clone, Debug)]
@@ -164,7 +164,8 @@ pub(crate) struct Carrier {
     pub(crate) known: Known,
     /// Typical length of the derivative by each parameter.
     pub(crate) speed: [f64; 2],
-    seeds: foot::Seeds,
+    /// Made when a point is first looked for without a neighbour.
+    seeds: OnceLock<foot::Seeds>,
 }
 
 /// Places along a side at which closing and shrinking are looked for.
@@ -200,7 +201,7 @@ impl Carrier {
                     | Shape::Lemon { major_radius_mm, minor_radius_mm } => [major_radius_mm, minor_radius_mm],
                 };
                 let known = Known { below_out, above_out, oriented };
-                Self { surface, domain, closes, known, speed, seeds: foot::Seeds::default() }
+                Self { surface, domain, closes, known, speed, seeds: OnceLock::new() }
             }
             FaceSurface::Nurbs(_) | FaceSurface::Offset(_) => {
                 let (n, base) = (&surface, surface.base());
@@ -231,10 +232,13 @@ impl Carrier {
                     sum / 25.0
                 });
                 let known = Known { below_out, above_out, oriented };
-                let seeds = foot::Seeds::new(n);
-                Self { surface, domain, closes, known, speed, seeds }
+                Self { surface, domain, closes, known, speed, seeds: OnceLock::new() }
             }
         }
+    }
+
+    fn seeds(&self) -> &foot::Seeds {
+        self.seeds.get_or_init(|| foot::Seeds::new(&self.surface))
     }
 
     /// Parameters of the surface point nearest to `p`, and its distance, mm. With a hint the search stays near it
@@ -252,10 +256,10 @@ impl Carrier {
                     if near.1 <= good_mm {
                         return near;
                     }
-                    let far = self.seeds.global(&target);
+                    let far = self.seeds().global(&target);
                     return if far.1 < 0.5 * near.1 { far } else { near };
                 }
-                self.seeds.global(&target)
+                self.seeds().global(&target)
             }
         }
     }

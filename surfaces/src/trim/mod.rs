@@ -14,6 +14,7 @@ mod foot;
 mod outline;
 pub(crate) mod pull;
 pub(crate) mod region;
+mod side;
 pub(crate) mod spline;
 pub(crate) mod sweep;
 

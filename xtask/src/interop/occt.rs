@@ -24,8 +24,10 @@ const HOW: &str = "python3 -m venv target/peers/occt && target/peers/occt/bin/pi
 pub fn run(arguments: &[&str]) -> Result<(), Failure> {
     let root = root()?;
     let python = peer(&root)?;
-    if let ["--time", file] = arguments {
-        return time(&root, &python, file);
+    match arguments {
+        ["--time", file] => return time(&root, &python, file),
+        ["--time"] => return time(&root, &python, &rational_faces(&root)?),
+        _ => {}
     }
     let parts: Vec<&str> = if arguments.is_empty() { PARTS.to_vec() } else { arguments.to_vec() };
     start(cargo(&root, &["build", "--release", "--quiet", "-p", "osculate"]))?;
@@ -73,6 +75,17 @@ fn osculate(root: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(root.join("target/release/osculate"));
     command.current_dir(root).args(arguments);
     command
+}
+
+/// A file of 200 rational faces, always the same.
+fn rational_faces(root: &Path) -> Result<String, Failure> {
+    let folder = root.join("target/interop");
+    std::fs::create_dir_all(&folder).map_err(|why| Failure::Read { path: folder.clone(), why })?;
+    let file = folder.join("rational-faces.step").to_string_lossy().into_owned();
+    let run =
+        ["run", "--release", "--quiet", "-p", "osculate-surfaces", "--example", "rational_faces", &file];
+    start(cargo(root, &run))?;
+    Ok(file)
 }
 
 /// Both readers on one file, one after the other on the same machine.
