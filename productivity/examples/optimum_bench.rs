@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 /// Scan of directions, leads and tilts.
-const SCAN: [usize; 3] = [48, 13, 5];
+const SCAN: [usize; 3] = [24, 7, 3];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let places: usize = std::env::args().nth(1).map_or(Ok(1000), |a| a.parse())?;

@@ -6,6 +6,7 @@
 //! - [`rate`], [`split`]: productivity at an instant under the caps of cutter and machine, and the share of the tolerance
 //!   between tooth marks and scallops that makes it greatest.
 //! - [`optimum`]: the tool, feed direction, lead and tilt of greatest productivity at a point.
+//! - [`field`]: the best postures over a face, as arrays.
 //! - [`levels`]: productivity at an instant, along a pass and over the whole face.
 //! - [`finish`], [`rough`]: area and volume of stock per minute under any change of parameters; [`given`]: tolerance and stock
 //!   that vary over the face; [`engagement`]: what a cutter takes out of real stock at an instant.
@@ -22,6 +23,7 @@
 
 pub mod closed_form;
 pub mod engagement;
+pub mod field;
 pub mod finish;
 pub mod given;
 pub mod levels;

@@ -304,7 +304,7 @@ pub fn at(surface: &dyn Surface, at: Uv, tools: &[Cutter], limits: &Limits) -> R
     best.ok_or(OptimumError::None { at, last })
 }
 
-fn check(tools: &[Cutter], limits: &Limits) -> Result<(), OptimumError> {
+pub(crate) fn check(tools: &[Cutter], limits: &Limits) -> Result<(), OptimumError> {
     if tools.is_empty() {
         return Err(OptimumError::NoTools);
     }

@@ -249,7 +249,7 @@ impl Cutter {
             Part::Side => out,
             Part::Corner => {
                 let (x, y) = (rho - self.core_mm(), self.corner - z);
-                let r = x.hypot(y);
+                let r = (x * x + y * y).sqrt();
                 if r > 0.0 { (out * x - axis * y) / r } else { -axis }
             }
         }
@@ -388,7 +388,8 @@ impl Cutter {
                 }
                 s -= f / slope;
             } else {
-                let r = x.hypot(y);
+                // Both are of the size of the corner: no need of hypot's care.
+                let r = (x * x + y * y).sqrt();
                 let f = r - self.corner;
                 if f <= tol {
                     return Some(Entry { at_mm: s, part: Part::Corner });

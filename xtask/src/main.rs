@@ -34,6 +34,8 @@ usage: cargo xtask COMMAND
                 times of the kernel; with --peers OpenCASCADE and SISL beside them (Debian: g++, libocct-*-dev, libsisl-dev)
   reference [--data FOLDER]
                 the kernel against reference vectors and samples to 1e-12 and 1e-9
+  papers [r97] [m86]
+                docs/papers/r97.md and m86.md, docs/closed-forms.md: closed forms of strip width against the exact strip
   papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
   papers d98    docs/papers/d98.md: the values, errata and figures of D98, ours beside theirs
   figures       the figures of the gallery: docs/figures and docs/gallery.md
@@ -53,6 +55,9 @@ fn main() -> ExitCode {
         ["bench", "--peers"] => bench::run(true),
         ["reference", rest @ ..] => example("reference", rest),
         ["truth", rest @ ..] => example("truth", rest),
+        ["papers", rest @ ..] if !rest.is_empty() && rest.iter().all(|p| ["r97", "m86"].contains(p)) => {
+            strips(rest)
+        }
         ["papers", "z17"] => postproc_example("z17", &["docs/papers"]),
         ["papers", "d98"] => d98(),
         ["figures"] => figures::run(),
@@ -93,6 +98,13 @@ fn postproc_example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
 fn d98() -> Result<(), cmd::Failure> {
     let example = ["run", "--locked", "-p", "osculate-tools", "--example", "d98", "--", "docs/papers"];
     cmd::run(cmd::cargo(&cmd::root()?, &example))
+}
+
+/// Runs the study of strip widths, an example of the productivity crate.
+fn strips(papers: &[&str]) -> Result<(), cmd::Failure> {
+    let example =
+        ["run", "--release", "--locked", "-p", "osculate-productivity", "--example", "papers", "--", "docs"];
+    cmd::run(cmd::cargo(&cmd::root()?, &[&example, papers].concat()))
 }
 
 fn wrong_usage(why: &str) -> ExitCode {

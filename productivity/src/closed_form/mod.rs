@@ -4,11 +4,14 @@
 //! The exact width they approximate is [`osculate_tools::strip::exact`]; every form here tends to it as h -> 0, with
 //! a relative error of first order in h times the curvatures at hand unless it says otherwise.
 
+mod batch;
 mod marciniak;
 mod radzevich;
 
+pub use batch::{LengthError, Sections};
 pub use marciniak::{
-    FiveAxis, contour_per_mm, five_axis_flat, three_axis_flat, three_axis_toroidal, two_axis_ball,
+    FiveAxis, contour_per_mm, five_axis_flat, five_axis_refined, three_axis_flat, three_axis_toroidal,
+    two_axis_ball,
 };
 pub use radzevich::{Section, acos_37, chord_38, leading_order, leading_order_swept, linear_40, width_37};
 

@@ -21,6 +21,9 @@ const BRINK: u32 = 7;
 /// Rounds of coordinate searches; steps shrink in each.
 const ROUNDS: u32 = 3;
 const SHRINK: f64 = 0.35;
+/// Error of a chart that is as good as exact, of the tolerance; and what is level with the best on it.
+const FINE: f64 = 4e-3;
+const LEVEL: f64 = 0.995;
 /// Steps of the last, exact round, of a step of the grid.
 const POLISH: f64 = 0.1;
 /// Radius of the chart, in the cutter's radius: strips are hardly ever wider.
@@ -161,9 +164,6 @@ impl<'a> Search<'a> {
     }
 
     pub fn run(&mut self) -> Option<Found> {
-        let mut ranked = self.grid();
-        ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut tried: Vec<Posture> = Vec::with_capacity(6 * MEASURED);
         // At the least lead the strip is usually widest and the leading order fails: all of it is measured.
         let mut found = Vec::with_capacity(4 * GRID[0]);
         for p in self.least_lead() {
@@ -173,6 +173,10 @@ impl<'a> Search<'a> {
                 None => found.extend(self.brink_above(p, CLIMBS)),
             }
         }
+        let coarse = self.chart.error_mm() > FINE * self.limits.scallop_mm;
+        let mut ranked = self.grid();
+        ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut tried: Vec<Posture> = Vec::with_capacity(6 * MEASURED);
         let enough = found.len() + MEASURED;
         for (p, _) in ranked {
             if p.lean.lead_rad == self.limits.lead.least_rad {
@@ -192,25 +196,32 @@ impl<'a> Search<'a> {
         }
         found.sort_by(|a, b| b.1.rate.area_mm2_min.total_cmp(&a.1.rate.area_mm2_min));
         // The best of each neighbourhood.
-        let mut best: Vec<Found> = Vec::with_capacity(SETTLED);
+        let most = if coarse { 2 * SETTLED } else { SETTLED };
+        let mut best: Vec<Found> = Vec::with_capacity(most);
         for f in &found {
-            if best.len() < SETTLED && !best.iter().any(|b| near(&b.0, &f.0)) {
+            if best.len() < most && !best.iter().any(|b| near(&b.0, &f.0)) {
                 best.push(*f);
             }
         }
         let found = best;
-        let settled: Vec<Found> = found.into_iter().map(|f| self.settle(f)).collect();
-        // On the chart two may be level that are not: all are measured exactly, and the best is settled once more.
+        let mut settled: Vec<Found> = found.into_iter().map(|f| self.settle(f)).collect();
+        settled.sort_by(|a, b| b.1.rate.area_mm2_min.total_cmp(&a.1.rate.area_mm2_min));
+        // On the chart two may be level that are not: those near the best are measured exactly. Where the chart is
+        // coarse all are, and the best is settled once more.
+        let level = settled.first()?.1.rate.area_mm2_min * if coarse { 0.0 } else { LEVEL };
         self.exactly = true;
         let mut best: Option<Found> = None;
-        for (p, _) in settled {
+        for (p, on_chart) in settled {
+            if best.is_some() && on_chart.rate.area_mm2_min < level {
+                break;
+            }
             if let Some(m) = self.measure(p)
                 && best.is_none_or(|b| m.rate.area_mm2_min > b.1.rate.area_mm2_min)
             {
                 best = Some((p, m));
             }
         }
-        let (p, m) = self.polish(best?);
+        let (p, m) = if coarse { self.polish(best?) } else { best? };
         // The search compares planar tooth marks; the answer has the exact one.
         Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).unwrap_or(m)))
     }
