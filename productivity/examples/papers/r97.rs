@@ -20,7 +20,7 @@ const EQUATIONS: [[&str; 3]; 18] = [
         "`rate::Share`, `split::best_share`; by leading orders `split::leading_share`: 1/2, less where the feed is capped",
         "left to another paper",
     ],
-    ["9 [h](u, v), 19 S(u, v)", "`given::Given`", ""],
+    ["9 h(u, v), 19 S(u, v)", "`given::Given`", ""],
     ["11, 31 averages", "`levels::Levels`: regional and global", ""],
     [
         "18 volume of stock",
