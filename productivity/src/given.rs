@@ -1,4 +1,4 @@
-//! A quantity given over a face: the tolerance [h](u, v) [R97, eq. 9] or the stock S(u, v) [R97, eq. 19].
+//! A quantity given over a face: the tolerance `[h](u, v)` [R97, eq. 9] or the stock S(u, v) [R97, eq. 19].
 //!
 //! Either the same everywhere, or values at the nodes of a grid over the parameters with bilinear values between them;
 //! outside the grid the value of its border holds.
