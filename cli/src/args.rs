@@ -72,6 +72,9 @@ pub enum Verb {
         /// Write the surface as cut, coloured by its deviation, as a PLY file.
         #[arg(long, value_name = "FILE")]
         ply: Option<PathBuf>,
+        /// Write what each block took from the raw material, its chip section and engagement, as a CSV file.
+        #[arg(long, value_name = "FILE")]
+        blocks: Option<PathBuf>,
     },
     /// Machining time of an NC program with the axes' limits.
     Time(TimeArgs),

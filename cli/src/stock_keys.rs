@@ -61,6 +61,21 @@ pub struct StockSummary {
     pub most: Vec<StockBlock>,
     /// Everything that met material and is not to.
     pub collisions: Vec<StockCollision>,
+    /// Every block that took something, in the order of the program; too many for the answer.
+    #[serde(skip)]
+    pub blocks: Vec<StockBlock>,
+}
+
+impl StockSummary {
+    /// The blocks as comma-separated lines under a heading.
+    pub fn csv(&self) -> String {
+        let mut out = String::from("block,volume_mm3,section_mm2,engaged_deg,height_mm\n");
+        for b in &self.blocks {
+            let StockBlock { block, volume_mm3, section_mm2, engaged_deg, height_mm } = b;
+            out += &format!("{block},{volume_mm3:.6},{section_mm2:.6},{engaged_deg:.2},{height_mm:.4}\n");
+        }
+        out
+    }
 }
 
 /// What one block took.
@@ -194,15 +209,21 @@ pub fn run(
 
 fn summary(stock: &Stock, volume_mm3: f64, carved: &Carved) -> StockSummary {
     let left = stock.volume();
-    let mut most: Vec<_> = carved.work.iter().collect();
-    most.sort_by(|a, b| b.volume_mm3.total_cmp(&a.volume_mm3).then(a.motion.cmp(&b.motion)));
-    let most = most.iter().take(LISTED).map(|w| StockBlock {
-        block: w.block,
-        volume_mm3: w.volume_mm3,
-        section_mm2: w.section_mm2,
-        engaged_deg: w.arc_rad.to_degrees(),
-        height_mm: w.height_mm[1],
-    });
+    let blocks: Vec<StockBlock> = carved
+        .work
+        .iter()
+        .map(|w| StockBlock {
+            block: w.block,
+            volume_mm3: w.volume_mm3,
+            section_mm2: w.section_mm2,
+            engaged_deg: w.arc_rad.to_degrees(),
+            height_mm: w.height_mm[1],
+        })
+        .collect();
+    let mut most = blocks.clone();
+    // Blocks that took the same stay in the order of the program.
+    most.sort_by(|a, b| b.volume_mm3.total_cmp(&a.volume_mm3));
+    most.truncate(LISTED);
     let collisions = carved.collisions.iter().map(|c| StockCollision {
         body: match c.body {
             Body::Cutter => "cutter",
@@ -222,7 +243,8 @@ fn summary(stock: &Stock, volume_mm3: f64, carved: &Carved) -> StockSummary {
         removed_mm3: carved.volume_mm3(),
         left_mm3: left.mm3,
         spread_mm3: left.spread_mm3,
-        most: most.collect(),
+        most,
         collisions: collisions.collect(),
+        blocks,
     }
 }

@@ -49,6 +49,35 @@ pub struct Verification {
     pub within_tolerance: bool,
 }
 
+/// A bin of the histogram: area by what stands on it.
+#[derive(Debug, Serialize, Clone)]
+pub struct HistogramBin {
+    /// From here, negative is below the part; absent in the first.
+    pub from_mm: Option<f64>,
+    /// To here; absent in the last.
+    pub to_mm: Option<f64>,
+    /// Area of the machined faces.
+    pub area_mm2: f64,
+}
+
+impl Verification {
+    /// What the figures are worth, in a sentence.
+    pub fn confidence(&self) -> String {
+        let bend = self.smallest_radius_mm.map_or_else(
+            || "the faces are flat".to_owned(),
+            |r| {
+                let turn = (self.spacing_mm / r).to_degrees();
+                format!("the sharpest radius met is {r:.3} mm, over which normals turn by {turn:.2} deg from sample to sample")
+            },
+        );
+        format!(
+            "{} samples {:.4} mm apart; {bend}; between them scallops may be {:.5} mm higher and gouges {:.5} mm deeper than \
+             measured",
+            self.samples, self.spacing_mm, self.hidden_scallop_mm, self.hidden_gouge_mm
+        )
+    }
+}
+
 /// A worst place.
 #[derive(Debug, Serialize, Clone)]
 pub struct WorstPlace {
@@ -72,6 +101,8 @@ pub struct Verified {
     pub summary: Verification,
     /// Worst places.
     pub worst: Vec<WorstPlace>,
+    /// Area by what stands on it.
+    pub histogram: Vec<HistogramBin>,
     /// Where it was measured.
     pub samples: Vec<Sample>,
     /// What was measured there.
@@ -218,7 +249,14 @@ pub fn run(
         holder_max_mm: verdict.holder_max_mm,
         within_tolerance: verdict.within,
     };
-    Ok(Verified { summary, worst, samples, cuts, verdict, diagnostics })
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let bin = |b: &removal::Bin| HistogramBin {
+        from_mm: finite(b.from_mm),
+        to_mm: finite(b.to_mm),
+        area_mm2: b.area_mm2,
+    };
+    let histogram = verdict.histogram.iter().map(bin).collect();
+    Ok(Verified { summary, worst, histogram, samples, cuts, verdict, diagnostics })
 }
 
 /// Samples of a coarse look.

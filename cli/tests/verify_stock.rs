@@ -79,6 +79,19 @@ fn stock_collisions_and_the_cut_surface() {
         s["collisions"].as_array().unwrap().is_empty() && s["most"][0]["volume_mm3"].as_f64().unwrap() > 1.0
     );
     assert!(stock["within_tolerance"] == true);
+    // Every block with what it took.
+    let csv = scratch.path("blocks.csv");
+    let with =
+        run("[stock]\nbox_mm = [-6, -6, -5, 6, 6, 3]\ncell_mm = 0.3\n", &["--blocks", csv.to_str().unwrap()]);
+    let v = with.json();
+    let lines = std::fs::read_to_string(&csv).unwrap();
+    let volume: f64 =
+        lines.lines().skip(1).map(|l| l.split(',').nth(1).unwrap().parse::<f64>().unwrap()).sum();
+    let whole = v["stock"]["removed_mm3"].as_f64().unwrap();
+    assert!((volume - whole).abs() < 1e-3 && lines.lines().count() > 100, "{volume} {whole}");
+    let area: f64 = v["histogram"].as_array().unwrap().iter().map(|b| b["area_mm2"].as_f64().unwrap()).sum();
+    assert!((area - 144.0).abs() < 0.05 && v["confidence"].as_str().unwrap().contains("may be"), "{v}");
+    run("", &["--blocks", csv.to_str().unwrap()]).refused(&["--blocks", "[stock]"]);
     // Taller than the flutes: the shank runs into it, and that is not within tolerance.
     let tall = run("[stock]\nbox_mm = [-20, -20, -5, 20, 20, 14]\ncell_mm = 0.5\n", &[]);
     let v = tall.json();

@@ -3,12 +3,13 @@
 use crate::failure::{Done, Failure, Outcome, read_text};
 use crate::job::Job;
 use crate::nc;
+use crate::output;
 use crate::part;
 use crate::ply;
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::stock_keys::{self, StockSummary};
-use crate::verify::{self, Verification, WorstPlace};
+use crate::verify::{self, HistogramBin, Verification, WorstPlace};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_postproc::cldata;
 use osculate_tools::Cutter;
@@ -21,6 +22,8 @@ struct Answer {
     #[serde(flatten)]
     verification: Verification,
     worst: Vec<WorstPlace>,
+    confidence: String,
+    histogram: Vec<HistogramBin>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stock: Option<StockSummary>,
     diagnostics: Vec<String>,
@@ -44,6 +47,8 @@ pub struct Options<'a> {
     pub lenient: bool,
     /// Where the surface as cut goes.
     pub ply: Option<&'a Path>,
+    /// Where the blocks' engagement goes.
+    pub blocks: Option<&'a Path>,
 }
 
 /// A feed above the job's by more than this is reported: rounding of F and of the path stays far below.
@@ -86,6 +91,12 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     let job = Job::load(job_path)?;
     let faces = part::of_job(&job)?;
     let text = read_text(file)?;
+    if options.blocks.is_some() && job.stock.is_none() {
+        return Err(Failure::file(
+            job_path,
+            "--blocks tells what blocks take from raw material: give a [stock]",
+        ));
+    }
     let mut diagnostics: Vec<Diagnostic> = faces.part.diagnostics.clone();
     let (motions, source) = if is_cl(file, &text) {
         let cl = cldata::read(&text).map_err(|e| Failure::file(file, e))?;
@@ -137,6 +148,9 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     if let Some(path) = options.ply {
         ply::write(path, &job, &faces, &motions, v.summary.spacing_mm)?;
     }
+    if let (Some(path), Some(stock)) = (options.blocks, &stock) {
+        output::write(path, stock.csv().as_bytes())?;
+    }
     let mut summary = v.summary.clone();
     if stock.as_ref().is_some_and(|s| !s.collisions.is_empty()) {
         summary.within_tolerance = false;
@@ -146,6 +160,8 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         render::json(&Answer {
             verification: summary.clone(),
             worst: v.worst.clone(),
+            confidence: summary.confidence(),
+            histogram: v.histogram.clone(),
             stock,
             diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
         })?;
@@ -174,7 +190,8 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         } else {
             "NOT within tolerance"
         };
-        render::text(&format!("\n{}\n  {word}\n", t.render()));
+        render::text(&format!("\n{}\n  {word}\n  {}\n", t.render(), s.confidence()));
+        render::text(&format!("\n{}", histogram_text(&v.histogram)));
         if !v.worst.is_empty() {
             let mut t = Table::new(["worst", "mm", "x", "y", "z", "face", "block"]);
             for w in &v.worst {
@@ -200,6 +217,34 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         render::text("\n");
     }
     Ok(if summary.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+/// Bins put together for a table.
+const TOGETHER: usize = 4;
+
+/// The histogram, bins without area left out.
+fn histogram_text(bins: &[HistogramBin]) -> String {
+    let whole: f64 = bins.iter().map(|b| b.area_mm2).sum();
+    let mut t = Table::new(["standoff from mm", "to mm", "mm2", "%"]);
+    let (Some((first, rest)), true) = (bins.split_first(), whole > 0.0) else { return String::new() };
+    // The two at the ends have no end and stay alone.
+    let inner = rest.len().saturating_sub(1);
+    let groups = std::iter::once(std::slice::from_ref(first))
+        .chain(rest[..inner].chunks(TOGETHER))
+        .chain(rest.chunks(1).skip(inner));
+    for g in groups {
+        let area: f64 = g.iter().map(|b| b.area_mm2).sum();
+        let end = |x: Option<f64>, word: &str| x.map_or_else(|| word.to_owned(), |x| format!("{x:.4}"));
+        if let (true, Some(a), Some(b)) = (area > 0.0, g.first(), g.last()) {
+            t.row([
+                end(a.from_mm, "below"),
+                end(b.to_mm, "above"),
+                format!("{area:.2}"),
+                format!("{:.2}", 100.0 * area / whole),
+            ]);
+        }
+    }
+    t.render()
 }
 
 fn stock_text(s: &StockSummary) -> String {
