@@ -74,7 +74,7 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
     with("linuxcnc", "esperanto").refused(&["esperanto", "linuxcnc"]);
     with("feed = \"tcp\"", "feed = \"fast\"").refused(&["fast", "tcp"]);
     with("feed_mm_min = 2000", "feed_mm_min = -2").refused(&["feed_mm_min"]);
-    with("builtin", "file = \"a.igs\"\nbuiltin").refused(&["both"]);
+    with("builtin", "file = \"a.igs\"\nbuiltin").refused(&["several of file, builtin and ruled"]);
     with("half_size_mm = 6", "half_size_mm = 6, v_range = [0, 9]").refused(&["v_range"]);
     // A ball of 300 mm in a place hollow with a radius of 100 mm.
     with("diameter_mm = 10\nlength_mm = 50", "diameter_mm = 300\nlength_mm = 400").refused(&[

@@ -96,6 +96,8 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         span,
         longer: longer(table.span_u.is_some(), span, &*face, cutter.radius_mm()),
         judge,
+        // A formula goes on as it is written; what stands in a file ends where it ends.
+        beyond: if job.part.builtin.is_some() { 0.25 } else { 0.0 },
         positions: table.positions,
         spans: table.spans,
         options,

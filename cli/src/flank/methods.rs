@@ -106,6 +106,8 @@ pub struct Study<'a> {
     pub longer: Interval,
     /// Judged.
     pub judge: Interval,
+    /// Share of the strip's range by which it goes on at both ends for static deviations.
+    pub beyond: f64,
     /// How many positions.
     pub positions: usize,
     /// Spans of the axis surface, where given.
@@ -193,7 +195,7 @@ impl Study<'_> {
 
     /// A setting at a rule, over all positions.
     fn setting(&self, name: &'static str, setting: Setting) -> Answer {
-        let stations = Stations::beyond(self.strip, STATIONS, 0.25);
+        let stations = Stations::beyond(self.strip, STATIONS, self.beyond);
         let section = if self.side().is_cylinder() { 0.0 } else { self.foot_mm() + 0.5 * self.rule_mm() };
         let mut row = empty(name);
         let tool = match side_tool(&self.cutter, &self.side(), [section, self.foot_mm()], self.bulge_per_mm) {
