@@ -61,7 +61,7 @@ fn whole(strip: &RuledStrip<'_>, axes: &AxisSurface, u: Interval) -> Deviation {
     deviation(&Envelope::new(cylinder(10.0), pieces), strip, Patch { u, v: UNIT, count: [181, 41] })
 }
 
-/// Envelopes of theory.md, section 3, to the digits given there.
+/// Envelopes by another solver, to the digits that it gives.
 #[test]
 fn envelopes_of_the_papers_settings() {
     let strip = liu();
@@ -76,7 +76,7 @@ fn envelopes_of_the_papers_settings() {
         d.max
     );
     let d = whole(&strip, &motion(&strip, longer, Setting::ThreeTangent), range);
-    // theory.md has maxima over samples: 0.1432 for our 0.1434.
+    // The other solver has maxima over samples: 0.1432 for our 0.1434.
     assert!(
         (d.min.value_mm + 0.2854).abs() < 1e-4 && (d.max.value_mm - 0.1432).abs() < 3e-4,
         "{:?} {:?}",
@@ -180,7 +180,7 @@ fn best(
     u: Interval,
     options: Options,
 ) -> (f64, Option<f64>, AxisSurface) {
-    let judged = Patch { u, v: UNIT, count: [101, 15] };
+    let judged = Patch { u, v: UNIT, count: [121, 17] };
     let task = Task { surface, side: cylinder(10.0), positions, judged };
     let found = optimise(&task, &options, &[]).unwrap();
     // Judged anew on a denser grid.
@@ -190,7 +190,7 @@ fn best(
     (d.worst_mm(), found.bound_mm, found.axes)
 }
 
-/// Values of other solvers, theory.md, section 3. A motion with few spans is even, one with many may leave less.
+/// Values of another solver. A motion with few spans is even, one with many may leave less.
 #[test]
 fn global_optimum_of_lius_surface() {
     let s = liu();
