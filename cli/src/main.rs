@@ -20,6 +20,7 @@ mod render;
 mod report;
 mod report_fill;
 mod stock_keys;
+mod strategy;
 mod verify;
 
 use args::{Cli, Verb};

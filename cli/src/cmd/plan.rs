@@ -9,10 +9,10 @@ use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::report_fill::{self, Extras, Story};
 use crate::verify::{self, Verification, Verified};
-use osculate_geom::{Axis, Box3, Diagnostic};
+use osculate_geom::{Box3, Diagnostic};
 use osculate_productivity::levels::{Totals, levels};
 use osculate_productivity::plan::{
-    Along, Linked, Links, Passes, PlanError, Task, contour_2cl, isoparametric, link, predicted_length_mm,
+    Linked, Links, Passes, Strategy, Task, link, predicted_length_mm, run as plan_face,
 };
 use osculate_tools::{Cutter, Lean};
 use serde::Serialize;
@@ -227,38 +227,13 @@ fn planned(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
     let cutter = job.cutter()?;
-    let (strategy, passes, lean) = match job.strategy.kind.as_str() {
-        "auto" | "isoparametric" => {
-            let (passes, lean) = isoparametric_passes(job, faces, &cutter, progress)?;
-            ("isoparametric", passes, lean)
-        }
-        "contour_2cl" => {
-            if matches!(job.strategy.lead_deg, AutoOr::Given(l) if l != 0.0) || job.strategy.tilt_deg != 0.0 {
-                return Err(Failure::file(
-                    &job.path,
-                    "[strategy] contour_2cl keeps the tool axis on `axis`: leave out lead_deg and tilt_deg",
-                ));
-            }
-            let axis = job.contour_axis()?;
-            let plan = |task: &Task<'_>| contour_2cl(task, axis);
-            (
-                "contour_2cl",
-                each_face(job, faces, &cutter, Lean::default(), progress, &plan)?,
-                Lean::default(),
-            )
-        }
-        other => {
-            return Err(Failure::file(
-                &job.path,
-                format!(
-                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\" or \
-                     \"contour_2cl\""
-                ),
-            ));
-        }
+    let strategy = crate::strategy::of_job(job)?;
+    let (passes, lean) = match strategy.fixed_axis() {
+        Some(_) => (each_face(job, faces, &cutter, Lean::default(), &strategy, progress)?, Lean::default()),
+        None => leaning_passes(job, faces, &cutter, &strategy, progress)?,
     };
     let linked = linked(job, faces, &passes, &cutter)?;
-    Ok(Planned { passes, linked, strategy: strategy.to_owned(), lean, extras: Extras::default() })
+    Ok(Planned { passes, linked, strategy: strategy.name().to_owned(), lean, extras: Extras::default() })
 }
 
 /// Passes joined to a path.
@@ -289,8 +264,8 @@ fn each_face(
     faces: &JobFaces,
     cutter: &Cutter,
     lean: Lean,
+    strategy: &Strategy,
     progress: &(dyn Fn(f64) + Sync),
-    plan: &dyn Fn(&Task<'_>) -> Result<Passes, PlanError>,
 ) -> Result<Passes, Failure> {
     let tolerance = job.tolerance()?;
     let n = faces.faces.len() as f64;
@@ -298,31 +273,21 @@ fn each_face(
     for (k, face) in faces.faces.iter().enumerate() {
         let here = move |f: f64| progress((k as f64 + f) / n);
         let task = Task { surface: &*face.surface, face: &face.id, cutter, lean, tolerance, progress: &here };
-        let p = plan(&task).map_err(|e| Failure::file(&job.path, e))?;
+        let p = plan_face(&task, strategy).map_err(|e| Failure::file(&job.path, e))?;
         out.passes.extend(p.passes);
         out.diagnostics.extend(p.diagnostics);
     }
     Ok(out)
 }
 
-fn isoparametric_passes(
+/// Passes of a tool that leans along them: the lead is the job's, or the best of a few.
+fn leaning_passes(
     job: &Job,
     faces: &JobFaces,
     cutter: &Cutter,
+    strategy: &Strategy,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<(Passes, Lean), Failure> {
-    let along = match job.strategy.along.as_str() {
-        "auto" => Along::Auto,
-        "u" => Along::Fixed(Axis::U),
-        "v" => Along::Fixed(Axis::V),
-        other => {
-            return Err(Failure::file(
-                &job.path,
-                format!("[strategy] along = \"{other}\" must be \"u\", \"v\" or \"auto\""),
-            ));
-        }
-    };
-    let plan = |task: &Task<'_>| isoparametric(task, along);
     let mut leads: Vec<f64> = match job.strategy.lead_deg {
         AutoOr::Given(deg) => vec![deg],
         AutoOr::Auto if cutter.is_ball() => vec![BALL_LEAD_DEG],
@@ -336,7 +301,7 @@ fn isoparametric_passes(
     let mut refused: Option<Failure> = None;
     for deg in leads {
         let lean = job.lean(deg.to_radians())?;
-        match each_face(job, faces, cutter, lean, progress, &plan) {
+        match each_face(job, faces, cutter, lean, strategy, progress) {
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
                 let gouge = verify::coarse_gouge_mm(job, faces, &linked(job, faces, &p, cutter)?)?;

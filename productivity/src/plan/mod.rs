@@ -11,11 +11,13 @@ mod link;
 mod predict;
 mod resample;
 mod seat;
+mod strategy;
 
 pub use contour::contour_2cl;
 pub use isoparametric::isoparametric;
 pub use link::{Linked, Links, link};
 pub use predict::predicted_length_mm;
+pub use strategy::{Strategy, run};
 
 use osculate_geom::{Axis, Diagnostic, Point3, Surface, Unit3, Uv};
 use osculate_tools::strip::StripError;

@@ -1,0 +1,50 @@
+//! The strategy that a job's `[strategy]` table names.
+
+use crate::failure::Failure;
+use crate::job::{AutoOr, Job};
+use osculate_geom::Axis;
+use osculate_productivity::plan::{Along, Strategy};
+
+/// The strategy of a job.
+///
+/// # Errors
+/// Names the key that is wrong and what it may be.
+pub fn of_job(job: &Job) -> Result<Strategy, Failure> {
+    let table = &job.strategy;
+    let strategy = match table.kind.as_str() {
+        "auto" | "isoparametric" => Strategy::Isoparametric { along: along(job)? },
+        "contour_2cl" => Strategy::Contour2cl { axis: job.contour_axis()? },
+        other => {
+            return Err(Failure::file(
+                &job.path,
+                format!(
+                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\" or \
+                     \"contour_2cl\""
+                ),
+            ));
+        }
+    };
+    let leans = matches!(table.lead_deg, AutoOr::Given(l) if l != 0.0) || table.tilt_deg != 0.0;
+    if strategy.fixed_axis().is_some() && leans {
+        return Err(Failure::file(
+            &job.path,
+            format!(
+                "[strategy] {} keeps the tool axis on `axis`: leave out lead_deg and tilt_deg",
+                strategy.name()
+            ),
+        ));
+    }
+    Ok(strategy)
+}
+
+fn along(job: &Job) -> Result<Along, Failure> {
+    match job.strategy.along.as_str() {
+        "auto" => Ok(Along::Auto),
+        "u" => Ok(Along::Fixed(Axis::U)),
+        "v" => Ok(Along::Fixed(Axis::V)),
+        other => Err(Failure::file(
+            &job.path,
+            format!("[strategy] along = \"{other}\" must be \"u\", \"v\" or \"auto\""),
+        )),
+    }
+}

@@ -1,0 +1,50 @@
+//! The strategies by name, and the one call that plans by any of them.
+
+use super::{Along, Passes, PlanError, Task, contour_2cl, isoparametric};
+use osculate_geom::Unit3;
+
+/// How passes are placed on a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strategy {
+    /// Along lines of constant parameter (5C).
+    Isoparametric {
+        /// Which parameter varies along the passes.
+        along: Along,
+    },
+    /// A ball at constant height along an axis that it keeps (2CL, M86).
+    Contour2cl {
+        /// The tool axis.
+        axis: Unit3,
+    },
+}
+
+impl Strategy {
+    /// The key of job files.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Isoparametric { .. } => "isoparametric",
+            Self::Contour2cl { .. } => "contour_2cl",
+        }
+    }
+
+    /// The direction that the tool axis keeps; None where it leans along the passes as [`Task::lean`] says.
+    #[must_use]
+    pub const fn fixed_axis(&self) -> Option<Unit3> {
+        match self {
+            Self::Contour2cl { axis } => Some(*axis),
+            Self::Isoparametric { .. } => None,
+        }
+    }
+}
+
+/// Plans passes over a face by a strategy.
+///
+/// # Errors
+/// [`PlanError`], as the strategy's own function has it.
+pub fn run(task: &Task<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {
+    match *strategy {
+        Strategy::Isoparametric { along } => isoparametric(task, along),
+        Strategy::Contour2cl { axis } => contour_2cl(task, axis),
+    }
+}
