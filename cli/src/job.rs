@@ -10,14 +10,16 @@ use std::path::{Path, PathBuf};
 const FORMAT: u32 = 1;
 
 /// A job file as written.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Job {
     format: u32,
     /// The part and which of its faces.
     pub part: PartTable,
-    /// The cutter.
-    pub tool: ToolTable,
+    /// The cutter; of several, the one in hand.
+    tool: Option<ToolTable>,
+    /// Cutters to choose from, instead of one.
+    tools: Option<Vec<ToolTable>>,
     /// What must hold.
     pub tolerance: ToleranceTable,
     /// How to cut.
@@ -49,7 +51,7 @@ pub struct Job {
 }
 
 /// `[part]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartTable {
     /// STEP or IGES file, relative to the job file.
@@ -83,7 +85,7 @@ pub enum Normals {
 }
 
 /// A choice of faces.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
 pub enum FaceChoice {
     /// `"all"` or one id.
@@ -95,7 +97,7 @@ pub enum FaceChoice {
 }
 
 /// `{ largest = n }`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LargestTable {
     /// How many of the largest faces.
@@ -103,7 +105,7 @@ pub struct LargestTable {
 }
 
 /// `[tool]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ToolTable {
     /// One of [`crate::cutter_keys::KINDS`].
@@ -173,7 +175,7 @@ impl<'de> Deserialize<'de> for AutoOr {
 }
 
 /// `[strategy]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StrategyTable {
     /// `auto`, `isoparametric` or `contour_2cl`.
@@ -203,7 +205,7 @@ impl Default for StrategyTable {
 }
 
 /// `[cutting]`
-#[derive(Debug, Deserialize, Default)]
+#[derive(Debug, Clone, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub struct CuttingTable {
     /// Spindle speed.
@@ -215,7 +217,7 @@ pub struct CuttingTable {
 }
 
 /// `[machine]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MachineTable {
     /// A built-in machine.
@@ -231,7 +233,7 @@ pub struct MachineTable {
 }
 
 /// `[setup]`
-#[derive(Debug, Deserialize, Default)]
+#[derive(Debug, Clone, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub struct SetupTable {
     /// Where the part's origin sits from the table's reference point; chosen from the part's box where not given.
@@ -245,7 +247,7 @@ pub struct SetupTable {
 }
 
 /// `[contact]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactTable {
     /// Surface parameters.
@@ -260,7 +262,7 @@ pub struct ContactTable {
 }
 
 /// `[verification]`
-#[derive(Debug, Deserialize, Default)]
+#[derive(Debug, Clone, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub struct VerificationTable {
     /// Distance between samples; from the strip width where not given.
@@ -305,13 +307,67 @@ impl Job {
                 ));
             }
         }
+        match (&job.tool, job.tools.as_deref()) {
+            (Some(_), None) => {}
+            (Some(_), Some(_)) => {
+                return Err(Failure::file(path, "has both [tool] and [[tools]]; keep one of them"));
+            }
+            (None, None) => {
+                return Err(Failure::file(path, "needs a [tool] table, or [[tools]] to choose from"));
+            }
+            (None, Some([])) => {
+                return Err(Failure::file(path, "tools = []: the list of tools is empty; give at least one"));
+            }
+            (None, Some([first, ..])) => job.tool = Some(first.clone()),
+        }
         job.tolerance()?;
-        job.cutter()?;
         job.lean(0.0)?;
-        job.feed_mm_min()?;
         job.spindle_rpm()?;
-        job.holder()?;
+        let all = job.each_tool();
+        for (k, one) in all.iter().enumerate() {
+            one.check_tool().map_err(|e| match all.len() {
+                1 => e,
+                // The keys are those of [tool]; which table is meant must be said.
+                _ => Failure::Job(e.message().replacen(
+                    "[tool",
+                    &format!("[[tools]] number {}: [tool", k + 1),
+                    1,
+                )),
+            })?;
+        }
         Ok(job)
+    }
+
+    /// Whether the tool in hand is one.
+    fn check_tool(&self) -> Result<(), Failure> {
+        self.cutter()?;
+        self.feed_mm_min()?;
+        self.holder()?;
+        self.flutes()?;
+        Ok(())
+    }
+
+    /// Reads and checks a job file of a single tool.
+    pub fn load_with_one_tool(path: &Path) -> Result<Self, Failure> {
+        let job = Self::load(path)?;
+        match job.tools.as_deref() {
+            Some([_, _, ..]) => Err(Failure::file(
+                path,
+                "has several [[tools]] where one is needed: copy the job with the one meant as [tool]",
+            )),
+            _ => Ok(job),
+        }
+    }
+
+    /// The job once with each of its tools in hand.
+    pub fn each_tool(&self) -> Vec<Self> {
+        let with = |t: &ToolTable| Self { tool: Some(t.clone()), ..self.clone() };
+        self.tools.as_ref().map_or_else(|| vec![self.clone()], |all| all.iter().map(with).collect())
+    }
+
+    /// The tool in hand.
+    pub fn tool(&self) -> &ToolTable {
+        self.tool.as_ref().expect("loading puts a tool in hand")
     }
 
     /// The tolerances, checked and completed.
@@ -328,7 +384,7 @@ impl Job {
 
     /// The cutter's description.
     pub fn cutter_spec(&self) -> Result<CutterSpec, Failure> {
-        crate::cutter_keys::spec(&self.path, &self.tool)
+        crate::cutter_keys::spec(&self.path, self.tool())
     }
 
     /// The cutter.
@@ -339,7 +395,7 @@ impl Job {
     /// The part of the cutter that cuts, and the shank above it where the flutes end below the length.
     pub fn flutes(&self) -> Result<(Cutter, Option<Cutter>), Failure> {
         let whole = self.cutter()?;
-        let Some(flute_mm) = self.tool.flute_length_mm else { return Ok((whole, None)) };
+        let Some(flute_mm) = self.tool().flute_length_mm else { return Ok((whole, None)) };
         let wrong =
             |why: String| Failure::file(&self.path, format!("[tool] flute_length_mm = {flute_mm}: {why}"));
         let shank_mm = whole.length_mm() - flute_mm;
@@ -357,7 +413,7 @@ impl Job {
 
     /// The holder as a cylinder.
     pub fn holder(&self) -> Result<Option<Cutter>, Failure> {
-        let Some(h) = &self.tool.holder else { return Ok(None) };
+        let Some(h) = &self.tool().holder else { return Ok(None) };
         Cutter::cylinder(h.diameter_mm, h.length_mm).map(Some).map_err(|e| {
             Failure::file(&self.path, format!("[tool.holder] {}", e.to_string().replace("cutter", "holder")))
         })
@@ -378,7 +434,7 @@ impl Job {
     pub fn feed_mm_min(&self) -> Result<f64, Failure> {
         let c = &self.cutting;
         let feed = positive(&self.path, "[cutting] feed_mm_min", c.feed_mm_min.unwrap_or(1000.0))?;
-        match (c.feed_per_tooth_mm, c.spindle_rpm, self.tool.teeth) {
+        match (c.feed_per_tooth_mm, c.spindle_rpm, self.tool().teeth) {
             (Some(f), Some(n), Some(z)) => {
                 let f = positive(&self.path, "[cutting] feed_per_tooth_mm", f)?;
                 Ok(feed.min(f * n * f64::from(z)))

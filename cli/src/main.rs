@@ -5,6 +5,7 @@
 
 mod args;
 mod builtin;
+mod cancel;
 mod cmd;
 mod cutter_keys;
 mod failure;
@@ -14,6 +15,7 @@ mod job;
 mod nc;
 mod output;
 mod part;
+mod passes;
 mod ply;
 mod progress;
 mod render;
@@ -60,6 +62,9 @@ fn run(cli: &Cli) -> Outcome {
 fn main() -> ExitCode {
     // Wrong usage ends here with clap's own message and exit code 2; --help and --version with 0.
     let cli = Cli::parse();
+    if let Err(why) = cancel::watch() {
+        eprintln!("osculate: an interrupt will end this run without a word: {why}");
+    }
     match run(&cli) {
         Ok(Done::Yes) => ExitCode::SUCCESS,
         Ok(Done::NotWithinTolerance) => ExitCode::from(NOT_WITHIN),

@@ -1,5 +1,6 @@
 //! Files that appear whole or not at all.
 
+use crate::cancel;
 use crate::failure::Failure;
 use std::io::Write;
 use std::path::Path;
@@ -26,6 +27,7 @@ pub fn stream<T>(
     std::fs::create_dir_all(&folder).map_err(|e| fail("its folder cannot be made", e))?;
     let name = path.file_name().map_or_else(|| "out".into(), |n| n.to_string_lossy().into_owned());
     let temporary = folder.join(format!(".{name}.{}.part", std::process::id()));
+    cancel::temporary(&temporary);
     let written = std::fs::File::create(&temporary).map_err(|e| unwritten(path, &e)).and_then(|mut f| {
         let answer = fill(&mut f)?;
         f.sync_all().map_err(|e| unwritten(path, &e))?;
@@ -35,6 +37,7 @@ pub fn stream<T>(
         std::fs::rename(&temporary, path).map_err(|e| unwritten(path, &e))?;
         Ok(answer)
     });
+    cancel::settled(&temporary);
     if done.is_err() {
         // The temporary file is of no use to anybody; that it could not be removed adds nothing to the message.
         let _ = std::fs::remove_file(&temporary);

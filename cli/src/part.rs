@@ -204,9 +204,21 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
     let check = match &job.part.check_faces {
         None => Vec::new(),
         some => {
-            let chosen: Vec<String> = faces.iter().map(|f| f.id.clone()).collect();
             let mut check = choose(&part, some.as_ref(), "check_faces").map_err(here)?;
-            check.retain(|f| !chosen.contains(&f.id));
+            let machined = |f: &LoadedFace| faces.iter().any(|m| m.id == f.id);
+            // "all" means all others; who names a face means it.
+            if matches!(some, Some(FaceChoice::Word(w)) if w == "all") {
+                check.retain(|f| !machined(f));
+            } else if let Some(both) = check.iter().find(|f| machined(f)) {
+                return Err(Failure::file(
+                    &job.path,
+                    format!(
+                        "[part] check_faces names {0}, which is also a face to machine: the tool must touch it. \
+                         Take {0} out of one of them, or say check_faces = \"all\" for all other faces",
+                        both.id
+                    ),
+                ));
+            }
             settle_sides(job, &mut part, &mut check)?;
             check
         }

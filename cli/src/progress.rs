@@ -1,5 +1,6 @@
 //! Progress bars on stderr for work that takes over a second, where stderr is a terminal.
 
+use crate::cancel;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -24,6 +25,7 @@ impl Stage {
             bar.set_style(style.progress_chars("=> "));
         }
         bar.set_message(name);
+        cancel::stage(name);
         Self { bar, start: Instant::now() }
     }
 
@@ -32,6 +34,7 @@ impl Stage {
         if self.start.elapsed() > QUIET && self.bar.is_hidden() && std::io::stderr().is_terminal() {
             self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
         }
+        cancel::reached(fraction);
         // A fraction of a thousand fits.
         self.bar.set_position((fraction.clamp(0.0, 1.0) * STEPS as f64) as u64);
     }

@@ -65,13 +65,6 @@ pub struct Extras<'a> {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-impl Extras<'_> {
-    /// Whether there is nothing.
-    pub fn is_empty(&self) -> bool {
-        self.maps.is_empty() && self.tables.is_empty()
-    }
-}
-
 /// The report's pages.
 pub struct Pages {
     /// `report.html`.
@@ -258,7 +251,7 @@ const OUTLINE_TURN_RAD: f64 = 0.03;
 fn tool(job: &Job) -> Option<Tool> {
     let c = job.cutter().ok()?;
     let kind = if !c.is_end_mill() {
-        job.tool.kind.clone()
+        job.tool().kind.clone()
     } else if c.is_ball() {
         "ball".to_owned()
     } else if c.corner_mm() == 0.0 {
@@ -272,7 +265,7 @@ fn tool(job: &Job) -> Option<Tool> {
         corner_radius_mm: c.corner_mm(),
         length_mm: c.length_mm(),
         flute_mm: None,
-        holder: job.tool.holder.map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
+        holder: job.tool().holder.map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
         meridian_mm: if c.is_end_mill() { Vec::new() } else { c.outline_mm(OUTLINE_TURN_RAD) },
     })
 }

@@ -17,7 +17,7 @@ const DEFAULT_MEMORY_MB: f64 = 512.0;
 const LISTED: usize = 10;
 
 /// `[stock]`: one of `box_mm`, `file` and `allowance_mm` (with `file`: a layer around it).
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StockTable {
     /// Lower and upper corner in the part's frame.
@@ -33,7 +33,7 @@ pub struct StockTable {
 }
 
 /// `[fixture]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FixtureTable {
     /// STL meshes in the part's frame, mm, relative to the job file.

@@ -76,6 +76,16 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
     with("feed_mm_min = 2000", "feed_mm_min = -2").refused(&["feed_mm_min"]);
     with("builtin", "file = \"a.igs\"\nbuiltin").refused(&["several of file, builtin and ruled"]);
     with("half_size_mm = 6", "half_size_mm = 6, v_range = [0, 9]").refused(&["v_range"]);
+    let tool = "[tool]\nkind = \"ball\"\ndiameter_mm = 10\nlength_mm = 50\n";
+    with(tool, "").refused(&["[tool]", "[[tools]]"]);
+    with("format = 1", "format = 1\ntools = []").refused(&["both [tool] and [[tools]]"]);
+    plan(job(|j| j.replace(tool, "").replace("format = 1", "format = 1\ntools = []")))
+        .refused(&["the list of tools is empty"]);
+    with(
+        tool,
+        "[[tools]]\nkind = \"flat\"\ndiameter_mm = 4\n[[tools]]\nkind = \"toroidal\"\ndiameter_mm = 4\n",
+    )
+    .refused(&["[[tools]] number 2", "corner_radius_mm"]);
     // A ball of 300 mm in a place hollow with a radius of 100 mm.
     with("diameter_mm = 10\nlength_mm = 50", "diameter_mm = 300\nlength_mm = 400").refused(&[
         "does not fit",
@@ -101,6 +111,7 @@ fn faces_that_are_not_there() {
         osculate(&["plan", path.to_str().unwrap(), "--out", scratch.path("out").to_str().unwrap()])
     };
     part("[\"F9\"]").refused(&["F9", "F1"]);
+    part("[\"F1\"]\ncheck_faces = [\"F1\"]").refused(&["check_faces names F1", "face to machine"]);
     part("{ largest = 5 }").refused(&["largest = 5"]);
     part("{ smallest = 5 }").refused(&["faces"]);
     let hull = scratch.path("hull.step");

@@ -9,6 +9,7 @@ use crate::flank::path::{self, Work};
 use crate::job::Job;
 use crate::output;
 use crate::part;
+use crate::passes;
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::report::{self, Column};
@@ -41,7 +42,7 @@ struct Comparison {
 
 /// Runs the verb.
 pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
-    let job = Job::load(path)?;
+    let job = Job::load_with_one_tool(path)?;
     let table = &job.flank;
     let wrong = |text: String| Failure::file(&job.path, format!("[flank] {text}"));
     let Some(chosen) = NAMES.iter().position(|n| *n == table.method) else {
@@ -146,12 +147,12 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         chord_mm: tolerance.chord_mm,
     };
     let passes = path::pass(&work)?;
-    let linked = plan::linked(&job, &faces, &passes, &cutter)?;
+    let linked = passes::linked(&job, &faces, &passes, &cutter)?;
     wall_s.plan = stage.end();
     let axes = passes.passes.iter().flat_map(|p| &p.points).map(|p| p.pose.axis).collect();
     let extras = Extras { axes, maps: maps(&answers), tables: vec![page_table(&comparison)], diagnostics };
     let strategy = format!("flank, {}", table.method);
-    let planned = Planned { passes, linked, strategy, lean: Lean::default(), extras };
+    let planned = Planned { passes, linked, strategy, lean: Lean::default(), extras, with_strips: false };
     let (summary, text, verified) = plan::execute(&job, &faces, &planned, wall_s, out)?;
     comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter)?, &verified));
     let text_json = serde_json::to_string_pretty(&comparison).map_err(Failure::job)? + "\n";

@@ -1,27 +1,23 @@
 //! `plan`: the main job, from the part to a verified NC program with a report.
 
+use crate::cancel;
 use crate::failure::{Done, Failure, Outcome};
-use crate::job::{AutoOr, Job};
+use crate::job::Job;
 use crate::nc::{self, Control};
 use crate::output;
 use crate::part::{self, JobFaces};
+use crate::passes::{self, Way};
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::report_fill::{self, Extras, Story};
 use crate::verify::{self, Verification, Verified};
-use osculate_geom::{Box3, Diagnostic};
+use osculate_geom::Diagnostic;
+use osculate_postproc::Posted;
 use osculate_productivity::levels::{Totals, levels};
-use osculate_productivity::plan::{
-    Linked, Links, Passes, Strategy, Task, link, predicted_length_mm, run as plan_face,
-};
-use osculate_tools::{Cutter, Lean};
+use osculate_productivity::plan::{Linked, Passes};
+use osculate_tools::Lean;
 use serde::Serialize;
 use std::path::Path;
-
-/// Leads tried where the job leaves the choice to the program, degrees.
-const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
-/// Lead of a ball where the job leaves the choice: enough to keep the tip, which does not cut, off the part.
-const BALL_LEAD_DEG: f64 = 15.0;
 
 /// Seconds of wall time by stage.
 #[derive(Debug, Default, Serialize, Clone, Copy)]
@@ -88,18 +84,32 @@ pub struct Planned<'a> {
     pub lean: Lean,
     /// What the report shows beside what every report shows.
     pub extras: Extras<'a>,
+    /// Whether the points of passes know the width of their strips, for samples that resolve them.
+    pub with_strips: bool,
+}
+
+/// A plan posted and measured.
+pub struct Proved {
+    cl_text: String,
+    control: Control,
+    posted: Posted,
+    read: nc::Motions,
+    /// What was measured.
+    pub verified: Verified,
+    /// Findings of posting and measuring.
+    diagnostics: Vec<Diagnostic>,
 }
 
 /// Runs the verb.
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
-    let job = Job::load(path)?;
+    let job = Job::load_with_one_tool(path)?;
     let mut wall_s = WallS::default();
     let stage = Stage::begin("import");
     let faces = part::of_job(&job)?;
     wall_s.import = stage.end();
 
     let stage = Stage::begin("plan");
-    let planned = planned(&job, &faces, &|f| stage.at(f))?;
+    let planned = planned(&job, &faces, out, &|f| stage.at(f))?;
     wall_s.plan = stage.end();
 
     let (summary, text, _) = execute(&job, &faces, &planned, wall_s, out)?;
@@ -119,43 +129,56 @@ pub fn execute(
     mut wall_s: WallS,
     out: &Path,
 ) -> Result<(Summary, String, Verified), Failure> {
-    let path = job.path.as_path();
+    let proved = prove(job, faces, planned, &mut wall_s, out)?;
+    write(job, faces, planned, proved, wall_s, out)
+}
+
+/// Posts a plan and verifies the program. From here on a stopped run leaves the path as a partial result.
+pub fn prove(
+    job: &Job,
+    faces: &JobFaces,
+    planned: &Planned<'_>,
+    wall_s: &mut WallS,
+    out: &Path,
+) -> Result<Proved, Failure> {
     let (control, control_notes) = nc::control(job)?;
     let stage = Stage::begin("post");
     let (setup, setup_notes) = nc::setup(job, faces, &planned.extras.axes)?;
-    let mut cl = planned.linked.path.clone();
-    cl.cutter = Some(job.cutter_spec()?);
-    cl.holder = job.tool.holder;
-    cl.spindle_rpm = job.spindle_rpm()?;
-    let title = path.parent().and_then(Path::file_name).or_else(|| path.file_stem());
-    let title = title.map_or_else(|| "osculate".to_owned(), |t| t.to_string_lossy().into_owned());
+    let cl = passes::cl_path(job, &planned.linked)?;
+    let title = passes::title(job);
     let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
+    let text = cl_text.clone();
+    passes::keep_partial(out, move || Ok(text), "the whole path".to_owned());
     let posted = nc::post(&cl, &control, &setup, &title)?;
     stage.at(0.6);
     let read = nc::read_back(&posted.text, &control, &setup, false)
         .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
-    wall_s.post = stage.end();
+    wall_s.post += stage.end();
 
     let stage = Stage::begin("verify");
-    let strip = if planned.extras.is_empty() { narrow_strip(&planned.passes) } else { None };
+    let strip = planned.with_strips.then(|| narrow_strip(&planned.passes)).flatten();
     let verified = verify::run(job, faces, &read.motions, "nc", strip, &|f| stage.at(f))?;
-    wall_s.verify = stage.end();
+    wall_s.verify += stage.end();
+    let diagnostics =
+        [&control_notes, &setup_notes, &posted.diagnostics, &read.diagnostics, &verified.diagnostics];
+    let diagnostics = diagnostics.into_iter().flatten().cloned().collect();
+    Ok(Proved { cl_text, control, posted, read, verified, diagnostics })
+}
 
+/// Writes a plan with its program, verification and report.
+pub fn write(
+    job: &Job,
+    faces: &JobFaces,
+    planned: &Planned<'_>,
+    proved: Proved,
+    wall_s: WallS,
+    out: &Path,
+) -> Result<(Summary, String, Verified), Failure> {
     let stage = Stage::begin("report");
-    let diagnostics: Vec<Diagnostic> = [
-        &faces.part.diagnostics,
-        &planned.passes.diagnostics,
-        &planned.extras.diagnostics,
-        &control_notes,
-        &setup_notes,
-        &posted.diagnostics,
-        &read.diagnostics,
-        &verified.diagnostics,
-    ]
-    .into_iter()
-    .flatten()
-    .cloned()
-    .collect();
+    let Proved { cl_text, control, posted, read, verified, diagnostics } = proved;
+    let title = passes::title(job);
+    let before = [&faces.part.diagnostics, &planned.passes.diagnostics, &planned.extras.diagnostics];
+    let diagnostics: Vec<Diagnostic> = before.into_iter().flatten().cloned().chain(diagnostics).collect();
     let area_mm2: f64 = faces.faces.iter().map(part::area).sum();
     let feed = job.feed_mm_min()?;
     let totals = Totals { area_mm2, time_min: read.time_min };
@@ -200,6 +223,8 @@ pub fn execute(
         extras: &planned.extras,
     };
     let pages = report_fill::pages(&story, &|f| stage.at(f));
+    // A stop waits until all of them are there.
+    let whole = cancel::whole();
     output::write(&out.join("path.cl"), cl_text.as_bytes())?;
     output::write(&out.join(format!("program.{}", control.extension)), posted.text.as_bytes())?;
     output::write(&out.join("report.html"), pages.html.as_bytes())?;
@@ -207,6 +232,9 @@ pub fn execute(
     summary.wall_s.report = stage.end();
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
     output::write(&out.join("summary.json"), text.as_bytes())?;
+    // What an earlier run saved when it was stopped is out of date.
+    let _ = std::fs::remove_file(out.join(passes::PARTIAL));
+    drop(whole);
 
     let text = describe(&summary, &verified, &diagnostics, out, &control);
     Ok((summary, text, verified))
@@ -224,130 +252,20 @@ fn narrow_strip(passes: &Passes) -> Option<f64> {
 fn planned(
     job: &Job,
     faces: &JobFaces,
+    out: &Path,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
-    let cutter = job.cutter()?;
-    let strategy = crate::strategy::of_job(job)?;
+    let strategy = &crate::strategy::of_job(job)?;
     let (passes, lean) = match strategy.fixed_axis() {
-        Some(_) => (each_face(job, faces, &cutter, Lean::default(), &strategy, progress)?, Lean::default()),
-        None => leaning_passes(job, faces, &cutter, &strategy, progress)?,
-    };
-    let linked = linked(job, faces, &passes, &cutter)?;
-    Ok(Planned { passes, linked, strategy: strategy.name().to_owned(), lean, extras: Extras::default() })
-}
-
-/// Passes joined to a path.
-pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
-    let mut obstacles = Box3::empty();
-    for f in faces.faces.iter().chain(&faces.check) {
-        obstacles = obstacles.union(&part::bounds(f));
-    }
-    let feed_mm_min = job.feed_mm_min()?;
-    let length = |key: &str, given: Option<f64>, default: f64| match given {
-        Some(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Some(v) => Err(Failure::file(&job.path, format!("[setup] {key} = {v} must be a positive number"))),
-        None => Ok(default),
-    };
-    let links = Links {
-        obstacles,
-        clearance_mm: length("clearance_mm", job.setup.clearance_mm, 10.0)?,
-        approach_mm: length("approach_mm", job.setup.approach_mm, 2.0)?,
-        cutter_radius_mm: cutter.radius_mm(),
-        feed_mm_min,
-        plunge_mm_min: 0.5 * feed_mm_min,
-    };
-    Ok(link(&passes.passes, &links))
-}
-
-fn each_face(
-    job: &Job,
-    faces: &JobFaces,
-    cutter: &Cutter,
-    lean: Lean,
-    strategy: &Strategy,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<Passes, Failure> {
-    let tolerance = job.tolerance()?;
-    let n = faces.faces.len() as f64;
-    let mut out = Passes::default();
-    for (k, face) in faces.faces.iter().enumerate() {
-        let here = move |f: f64| progress((k as f64 + f) / n);
-        let task = Task { surface: &*face.surface, face: &face.id, cutter, lean, tolerance, progress: &here };
-        let p = plan_face(&task, strategy).map_err(|e| Failure::file(&job.path, e))?;
-        out.passes.extend(p.passes);
-        out.diagnostics.extend(p.diagnostics);
-    }
-    Ok(out)
-}
-
-/// Passes of a tool that leans along them: the lead is the job's, or the best of a few.
-fn leaning_passes(
-    job: &Job,
-    faces: &JobFaces,
-    cutter: &Cutter,
-    strategy: &Strategy,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<(Passes, Lean), Failure> {
-    let mut leads: Vec<f64> = match job.strategy.lead_deg {
-        AutoOr::Given(deg) => vec![deg],
-        AutoOr::Auto if cutter.is_ball() => vec![BALL_LEAD_DEG],
-        AutoOr::Auto => LEADS_DEG.to_vec(),
-    };
-    let choice = leads.len() > 1;
-    if choice {
-        leads = ranked(job, faces, cutter, &leads)?;
-    }
-    let mut best: Option<(f64, Passes, Lean)> = None;
-    let mut refused: Option<Failure> = None;
-    for deg in leads {
-        let lean = job.lean(deg.to_radians())?;
-        match each_face(job, faces, cutter, lean, strategy, progress) {
-            Ok(mut p) if choice => {
-                // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
-                let gouge = verify::coarse_gouge_mm(job, faces, &linked(job, faces, &p, cutter)?)?;
-                p.diagnostics.push(Diagnostic::note(
-                    "lead",
-                    format!(
-                        "{deg:.0} deg chosen of {LEADS_DEG:?} by predicted length and gouge ({gouge:.4} mm)"
-                    ),
-                ));
-                if gouge <= job.tolerance()?.gouge_mm {
-                    return Ok((p, lean));
-                }
-                if best.as_ref().is_none_or(|b| gouge < b.0) {
-                    best = Some((gouge, p, lean));
-                }
-            }
-            Ok(p) => return Ok((p, lean)),
-            Err(e) => refused = Some(e),
+        Some(_) => {
+            let way = Way { strategy, lean: Lean::default(), out: Some(out) };
+            (passes::each_face(job, faces, &way, progress)?, Lean::default())
         }
-    }
-    match (best, refused) {
-        // None is good: the least bad one goes on to verification, which says so.
-        (Some((_, passes, lean)), _) => Ok((passes, lean)),
-        (None, Some(e)) => Err(e),
-        (None, None) => Err(Failure::job("no lead was tried")),
-    }
-}
-
-/// Leads by the length of path that they promise, shortest first.
-fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Result<Vec<f64>, Failure> {
-    let tolerance = job.tolerance()?;
-    let mut out = Vec::with_capacity(leads.len());
-    for deg in leads {
-        let lean = job.lean(deg.to_radians())?;
-        let length: f64 = faces
-            .faces
-            .iter()
-            .map(|face| {
-                let (surface, face) = (&*face.surface, face.id.as_str());
-                predicted_length_mm(&Task { surface, face, cutter, lean, tolerance, progress: &|_| {} })
-            })
-            .sum();
-        out.push((length, *deg));
-    }
-    out.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(out.into_iter().map(|o| o.1).collect())
+        None => passes::with_best_lead(job, faces, strategy, out, progress)?,
+    };
+    let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
+    let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
+    Ok(Planned { passes, linked, strategy, lean, extras, with_strips: true })
 }
 
 fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, control: &Control) -> String {

@@ -52,7 +52,7 @@ struct Answer {
 
 /// Runs the verb.
 pub fn run(path: &Path, json: bool) -> Outcome {
-    let job = Job::load(path)?;
+    let job = Job::load_with_one_tool(path)?;
     let table = job.contact.as_ref().ok_or_else(|| {
         Failure::file(path, "strip needs a [contact] table: at = [u, v] and along or angle_deg")
     })?;

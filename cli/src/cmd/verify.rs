@@ -88,7 +88,7 @@ const SHORT_MM: f64 = 0.05;
 
 /// Runs the verb.
 pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> Outcome {
-    let job = Job::load(job_path)?;
+    let job = Job::load_with_one_tool(job_path)?;
     let faces = part::of_job(&job)?;
     let text = read_text(file)?;
     if options.blocks.is_some() && job.stock.is_none() {

@@ -66,7 +66,7 @@ impl Default for FlankTable {
 }
 
 /// `[part.ruled]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RuledTable {
     /// The directrix at v = 0.
@@ -76,7 +76,7 @@ pub struct RuledTable {
 }
 
 /// A directrix.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(untagged, deny_unknown_fields)]
 pub enum CurveTable {
     /// A NURBS curve.

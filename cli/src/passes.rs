@@ -1,0 +1,191 @@
+//! Passes over the faces of a job by one strategy, joined to a path; what is finished of them is saved when the run is stopped.
+
+use crate::cancel;
+use crate::failure::Failure;
+use crate::job::{AutoOr, Job};
+use crate::nc;
+use crate::output;
+use crate::part::{self, JobFaces};
+use crate::verify;
+use osculate_geom::{Box3, Diagnostic};
+use osculate_productivity::plan::{
+    Linked, Links, Passes, Strategy, Task, link, predicted_length_mm, run as plan_face,
+};
+use osculate_tools::cl::ClPath;
+use osculate_tools::{Cutter, Lean};
+use std::path::Path;
+
+/// Leads tried where the job leaves the choice to the program, degrees.
+pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
+/// Lead of a ball where the job leaves the choice: enough to keep the tip, which does not cut, off the part.
+pub const BALL_LEAD_DEG: f64 = 15.0;
+
+/// What a stopped run saves.
+pub const PARTIAL: &str = "path.partial.cl";
+
+/// How the passes of a job are joined.
+pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Result<Links, Failure> {
+    let mut obstacles = Box3::empty();
+    for f in faces.faces.iter().chain(&faces.check) {
+        obstacles = obstacles.union(&part::bounds(f));
+    }
+    let feed_mm_min = job.feed_mm_min()?;
+    let length = |key: &str, given: Option<f64>, default: f64| match given {
+        Some(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Some(v) => Err(Failure::file(&job.path, format!("[setup] {key} = {v} must be a positive number"))),
+        None => Ok(default),
+    };
+    Ok(Links {
+        obstacles,
+        clearance_mm: length("clearance_mm", job.setup.clearance_mm, 10.0)?,
+        approach_mm: length("approach_mm", job.setup.approach_mm, 2.0)?,
+        cutter_radius_mm: cutter.radius_mm(),
+        feed_mm_min,
+        plunge_mm_min: 0.5 * feed_mm_min,
+    })
+}
+
+/// Passes joined to a path.
+pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
+    Ok(link(&passes.passes, &links(job, faces, cutter)?))
+}
+
+/// A linked path with the tool and spindle of the job.
+pub fn cl_path(job: &Job, linked: &Linked) -> Result<ClPath, Failure> {
+    let mut cl = linked.path.clone();
+    cl.cutter = Some(job.cutter_spec()?);
+    cl.holder = job.tool().holder;
+    cl.spindle_rpm = job.spindle_rpm()?;
+    Ok(cl)
+}
+
+/// The name of a job in programs and reports: that of its folder, or else of the file.
+pub fn title(job: &Job) -> String {
+    let path = job.path.as_path();
+    let name = path.parent().and_then(Path::file_name).or_else(|| path.file_stem());
+    name.map_or_else(|| "osculate".to_owned(), |t| t.to_string_lossy().into_owned())
+}
+
+/// Saves a path when the run is stopped from here on, under a name that says that it is partial; `what` says what it has.
+pub fn keep_partial(
+    out: &Path,
+    text: impl FnOnce() -> Result<String, String> + Send + 'static,
+    what: String,
+) {
+    let file = out.join(PARTIAL);
+    cancel::keep(Box::new(move || {
+        output::write(&file, text().map_err(Failure::job)?.as_bytes())?;
+        Ok(format!("{} has {what}, not posted and not verified", file.display()))
+    }));
+}
+
+/// How passes are to be placed, and where the finished ones go when the run is stopped.
+pub struct Way<'a> {
+    /// The strategy.
+    pub strategy: &'a Strategy,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// The folder of results, where there is one.
+    pub out: Option<&'a Path>,
+}
+
+/// Passes over every face of the job with its tool.
+pub fn each_face(
+    job: &Job,
+    faces: &JobFaces,
+    way: &Way<'_>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Passes, Failure> {
+    let tolerance = job.tolerance()?;
+    let cutter = &job.cutter()?;
+    let n = faces.faces.len();
+    let mut out = Passes::default();
+    for (k, face) in faces.faces.iter().enumerate() {
+        let here = move |f: f64| progress((k as f64 + f) / n as f64);
+        let (surface, face) = (&*face.surface, face.id.as_str());
+        let task = Task { surface, face, cutter, lean: way.lean, tolerance, progress: &here };
+        let p = plan_face(&task, way.strategy).map_err(|e| Failure::file(&job.path, e))?;
+        out.passes.extend(p.passes);
+        out.diagnostics.extend(p.diagnostics);
+        if let Some(folder) = way.out
+            && k + 1 < n
+        {
+            let empty = cl_path(job, &Linked::default())?;
+            let (done, links, name) = (out.passes.clone(), links(job, faces, cutter)?, title(job));
+            let text = move || nc::cl_text(&ClPath { moves: link(&done, &links).path.moves, ..empty }, &name);
+            keep_partial(folder, text, format!("the passes of {} of {n} faces", k + 1));
+        }
+    }
+    Ok(out)
+}
+
+/// Passes of a tool that leans along them: the lead is the job's, or the best of a few.
+pub fn with_best_lead(
+    job: &Job,
+    faces: &JobFaces,
+    strategy: &Strategy,
+    out: &Path,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<(Passes, Lean), Failure> {
+    let cutter = &job.cutter()?;
+    let mut leads: Vec<f64> = match job.strategy.lead_deg {
+        AutoOr::Given(deg) => vec![deg],
+        AutoOr::Auto if cutter.is_ball() => vec![BALL_LEAD_DEG],
+        AutoOr::Auto => LEADS_DEG.to_vec(),
+    };
+    let choice = leads.len() > 1;
+    if choice {
+        leads = ranked(job, faces, cutter, &leads)?;
+    }
+    let mut best: Option<(f64, Passes, Lean)> = None;
+    let mut refused: Option<Failure> = None;
+    for deg in leads {
+        let lean = job.lean(deg.to_radians())?;
+        match each_face(job, faces, &Way { strategy, lean, out: Some(out) }, progress) {
+            Ok(mut p) if choice => {
+                // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
+                let gouge = verify::coarse_gouge_mm(job, faces, &linked(job, faces, &p, cutter)?)?;
+                p.diagnostics.push(Diagnostic::note(
+                    "lead",
+                    format!(
+                        "{deg:.0} deg chosen of {LEADS_DEG:?} by predicted length and gouge ({gouge:.4} mm)"
+                    ),
+                ));
+                if gouge <= job.tolerance()?.gouge_mm {
+                    return Ok((p, lean));
+                }
+                if best.as_ref().is_none_or(|b| gouge < b.0) {
+                    best = Some((gouge, p, lean));
+                }
+            }
+            Ok(p) => return Ok((p, lean)),
+            Err(e) => refused = Some(e),
+        }
+    }
+    match (best, refused) {
+        // None is good: the least bad one goes on to verification, which says so.
+        (Some((_, passes, lean)), _) => Ok((passes, lean)),
+        (None, Some(e)) => Err(e),
+        (None, None) => Err(Failure::job("no lead was tried")),
+    }
+}
+
+/// Leads by the length of path that they promise, shortest first.
+fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Result<Vec<f64>, Failure> {
+    let tolerance = job.tolerance()?;
+    let mut out = Vec::with_capacity(leads.len());
+    for deg in leads {
+        let lean = job.lean(deg.to_radians())?;
+        let length: f64 = faces
+            .faces
+            .iter()
+            .map(|face| {
+                let (surface, face) = (&*face.surface, face.id.as_str());
+                predicted_length_mm(&Task { surface, face, cutter, lean, tolerance, progress: &|_| {} })
+            })
+            .sum();
+        out.push((length, *deg));
+    }
+    out.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(out.into_iter().map(|o| o.1).collect())
+}

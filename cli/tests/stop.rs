@@ -1,0 +1,85 @@
+//! Stopping a run by a signal: how far it came is said, and no half file stays behind.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+mod common;
+use common::{Scratch, job, osculate};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A job that is planned at once and verified for a long time.
+fn long_job() -> String {
+    job(|j| {
+        j.replace("scallop_mm = 0.02", "scallop_mm = 0.001")
+            .replace("chord_mm = 0.003", "chord_mm = 0.0002")
+            .replace("max_samples = 20000", "max_samples = 9000000\nspacing_mm = 0.005")
+    })
+}
+
+/// Runs the job, sends the signal when `when` says so, and returns exit code, messages and the names of what was left.
+fn stopped(
+    scratch: &Scratch,
+    signal: &str,
+    when: impl Fn(Duration) -> bool,
+) -> (Option<i32>, String, Vec<String>) {
+    let path = scratch.write("job.toml", &long_job());
+    let out = scratch.path("out");
+    let child = Command::new(env!("CARGO_BIN_EXE_osculate"))
+        .args(["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap()])
+        .env("RAYON_NUM_THREADS", "1")
+        .stderr(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !when(start.elapsed()) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let done = child.wait_with_output().unwrap();
+    assert!(start.elapsed() < Duration::from_secs(60), "it did not stop");
+    let mut left: Vec<String> = std::fs::read_dir(&out)
+        .map(|d| d.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect())
+        .unwrap_or_default();
+    left.sort();
+    (done.status.code(), String::from_utf8(done.stderr).unwrap(), left)
+}
+
+/// The words after "stopped in stage": the stage and the per cent.
+fn stage(message: &str) -> (String, f64) {
+    let mut words = message.split("stopped in stage ").nth(1).expect(message).split_whitespace();
+    let name = words.next().unwrap().to_owned();
+    assert_eq!(words.next(), Some("at"), "{message}");
+    let percent = words.next().unwrap().parse().unwrap();
+    assert_eq!(words.next(), Some("%;"), "{message}");
+    (name, percent)
+}
+
+#[test]
+fn a_stopped_plan_says_how_far_it_came_and_leaves_no_half_file() {
+    for (signal, after_ms) in [("-INT", 150), ("-TERM", 4000)] {
+        let scratch = Scratch::new();
+        let (code, message, left) = stopped(&scratch, signal, |t| t.as_millis() >= after_ms);
+        assert_eq!(code, Some(1), "{message}");
+        let (name, percent) = stage(&message);
+        assert!((0.0..=100.0).contains(&percent), "{message}");
+        // A slow machine may be at another stage; what it says must fit what is there.
+        if ["start", "import", "plan"].contains(&name.as_str()) {
+            assert!(message.contains("nothing was written") && left.is_empty(), "{message} {left:?}");
+            continue;
+        }
+        assert_eq!(left, ["path.partial.cl"], "{message}");
+        assert!(
+            message.contains("path.partial.cl has the whole path, not posted and not verified"),
+            "{message}"
+        );
+        // What is saved is a whole CL file.
+        let partial = scratch.path("out").join("path.partial.cl");
+        let program = scratch.path("p.ngc");
+        let [machine, dialect] = ["trunnion-ac", "linuxcnc"];
+        let (cl, nc) = (partial.to_str().unwrap(), program.to_str().unwrap());
+        let post = osculate(&["post", cl, "--machine", machine, "--dialect", dialect, "--out", nc]);
+        assert_eq!(post.code, 0, "{}", post.err);
+    }
+}
