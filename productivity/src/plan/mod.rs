@@ -6,6 +6,7 @@
 mod columns;
 mod contour;
 mod cover;
+mod drop;
 mod isoparametric;
 mod link;
 mod predict;
@@ -14,6 +15,7 @@ mod seat;
 mod strategy;
 
 pub use contour::contour_2cl;
+pub use drop::{DropTask, Named, drop_cutter};
 pub use isoparametric::isoparametric;
 pub use link::{Linked, Links, link};
 pub use predict::predicted_length_mm;
@@ -177,15 +179,19 @@ pub enum PlanError {
 /// Passes on one face beyond which a plan is refused.
 const MAX_PASSES: usize = 20_000;
 
+/// Refuses tolerances that are none.
+fn check_tolerance(t: &Tolerance) -> Result<(), PlanError> {
+    for (what, got) in [("scallop_mm", t.scallop_mm), ("gouge_mm", t.gouge_mm), ("chord_mm", t.chord_mm)] {
+        if !(got > 0.0 && got.is_finite()) {
+            return Err(PlanError::Tolerance { what, got });
+        }
+    }
+    Ok(())
+}
+
 impl Task<'_> {
     fn check(&self) -> Result<(), PlanError> {
-        let t = &self.tolerance;
-        for (what, got) in [("scallop_mm", t.scallop_mm), ("gouge_mm", t.gouge_mm), ("chord_mm", t.chord_mm)]
-        {
-            if !(got > 0.0 && got.is_finite()) {
-                return Err(PlanError::Tolerance { what, got });
-            }
-        }
+        check_tolerance(&self.tolerance)?;
         self.lean.checked().map_err(|e| self.contact(e))?;
         Ok(())
     }

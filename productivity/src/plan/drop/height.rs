@@ -1,0 +1,278 @@
+//! How low a tool with a fixed axis can stand at a place: the drop of a cutter onto surfaces, not onto triangles.
+//!
+//! Over a place c of the plane across the axis the tip may come down to `max F`, `F(u, v) = z(u, v) - g(rho(u, v))`: the
+//! height of the surface less the height of the cutter's lower side over its tip at that distance from its axis.
+//! Samples of the faces find the neighbourhoods of the maximum; there F is climbed with exact derivatives, so that the
+//! answer is that of the surface. What lies lower than the samples and narrower than their spacing is not seen.
+
+use super::frame::Frame;
+use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
+use osculate_tools::{Cutter, Line, Pose};
+
+/// Samples to a bin side: a bin holds few, and a cutter's disc covers many bins.
+const BINS_PER_RADIUS: f64 = 4.0;
+/// Bins along one side, at most.
+const MOST_BINS: usize = 4096;
+/// Places from which a climb starts, at most.
+const CLIMBS: usize = 4;
+/// Steps of one climb.
+const STEPS: usize = 16;
+/// Entries of the table of the cutter's lower side.
+const TABLE: usize = 512;
+
+/// A place of a face that the tool may rest on.
+#[derive(Clone, Copy)]
+pub(super) struct Seed {
+    /// Position in the frame: along the feed, across it, height.
+    pub at: [f64; 3],
+    pub uv: Uv,
+    pub face: u32,
+}
+
+/// Where the tool rests.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rest {
+    /// Height of the tip along the axis, mm.
+    pub tip: f64,
+    pub uv: Uv,
+    pub face: u32,
+    pub point: Point3,
+}
+
+/// Faces ready to drop a cutter on.
+pub(super) struct Drops<'a> {
+    surfaces: &'a [&'a dyn Surface],
+    cutter: &'a Cutter,
+    frame: Frame,
+    seeds: Vec<Seed>,
+    /// Seeds of bin k are `seeds[first[k]..first[k + 1]]`.
+    first: Vec<u32>,
+    lo: [f64; 2],
+    cell: f64,
+    n: [usize; 2],
+    /// Height of the lower side over the tip at `k / TABLE` radii.
+    lower: Vec<f64>,
+    spacing: f64,
+}
+
+/// Height of the cutter's lower side at a place beside its axis, and its slopes in the plane; None outside its radius.
+fn lower_side(cutter: &Cutter, dx: f64, dy: f64) -> Option<(f64, [f64; 2])> {
+    let axis = osculate_geom::Vec3::z_axis();
+    let pose = Pose { tip: Point3::origin(), axis };
+    let entry = cutter.entry(&pose, &Line { origin: Point3::new(dx, dy, 0.0), direction: axis })?;
+    let normal = cutter.normal_at(&pose, &Point3::new(dx, dy, entry.at_mm), entry.part);
+    // The side of a cylinder has no height over the tip: its contact is a wall.
+    (normal.z < 0.0).then(|| (entry.at_mm, [-normal.x / normal.z, -normal.y / normal.z]))
+}
+
+impl<'a> Drops<'a> {
+    /// Sorts seeds into bins. `spacing_mm` is how far seeds stand apart.
+    pub(super) fn new(
+        surfaces: &'a [&'a dyn Surface],
+        cutter: &'a Cutter,
+        frame: Frame,
+        seeds: Vec<Seed>,
+        spacing_mm: f64,
+    ) -> Self {
+        let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for s in &seeds {
+            for k in 0..2 {
+                lo[k] = lo[k].min(s.at[k]);
+                hi[k] = hi[k].max(s.at[k]);
+            }
+        }
+        let extent = [hi[0] - lo[0], hi[1] - lo[1]];
+        let cell = (cutter.radius_mm() / BINS_PER_RADIUS)
+            .max(spacing_mm)
+            .max(extent[0].max(extent[1]) / MOST_BINS as f64);
+        let n = extent.map(|e| ((e.max(0.0) / cell) as usize + 1).min(MOST_BINS + 1));
+        let bin = |s: &Seed| {
+            let k = |i: usize| (((s.at[i] - lo[i]) / cell) as usize).min(n[i] - 1);
+            k(1) * n[0] + k(0)
+        };
+        let mut first = vec![0_u32; n[0] * n[1] + 1];
+        for s in &seeds {
+            first[bin(s) + 1] += 1;
+        }
+        for k in 1..first.len() {
+            first[k] += first[k - 1];
+        }
+        let mut next = first.clone();
+        let mut order = vec![0_u32; seeds.len()];
+        for (k, s) in (0_u32..).zip(&seeds) {
+            let b = bin(s);
+            order[next[b] as usize] = k;
+            next[b] += 1;
+        }
+        let seeds = order.iter().map(|k| seeds[*k as usize]).collect();
+        let radius = cutter.radius_mm();
+        let lower = (0..=TABLE)
+            .map(|k| lower_side(cutter, radius * k as f64 / TABLE as f64, 0.0).map_or(f64::INFINITY, |l| l.0))
+            .collect();
+        Self { surfaces, cutter, frame, seeds, first, lo, cell, n, lower, spacing: spacing_mm }
+    }
+
+    /// Bins along one side that a disc around `x` touches.
+    fn bins(&self, side: usize, x: f64) -> std::ops::Range<usize> {
+        let radius = self.cutter.radius_mm();
+        let k = |t: f64| ((t - self.lo[side]) / self.cell).floor();
+        let last = k(x + radius);
+        if last < 0.0 {
+            return 0..0;
+        }
+        // Negative values saturate at zero.
+        (k(x - radius) as usize).min(self.n[side])..(last as usize + 1).min(self.n[side])
+    }
+
+    /// Height that a seed holds the tip at, by the table.
+    fn held(&self, s: &Seed, c: [f64; 2]) -> f64 {
+        let radius = self.cutter.radius_mm();
+        let (dx, dy) = (s.at[0] - c[0], s.at[1] - c[1]);
+        let q = (dx * dx + dy * dy).sqrt() / radius * TABLE as f64;
+        if q >= TABLE as f64 {
+            return f64::NEG_INFINITY;
+        }
+        let (k, f) = (q as usize, q.fract());
+        let (a, b) = (self.lower[k], self.lower[k + 1]);
+        s.at[2] - if b.is_finite() { a + (b - a) * f } else { a }
+    }
+
+    /// The highest that any seed holds the tip over `c`: a height below the true one by what lies between seeds.
+    pub(super) fn coarse(&self, c: [f64; 2]) -> f64 {
+        let mut best = f64::NEG_INFINITY;
+        self.each(c, |s| best = best.max(self.held(s, c)));
+        best
+    }
+
+    fn each(&self, c: [f64; 2], mut f: impl FnMut(&Seed)) {
+        let across = self.bins(0, c[0]);
+        for j in self.bins(1, c[1]) {
+            let row = j * self.n[0];
+            let (a, b) = (self.first[row + across.start], self.first[row + across.end]);
+            for s in &self.seeds[a as usize..b as usize] {
+                f(s);
+            }
+        }
+    }
+
+    /// Where the tool rests over `c`; None where nothing is below it.
+    pub(super) fn rest(&self, c: [f64; 2]) -> Option<Rest> {
+        let best = self.coarse(c);
+        if best == f64::NEG_INFINITY {
+            return None;
+        }
+        // Places that may still win once climbed: within what a seed can be off by half its spacing up a slope of one.
+        let slack = self.spacing;
+        let mut near: Vec<(f64, Seed)> = Vec::new();
+        self.each(c, |s| {
+            let h = self.held(s, c);
+            if h >= best - slack {
+                near.push((h, *s));
+            }
+        });
+        near.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut starts: Vec<Seed> = Vec::new();
+        for (_, s) in near {
+            let apart = |o: &Seed| {
+                o.face != s.face || (o.at[0] - s.at[0]).hypot(o.at[1] - s.at[1]) > 4.0 * self.spacing
+            };
+            if starts.iter().all(apart) {
+                starts.push(s);
+                if starts.len() == CLIMBS {
+                    break;
+                }
+            }
+        }
+        starts.iter().map(|s| self.climb(s, c)).max_by(|a, b| a.tip.total_cmp(&b.tip))
+    }
+
+    /// F and its gradient along S_u and S_v at a place of a face.
+    fn value(&self, face: u32, at: Uv, c: [f64; 2]) -> Option<(f64, [f64; 2], [f64; 2])> {
+        let surface = self.surfaces[face as usize];
+        let jet = surface.jet2(at);
+        let [x, y, z] = self.frame.of(&jet.point);
+        let (g, slope) = lower_side(self.cutter, x - c[0], y - c[1])?;
+        let along = |d: &osculate_geom::Vec3| {
+            let [dx, dy, dz] = self.frame.along(d);
+            dz - slope[0] * dx - slope[1] * dy
+        };
+        Some((z - g, [along(&jet.du), along(&jet.dv)], [jet.du.norm(), jet.dv.norm()]))
+    }
+
+    /// Climbs F from a seed by quasi-Newton steps in mm along S_u and S_v.
+    fn climb(&self, s: &Seed, c: [f64; 2]) -> Rest {
+        let surface = self.surfaces[s.face as usize];
+        let domain = surface.domain();
+        let rest = |tip: f64, at: Uv| Rest { tip, uv: at, face: s.face, point: surface.point(at) };
+        let Some((mut f, mut by, speed)) = self.value(s.face, s.uv, c) else {
+            return rest(self.held(s, c), s.uv);
+        };
+        let scale = speed.map(|v| 1.0 / v.max(f64::MIN_POSITIVE));
+        if scale.iter().any(|k| *k > 1e300) {
+            return rest(f, s.uv);
+        }
+        let mut at = s.uv;
+        // The inverse of minus the Hessian: a curvature like the tool's to begin with.
+        let radius = self.cutter.radius_mm();
+        let mut inverse = [[radius, 0.0], [0.0, radius]];
+        // A gain below this is none: 1e-9 of the tool.
+        let enough = 1e-9 * radius;
+        for _ in 0..STEPS {
+            let g = [by[0] * scale[0], by[1] * scale[1]];
+            let mut d =
+                [inverse[0][0] * g[0] + inverse[0][1] * g[1], inverse[1][0] * g[0] + inverse[1][1] * g[1]];
+            let gain = g[0] * d[0] + g[1] * d[1];
+            if gain < enough {
+                break;
+            }
+            // No further than a few seeds: beyond that another seed would have been the start.
+            let long = d[0].hypot(d[1]);
+            let most = 2.0 * self.spacing;
+            if long > most {
+                d = d.map(|x| x * most / long);
+            }
+            let mut found = None;
+            for _ in 0..8 {
+                let to = domain.bring(uv(at.u + d[0] * scale[0], at.v + d[1] * scale[1]));
+                if surface.contains(to)
+                    && let Some((nf, nby, _)) = self.value(s.face, to, c)
+                    && nf >= f
+                {
+                    found = Some((to, nf, nby));
+                    break;
+                }
+                d = d.map(|x| 0.35 * x);
+            }
+            let Some((to, nf, nby)) = found else { break };
+            // BFGS for -F: y = -(change of gradient).
+            let y = [-(nby[0] * scale[0] - g[0]), -(nby[1] * scale[1] - g[1])];
+            update(&mut inverse, d, y);
+            let won = nf - f;
+            (at, f, by) = (to, nf, nby);
+            if won < enough {
+                break;
+            }
+        }
+        rest(f, at)
+    }
+
+    /// Normal of a face at a resting place, if it has one.
+    pub(super) fn normal(&self, r: &Rest) -> Option<Unit3> {
+        self.surfaces[r.face as usize].jet2(r.uv).normal().ok()
+    }
+}
+
+/// The BFGS update of an inverse Hessian of size two, skipped where the curvature along the step is not positive.
+fn update(h: &mut [[f64; 2]; 2], d: [f64; 2], y: [f64; 2]) {
+    let dy = d[0] * y[0] + d[1] * y[1];
+    if dy <= 0.0 {
+        return;
+    }
+    let hy = [h[0][0] * y[0] + h[0][1] * y[1], h[1][0] * y[0] + h[1][1] * y[1]];
+    let yhy = y[0] * hy[0] + y[1] * hy[1];
+    for i in 0..2 {
+        for j in 0..2 {
+            h[i][j] += (1.0 + yhy / dy) * d[i] * d[j] / dy - (hy[i] * d[j] + d[i] * hy[j]) / dy;
+        }
+    }
+}

@@ -1,0 +1,361 @@
+//! Three-axis passes in parallel planes over any number of faces: the cutter is dropped onto them (isoplanar, 3C).
+//!
+//! The tool keeps its axis. Each place of the faces says from where the tool touches it, and how far a pass may be off that
+//! ([`wants`]); levels are the fewest planes that satisfy every place. Along a level the tool is dropped onto all faces
+//! together ([`height`]), those that are not to be machined among them, so that it cannot cut one while it machines
+//! another. What the passes leave is then measured with the swept cutter, and where it is too much the places concerned are
+//! asked again with a shorter reach.
+
+mod frame;
+mod height;
+mod trace;
+mod wants;
+
+use super::{CcPoint, MAX_PASSES, Pass, Passes, PlanError, Tolerance};
+use frame::Frame;
+use height::{Drops, Rest, Seed};
+use osculate_geom::{Axis, Diagnostic, Surface, Unit3, Uv, Vec3};
+use osculate_tools::Cutter;
+use osculate_tools::removal::{self, Job, Sample, Swept, sample_surface};
+use rayon::prelude::*;
+use wants::{Lost, Want, want};
+
+/// A face and its name.
+#[derive(Clone, Copy)]
+pub struct Named<'a> {
+    /// The face's name for messages.
+    pub face: &'a str,
+    /// The face, with its trims and material side.
+    pub surface: &'a dyn Surface,
+}
+
+/// What to plan with a fixed tool axis.
+#[derive(Clone, Copy)]
+pub struct DropTask<'a> {
+    /// Faces to machine.
+    pub faces: &'a [Named<'a>],
+    /// Faces that the tool must not cut.
+    pub check: &'a [Named<'a>],
+    /// The cutter.
+    pub cutter: &'a Cutter,
+    /// The tool axis, from the tip to the holder.
+    pub axis: Unit3,
+    /// The way of the passes, brought into the plane across the axis.
+    pub feed: Vec3,
+    /// What must hold.
+    pub tolerance: Tolerance,
+    /// Told how far the work is, 0 to 1.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+}
+
+/// Seeds of drops stand this part of the tool's radius apart.
+const SEEDS: f64 = 0.1;
+/// Places that say where passes go stand this part of a strip on level ground apart.
+const PLACES: f64 = 0.5;
+/// Places at which what is left is measured.
+const JUDGED: f64 = 0.2;
+/// Most samples of a kind over all faces.
+const MOST: usize = 200_000;
+/// Lines along each parameter on whose ends the rim of a face is seeded.
+const RIM_LINES: usize = 300;
+/// The share of the tolerance that passes are laid out for: the rest is for what the leading order neglects.
+const DESIGN: f64 = 0.94;
+/// Rounds of measuring and asking again.
+const ROUNDS: usize = 5;
+/// A pass within this part of a place's reach runs right over it.
+const RIGHT_OVER: f64 = 0.05;
+/// Shares of the area below which a loss is not worth a word.
+const WORTH_A_WORD: f64 = 1e-3;
+
+/// What is known before passes are laid out.
+struct Ground<'a> {
+    task: &'a DropTask<'a>,
+    frame: Frame,
+    drops: Drops<'a>,
+    /// Samples of the faces to machine that say where passes must go, and their distance, mm.
+    places: Vec<Sample>,
+    spacing: f64,
+    /// Samples at which what is left is measured.
+    judged: Vec<Sample>,
+}
+
+impl Ground<'_> {
+    /// Distance of two passes that leave the tolerance around a contact between them, mm; NaN where the leading order
+    /// has none.
+    fn width_mm(&self, rest: &Rest, normal: Unit3) -> f64 {
+        let task = self.task;
+        let Some(face) = task.faces.get(rest.face as usize) else { return f64::NAN };
+        let (uv, point) = (rest.uv, rest.point);
+        let sample = Sample { point, normal, face: rest.face, uv, area_mm2: 0.0, check_only: false };
+        let wanted = want(face.surface, task.cutter, &self.frame, &sample, [task.tolerance.scallop_mm, 0.0]);
+        wanted.map_or(f64::NAN, |w| 2.0 * w.reach)
+    }
+}
+
+/// Plans passes in parallel planes with a tool that keeps its axis.
+///
+/// Passes run to and fro. Places that the end of the tool cannot cut from above are left, and named with their area.
+///
+/// # Errors
+/// [`PlanError`]: a tolerance that is none, no face that the tool reaches from above, or too many passes.
+pub fn drop_cutter(task: &DropTask<'_>) -> Result<Passes, PlanError> {
+    super::check_tolerance(&task.tolerance)?;
+    let surfaces: Vec<&dyn Surface> = task.faces.iter().chain(task.check).map(|n| n.surface).collect();
+    let ground = ground(task, &surfaces)?;
+    (task.progress)(0.2);
+    let (mut wants, mut lost) = asked(&ground);
+    let hidden = hide(&ground, &mut wants);
+    lost.push((hidden, "is below another place that the tool touches first"));
+    if wants.is_empty() {
+        return Err(nothing(
+            task,
+            "no place of it can be cut from above with this tool; give another axis or a smaller tool",
+        ));
+    }
+    (task.progress)(0.4);
+    let mut passes = Vec::new();
+    let mut left = 0.0;
+    for round in 0..ROUNDS {
+        let levels = levels(&mut wants);
+        if levels.len() > MAX_PASSES {
+            return Err(PlanError::TooManyPasses {
+                face: task.faces[0].face.to_owned(),
+                limit: MAX_PASSES,
+                scallop_mm: task.tolerance.scallop_mm,
+            });
+        }
+        passes = trace::passes(&ground, &wants, &levels);
+        (task.progress)(0.4 + 0.6 * (round + 1) as f64 / ROUNDS as f64);
+        let unmet = measure(&ground, &mut wants, &passes, &levels)?;
+        left = unmet.area_mm2;
+        if unmet.mended == 0 {
+            break;
+        }
+    }
+    lost.push((left, "keeps more than scallop_mm even under a pass"));
+    (task.progress)(1.0);
+    if passes.is_empty() {
+        return Err(nothing(task, "the tool meets none of it from above; give another axis"));
+    }
+    Ok(told(&ground, passes, &lost))
+}
+
+fn nothing(task: &DropTask<'_>, why: &str) -> PlanError {
+    let face = task.faces.iter().map(|n| n.face).collect::<Vec<_>>().join(", ");
+    PlanError::Nothing { face, why: why.to_owned() }
+}
+
+/// Passes in the order of cutting, with what there is to say about them.
+fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'static str)]) -> Passes {
+    let task = ground.task;
+    let mut out = Passes { passes, diagnostics: Vec::new() };
+    let name = if task.faces.len() == 1 { task.faces[0].face } else { "isoplanar" };
+    let text = format!("{} three-axis isoplanar passes, {:.0} mm", out.passes.len(), out.length_mm());
+    out.diagnostics.push(Diagnostic::note(name, text));
+    let area: f64 = ground.places.iter().map(|s| s.area_mm2).sum();
+    for (gone, what) in lost {
+        if *gone > WORTH_A_WORD * area {
+            out.diagnostics.push(Diagnostic::loss(
+                name,
+                format!("{gone:.2} mm2 of {area:.2} mm2 {what}; left by this strategy"),
+            ));
+        }
+    }
+    out
+}
+
+/// Samples the faces: seeds for drops on all of them, places on those to be machined.
+fn ground<'a>(task: &'a DropTask<'a>, surfaces: &'a [&'a dyn Surface]) -> Result<Ground<'a>, PlanError> {
+    let frame = Frame::new(task.axis, &task.feed);
+    let radius = task.cutter.radius_mm();
+    let sampled = |k: usize, spacing: f64| {
+        // A face keeps a share of the count, whatever its size: at least a thousand.
+        let most = (MOST / surfaces.len()).max(1000);
+        let name = task.faces.iter().chain(task.check).nth(k).map_or("", |n| n.face);
+        // Face numbers are positions in the list, far below the limit of u32.
+        sample_surface(surfaces[k], k as u32, spacing, most)
+            .map_err(|e| PlanError::Nothing { face: name.to_owned(), why: e.to_string() })
+    };
+    let mut seeds: Vec<Seed> = Vec::new();
+    let mut spacing: f64 = 0.0;
+    for k in 0..surfaces.len() {
+        let sampling = sampled(k, SEEDS * radius)?;
+        spacing = spacing.max(sampling.density.spacing_mm);
+        seeds.extend(sampling.samples.iter().map(|s| Seed {
+            at: frame.of(&s.point),
+            uv: s.uv,
+            face: s.face,
+        }));
+        rim(surfaces[k], k as u32, &frame, &mut seeds);
+    }
+    let drops = Drops::new(surfaces, task.cutter, frame, seeds, spacing);
+    let strip = 2.0 * (2.0 * task.tolerance.scallop_mm * radius).sqrt();
+    let over = |part: f64| -> Result<(Vec<Sample>, f64), PlanError> {
+        let (mut samples, mut spacing): (Vec<Sample>, f64) = (Vec::new(), 0.0);
+        for k in 0..task.faces.len() {
+            let sampling = sampled(k, part * strip)?;
+            spacing = spacing.max(sampling.density.spacing_mm);
+            samples.extend(sampling.samples);
+        }
+        Ok((samples, spacing))
+    };
+    let (places, spacing) = over(PLACES)?;
+    let (judged, _) = over(JUDGED)?;
+    Ok(Ground { task, frame, drops, places, spacing, judged })
+}
+
+/// Seeds on the rim of a face, at the ends of its stretches of inside.
+fn rim(surface: &dyn Surface, face: u32, frame: &Frame, seeds: &mut Vec<Seed>) {
+    let mut see = |at: Uv| seeds.push(Seed { at: frame.of(&surface.point(at)), uv: at, face });
+    for axis in [Axis::U, Axis::V] {
+        let i = surface.domain().get(axis.other());
+        for k in 0..=RIM_LINES {
+            let fixed = i.at(k as f64 / RIM_LINES as f64);
+            for s in surface.spans(axis, fixed) {
+                see(Uv::from_axis(axis, s.lo, fixed));
+                see(Uv::from_axis(axis, s.hi, fixed));
+            }
+        }
+    }
+    surface.turns().into_iter().for_each(see);
+}
+
+/// What every sample wants, and the areas that want nothing possible.
+fn asked(ground: &Ground<'_>) -> (Vec<Want>, Vec<(f64, &'static str)>) {
+    let task = ground.task;
+    let height = design_mm(&task.tolerance);
+    let all: Vec<Result<Want, Lost>> = (0..ground.places.len())
+        .into_par_iter()
+        .map(|k| {
+            let s = &ground.places[k];
+            want(task.faces[s.face as usize].surface, task.cutter, &ground.frame, s, [height, ground.spacing])
+        })
+        .collect();
+    let mut wants = Vec::with_capacity(all.len());
+    let mut areas = [0.0; 3];
+    for (s, w) in ground.places.iter().zip(all) {
+        match w {
+            Ok(w) => wants.push(w),
+            Err(Lost::Undercut) => areas[0] += s.area_mm2,
+            Err(Lost::TooHollow) => areas[1] += s.area_mm2,
+            Err(Lost::NoTangent) => areas[2] += s.area_mm2,
+        }
+    }
+    let words = ["faces away from the tool axis", "is too hollow for the tool", "has no tangent plane"];
+    (wants, areas.into_iter().zip(words).collect())
+}
+
+/// The height that passes are laid out for: chords of the path add a quarter of their tolerance in the mean.
+fn design_mm(t: &Tolerance) -> f64 {
+    DESIGN * (t.scallop_mm - 0.25 * t.chord_mm).max(0.1 * t.scallop_mm)
+}
+
+/// Drops wants whose position the tool cannot take because it would cut elsewhere; returns their area.
+fn hide(ground: &Ground<'_>, wants: &mut Vec<Want>) -> f64 {
+    // Seeds see the height to within what lies between them, so that this errs towards keeping a want.
+    let slack = ground.task.tolerance.scallop_mm;
+    let kept: Vec<bool> = wants.par_iter().map(|w| ground.drops.coarse(w.at) <= w.tip + slack).collect();
+    let mut area = 0.0;
+    let mut keep = kept.iter();
+    wants.retain(|w| {
+        // One answer for each want, in their order.
+        let kept = keep.next().copied().unwrap_or(true);
+        if !kept {
+            area += w.area;
+        }
+        kept
+    });
+    area
+}
+
+/// Levels that leave no place of the faces out of reach, ascending.
+///
+/// A want stands for places around it, too: those of them that the level before does not reach must be reached by the next.
+fn levels(wants: &mut [Want]) -> Vec<f64> {
+    wants.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
+    let least = wants.iter().map(|w| w.reach).fold(f64::INFINITY, f64::min);
+    let widest = wants.iter().map(|w| w.half).fold(0.0, f64::max);
+    let mut out: Vec<f64> = Vec::new();
+    let mut last = f64::NEG_INFINITY;
+    loop {
+        let from = wants.partition_point(|w| w.at[1] + widest < last + least);
+        let mut next = f64::INFINITY;
+        for w in &wants[from..] {
+            if w.at[1] - widest + least > next {
+                break;
+            }
+            if w.at[1] + w.half > last + w.reach {
+                next = next.min((w.at[1] - w.half).max(last + w.reach) + w.reach);
+            }
+        }
+        // Every step goes forward by twice the least reach or ends; the count is checked by the caller.
+        if !next.is_finite() || out.len() > MAX_PASSES {
+            return out;
+        }
+        out.push(next);
+        last = next;
+    }
+}
+
+/// What measuring found.
+struct Unmet {
+    /// Places that are asked again, closer.
+    mended: usize,
+    /// Area that no pass can help, mm2.
+    area_mm2: f64,
+}
+
+/// Measures what the passes leave; a place that keeps too much becomes a want of its own with a shorter reach.
+fn measure(
+    ground: &Ground<'_>,
+    wants: &mut Vec<Want>,
+    passes: &[Pass],
+    levels: &[f64],
+) -> Result<Unmet, PlanError> {
+    let task = ground.task;
+    let motions: Vec<Swept> = passes
+        .iter()
+        .flat_map(|p| p.points.windows(2))
+        .map(|w| Swept { from: w[0].pose, to: w[1].pose, rapid: false, block: 0 })
+        .collect();
+    let limit = task.tolerance.scallop_mm;
+    let job = Job {
+        cutter: task.cutter,
+        holder: None,
+        motions: &motions,
+        samples: &ground.judged,
+        stock_mm: 4.0 * limit,
+        depth_mm: limit,
+    };
+    let cuts = removal::cut(&job, &|_| ()).map_err(|e| nothing(task, &e.to_string()))?;
+    let (mut unmet, mut more) = (Unmet { mended: 0, area_mm2: 0.0 }, Vec::new());
+    for (s, c) in ground.judged.iter().zip(&cuts) {
+        if c.standoff_mm <= 0.5 * (1.0 + DESIGN) * limit {
+            continue;
+        }
+        let surface = task.faces[s.face as usize].surface;
+        let design = [design_mm(&task.tolerance), 0.0];
+        // What cannot be cut from above was told of before.
+        let Ok(mut w) = want(surface, task.cutter, &ground.frame, s, design) else { continue };
+        if ground.drops.coarse(w.at) > w.tip + limit {
+            continue;
+        }
+        let k = levels.partition_point(|z| *z < w.at[1]);
+        let off = [k.checked_sub(1), Some(k)]
+            .into_iter()
+            .flatten()
+            .filter_map(|k| levels.get(k))
+            .map(|z| (z - w.at[1]).abs())
+            .fold(f64::INFINITY, f64::min);
+        // A pass right over the place left it: another one will not help.
+        if off <= RIGHT_OVER * w.reach {
+            unmet.area_mm2 += s.area_mm2;
+            continue;
+        }
+        w.reach = off.min(w.reach) * (DESIGN * limit / c.standoff_mm).sqrt().min(0.95);
+        unmet.mended += 1;
+        more.push(w);
+    }
+    wants.extend(more);
+    Ok(unmet)
+}

@@ -1,0 +1,128 @@
+//! Where passes must go: for every place of the faces the range of levels that leave no more than the design height.
+//!
+//! A tool with a fixed axis touches a place of normal n from one position only; a pass at another level passes it at
+//! a distance. To leading order a tool moved by tau in the tangent plane and laid down again leaves
+//! `h = 1/2 tau^T M tau`, `M = W_T Q^-1 W_T`: Q = W_P + W_T is the form of part and tool, and the sliding of the contact is
+//! in it. Along the pass tau is free, so that the least over it counts.
+
+use super::frame::Frame;
+use osculate_geom::Surface;
+use osculate_tools::Cutter;
+use osculate_tools::removal::Sample;
+
+/// Below this cosine between normal and axis a place is a wall or an undercut: the side of the tool meets it, not its end.
+const STEEPEST: f64 = 0.02;
+
+/// A flat bottom over a slope rises by this part of the height at most, from rim to rim, for the ground to count as level.
+const LEVEL: f64 = 0.1;
+
+/// What a sample wants.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Want {
+    /// Position of the tool that touches it, along and across the feed, mm.
+    pub at: [f64; 2],
+    /// Height of the tip there, mm.
+    pub tip: f64,
+    /// Passes within this distance of its level leave no more than the design height, mm.
+    pub reach: f64,
+    /// How far the positions of the places that it stands for lie from its own across the feed, mm.
+    pub half: f64,
+    /// The area that it stands for, mm2.
+    pub area: f64,
+}
+
+/// Why a sample cannot be cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lost {
+    /// It faces away from the axis, or sideways.
+    Undercut,
+    /// The tool does not fit into its hollow.
+    TooHollow,
+    /// It has no tangent plane.
+    NoTangent,
+}
+
+/// The position from which the tool touches a sample and how far off the level of a pass may be that leaves `height_mm`;
+/// samples stand `spacing_mm` apart.
+pub(super) fn want(
+    surface: &dyn Surface,
+    cutter: &Cutter,
+    frame: &Frame,
+    s: &Sample,
+    [height_mm, spacing_mm]: [f64; 2],
+) -> Result<Want, Lost> {
+    let n = frame.along(&s.normal);
+    if n[2] < STEEPEST {
+        return Err(Lost::Undercut);
+    }
+    let sine = n[0].hypot(n[1]);
+    let slope = sine.atan2(n[2]);
+    let arc = cutter.touching(slope);
+    let (out, level) = if sine > 0.0 { ([n[0] / sine, n[1] / sine], sine) } else { ([0.0, 0.0], 0.0) };
+    let rho = arc.centre_rho_mm + arc.radius_mm * level;
+    let [x, y, z] = frame.of(&s.point);
+    let at = [x + rho * out[0], y + rho * out[1]];
+    let tip = z - (arc.centre_z_mm - arc.radius_mm * n[2]);
+    // No tool leaves less than h further from its axis than where its lower side rises by h.
+    let rise = height_mm.min(arc.radius_mm);
+    let most = arc.centre_rho_mm.max(0.0) + (rise * (2.0 * arc.radius_mm - rise)).max(0.0).sqrt();
+    if arc.centre_rho_mm > 0.0 && 2.0 * arc.centre_rho_mm * sine <= LEVEL * height_mm {
+        // Level ground under a flat bottom: its middle comes down there, and its rim covers all around.
+        let tip = z - (arc.centre_z_mm - arc.radius_mm);
+        return Ok(Want { at: [x, y], tip, reach: most, half: 0.5 * spacing_mm, area: s.area_mm2 });
+    }
+    let forms = surface.jet2(s.uv).forms().map_err(|_| Lost::NoTangent)?;
+    // In the tangent frame (down the slope, across it) the tool's curvatures are those of meridian and parallel.
+    let meridian = 1.0 / arc.radius_mm.max(height_mm);
+    let parallel = if rho > 0.0 { (level / rho).min(meridian) } else { meridian };
+    let d = [out[0] * n[2], out[1] * n[2], -sine];
+    let c = |v: &osculate_geom::Vec3| {
+        let w = frame.along(v);
+        if sine > 0.0 {
+            // The cross direction is n x d.
+            let e = [n[1] * d[2] - n[2] * d[1], n[2] * d[0] - n[0] * d[2], n[0] * d[1] - n[1] * d[0]];
+            [dot(w, d), dot(w, e)]
+        } else {
+            [w[0], w[1]]
+        }
+    };
+    // W_P in that frame.
+    let (a, b) = (c(&forms.frame[0]), c(&forms.frame[1]));
+    let w = &forms.curvature;
+    let part = |p: usize, q: usize| {
+        w[(0, 0)] * a[p] * a[q] + w[(0, 1)] * (a[p] * b[q] + b[p] * a[q]) + w[(1, 1)] * b[p] * b[q]
+    };
+    let q = [part(0, 0) + meridian, part(0, 1), part(1, 1) + parallel];
+    let det = q[0] * q[2] - q[1] * q[1];
+    if !(q[0] > 0.0 && det > 0.0) {
+        return Err(Lost::TooHollow);
+    }
+    // M = W_T Q^-1 W_T with diagonal W_T.
+    let m = [
+        meridian * meridian * q[2] / det,
+        -meridian * parallel * q[1] / det,
+        parallel * parallel * q[0] / det,
+    ];
+    // The feed in the tangent plane: across e_y, and the direction next to it, which rises with e_y by the cosine.
+    let (feed, cosine) = if sine > 0.0 {
+        // e_y in the frame (d, e) of the tangent plane; the feed is at right angles to it there.
+        let e_y = [d[1], n[2] * d[0] - n[0] * d[2]];
+        let length = e_y[0].hypot(e_y[1]);
+        if length < STEEPEST {
+            return Err(Lost::Undercut);
+        }
+        ([e_y[1] / length, -e_y[0] / length], length)
+    } else {
+        ([1.0, 0.0], 1.0)
+    };
+    let form = m[0] * feed[0] * feed[0] + 2.0 * m[1] * feed[0] * feed[1] + m[2] * feed[1] * feed[1];
+    let across = (m[0] * m[2] - m[1] * m[1]) / form.max(f64::MIN_POSITIVE);
+    let reach = if across > 0.0 { cosine * (2.0 * height_mm / across).sqrt() } else { most };
+    // Where the part is convex, positions stand further apart than the places that they belong to.
+    let half = 0.5 * spacing_mm * (1.0 + cutter.radius_mm() * forms.principal().k_max.max(0.0));
+    Ok(Want { at, tip, reach: reach.min(most.max(height_mm)), half, area: s.area_mm2 })
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
