@@ -190,8 +190,10 @@ pub struct StrategyTable {
     /// `u`, `v` or `auto`: the parameter that isoparametric passes run along.
     #[serde(default = "auto")]
     pub along: String,
-    /// The tool axis of contour passes.
+    /// The tool axis of passes that keep it.
     pub axis: Option<[f64; 3]>,
+    /// The way of three-axis passes, across the axis; the longest side of the faces where not given.
+    pub feed_direction: Option<[f64; 3]>,
 }
 
 fn auto() -> String {
@@ -200,7 +202,14 @@ fn auto() -> String {
 
 impl Default for StrategyTable {
     fn default() -> Self {
-        Self { kind: auto(), lead_deg: AutoOr::Auto, tilt_deg: 0.0, along: auto(), axis: None }
+        Self {
+            kind: auto(),
+            lead_deg: AutoOr::Auto,
+            tilt_deg: 0.0,
+            along: auto(),
+            axis: None,
+            feed_direction: None,
+        }
     }
 }
 

@@ -8,6 +8,7 @@ mod builtin;
 mod cancel;
 mod cmd;
 mod cutter_keys;
+mod drop;
 mod failure;
 mod figure;
 mod flank;

@@ -18,8 +18,8 @@ pub fn of_job(job: &Job) -> Result<Strategy, Failure> {
             return Err(Failure::file(
                 &job.path,
                 format!(
-                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\" or \
-                     \"contour_2cl\""
+                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\", \
+                     \"contour_2cl\" or \"isoplanar_3c\""
                 ),
             ));
         }

@@ -1,6 +1,7 @@
 //! `plan`: the main job, from the part to a verified NC program with a report.
 
 use crate::cancel;
+use crate::drop;
 use crate::failure::{Done, Failure, Outcome};
 use crate::job::Job;
 use crate::nc::{self, Control};
@@ -255,6 +256,12 @@ fn planned(
     out: &Path,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
+    if job.strategy.kind == drop::KIND {
+        let passes = drop::passes(job, faces, progress)?;
+        let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
+        let (strategy, extras) = (drop::KIND.to_owned(), Extras::default());
+        return Ok(Planned { passes, linked, strategy, lean: Lean::default(), extras, with_strips: true });
+    }
     let strategy = &crate::strategy::of_job(job)?;
     let (passes, lean) = match strategy.fixed_axis() {
         Some(_) => {
