@@ -1,7 +1,7 @@
 //! `readback`: what an NC program makes the tool do, as CL data, read and written as a stream.
 
 use crate::args::ReadbackArgs;
-use crate::cmd::time::each_line;
+use crate::cmd::time::{each_line, names_of};
 use crate::failure::{Done, Failure, Outcome};
 use crate::nc;
 use crate::output;
@@ -9,7 +9,6 @@ use crate::render::{self, Table, number};
 use osculate_geom::{Point3, Vec3};
 use osculate_postproc::Setup;
 use osculate_postproc::cldata::{ClWriteOptions, ClWriter};
-use osculate_postproc::nc::timing::Names;
 use osculate_postproc::readback::{ReadOptions, Reader};
 use osculate_tools::cl::{ClMove, Motion};
 use serde::Serialize;
@@ -34,11 +33,7 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     let dialect = nc::dialect_of(args.nc.dialect.as_deref(), file)?;
     let zero = Vec3::from(args.nc.part_zero.unwrap_or_default());
     let setup = Setup::at(zero, args.nc.gauge_length_mm.unwrap_or(0.0));
-    let mut names = Names::new(dialect, &machine);
-    each_line(file, |line| {
-        names.line(line);
-        Ok(())
-    })?;
+    let names = names_of(file, dialect, &machine)?;
     let here = |e| Failure::file(file, e);
     let options = ReadOptions { strict: args.nc.strict, ..ReadOptions::default() };
     let mut reader = Reader::new(&names, &machine, &setup, &options).map_err(here)?;

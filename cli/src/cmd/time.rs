@@ -5,8 +5,9 @@ use crate::failure::{Done, Failure, Outcome};
 use crate::nc;
 use crate::render::{self, Table};
 use osculate_geom::Vec3;
-use osculate_postproc::Setup;
+use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::timing::{Clock, Names};
+use osculate_postproc::{Machine, Setup};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
@@ -29,11 +30,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     let setup =
         Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), args.gauge_length_mm.unwrap_or(0.0));
     let file = &args.file;
-    let mut names = Names::new(dialect, &machine);
-    each_line(file, |line| {
-        names.line(line);
-        Ok(())
-    })?;
+    let names = names_of(file, dialect, &machine)?;
     let here = |e| Failure::file(file, e);
     let mut clock = Clock::new(&names, &machine, &setup, args.strict).map_err(here)?;
     each_line(file, |line| clock.line(line).map_err(here))?;
@@ -69,6 +66,16 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     }
     render::text("\n");
     Ok(Done::Yes)
+}
+
+/// What a program calls its axes, read from the whole of it.
+pub fn names_of(file: &Path, dialect: Dialect, machine: &Machine) -> Result<Names, Failure> {
+    let mut names = Names::new(dialect, machine);
+    each_line(file, |line| {
+        names.line(line);
+        Ok(())
+    })?;
+    Ok(names)
 }
 
 /// Reads a file line by line; bytes that are no UTF-8 come as replacement characters, as in comments of old programs.
