@@ -131,6 +131,19 @@ fn a_check_face_is_not_cut() {
     assert!(cut >= -TOLERANCE.gouge_mm, "cut {cut}");
 }
 
+/// Between the levels of a step the tool goes down beside the upper edge, not through it.
+#[test]
+fn a_step_keeps_its_edge() {
+    let at = |x: f64, z: f64| Placed {
+        surface: Plane::new(square(12.0)),
+        placement: Placement::new(Point3::new(x, 0.0, z), Vec3::z_axis(), Some(Vec3::x())),
+    };
+    let (low, high) = (at(0.0, 0.0), at(12.0, 9.0));
+    let passes = plan(&[&low, &high], &[], &ball()).unwrap();
+    let [cut, _] = left(&[&low, &high], &ball(), &passes);
+    assert!(cut >= -TOLERANCE.gouge_mm, "cut {cut}");
+}
+
 #[test]
 fn a_face_that_looks_away_is_refused() {
     let plane = osculate_geom::Flipped(Plane::new(square(10.0)));

@@ -27,6 +27,26 @@ pub(super) struct Seed {
     pub at: [f64; 3],
     pub uv: Uv,
     pub face: u32,
+    /// On a rim, the way to the next seed on it, all of which the tool may rest on; zero elsewhere.
+    pub along: [f64; 3],
+}
+
+impl Seed {
+    /// The place of a rim's piece that is nearest to the axis over `c`: where a side that rises steeply is met.
+    fn nearest(&self, c: [f64; 2]) -> [f64; 3] {
+        let d = self.along;
+        let long = d[0] * d[0] + d[1] * d[1];
+        if long == 0.0 {
+            return self.at;
+        }
+        let t = ((c[0] - self.at[0]) * d[0] + (c[1] - self.at[1]) * d[1]) / long;
+        let t = t.clamp(0.0, 1.0);
+        [0, 1, 2].map(|k| self.at[k] + t * d[k])
+    }
+
+    fn is_rim(&self) -> bool {
+        self.along != [0.0; 3]
+    }
 }
 
 /// Where the tool rests.
@@ -127,14 +147,15 @@ impl<'a> Drops<'a> {
     /// Height that a seed holds the tip at, by the table.
     fn held(&self, s: &Seed, c: [f64; 2]) -> f64 {
         let radius = self.cutter.radius_mm();
-        let (dx, dy) = (s.at[0] - c[0], s.at[1] - c[1]);
+        let at = s.nearest(c);
+        let (dx, dy) = (at[0] - c[0], at[1] - c[1]);
         let q = (dx * dx + dy * dy).sqrt() / radius * TABLE as f64;
         if q >= TABLE as f64 {
             return f64::NEG_INFINITY;
         }
         let (k, f) = (q as usize, q.fract());
         let (a, b) = (self.lower[k], self.lower[k + 1]);
-        s.at[2] - if b.is_finite() { a + (b - a) * f } else { a }
+        at[2] - if b.is_finite() { a + (b - a) * f } else { a }
     }
 
     /// The highest that any seed holds the tip over `c`: a height below the true one by what lies between seeds.
@@ -173,8 +194,11 @@ impl<'a> Drops<'a> {
         near.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut starts: Vec<Seed> = Vec::new();
         for (_, s) in near {
+            // A rim may hold the tool where the face beside it does not.
             let apart = |o: &Seed| {
-                o.face != s.face || (o.at[0] - s.at[0]).hypot(o.at[1] - s.at[1]) > 4.0 * self.spacing
+                o.face != s.face
+                    || o.is_rim() != s.is_rim()
+                    || (o.at[0] - s.at[0]).hypot(o.at[1] - s.at[1]) > 4.0 * self.spacing
             };
             if starts.iter().all(apart) {
                 starts.push(s);
@@ -183,7 +207,20 @@ impl<'a> Drops<'a> {
                 }
             }
         }
-        starts.iter().map(|s| self.climb(s, c)).max_by(|a, b| a.tip.total_cmp(&b.tip))
+        let tips = starts.iter().map(|s| if s.is_rim() { self.on_rim(s, c) } else { self.climb(s, c) });
+        tips.max_by(|a, b| a.tip.total_cmp(&b.tip))
+    }
+
+    /// The tool on the nearest place of a rim's piece, or higher up on the face beside it.
+    fn on_rim(&self, s: &Seed, c: [f64; 2]) -> Rest {
+        let at = s.nearest(c);
+        let inside = self.climb(s, c);
+        match lower_side(self.cutter, at[0] - c[0], at[1] - c[1]) {
+            Some((g, _)) if at[2] - g > inside.tip => {
+                Rest { tip: at[2] - g, point: self.frame.point(at), ..inside }
+            }
+            _ => inside,
+        }
     }
 
     /// F and its gradient along S_u and S_v at a place of a face.

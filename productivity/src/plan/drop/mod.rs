@@ -14,7 +14,7 @@ mod wants;
 use super::{CcPoint, MAX_PASSES, Pass, Passes, PlanError, Tolerance};
 use frame::Frame;
 use height::{Drops, Rest, Seed};
-use osculate_geom::{Axis, Diagnostic, Surface, Unit3, Uv, Vec3};
+use osculate_geom::{Axis, Diagnostic, Surface, Unit3, Uv, Vec3, quadrature};
 use osculate_tools::Cutter;
 use osculate_tools::removal::{self, Job, Sample, Swept, sample_surface};
 use rayon::prelude::*;
@@ -54,10 +54,14 @@ const SEEDS: f64 = 0.1;
 const PLACES: f64 = 0.5;
 /// Places at which what is left is measured.
 const JUDGED: f64 = 0.2;
-/// Most samples of a kind over all faces.
-const MOST: usize = 200_000;
-/// Lines along each parameter on whose ends the rim of a face is seeded.
-const RIM_LINES: usize = 300;
+/// Most seeds over all faces.
+const MOST_SEEDS: usize = 1_000_000;
+/// Most places, and most places to measure, over all faces.
+const MOST_PLACES: usize = 300_000;
+/// A face may have this many of either, however small it is.
+const FEWEST: usize = 200;
+/// Lines along each parameter on whose ends the rim of a face is seeded: fewest and most.
+const RIM_LINES: [f64; 2] = [20.0, 2000.0];
 /// The share of the tolerance that passes are laid out for: the rest is for what the leading order neglects.
 const DESIGN: f64 = 0.94;
 /// Rounds of measuring and asking again.
@@ -168,32 +172,39 @@ fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'static str)]) ->
 fn ground<'a>(task: &'a DropTask<'a>, surfaces: &'a [&'a dyn Surface]) -> Result<Ground<'a>, PlanError> {
     let frame = Frame::new(task.axis, &task.feed);
     let radius = task.cutter.radius_mm();
-    let sampled = |k: usize, spacing: f64| {
-        // A face keeps a share of the count, whatever its size: at least a thousand.
-        let most = (MOST / surfaces.len()).max(1000);
+    let t = &task.tolerance;
+    // Areas only share out the counts: a coarse value will do.
+    let areas: Vec<f64> = surfaces.par_iter().map(|s| quadrature::area(*s, 1e-2).value).collect();
+    let sampled = |k: usize, spacing: f64, most: usize, over: f64| {
         let name = task.faces.iter().chain(task.check).nth(k).map_or("", |n| n.face);
+        let share = ((most as f64 * areas[k] / over) as usize).max(FEWEST);
         // Face numbers are positions in the list, far below the limit of u32.
-        sample_surface(surfaces[k], k as u32, spacing, most)
+        sample_surface(surfaces[k], k as u32, spacing, share)
             .map_err(|e| PlanError::Nothing { face: name.to_owned(), why: e.to_string() })
     };
     let mut seeds: Vec<Seed> = Vec::new();
     let mut spacing: f64 = 0.0;
+    let all: f64 = areas.iter().sum();
+    // Between seeds on an edge the tool sinks by the sagitta of its radius.
+    let along_rim = (SEEDS * radius).min((2.0 * radius * t.gouge_mm).sqrt());
     for k in 0..surfaces.len() {
-        let sampling = sampled(k, SEEDS * radius)?;
+        let sampling = sampled(k, SEEDS * radius, MOST_SEEDS, all)?;
         spacing = spacing.max(sampling.density.spacing_mm);
         seeds.extend(sampling.samples.iter().map(|s| Seed {
             at: frame.of(&s.point),
             uv: s.uv,
             face: s.face,
+            along: [0.0; 3],
         }));
-        rim(surfaces[k], k as u32, &frame, &mut seeds);
+        rim(surfaces[k], k as u32, (&frame, along_rim), &mut seeds);
     }
     let drops = Drops::new(surfaces, task.cutter, frame, seeds, spacing);
-    let strip = 2.0 * (2.0 * task.tolerance.scallop_mm * radius).sqrt();
+    let strip = 2.0 * (2.0 * t.scallop_mm * radius).sqrt();
+    let machined: f64 = areas[..task.faces.len()].iter().sum();
     let over = |part: f64| -> Result<(Vec<Sample>, f64), PlanError> {
         let (mut samples, mut spacing): (Vec<Sample>, f64) = (Vec::new(), 0.0);
         for k in 0..task.faces.len() {
-            let sampling = sampled(k, part * strip)?;
+            let sampling = sampled(k, part * strip, MOST_PLACES, machined)?;
             spacing = spacing.max(sampling.density.spacing_mm);
             samples.extend(sampling.samples);
         }
@@ -204,20 +215,48 @@ fn ground<'a>(task: &'a DropTask<'a>, surfaces: &'a [&'a dyn Surface]) -> Result
     Ok(Ground { task, frame, drops, places, spacing, judged })
 }
 
-/// Seeds on the rim of a face, at the ends of its stretches of inside.
-fn rim(surface: &dyn Surface, face: u32, frame: &Frame, seeds: &mut Vec<Seed>) {
-    let mut see = |at: Uv| seeds.push(Seed { at: frame.of(&surface.point(at)), uv: at, face });
+/// Seeds on the rim of a face, at the ends of its stretches of inside on lines `spacing_mm` apart.
+fn rim(surface: &dyn Surface, face: u32, (frame, spacing_mm): (&Frame, f64), seeds: &mut Vec<Seed>) {
+    let domain = surface.domain();
+    let see = |at: Uv| Seed { at: frame.of(&surface.point(at)), uv: at, face, along: [0.0; 3] };
     for axis in [Axis::U, Axis::V] {
-        let i = surface.domain().get(axis.other());
-        for k in 0..=RIM_LINES {
-            let fixed = i.at(k as f64 / RIM_LINES as f64);
-            for s in surface.spans(axis, fixed) {
-                see(Uv::from_axis(axis, s.lo, fixed));
-                see(Uv::from_axis(axis, s.hi, fixed));
+        let i = domain.get(axis.other());
+        let way = |f: f64, g: f64| surface.point(Uv::from_axis(axis, domain.get(axis).at(g), i.at(f)));
+        let across = [0.0, 0.5, 1.0]
+            .map(|g| {
+                (0..16)
+                    .map(|k| (way((f64::from(k) + 1.0) / 16.0, g) - way(f64::from(k) / 16.0, g)).norm())
+                    .sum()
+            })
+            .into_iter()
+            .fold(0.0, f64::max);
+        let lines = (across / spacing_mm).ceil().clamp(RIM_LINES[0], RIM_LINES[1]) as usize;
+        let mut found: Vec<Vec<Seed>> = (0..=lines)
+            .into_par_iter()
+            .map(|k| {
+                let fixed = i.at(k as f64 / lines as f64);
+                let ends = |s: &osculate_geom::Interval| [s.lo, s.hi];
+                let spans = surface.spans(axis, fixed);
+                spans.iter().flat_map(ends).map(|t| see(Uv::from_axis(axis, t, fixed))).collect()
+            })
+            .collect();
+        // Where neighbouring lines have as many ends, those are joined: a rim is seeded without gaps.
+        for k in 0..lines {
+            let (before, after) = found.split_at_mut(k + 1);
+            let (here, next) = (&mut before[k], &after[0]);
+            if here.len() == next.len() {
+                for (a, b) in here.iter_mut().zip(next) {
+                    let way = [0, 1, 2].map(|i| b.at[i] - a.at[i]);
+                    // Ends that lie further apart belong to different rims.
+                    if way.iter().map(|d| d * d).sum::<f64>() <= (4.0 * spacing_mm).powi(2) {
+                        a.along = way;
+                    }
+                }
             }
         }
+        seeds.extend(found.into_iter().flatten());
     }
-    surface.turns().into_iter().for_each(see);
+    seeds.extend(surface.turns().into_iter().map(see));
 }
 
 /// What every sample wants, and the areas that want nothing possible.

@@ -122,6 +122,12 @@ fn halve(ground: &Ground<'_>, level: f64, a: Stop, b: Stop, run: &mut Vec<Stop>)
                 stack.push(Stop { x, rest });
             }
             _ => {
+                // Off an edge, or up a wall: past the edge at its height, and then straight down, or the other way round.
+                if short && (next.rest.tip - last.rest.tip).abs() > chord {
+                    let high = if next.rest.tip > last.rest.tip { next.rest } else { last.rest };
+                    let x = if next.rest.tip > last.rest.tip { last.x } else { next.x };
+                    run.push(Stop { x, rest: high });
+                }
                 run.push(next);
                 last = next;
             }
