@@ -187,7 +187,7 @@ fn ground<'a>(task: &'a DropTask<'a>, surfaces: &'a [&'a dyn Surface]) -> Result
     let all: f64 = areas.iter().sum();
     // Between seeds on an edge the tool sinks by the sagitta of its radius.
     let along_rim = (SEEDS * radius).min((2.0 * radius * t.gouge_mm).sqrt());
-    for k in 0..surfaces.len() {
+    for (k, surface) in surfaces.iter().enumerate() {
         let sampling = sampled(k, SEEDS * radius, MOST_SEEDS, all)?;
         spacing = spacing.max(sampling.density.spacing_mm);
         seeds.extend(sampling.samples.iter().map(|s| Seed {
@@ -196,7 +196,7 @@ fn ground<'a>(task: &'a DropTask<'a>, surfaces: &'a [&'a dyn Surface]) -> Result
             face: s.face,
             along: [0.0; 3],
         }));
-        rim(surfaces[k], k as u32, (&frame, along_rim), &mut seeds);
+        rim(*surface, k as u32, (&frame, along_rim), &mut seeds);
     }
     let drops = Drops::new(surfaces, task.cutter, frame, seeds, spacing);
     let strip = 2.0 * (2.0 * t.scallop_mm * radius).sqrt();
