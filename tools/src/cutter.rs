@@ -341,7 +341,7 @@ impl Cutter {
         let mut s = lo;
         for _ in 0..MAX_CORNER_STEPS {
             let (rho, z) = (l.rho(s), l.z(s));
-            let LocalNear { distance, by_rho, by_z } = m.near(rho, z);
+            let LocalNear { distance, by_rho, by_z, .. } = m.near(rho, z);
             if distance <= tol {
                 let part = if s == lo && first == Part::Top {
                     Part::Top

@@ -35,6 +35,8 @@ pub(crate) struct LocalNear {
     pub by_rho: f64,
     /// Its derivative by z.
     pub by_z: f64,
+    /// Curvature of the curve of equal distance, 1/mm.
+    pub bend: f64,
 }
 
 impl Arc {
@@ -59,13 +61,13 @@ impl Arc {
         let (before, after) = (ax * y - ay * x, x * by - y * bx);
         if before >= 0.0 && after >= 0.0 && (x != 0.0 || y != 0.0) {
             let r = (x * x + y * y).sqrt();
-            LocalNear { distance: r - self.radius_mm, by_rho: x / r, by_z: y / r }
+            LocalNear { distance: r - self.radius_mm, by_rho: x / r, by_z: y / r, bend: 1.0 / r }
         } else {
             let (a, b) = (ax * x + ay * y, bx * x + by * y);
             if a >= b {
-                LocalNear { distance: a - self.radius_mm, by_rho: ax, by_z: ay }
+                LocalNear { distance: a - self.radius_mm, by_rho: ax, by_z: ay, bend: 0.0 }
             } else {
-                LocalNear { distance: b - self.radius_mm, by_rho: bx, by_z: by }
+                LocalNear { distance: b - self.radius_mm, by_rho: bx, by_z: by, bend: 0.0 }
             }
         }
     }

@@ -20,6 +20,19 @@ pub(super) struct Near {
     pub gradient: Vec3,
 }
 
+/// Signed distance in the half plane of a meridian.
+#[derive(Clone, Copy)]
+pub(super) struct Local {
+    /// Millimetres.
+    pub distance: f64,
+    /// Derivative of the distance by rho, over rho; zero on the axis.
+    pub outwards: f64,
+    /// Derivative of the distance by z.
+    pub by_z: f64,
+    /// Curvature of the curve of equal distance in the half plane, 1/mm.
+    pub bend: f64,
+}
+
 impl Body<'_> {
     /// Distance from a point at `from_tip` of the tool tip to the body with unit `axis`.
     ///
@@ -28,34 +41,40 @@ impl Body<'_> {
     pub fn near(&self, from_tip: &Vec3, axis: &Vec3) -> Near {
         let along = from_tip.dot(axis);
         let radial = from_tip - axis * along;
-        let rho = radial.norm();
+        let Local { distance, outwards, by_z, .. } = self.local(radial.norm(), along);
+        Near { distance, gradient: radial * outwards + axis * by_z }
+    }
+
+    /// The same for a point `rho` from the axis and `along` above the tool tip.
+    #[inline]
+    pub fn local(&self, rho: f64, along: f64) -> Local {
         let z = along - self.above_mm;
+        let over = z - self.cutter.length_mm();
+        let top = Local { distance: over, outwards: 0.0, by_z: 1.0, bend: 0.0 };
         if let Some(meridian) = self.cutter.meridian() {
             let near = meridian.near(rho, z);
-            let over = z - self.cutter.length_mm();
-            if over > near.distance {
-                return Near { distance: over, gradient: *axis };
-            }
             // On the axis every radial slope up to the meridian's own is a subgradient: zero is.
             let outwards = if rho > 0.0 { near.by_rho / rho } else { 0.0 };
-            return Near { distance: near.distance, gradient: radial * outwards + axis * near.by_z };
+            let side = Local { distance: near.distance, outwards, by_z: near.by_z, bend: near.bend };
+            return if over > side.distance { top } else { side };
         }
         let corner = self.cutter.corner_mm();
         let (x, y) = (rho - self.cutter.core_mm(), corner - z);
-        let (distance, gradient) = if x > 0.0 && y > 0.0 {
+        let end = if x > 0.0 && y > 0.0 {
             // Millimetres neither overflow nor underflow: the plain form, several times faster than hypot,
             // and one division in place of six. x > 0 has rho > 0.
             let r = (x * x + y * y).sqrt();
             let inverse = 1.0 / (r * rho);
-            (r - corner, radial * (x * inverse) - axis * (y * rho * inverse))
+            let bend = rho * inverse;
+            Local { distance: r - corner, outwards: x * inverse, by_z: -y * bend, bend }
         } else if x >= y {
             // On the axis every radial slope up to one is a subgradient: zero is.
-            (x - corner, if rho > 0.0 { radial * (1.0 / rho) } else { Vec3::zeros() })
+            let outwards = if rho > 0.0 { 1.0 / rho } else { 0.0 };
+            Local { distance: x - corner, outwards, by_z: 0.0, bend: 0.0 }
         } else {
-            (y - corner, -axis)
+            Local { distance: y - corner, outwards: 0.0, by_z: -1.0, bend: 0.0 }
         };
-        let over = z - self.cutter.length_mm();
-        if over > distance { Near { distance: over, gradient: *axis } } else { Near { distance, gradient } }
+        if over > end.distance { top } else { end }
     }
 }
 

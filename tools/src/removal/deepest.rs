@@ -118,34 +118,6 @@ impl Passage<'_> {
         Lowest { value: falling.distance.min(rising.distance), slope }
     }
 
-    /// The part of a segment of the line, heights from and to, that this passage covers, to `touch` mm of distance.
-    pub fn covered(&self, [from, to]: [f64; 2], touch: f64) -> Option<[f64; 2]> {
-        let (low, high) = (self.lowest(Probe::Height, from), self.lowest(Probe::Height, to));
-        let first = if low.value <= touch { from } else { self.crossing(low, [from, to], touch)? };
-        let last = if high.value <= touch { to } else { self.crossing(high, [to, from], touch)? };
-        (first < last).then_some([first, last])
-    }
-
-    /// Newton from outside at `start` towards `end`, monotone where f is convex.
-    fn crossing(&self, at_start: Lowest, [start, end]: [f64; 2], touch: f64) -> Option<f64> {
-        let (mut s, mut here) = (start, at_start);
-        for _ in 0..MAX_STEPS {
-            if here.slope * (end - start) >= 0.0 {
-                return None;
-            }
-            s -= here.value / here.slope;
-            if (s - start) * (s - end) > 0.0 {
-                return None;
-            }
-            here = self.lowest(Probe::Height, s);
-            if here.value <= touch {
-                return Some(s);
-            }
-        }
-        // Grazing.
-        None
-    }
-
     /// The height that this passage leaves above the sample, mm, where it is lower than `current`; negative
     /// is a gouge, followed down to `-depth`.
     pub fn height(&self, current: f64, depth: f64) -> Option<f64> {

@@ -10,10 +10,16 @@
 //! `height <= min over motions i, j of max over corners c of (h_i(c) + h_j(c)) / 2 + k r^2 / 2`.
 //!
 //! At a cusp this is above the truth by a term in r^2 only, where one motion alone has one in r. The motions tried are the
-//! one that cut the sample, those that cut the samples around, and the lowest of all that come near the cell. Cells whose bound is above what the samples have shown are divided, parts that lie
-//! outside the trims left aside, up to [`DIVISIONS`] times. Heights along the cell's own normals are lower than along n by
-//! a factor within `1 / (1 - k r)`, which is put on top. The bound holds to leading order in the curvature's change over a
-//! cell and in the sagitta of turning motions.
+//! one that cut the sample, those that cut the samples around, and the lowest of all that come near the cell. Cells whose
+//! bound is above what the samples have shown are divided, parts that lie outside the trims left aside, up to
+//! [`DIVISIONS`] times.
+//!
+//! *Normals that turn.* The normal at another place of the cell deviates from n by an angle within `a = k r`, k the greatest
+//! normal curvature. A point s up that normal stands `s cos a` up along n and `s sin a` aside, where the part is higher by
+//! at most `s sin a tan a`: with the bound taken over a cell that is wider by `s sin a` all around, s is at most the bound
+//! times `cos a / cos 2a`. Wider cells are stretched from their middle, which leaves the part by less than `s a^2`; all three
+//! are of second order and within `1 / (1 - 3 a^2)`. The whole therefore closes in with the square of the spacing. It holds
+//! to leading order in the curvature's change over a cell and in the sagitta of turning motions.
 //!
 //! *Gouges.* At the bottom of a gouge the standoff is level: a sample r away is deeper by less than `K r^2 / 2` only, K the
 //! relative curvature, with the curvature at each sample and the size of its own cell.
@@ -35,6 +41,8 @@ use rayon::prelude::*;
 pub const DIVISIONS: u32 = 3;
 /// Motions around a cell that are tried.
 const MOST_MOTIONS: usize = 8;
+/// Bounds are expected within this multiple of the highest standoff seen.
+const MOST_SEEN: f64 = 3.0;
 /// Accuracy of the instant, of the motion: an instant that is off gives a bound that is higher.
 const INSTANT: f64 = 1e-7;
 
@@ -120,6 +128,19 @@ impl World<'_> {
     }
 }
 
+/// The corners of a cell that is wider by `margin` on every side, stretched from its middle; at most twice as wide.
+fn stretched(corners: [Point3; 4], middle: Point3, margin: f64) -> [Point3; 4] {
+    let side = |k: usize| {
+        let (a, b) = (corners[k] - middle, corners[(k + 1) % 4] - middle);
+        let along = b - a;
+        // From the middle to the line through the side, or to the corner where the side is none.
+        along.try_normalize(0.0).map_or(a.norm(), |e| (a - e * a.dot(&e)).norm())
+    };
+    let inner = (0..4).map(side).fold(f64::INFINITY, f64::min);
+    let by = if inner > 0.0 { (margin / inner).min(1.0) } else { 1.0 };
+    corners.map(|p| p + (p - middle) * by)
+}
+
 struct Cell<'a> {
     surface: &'a dyn Surface,
     world: &'a World<'a>,
@@ -141,10 +162,17 @@ impl Cell<'_> {
         let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
         let Ok(normal) = jet.normal() else { return (seen, radius) };
         let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
-        let slack = 0.5 * patch.concave_per_mm * radius * radius;
-        let scale = 1.0 / (1.0 - bend.min(0.5));
-        let upper = |heights: f64| (heights + slack) * scale;
-        let at = |motion: u32| points.map(|p| self.height(motion, p, normal));
+        // Nothing stands higher than the stock, and what does stand higher than this gets the allowance of first order.
+        let most = (MOST_SEEN * seen).min(self.world.job.stock_mm);
+        let wide = stretched(points, jet.point, most * bend);
+        let radius_wide = wide.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
+        let slack = 0.5 * patch.concave_per_mm * radius_wide * radius_wide;
+        let (first, second) = (1.0 / (1.0 - bend.min(0.5)), 1.0 / (1.0 - (3.0 * bend * bend).min(0.5)));
+        let upper = |heights: f64| {
+            let bound = (heights + slack) * second;
+            if bound <= most { bound } else { bound.max((heights + slack) * first) }
+        };
+        let at = |motion: u32| wide.map(|p| self.height(motion, p, normal));
         let top = |h: [f64; 4]| h.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mine = at(self.own);
         let mut best = upper(top(mine));

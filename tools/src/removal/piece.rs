@@ -15,7 +15,7 @@ use osculate_geom::{Point3, Unit3, Vec3};
 
 /// Largest sagitta of a piece, mm, compared with the size of a group of samples, from which a piece is
 /// rejected with this much slack. Pieces that are not rejected are halved on, see [`Passes::Near`].
-const SAGITTA_MM: f64 = 5e-2;
+pub(super) const SAGITTA_MM: f64 = 5e-2;
 /// Sagitta of pieces in which the deepest instant is searched, mm. It is no error as such, but turning
 /// motions have more than one deepest instant (bottom, then rim): of two within one piece the lesser may be
 /// found, too high by about this.
@@ -60,6 +60,12 @@ impl Turning {
         let tan_half = (b - a).norm() / (b + a).norm();
         let square = tan_half * tan_half;
         Self { rate: 2.0 * tan_half, acceleration: (8.0 * tan_half * square).min(2.6 * square) }
+    }
+
+    /// Derivative of the rate by the motion's parameter, over the rate, where x = 2 t - 1; `rate` is 2 T.
+    fn spin(rate: f64, x: f64) -> f64 {
+        let square = 0.25 * rate * rate;
+        -4.0 * x * square / (1.0 + x * x * square)
     }
 
     fn sagitta(self, speed: f64, rho: f64) -> f64 {
@@ -116,11 +122,13 @@ impl Piece {
 /// A piece seen from its middle.
 #[derive(Clone, Copy)]
 pub(super) struct Approach {
-    tip: Point3,
-    axis: Vec3,
+    pub tip: Point3,
+    pub axis: Vec3,
     /// Movement of the tip and turn of the axis over the piece, to first order at the middle.
-    advance: Vec3,
-    turn: Vec3,
+    pub advance: Vec3,
+    pub turn: Vec3,
+    /// Change of the turn over the piece.
+    pub spin: Vec3,
     turning: Turning,
     speed: f64,
 }
@@ -146,11 +154,13 @@ impl Approach {
         let Moving { pose, tip_rate, turn } = moving(swept, 0.5 * (lo + hi));
         let Turning { rate, acceleration } = Turning::of(swept);
         let advance = tip_rate * share;
+        let spin = if rate == 0.0 { 0.0 } else { share * Turning::spin(rate, lo + hi - 1.0) };
         Self {
             tip: pose.tip,
             axis: pose.axis.into_inner(),
             advance,
             turn: turn * share,
+            spin: turn * share * spin,
             turning: Turning { rate: rate * share, acceleration: acceleration * share * share },
             speed: advance.norm(),
         }

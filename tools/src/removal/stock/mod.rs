@@ -4,12 +4,12 @@
 //! moves cutter, shank and holder through the path: on every ray a moving body covers an interval that is found exactly
 //! (to the tolerances below), not from frozen positions, and which is taken away.
 //!
-//! *Errors.* Ends of stretches are good to [`ENDS_MM`] along the ray; over a turning motion the straight pieces that it
-//! is taken apart into stray by at most [`TURNING_MM`]. What dominates is that space is looked at along rays: the volume
-//! of a body is the sum of stretches times the square of the cell. Rays are set off from the middle of their cells row by
-//! row by a golden-section sequence, so that a wall along the rays falls on each side of a ray in the right share of the
-//! rows: its place counts to the cell over the number of rows, not to the cell. The three directions are three nearly
-//! independent sums; [`Volume::mm3`] is their mean, [`Volume::spread_mm3`] their range.
+//! *Errors.* Ends of stretches are good to [`ENDS_MM`] of distance to the tool; over a turning motion the straight pieces
+//! that it is taken apart into stray by at most [`Stock::stray_mm`], to both sides. What dominates is that space is looked
+//! at along rays: the volume of a body is the sum of stretches times the square of the cell. Rays are set off from the
+//! middle of their cells row by row by a golden-section sequence, so that a wall along the rays falls on each side of a ray
+//! in the right share of the rows: its place counts to the cell over the number of rows, not to the cell. The three
+//! directions are three nearly independent sums; [`Volume::mm3`] is their mean, [`Volume::spread_mm3`] their range.
 //!
 //! *Memory.* Sixteen bytes a stretch and four a ray; [`Stock::fill`] makes the cells larger where a budget requires it,
 //! and says so in [`Made::coarsened`].
@@ -19,7 +19,9 @@
 
 mod blank;
 mod carve;
+mod glide;
 mod lattice;
+mod rays;
 mod report;
 mod stl;
 
@@ -32,9 +34,11 @@ use lattice::{Lattice, Tile};
 use osculate_geom::{Box3, Point3};
 
 /// Accuracy of the ends of stretches, mm of distance to the tool.
-pub const ENDS_MM: f64 = 1e-7;
-/// Most that the pieces of a turning motion stray from it, mm.
+pub const ENDS_MM: f64 = 1e-6;
+/// Most that the straight pieces of a turning motion stray from it where cells are fine, mm ...
 pub const TURNING_MM: f64 = 1e-3;
+/// ... and of the side of coarse ones.
+pub const TURNING_OF_CELL: f64 = 0.02;
 
 /// The material that is left.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +61,12 @@ impl Stock {
     #[must_use]
     pub const fn cell_mm(&self) -> f64 {
         self.cell
+    }
+
+    /// Most that the straight pieces of a turning motion stray from it, mm.
+    #[must_use]
+    pub fn stray_mm(&self) -> f64 {
+        TURNING_MM.max(TURNING_OF_CELL * self.cell)
     }
 
     /// The box that the rays fill.

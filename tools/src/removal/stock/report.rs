@@ -1,7 +1,7 @@
 //! What carving found: volumes, work block by block, collisions.
 
 use crate::removal::Body;
-use osculate_geom::Point3;
+use osculate_geom::{Point3, Vec3};
 
 /// A volume seen along every direction of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,10 +88,26 @@ pub(super) struct Bite {
     pub at: Point3,
 }
 
+/// Sectors around the axis in which material is noted.
+pub(super) const SECTORS: f64 = 64.0;
+
 impl Bite {
     pub fn none(motion: u32, body: u8) -> Self {
         let height = [f64::INFINITY, f64::NEG_INFINITY];
         Self { motion, body, volume: 0.0, sectors: 0, height, deepest: 0.0, at: Point3::origin() }
+    }
+
+    /// Notes a stretch of material that was taken: its length, its middle, and where on the body, as ahead, left and up
+    /// from the tip, the middle was met.
+    pub fn note(&mut self, length: f64, middle: impl Fn() -> Point3, met: &Vec3) {
+        self.volume += length;
+        if length > self.deepest {
+            (self.deepest, self.at) = (length, middle());
+        }
+        self.height = [self.height[0].min(met.z), self.height[1].max(met.z)];
+        let turn = met.y.atan2(met.x) / std::f64::consts::TAU + 0.5;
+        // A whole turn counts as none.
+        self.sectors |= 1u64 << ((turn * SECTORS) as u32).min(63);
     }
 
     pub fn merge(&mut self, other: &Self) {
