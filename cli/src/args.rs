@@ -41,6 +41,11 @@ pub enum Verb {
         /// The job file, with its contact table.
         job: PathBuf,
     },
+    /// Tools, strategies, directions and leads of a job side by side: time, length, productivity, ranked, with why each lost.
+    Compare {
+        /// The job file.
+        job: PathBuf,
+    },
     /// The main job: path, CL file, NC program, verification, report.
     Plan {
         /// The job file.

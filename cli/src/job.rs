@@ -379,6 +379,13 @@ impl Job {
         self.tool.as_ref().expect("loading puts a tool in hand")
     }
 
+    /// The tool in hand in words, as tables show it.
+    pub fn tool_words(&self) -> String {
+        let t = self.tool();
+        let corner = t.corner_radius_mm.filter(|_| t.kind != "ball").map(|r| format!(" r {r}"));
+        format!("{} {}{}", t.kind, t.diameter_mm, corner.unwrap_or_default())
+    }
+
     /// The tolerances, checked and completed.
     pub fn tolerance(&self) -> Result<osculate_productivity::plan::Tolerance, Failure> {
         let t = &self.tolerance;

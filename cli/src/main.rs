@@ -6,18 +6,22 @@
 mod args;
 mod builtin;
 mod cancel;
+mod choice;
 mod cmd;
 mod cutter_keys;
 mod drop;
 mod failure;
 mod figure;
 mod flank;
+mod ideal;
 mod job;
+mod look;
 mod nc;
 mod output;
 mod part;
 mod passes;
 mod ply;
+mod program;
 mod progress;
 mod render;
 mod report;
@@ -41,6 +45,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Probe { part, face, at } => cmd::probe::run(part, face.as_deref(), at, cli.json),
         Verb::Lines(options) => cmd::lines::run(options, cli.json),
         Verb::Strip { job } => cmd::strip::run(job, cli.json),
+        Verb::Compare { job } => cmd::compare::run(job, cli.json),
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),

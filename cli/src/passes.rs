@@ -3,10 +3,10 @@
 use crate::cancel;
 use crate::failure::Failure;
 use crate::job::{AutoOr, Job};
+use crate::look::Look;
 use crate::nc;
 use crate::output;
 use crate::part::{self, JobFaces};
-use crate::verify;
 use osculate_geom::{Box3, Diagnostic};
 use osculate_productivity::plan::{
     Linked, Links, Passes, Strategy, Task, link, predicted_length_mm, run as plan_face,
@@ -144,7 +144,7 @@ pub fn with_best_lead(
         match each_face(job, faces, &Way { strategy, lean, out: Some(out) }, progress) {
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
-                let gouge = verify::coarse_gouge_mm(job, faces, &linked(job, faces, &p, cutter)?)?;
+                let gouge = Look::at(job, faces, &linked(job, faces, &p, cutter)?)?.gouge_mm;
                 p.diagnostics.push(Diagnostic::note(
                     "lead",
                     format!(

@@ -258,34 +258,3 @@ pub fn run(
     let histogram = verdict.histogram.iter().map(bin).collect();
     Ok(Verified { summary, worst, histogram, samples, cuts, verdict, diagnostics })
 }
-
-/// Samples of a coarse look.
-const COARSE_SAMPLES: usize = 30_000;
-
-/// The deepest gouge of a CL path on the faces of a job, by a look coarse enough for choosing between plans.
-pub fn coarse_gouge_mm(
-    job: &Job,
-    faces: &JobFaces,
-    linked: &osculate_productivity::plan::Linked,
-) -> Result<f64, Failure> {
-    let cutter = job.cutter()?;
-    let area: f64 = faces.faces.iter().map(crate::part::area).sum();
-    let spacing = (area / COARSE_SAMPLES as f64).sqrt();
-    let mut samples = Vec::new();
-    for (k, face) in faces.faces.iter().enumerate() {
-        let found = removal::sample_surface(&*face.surface, k as u32, spacing, COARSE_SAMPLES)
-            .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
-        samples.extend(found.samples);
-    }
-    let motions = Swept::along(&linked.path);
-    let work = removal::Job {
-        cutter: &cutter,
-        holder: None,
-        motions: &motions,
-        samples: &samples,
-        stock_mm: 0.0,
-        depth_mm: cutter.radius_mm(),
-    };
-    let cuts = removal::cut(&work, &|_| {}).map_err(Failure::job)?;
-    Ok(cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max))
-}

@@ -7,6 +7,8 @@
 //!   between tooth marks and scallops that makes it greatest.
 //! - [`optimum`]: the tool, feed direction, lead and tilt of greatest productivity at a point.
 //! - [`field`]: the best postures over a face, as arrays.
+//! - [`compare`]: tools, strategies, directions and leads screened side by side.
+//! - [`ideal`]: the least time over faces that no plan beats.
 //! - [`levels`]: productivity at an instant, along a pass and over the whole face.
 //! - [`finish`], [`rough`]: area and volume of stock per minute under any change of parameters; [`given`]: tolerance and stock
 //!   that vary over the face; [`engagement`]: what a cutter takes out of real stock at an instant.
@@ -22,10 +24,12 @@
 //! ```
 
 pub mod closed_form;
+pub mod compare;
 pub mod engagement;
 pub mod field;
 pub mod finish;
 pub mod given;
+pub mod ideal;
 pub mod levels;
 pub mod optimum;
 pub mod plan;

@@ -1,5 +1,5 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
-//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures` and `cargo xtask truth`.
+//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask plans` and `cargo xtask truth`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -11,6 +11,7 @@ mod ci;
 mod cmd;
 mod figures;
 mod interop;
+mod plans;
 mod test;
 mod tidy;
 
@@ -38,6 +39,8 @@ usage: cargo xtask COMMAND
                 docs/papers/r97.md and m86.md, docs/closed-forms.md: closed forms of strip width against the exact strip
   papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
   papers d98    docs/papers/d98.md: the values, errata and figures of D98, ours beside theirs
+  plans --data FOLDER [--only TEXT]
+                docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -60,6 +63,8 @@ fn main() -> ExitCode {
         }
         ["papers", "z17"] => postproc_example("z17", &["docs/papers"]),
         ["papers", "d98"] => d98(),
+        ["plans", "--data", folder] => plans::run(folder, ""),
+        ["plans", "--data", folder, "--only", text] => plans::run(folder, text),
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),
         ["interop", "occt", rest @ ..] => interop::occt(rest),

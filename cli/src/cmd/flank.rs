@@ -1,6 +1,6 @@
 //! `flank`: the side of a cutter on a ruled face, every positioning side by side, the chosen one as path and program.
 
-use crate::cmd::plan::{self, Planned, WallS};
+use crate::cmd::plan;
 use crate::failure::{Done, Failure, Outcome};
 use crate::flank::face::{FlankFace, range};
 use crate::flank::keys::least_mm;
@@ -10,6 +10,7 @@ use crate::job::Job;
 use crate::output;
 use crate::part;
 use crate::passes;
+use crate::program::{Planned, WallS};
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::report::{self, Column};

@@ -1,5 +1,6 @@
 //! The verbs.
 
+pub mod compare;
 pub mod export;
 pub mod flank;
 pub mod gallery;

@@ -1,34 +1,25 @@
 //! `plan`: the main job, from the part to a verified NC program with a report.
 
 use crate::cancel;
+use crate::choice::{self, Choice, Row};
 use crate::drop;
 use crate::failure::{Done, Failure, Outcome};
+use crate::ideal::{self, IdealTime};
 use crate::job::Job;
-use crate::nc::{self, Control};
+use crate::nc::Control;
 use crate::output;
 use crate::part::{self, JobFaces};
 use crate::passes::{self, Way};
+use crate::program::{Planned, Posted, WallS};
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::report_fill::{self, Extras, Story};
 use crate::verify::{self, Verification, Verified};
 use osculate_geom::Diagnostic;
-use osculate_postproc::Posted;
 use osculate_productivity::levels::{Totals, levels};
-use osculate_productivity::plan::{Linked, Passes};
 use osculate_tools::Lean;
 use serde::Serialize;
 use std::path::Path;
-
-/// Seconds of wall time by stage.
-#[derive(Debug, Default, Serialize, Clone, Copy)]
-pub struct WallS {
-    pub import: f64,
-    pub plan: f64,
-    pub post: f64,
-    pub verify: f64,
-    pub report: f64,
-}
 
 /// Productivity at three levels, mm2/min.
 #[derive(Debug, Serialize)]
@@ -54,6 +45,7 @@ pub struct Summary {
     format: u32,
     pub strategy: String,
     tool: serde_json::Value,
+    pub tool_words: String,
     pub lead_deg: f64,
     pub tilt_deg: f64,
     pub machine: String,
@@ -67,59 +59,70 @@ pub struct Summary {
     pub cutting_time_min: f64,
     pub area_mm2: f64,
     pub productivity_mm2_min: Productivity,
+    #[serde(flatten)]
+    pub ideal: Option<IdealTime>,
     pub verification: Verification,
     worst: Vec<verify::WorstPlace>,
     pub wall_s: WallS,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compared: Vec<Row>,
     diagnostics: Vec<String>,
 }
 
-/// A plan before it is posted.
-pub struct Planned<'a> {
-    /// The passes.
-    pub passes: Passes,
-    /// The passes joined.
-    pub linked: Linked,
-    /// Its name.
-    pub strategy: String,
-    /// Lead and tilt.
-    pub lean: Lean,
-    /// What the report shows beside what every report shows.
-    pub extras: Extras<'a>,
-    /// Whether the points of passes know the width of their strips, for samples that resolve them.
-    pub with_strips: bool,
-}
-
-/// A plan posted and measured.
-pub struct Proved {
-    cl_text: String,
-    control: Control,
+/// A plan with its program and what was measured, and what it was chosen from.
+struct Proved {
+    job: Job,
+    planned: Planned<'static>,
     posted: Posted,
-    read: nc::Motions,
-    /// What was measured.
-    pub verified: Verified,
-    /// Findings of posting and measuring.
-    diagnostics: Vec<Diagnostic>,
+    verified: Verified,
+    compared: Vec<Row>,
 }
 
 /// Runs the verb.
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
-    let job = Job::load_with_one_tool(path)?;
+    let job = Job::load(path)?;
     let mut wall_s = WallS::default();
     let stage = Stage::begin("import");
     let faces = part::of_job(&job)?;
     wall_s.import = stage.end();
 
-    let stage = Stage::begin("plan");
-    let planned = planned(&job, &faces, out, &|f| stage.at(f))?;
-    wall_s.plan = stage.end();
-
-    let (summary, text, _) = execute(&job, &faces, &planned, wall_s, out)?;
+    let open = job.strategy.kind == "auto" || job.each_tool().len() > 1;
+    let proved = if open {
+        chosen(&job, &faces, out, &mut wall_s)?
+    } else {
+        let stage = Stage::begin("plan");
+        let planned = planned(&job, &faces, out, &|f| stage.at(f))?;
+        wall_s.plan = stage.end();
+        let posted = Posted::of(&job, &faces, &planned, &mut wall_s, Some(out))?;
+        let verified = posted.verify(&job, &faces, &planned, &mut wall_s)?;
+        Proved { job, planned, posted, verified, compared: Vec::new() }
+    };
+    let Proved { job, planned, posted, verified, compared } = proved;
+    let whole = Whole { job: &job, faces: &faces, planned: &planned, posted, verified, compared };
+    let (summary, text, _) = write(whole, wall_s, out)?;
     if json {
         render::json(&summary)?;
     } else {
         render::text(&text);
     }
     Ok(if summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+/// The fastest of all candidates whose program holds.
+fn chosen(job: &Job, faces: &JobFaces, out: &Path, wall_s: &mut WallS) -> Result<Proved, Failure> {
+    let stage = Stage::begin("choose");
+    let mut choice = Choice::screen(job, faces)?;
+    let settled = choice::settle(&mut choice, 1, Some(out), wall_s, &|f| stage.at(f))?;
+    let mut planned = settled.planned;
+    let compared = choice.rows();
+    planned.extras.diagnostics.push(Diagnostic::note("auto", choice.story()));
+    planned
+        .extras
+        .tables
+        .push(choice::page_table(&compared, "Tools, strategies and leads compared".to_owned()));
+    // Programs and verifications on the way have times of their own.
+    wall_s.plan = stage.end() - wall_s.post - wall_s.verify;
+    Ok(Proved { job: settled.job, planned, posted: settled.posted, verified: settled.verified, compared })
 }
 
 /// Posts a plan, verifies the program and writes everything; the summary comes back with its text and what was measured.
@@ -130,56 +133,38 @@ pub fn execute(
     mut wall_s: WallS,
     out: &Path,
 ) -> Result<(Summary, String, Verified), Failure> {
-    let proved = prove(job, faces, planned, &mut wall_s, out)?;
-    write(job, faces, planned, proved, wall_s, out)
+    let posted = Posted::of(job, faces, planned, &mut wall_s, Some(out))?;
+    let verified = posted.verify(job, faces, planned, &mut wall_s)?;
+    write(Whole { job, faces, planned, posted, verified, compared: Vec::new() }, wall_s, out)
 }
 
-/// Posts a plan and verifies the program. From here on a stopped run leaves the path as a partial result.
-pub fn prove(
-    job: &Job,
-    faces: &JobFaces,
-    planned: &Planned<'_>,
-    wall_s: &mut WallS,
-    out: &Path,
-) -> Result<Proved, Failure> {
-    let (control, control_notes) = nc::control(job)?;
-    let stage = Stage::begin("post");
-    let (setup, setup_notes) = nc::setup(job, faces, &planned.extras.axes)?;
-    let cl = passes::cl_path(job, &planned.linked)?;
-    let title = passes::title(job);
-    let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
-    let text = cl_text.clone();
-    passes::keep_partial(out, move || Ok(text), "the whole path".to_owned());
-    let posted = nc::post(&cl, &control, &setup, &title)?;
-    stage.at(0.6);
-    let read = nc::read_back(&posted.text, &control, &setup, false)
-        .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
-    wall_s.post += stage.end();
-
-    let stage = Stage::begin("verify");
-    let strip = planned.with_strips.then(|| narrow_strip(&planned.passes)).flatten();
-    let verified = verify::run(job, faces, &read.motions, "nc", strip, &|f| stage.at(f))?;
-    wall_s.verify += stage.end();
-    let diagnostics =
-        [&control_notes, &setup_notes, &posted.diagnostics, &read.diagnostics, &verified.diagnostics];
-    let diagnostics = diagnostics.into_iter().flatten().cloned().collect();
-    Ok(Proved { cl_text, control, posted, read, verified, diagnostics })
+/// Everything that is written.
+struct Whole<'a> {
+    job: &'a Job,
+    faces: &'a JobFaces,
+    planned: &'a Planned<'a>,
+    posted: Posted,
+    verified: Verified,
+    compared: Vec<Row>,
 }
 
 /// Writes a plan with its program, verification and report.
-pub fn write(
-    job: &Job,
-    faces: &JobFaces,
-    planned: &Planned<'_>,
-    proved: Proved,
-    wall_s: WallS,
-    out: &Path,
-) -> Result<(Summary, String, Verified), Failure> {
+fn write(whole: Whole<'_>, mut wall_s: WallS, out: &Path) -> Result<(Summary, String, Verified), Failure> {
+    let Whole { job, faces, planned, posted, verified, compared } = whole;
+    let stage = Stage::begin("ideal");
+    let ideal = if planned.with_strips { Some(ideal::of_plan(job, faces, planned, &posted)?) } else { None };
+    wall_s.ideal = stage.end();
     let stage = Stage::begin("report");
-    let Proved { cl_text, control, posted, read, verified, diagnostics } = proved;
+    let Posted { cl_text, control, program, read, diagnostics } = posted;
     let title = passes::title(job);
     let before = [&faces.part.diagnostics, &planned.passes.diagnostics, &planned.extras.diagnostics];
-    let diagnostics: Vec<Diagnostic> = before.into_iter().flatten().cloned().chain(diagnostics).collect();
+    let diagnostics: Vec<Diagnostic> = before
+        .into_iter()
+        .flatten()
+        .cloned()
+        .chain(diagnostics)
+        .chain(verified.diagnostics.iter().cloned())
+        .collect();
     let area_mm2: f64 = faces.faces.iter().map(part::area).sum();
     let feed = job.feed_mm_min()?;
     let totals = Totals { area_mm2, time_min: read.time_min };
@@ -188,6 +173,7 @@ pub fn write(
         format: 1,
         strategy: planned.strategy.clone(),
         tool: serde_json::to_value(job.cutter_spec()?).map_err(Failure::job)?,
+        tool_words: job.tool_words(),
         lead_deg: planned.lean.lead_rad.to_degrees(),
         tilt_deg: planned.lean.tilt_rad.to_degrees(),
         machine: control.machine.name().to_owned(),
@@ -206,9 +192,11 @@ pub fn write(
             regional: l.regional,
             global: l.global,
         },
+        ideal,
         verification: verified.summary.clone(),
         worst: verified.worst.clone(),
         wall_s,
+        compared,
         diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
     };
     let story = Story {
@@ -227,7 +215,7 @@ pub fn write(
     // A stop waits until all of them are there.
     let whole = cancel::whole();
     output::write(&out.join("path.cl"), cl_text.as_bytes())?;
-    output::write(&out.join(format!("program.{}", control.extension)), posted.text.as_bytes())?;
+    output::write(&out.join(format!("program.{}", control.extension)), program.text.as_bytes())?;
     output::write(&out.join("report.html"), pages.html.as_bytes())?;
     output::write(&out.join("picture.svg"), pages.svg.as_bytes())?;
     summary.wall_s.report = stage.end();
@@ -239,14 +227,6 @@ pub fn write(
 
     let text = describe(&summary, &verified, &diagnostics, out, &control);
     Ok((summary, text, verified))
-}
-
-/// The strip that samples must resolve: the width that nine tenths of the path exceed.
-fn narrow_strip(passes: &Passes) -> Option<f64> {
-    let mut widths: Vec<f64> =
-        passes.passes.iter().flat_map(|p| &p.points).map(|p| p.width_mm).filter(|w| w.is_finite()).collect();
-    widths.sort_by(f64::total_cmp);
-    widths.get(widths.len() / 10).copied()
 }
 
 /// Passes and links by the job's strategy.
@@ -278,6 +258,7 @@ fn planned(
 fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, control: &Control) -> String {
     let mut t = Table::new(["plan", "", "unit"]);
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
+    row("tool", s.tool_words.clone(), "");
     row("strategy", s.strategy.clone(), "");
     row("lead, tilt", format!("{}, {}", number(s.lead_deg, 4), number(s.tilt_deg, 4)), "deg");
     row("passes", s.passes.to_string(), "");
@@ -288,7 +269,15 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
     row("of it cutting", format!("{:.2}", s.cutting_time_min), "min");
     row("area", format!("{:.1}", s.area_mm2), "mm2");
     row("global productivity", format!("{:.1}", s.productivity_mm2_min.global), "mm2/min");
-    let mut text = format!("\n{}\n", t.render());
+    if let Some(i) = &s.ideal {
+        row("least time of any plan", format!("{:.2} +- {:.2}", i.ideal.time_min, i.ideal.error_min), "min");
+        row("efficiency", format!("{:.0}", i.efficiency_percent), "%");
+    }
+    let mut text = String::from("\n");
+    if !s.compared.is_empty() {
+        text.push_str(&format!("{}\n", choice::text_table(&s.compared)));
+    }
+    text.push_str(&format!("{}\n", t.render()));
     let f = &s.verification;
     let mut t = Table::new(["verified from the NC text", "", "unit"]);
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
@@ -320,8 +309,8 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
     }
     let w = &s.wall_s;
     text.push_str(&format!(
-        "\n  wall s: import {:.2}, plan {:.2}, post {:.2}, verify {:.2}, report {:.2}\n",
-        w.import, w.plan, w.post, w.verify, w.report
+        "\n  wall s: import {:.2}, plan {:.2}, post {:.2}, verify {:.2}, ideal {:.2}, report {:.2}\n",
+        w.import, w.plan, w.post, w.verify, w.ideal, w.report
     ));
     if !diagnostics.is_empty() {
         text.push_str(&format!("\n{}", render::findings(diagnostics)));

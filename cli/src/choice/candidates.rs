@@ -1,0 +1,92 @@
+//! The candidates of a job: its tools times strategies times directions times leads.
+
+use crate::drop;
+use crate::failure::Failure;
+use crate::job::{AutoOr, Job};
+use crate::part::{self, JobFaces};
+use crate::passes::BALL_LEAD_DEG;
+use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
+use osculate_productivity::compare::Candidate;
+use osculate_productivity::plan::{Along, Strategy};
+use osculate_tools::{Cutter, Lean};
+
+/// Leads tried, degrees: small ones for wide strips, great ones to keep heel and holder off.
+const LEADS_DEG: [f64; 14] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 27.0, 35.0, 45.0];
+/// Points a side of a face for its mean normal.
+const GRID: usize = 8;
+
+pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
+    if job.strategy.kind == drop::KIND {
+        let text = format!("[strategy] {} takes one [tool], not [[tools]]", drop::KIND);
+        return Err(Failure::file(&job.path, text));
+    }
+    let strategies =
+        if job.strategy.kind == "auto" { every(job, faces)? } else { vec![crate::strategy::of_job(job)?] };
+    let strategies: Vec<Strategy> = strategies.into_iter().flat_map(each_direction).collect();
+    let mut out = Vec::new();
+    for (tool, cutter) in cutters.iter().enumerate() {
+        for strategy in &strategies {
+            if matches!(strategy, Strategy::Contour2cl { .. }) && !cutter.is_ball() {
+                continue;
+            }
+            for lean in leans(job, cutter, strategy)? {
+                out.push(Candidate { tool, strategy: *strategy, lean });
+            }
+        }
+    }
+    if out.is_empty() {
+        let text = format!("[strategy] {} is for balls, and none of the tools is one", job.strategy.kind);
+        return Err(Failure::file(&job.path, text));
+    }
+    Ok(out)
+}
+
+fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<Lean>, Failure> {
+    if strategy.fixed_axis().is_some() {
+        return Ok(vec![Lean::default()]);
+    }
+    let leads = match job.strategy.lead_deg {
+        AutoOr::Given(deg) => vec![deg],
+        AutoOr::Auto if cutter.is_ball() => vec![BALL_LEAD_DEG],
+        AutoOr::Auto => LEADS_DEG.to_vec(),
+    };
+    leads.into_iter().map(|deg| job.lean(deg.to_radians())).collect()
+}
+
+/// Every strategy that can be chosen.
+fn every(job: &Job, faces: &JobFaces) -> Result<Vec<Strategy>, Failure> {
+    let _ = plane_normals(faces);
+    Ok(vec![
+        Strategy::Isoparametric { along: Along::Auto },
+        Strategy::Contour2cl { axis: job.contour_axis()? },
+    ])
+}
+
+/// Two normals of planes across the faces, at right angles to their mean normal and to each other.
+fn plane_normals(faces: &JobFaces) -> [Unit3; 2] {
+    let all = faces.faces.iter().flat_map(|f| part::grid(&*f.surface, GRID));
+    let sum = all.fold(Vec3::zeros(), |s, (_, _, n)| s + n.into_inner());
+    let up = Unit3::try_new(sum, 1e-9).unwrap_or_else(Vec3::z_axis);
+    let first = any_perpendicular(&up);
+    [first, Unit3::new_unchecked(up.cross(&first))]
+}
+
+/// A strategy whose direction is open, with both directions.
+fn each_direction(strategy: Strategy) -> Vec<Strategy> {
+    match strategy {
+        Strategy::Isoparametric { along: Along::Auto } => {
+            [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) }).to_vec()
+        }
+        other => vec![other],
+    }
+}
+
+/// A strategy in words, with its direction.
+pub(super) fn words(strategy: &Strategy) -> String {
+    match strategy {
+        Strategy::Isoparametric { along: Along::Fixed(a) } => {
+            format!("isoparametric {}", if *a == Axis::U { "u" } else { "v" })
+        }
+        other => other.name().to_owned(),
+    }
+}

@@ -1,0 +1,100 @@
+//! A coarse look at what a CL path leaves: enough to choose between plans, not to judge one.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part::{JobFaces, LoadedFace, area};
+use osculate_productivity::plan::Linked;
+use osculate_tools::removal::{self, Limits, Sample, Swept};
+
+/// Samples on the machined faces, and on the check faces.
+const SAMPLES: usize = 30_000;
+const CHECK_SAMPLES: usize = 10_000;
+/// Share of the area that may stand higher: samples this far apart say little about the rest.
+const TAIL: f64 = 0.01;
+
+/// What a path leaves and takes, mm.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// Deepest gouge of the cutter, in check faces too.
+    pub gouge_mm: f64,
+    /// Height that all but a hundredth of the area stays below; of the stock looked at where that is more.
+    pub left_mm: f64,
+    /// The most that the holder took.
+    pub holder_mm: f64,
+}
+
+impl Look {
+    /// Looks at a path.
+    pub fn at(job: &Job, faces: &JobFaces, linked: &Linked) -> Result<Self, Failure> {
+        let (cutter, holder, tolerance) = (job.cutter()?, job.holder()?, job.tolerance()?);
+        let mut samples = Vec::new();
+        let mut number = 0;
+        for (all, count, check_only) in [(&faces.faces, SAMPLES, false), (&faces.check, CHECK_SAMPLES, true)]
+        {
+            let total: f64 = all.iter().map(area).sum();
+            let spacing = (total / count as f64).sqrt();
+            for face in all {
+                let found = sampled(face, number, spacing, count)?;
+                number += 1;
+                samples.extend(found.into_iter().map(|s| Sample { check_only, ..s }));
+            }
+        }
+        let motions = Swept::along(&linked.path);
+        let work = removal::Job {
+            cutter: &cutter,
+            holder: holder.as_ref(),
+            motions: &motions,
+            samples: &samples,
+            stock_mm: 5.0 * tolerance.scallop_mm,
+            depth_mm: cutter.radius_mm(),
+        };
+        let cuts = removal::cut(&work, &|_| {}).map_err(Failure::job)?;
+        let mut heights: Vec<(f64, f64)> = samples
+            .iter()
+            .zip(&cuts)
+            .filter(|(s, _)| !s.check_only)
+            .map(|(s, c)| (c.standoff_mm, s.area_mm2))
+            .collect();
+        heights.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut tail = TAIL * heights.iter().map(|h| h.1).sum::<f64>();
+        let left = heights.iter().find(|h| {
+            tail -= h.1;
+            tail < 0.0
+        });
+        Ok(Self {
+            gouge_mm: cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max),
+            left_mm: left.map_or(0.0, |h| h.0.max(0.0)),
+            holder_mm: cuts.iter().filter_map(|c| c.holder).map(|t| t.removed_mm).fold(0.0, f64::max),
+        })
+    }
+
+    /// Why the path cannot be within tolerance; None where it may be.
+    pub fn objection(&self, job: &Job) -> Result<Option<Objection>, Failure> {
+        let t = job.tolerance()?;
+        let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
+        let found = [
+            ("gouges", self.gouge_mm, t.gouge_mm),
+            ("its holder takes", self.holder_mm, collision),
+            ("leaves", self.left_mm, t.scallop_mm),
+        ];
+        let bad = found.into_iter().enumerate().find(|(_, (_, is, limit))| is > limit);
+        Ok(bad.map(|(k, (what, is, limit))| Objection {
+            digs_in: k == 0,
+            text: format!("{what} {is:.4} mm by a coarse look, {limit} mm is accepted"),
+        }))
+    }
+}
+
+/// Why a path cannot be within tolerance.
+pub struct Objection {
+    /// Whether the cutter goes too deep, which a smaller lead does not make better.
+    pub digs_in: bool,
+    /// In words.
+    pub text: String,
+}
+
+fn sampled(face: &LoadedFace, number: u32, spacing_mm: f64, most: usize) -> Result<Vec<Sample>, Failure> {
+    removal::sample_surface(&*face.surface, number, spacing_mm, most)
+        .map(|found| found.samples)
+        .map_err(|e| Failure::job(format!("{}: {e}", face.id)))
+}

@@ -1,0 +1,114 @@
+//! A plan, its program, and what verification of the program measured.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::nc::{self, Control};
+use crate::part::JobFaces;
+use crate::passes;
+use crate::progress::Stage;
+use crate::report_fill::Extras;
+use crate::verify::{self, Verified};
+use osculate_geom::Diagnostic;
+use osculate_productivity::plan::{Linked, Passes};
+use osculate_tools::Lean;
+use serde::Serialize;
+use std::path::Path;
+
+/// Seconds of wall time by stage.
+#[derive(Debug, Default, Serialize, Clone, Copy)]
+pub struct WallS {
+    pub import: f64,
+    pub plan: f64,
+    pub post: f64,
+    pub verify: f64,
+    pub ideal: f64,
+    pub report: f64,
+}
+
+/// A plan before it is posted.
+pub struct Planned<'a> {
+    /// The passes.
+    pub passes: Passes,
+    /// The passes joined.
+    pub linked: Linked,
+    /// Its name.
+    pub strategy: String,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// What the report shows beside what every report shows.
+    pub extras: Extras<'a>,
+    /// Whether the points of passes know the width of their strips, for samples that resolve them.
+    pub with_strips: bool,
+}
+
+/// A plan posted and read back.
+pub struct Posted {
+    /// CL data.
+    pub cl_text: String,
+    /// The control it is posted for.
+    pub control: Control,
+    /// The program.
+    pub program: osculate_postproc::Posted,
+    /// What the program does.
+    pub read: nc::Motions,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Posted {
+    /// Posts a plan. From here on a stopped run leaves the path in the folder, where there is one.
+    pub fn of(
+        job: &Job,
+        faces: &JobFaces,
+        planned: &Planned<'_>,
+        wall_s: &mut WallS,
+        out: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        let (control, control_notes) = nc::control(job)?;
+        let stage = Stage::begin("post");
+        let (setup, setup_notes) = nc::setup(job, faces, &planned.extras.axes)?;
+        let cl = passes::cl_path(job, &planned.linked)?;
+        let title = passes::title(job);
+        let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
+        if let Some(out) = out {
+            let text = cl_text.clone();
+            passes::keep_partial(out, move || Ok(text), "the whole path".to_owned());
+        }
+        let program = nc::post(&cl, &control, &setup, &title)?;
+        stage.at(0.6);
+        let read = nc::read_back(&program.text, &control, &setup, false)
+            .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
+        wall_s.post += stage.end();
+        let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
+        let diagnostics = notes.into_iter().flatten().cloned().collect();
+        Ok(Self { cl_text, control, program, read, diagnostics })
+    }
+
+    /// Time of the program, min.
+    pub const fn time_min(&self) -> f64 {
+        self.read.time_min
+    }
+
+    /// Measures what the program leaves.
+    pub fn verify(
+        &self,
+        job: &Job,
+        faces: &JobFaces,
+        planned: &Planned<'_>,
+        wall_s: &mut WallS,
+    ) -> Result<Verified, Failure> {
+        let stage = Stage::begin("verify");
+        let strip = planned.with_strips.then(|| narrow_strip(&planned.passes)).flatten();
+        let verified = verify::run(job, faces, &self.read.motions, "nc", strip, &|f| stage.at(f))?;
+        wall_s.verify += stage.end();
+        Ok(verified)
+    }
+}
+
+/// The strip that samples must resolve: the width that nine tenths of the path exceed.
+fn narrow_strip(passes: &Passes) -> Option<f64> {
+    let mut widths: Vec<f64> =
+        passes.passes.iter().flat_map(|p| &p.points).map(|p| p.width_mm).filter(|w| w.is_finite()).collect();
+    widths.sort_by(f64::total_cmp);
+    widths.get(widths.len() / 10).copied()
+}

@@ -1,0 +1,203 @@
+//! `auto` and `compare`: what is chosen holds, by a distance check that shares no code with the program, and losers say why.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+use common::{Scratch, job, osculate};
+use serde_json::Value;
+
+const A: f64 = 0.005;
+const B: f64 = -0.003;
+const HALF_MM: f64 = 6.0;
+const GOUGE_MM: f64 = 0.005;
+
+const TOOLS: &str = r#"[[tools]]
+kind = "ball"
+diameter_mm = 10
+length_mm = 50
+[[tools]]
+kind = "toroidal"
+diameter_mm = 10
+corner_radius_mm = 1
+length_mm = 50
+[tools.holder]
+diameter_mm = 24
+length_mm = 30
+"#;
+
+/// The small job with these tools and an open strategy.
+fn open(tools: &str) -> String {
+    job(|j| {
+        let one = "[tool]\nkind = \"ball\"\ndiameter_mm = 10\nlength_mm = 50\n";
+        assert!(j.contains(one));
+        j.replace(one, tools).replace("kind = \"isoparametric\"\nlead_deg = 15", "kind = \"auto\"")
+    })
+}
+
+fn number(v: &Value, keys: &[&str]) -> f64 {
+    keys.iter().fold(v, |v, k| &v[*k]).as_f64().unwrap_or_else(|| panic!("{keys:?}: {v}"))
+}
+
+type V = [f64; 3];
+
+fn dot(a: &V, b: &V) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Signed distance of a point to a cutter with a corner (or a cylinder: corner 0) in its own half plane.
+fn distance(radius_mm: f64, corner_mm: f64, length_mm: f64, rho: f64, z: f64) -> f64 {
+    let core = radius_mm - corner_mm;
+    if z > length_mm {
+        return (z - length_mm).hypot((rho - radius_mm).max(0.0));
+    }
+    if z >= corner_mm {
+        // Beside the cylinder, or in it: the side or the bottom, whichever is nearer.
+        return if corner_mm > 0.0 { rho - radius_mm } else { (rho - radius_mm).max(-z) };
+    }
+    if rho <= core { -z } else { (rho - core).hypot(z - corner_mm) - corner_mm }
+}
+
+/// Poses of a CL file: tip and axis, no further apart than `step_mm` at the tip and 0.01 in the axis.
+fn dense_poses(text: &str, step_mm: f64) -> Vec<(V, V)> {
+    let given: Vec<[f64; 6]> = text
+        .lines()
+        .filter_map(|l| l.strip_prefix("GOTO/"))
+        .map(|l| {
+            let n: Vec<f64> = l.split(',').map(|x| x.trim().parse().unwrap()).collect();
+            n.try_into().unwrap()
+        })
+        .collect();
+    let mut out = Vec::new();
+    for w in given.windows(2) {
+        let far = (0..3).map(|k| (w[1][k] - w[0][k]).powi(2)).sum::<f64>().sqrt();
+        let turn = (3..6).map(|k| (w[1][k] - w[0][k]).powi(2)).sum::<f64>().sqrt();
+        let n = (far / step_mm).max(turn / 0.01).ceil().max(1.0) as usize;
+        for i in 0..n {
+            let f = i as f64 / n as f64;
+            let at = |k: usize| w[0][k] + f * (w[1][k] - w[0][k]);
+            let axis = [at(3), at(4), at(5)];
+            let length = dot(&axis, &axis).sqrt();
+            out.push(([at(0), at(1), at(2)], axis.map(|a| a / length)));
+        }
+    }
+    out
+}
+
+/// The deepest that cutter and holder go into the paraboloid anywhere along a path, mm.
+fn deepest_mm(text: &str, tool: &Value, holder: Option<[f64; 2]>) -> f64 {
+    let radius = 0.5 * number(tool, &["diameter_mm"]);
+    let corner =
+        if tool["kind"] == "ball" { radius } else { tool["corner_radius_mm"].as_f64().unwrap_or(0.0) };
+    let length = number(tool, &["length_mm"]);
+    let side = 81;
+    let place = |k: usize| HALF_MM * (2.0 * k as f64 / (side - 1) as f64 - 1.0);
+    let points: Vec<V> = (0..side * side)
+        .map(|k| (place(k % side), place(k / side)))
+        .map(|(x, y)| [x, y, A * x * x + B * y * y])
+        .collect();
+    let mut deepest = 0.0f64;
+    for (tip, axis) in dense_poses(text, 0.1) {
+        for p in &points {
+            let d = [p[0] - tip[0], p[1] - tip[1], p[2] - tip[2]];
+            let z = dot(&d, &axis);
+            let rho = (dot(&d, &d) - z * z).max(0.0).sqrt();
+            deepest = deepest.max(-distance(radius, corner, length, rho, z));
+            if let Some([diameter, long]) = holder {
+                deepest = deepest.max(-distance(0.5 * diameter, 0.0, long, rho, z - length));
+            }
+        }
+    }
+    deepest
+}
+
+#[test]
+fn auto_chooses_what_holds() {
+    let scratch = Scratch::new();
+    let path = scratch.write("job.toml", &open(TOOLS));
+    let out = scratch.path("out");
+    let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    let v = run.json();
+    assert_eq!(v["verification"]["within_tolerance"].as_bool(), Some(true));
+    // The bound is one; a few strips over a face of 12 mm overlap much, and their leads are all the same.
+    let efficiency = number(&v, &["efficiency_percent"]);
+    assert!(efficiency > 5.0 && efficiency <= 100.0 + 1e-9, "{efficiency}");
+    let (ideal, cutting) = (number(&v, &["ideal", "time_min"]), number(&v, &["cutting_time_min"]));
+    assert!(ideal > 0.0 && ideal <= cutting, "{ideal} {cutting}");
+    assert!(number(&v, &["ideal", "error_min"]) < 0.2 * ideal);
+    // The first row is the one chosen, and no other that was verified to hold is faster.
+    let rows = v["compared"].as_array().unwrap();
+    assert_eq!((rows[0]["outcome"].as_str(), rows[0]["why"].as_str()), (Some("holds"), Some("")), "{rows:?}");
+    assert!((number(&rows[0], &["time_min"]) - number(&v, &["time_min"])).abs() < 1e-9);
+    assert!(
+        rows[1..].iter().all(|r| r["outcome"] != "holds" && !r["why"].as_str().unwrap().is_empty()),
+        "{rows:?}"
+    );
+    // Neither cutter nor holder goes deeper than accepted, by formulas of this file alone.
+    let text = std::fs::read_to_string(out.join("path.cl")).unwrap();
+    let holder = (v["tool"]["kind"] != "ball").then_some([24.0, 30.0]);
+    let deepest = deepest_mm(&text, &v["tool"], holder);
+    assert!(deepest <= GOUGE_MM, "{deepest}");
+    // The check itself finds a path that is too deep.
+    let sunk: String = text
+        .lines()
+        .map(|l| match l.strip_prefix("GOTO/") {
+            Some(n) => {
+                let n: Vec<f64> = n.split(',').map(|x| x.trim().parse().unwrap()).collect();
+                format!("GOTO/{},{},{},{},{},{}\n", n[0], n[1], n[2] - 0.02, n[3], n[4], n[5])
+            }
+            None => format!("{l}\n"),
+        })
+        .collect();
+    let deepest = deepest_mm(&sunk, &v["tool"], holder);
+    assert!(deepest > 0.01 && deepest < 0.03, "{deepest}");
+}
+
+#[test]
+fn compare_ranks_and_gives_reasons() {
+    let scratch = Scratch::new();
+    let large = "[[tools]]\nkind = \"ball\"\ndiameter_mm = 300\nlength_mm = 400\n";
+    let path = scratch.write("job.toml", &open(&format!("{TOOLS}{large}")));
+    let run = osculate(&["compare", path.to_str().unwrap(), "--json"]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    let v = run.json();
+    let rows = v["candidates"].as_array().unwrap();
+    let holding: Vec<f64> =
+        rows.iter().filter(|r| r["outcome"] == "holds").map(|r| number(r, &["time_min"])).collect();
+    assert!(!holding.is_empty() && holding.is_sorted(), "{holding:?}");
+    for r in rows.iter().filter(|r| r["outcome"] == "holds") {
+        let m = &r["verified"];
+        let [low, high] = [0, 1].map(|k| m["instantaneous_mm2_min"][k].as_f64().unwrap());
+        let regional = number(m, &["regional_mm2_min"]);
+        assert!(low <= regional && regional <= high && number(m, &["global_mm2_min"]) < regional, "{m}");
+        // Strips at places are a fair prediction of the passes of so small a face, which overlap at its borders.
+        let ratio = number(r, &["predicted_length_mm"]) / number(r, &["cutting_length_mm"]);
+        assert!(ratio > 0.4 && ratio < 1.1, "{ratio} {r}");
+        assert!(number(r, &["pointwise_min"]) < number(r, &["time_min"]), "{r}");
+    }
+    // Hollow with a radius of 100 mm at the middle: a ball of 300 mm is too large, one of 200 mm fits.
+    let too_large = rows.iter().filter(|r| r["tool"] == "ball 300").collect::<Vec<_>>();
+    assert!(!too_large.is_empty());
+    for r in too_large {
+        assert_eq!(r["outcome"], "not_possible");
+        let why = r["why"].as_str().unwrap();
+        assert!(why.contains("too large for 100 %") && why.contains("largest diameter"), "{why}");
+        let largest: f64 =
+            why.split(": ").last().unwrap().split_whitespace().next().unwrap().parse().unwrap();
+        assert!((200.0..202.0).contains(&largest), "{why}");
+    }
+    let text = osculate(&["compare", path.to_str().unwrap()]);
+    assert!(text.out.contains("within tolerance") && text.out.contains("too large"), "{}", text.out);
+
+    // None possible: all reasons in one table, and nothing is written.
+    let path = scratch.write("none.toml", &open(large));
+    let out = scratch.path("none");
+    let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    run.refused(&[
+        "no tool and strategy is possible",
+        "ball 300",
+        "isoparametric u",
+        "contour_2cl",
+        "largest diameter",
+    ]);
+    assert!(!out.exists());
+}

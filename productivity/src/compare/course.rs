@@ -1,0 +1,86 @@
+//! Which way the passes of a strategy run at a place, and which way the tool leans there.
+
+use super::Candidate;
+use crate::plan::{Along, Strategy};
+use osculate_geom::{Axis, Forms, Jet2, SymEigen, Unit3, Vec3};
+use osculate_tools::Lean;
+use std::f64::consts::PI;
+
+/// Directions tried where the strategy is free to choose.
+const FREE: usize = 8;
+
+/// A posture of a strategy at a place.
+#[derive(Clone, Copy)]
+pub(super) struct Course {
+    /// Feed from S_u towards S_v, rad.
+    pub angle_rad: f64,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// How fast the parameter grows whose levels are the passes, across the feed, 1/mm; None where spacing may vary along a pass.
+    pub across_per_mm: Option<f64>,
+}
+
+/// Fixed levels of a strategy: rows of places that one spacing must serve.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Level {
+    /// Levels of v, or of u.
+    Parameter(Axis),
+    /// None.
+    Free,
+}
+
+pub(super) fn level(strategy: &Strategy) -> Level {
+    match *strategy {
+        Strategy::Isoparametric { along: Along::Fixed(axis) } => Level::Parameter(axis),
+        _ => Level::Free,
+    }
+}
+
+fn angle_of(jet: &Jet2, forms: &Forms, direction: &Vec3) -> f64 {
+    let side = jet.side.sign();
+    (side * direction.dot(&forms.frame[1])).atan2(direction.dot(&forms.frame[0]))
+}
+
+/// The postures of a candidate at a place; the best of them counts. Empty where the place looks away from a fixed axis.
+pub(super) fn courses(candidate: &Candidate, jet: &Jet2, forms: &Forms) -> Vec<Course> {
+    let n = forms.normal;
+    let fixed = |direction: Vec3, across_per_mm: Option<f64>| Course {
+        angle_rad: angle_of(jet, forms, &direction),
+        lean: candidate.lean,
+        across_per_mm,
+    };
+    let element = jet.du.cross(&jet.dv).norm();
+    match candidate.strategy {
+        Strategy::Isoparametric { along: Along::Fixed(Axis::U) } => {
+            vec![fixed(jet.du, Some(jet.du.norm() / element))]
+        }
+        Strategy::Isoparametric { along: Along::Fixed(Axis::V) } => {
+            vec![fixed(jet.dv, Some(jet.dv.norm() / element))]
+        }
+        Strategy::Contour2cl { axis } => axial(&axis, n.cross(&axis), jet, forms),
+        _ => {
+            let d = SymEigen::of(&forms.curvature).d_max;
+            let first = d[1].atan2(d[0]) * jet.side.sign();
+            let turned = |k: usize| first + PI * k as f64 / FREE as f64;
+            (0..FREE)
+                .map(|k| Course { angle_rad: turned(k), lean: candidate.lean, across_per_mm: None })
+                .collect()
+        }
+    }
+}
+
+/// The posture of a tool that keeps its axis.
+fn axial(axis: &Unit3, direction: Vec3, jet: &Jet2, forms: &Forms) -> Vec<Course> {
+    let n = forms.normal;
+    let up = n.dot(axis);
+    let Some(tangent) = Unit3::try_new(direction, 1e-12) else { return Vec::new() };
+    if up <= 0.0 {
+        return Vec::new();
+    }
+    let left = n.cross(&tangent);
+    let lean = Lean {
+        lead_rad: n.cross(axis).norm().atan2(up),
+        tilt_rad: axis.dot(&left).atan2(axis.dot(&tangent)),
+    };
+    vec![Course { angle_rad: angle_of(jet, forms, &tangent), lean, across_per_mm: None }]
+}

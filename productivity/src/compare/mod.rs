@@ -1,0 +1,118 @@
+//! Candidates of a plan side by side: tool, strategy, direction and lead, screened before any is planned.
+//!
+//! A candidate is looked at on two levels that cost no plan. *Pointwise*: the integral of `dA / (S f)` over the face, S the strip
+//! at a place in the direction that the strategy has there, f the tool's feed; no layout of its lines is faster. *Layout*: as
+//! pointwise, but neighbouring passes of strategies whose spacing is constant along a pass (parameter lines, planes) stand as
+//! close as the narrowest strip on the way wants. Both are sums over places; strips come from a
+//! [`Chart`](osculate_tools::strip::Chart). The third level is the plan itself.
+
+mod around;
+mod course;
+mod screen;
+
+pub use around::Around;
+pub use screen::screen;
+
+use crate::ideal::Patch;
+use crate::plan::{Strategy, Tolerance};
+use osculate_tools::{Cutter, Lean};
+
+/// A tool to choose from.
+#[derive(Clone, Copy)]
+pub struct Tool<'a> {
+    /// The cutter.
+    pub cutter: &'a Cutter,
+    /// The holder, a cylinder that begins where the cutter ends.
+    pub holder: Option<&'a Cutter>,
+    /// Feed, mm/min.
+    pub feed_mm_min: f64,
+}
+
+/// What candidates are compared on.
+pub struct Setting<'a> {
+    /// The faces to machine.
+    pub faces: &'a [Patch<'a>],
+    /// The tools.
+    pub tools: &'a [Tool<'a>],
+    /// What must hold.
+    pub tolerance: Tolerance,
+    /// Points that bodies of tools must stay out of.
+    pub around: &'a Around,
+}
+
+/// One way to machine the faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Index of the tool.
+    pub tool: usize,
+    /// Strategy with its direction.
+    pub strategy: Strategy,
+    /// Lead and tilt.
+    pub lean: Lean,
+}
+
+/// What screening says of a candidate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Screened {
+    /// Time by strips at places, min.
+    pub pointwise_min: f64,
+    /// Time with the overlap of constant spacing, min.
+    pub layout_min: f64,
+    /// Length of passes of that layout, mm.
+    pub length_mm: f64,
+    /// Why it is out; the times above are then those of the places where it would do.
+    pub out: Option<Reason>,
+}
+
+/// Why a candidate is not possible.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Reason {
+    /// The tool digs in next to the contact.
+    #[error("too large for {percent:.0} % of the area{}", largest(*largest_mm))]
+    TooLarge {
+        /// Share of the area.
+        percent: f64,
+        /// Largest diameter of a tool of this shape that fits everywhere in this posture; zero where none does.
+        largest_mm: f64,
+    },
+    /// Its body meets the part or a check face elsewhere.
+    #[error("goes {depth_mm:.2} mm into {face} while touching {percent:.0} % of the area")]
+    Body {
+        /// Share of the area.
+        percent: f64,
+        /// Depth, mm.
+        depth_mm: f64,
+        /// The face it meets.
+        face: String,
+    },
+    /// The holder meets something.
+    #[error("its holder goes {depth_mm:.2} mm into {face} while it touches {percent:.0} % of the area")]
+    Holder {
+        /// Share of the area.
+        percent: f64,
+        /// Depth, mm.
+        depth_mm: f64,
+        /// The face it meets.
+        face: String,
+    },
+    /// The face looks away from a fixed tool axis.
+    #[error("{percent:.0} % of the area look away from the tool axis")]
+    Away {
+        /// Share of the area.
+        percent: f64,
+    },
+    /// No strip within the tolerance.
+    #[error("leaves more than the scallop at {percent:.0} % of the area")]
+    NoStrip {
+        /// Share of the area.
+        percent: f64,
+    },
+}
+
+fn largest(diameter_mm: f64) -> String {
+    if diameter_mm > 0.0 {
+        format!(": {diameter_mm:.2} mm is the largest diameter that fits")
+    } else {
+        String::new()
+    }
+}

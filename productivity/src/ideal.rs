@@ -1,0 +1,268 @@
+//! The least time that passes over faces can take: `T = integral dA / E(P)`, E the greatest area per minute at a point.
+//!
+//! E is that of the best posture of the best tool ([`optimum`]), so that no plan whose passes touch the part within the
+//! same tolerances is faster, whatever its lines: neighbouring strips overlap, feed directions are not free, links take
+//! time. What it assumes: contact points move at the tool's feed; the tool touches the part and is not sunk into it; the
+//! whole scallop tolerance goes to the strip; marks of single teeth, accelerations and the machine's joints cost nothing;
+//! leads up to [`MOST_LEAD_RAD`].
+//!
+//! *Error.* The integral is a sum over places. They are cut in two halves, chequered, whose answers differ by twice
+//! [`Ideal::error_min`]. The search at a place is a heuristic, and tools that a coarse look finds far behind another are not
+//! searched; what is missed so makes the bound too long by as much.
+
+use crate::optimum::{self, Limits, OptimumError, Range};
+use crate::plan::Tolerance;
+use crate::rate::Caps;
+use osculate_geom::{Surface, Uv};
+use osculate_tools::strip::{Chart, Within};
+use osculate_tools::{Cutter, Lean};
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The greatest lead of a posture, rad.
+pub const MOST_LEAD_RAD: f64 = 1.0;
+/// The lead of a ball, whose strip does not depend on it.
+const BALL_LEAD_RAD: f64 = 0.25;
+/// Places a side of a face at least.
+const LEAST_SIDE: usize = 2;
+/// Passages of teeth a minute at which their marks need no share of the tolerance.
+const FAST_RPM: f64 = 1e9;
+
+/// Directions and leads of the coarse look, and how far behind the best of it a tool may be, as a factor, to be searched.
+const LOOK_DIRECTIONS: usize = 12;
+const LOOK_LEADS_RAD: [f64; 12] = [0.003, 0.01, 0.02, 0.035, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.5, 0.8];
+const BEHIND: f64 = 0.7;
+/// Radius of its charts, in the cutter's radius, and misfit accepted, of the tolerance.
+const LOOK_REACH: f64 = 1.2;
+const LOOK_MISFIT: f64 = 0.1;
+
+/// A cutter with the feed of its contact point.
+#[derive(Clone, Copy)]
+pub struct Feeding<'a> {
+    /// The cutter.
+    pub cutter: &'a Cutter,
+    /// Its feed, mm/min.
+    pub feed_mm_min: f64,
+}
+
+/// A face with its area.
+#[derive(Clone, Copy)]
+pub struct Patch<'a> {
+    /// The face.
+    pub surface: &'a dyn Surface,
+    /// Its area, mm2.
+    pub area_mm2: f64,
+}
+
+/// The bound over faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ideal {
+    /// Least time, min.
+    pub time_min: f64,
+    /// Half the difference of two halves of the places, min.
+    pub error_min: f64,
+    /// Places at which the best posture was searched.
+    pub places: usize,
+    /// Area that no tool reaches, mm2; it counts as cut in no time.
+    pub unreached_mm2: f64,
+    /// For each tool the area where it is the best, mm2.
+    pub best_mm2: Vec<f64>,
+}
+
+/// A place with its share of the face.
+pub(crate) struct Place {
+    pub at: Uv,
+    pub area_mm2: f64,
+    /// Row and column in the grid of the face.
+    pub cell: [usize; 2],
+}
+
+/// About `count` places over a face, in the middles of equal parameter cells, with areas that add up to the face's.
+pub(crate) fn places(patch: &Patch<'_>, count: usize) -> Vec<Place> {
+    let side = ((count as f64).sqrt().round() as usize).max(LEAST_SIDE);
+    let domain = patch.surface.domain();
+    let mut out = Vec::with_capacity(side * side);
+    for i in 0..side {
+        for j in 0..side {
+            let at = domain.at((i as f64 + 0.5) / side as f64, (j as f64 + 0.5) / side as f64);
+            let jet = patch.surface.jet2(at);
+            let area_mm2 = jet.du.cross(&jet.dv).norm();
+            if patch.surface.contains(at) && area_mm2 > 0.0 {
+                out.push(Place { at, area_mm2, cell: [i, j] });
+            }
+        }
+    }
+    let sum: f64 = out.iter().map(|p| p.area_mm2).sum();
+    out.iter_mut().for_each(|p| p.area_mm2 *= patch.area_mm2 / sum);
+    out
+}
+
+/// The places of all faces, each face's count by its area.
+pub(crate) fn shared_places(faces: &[Patch<'_>], count: usize) -> Vec<Vec<Place>> {
+    let area: f64 = faces.iter().map(|f| f.area_mm2).sum();
+    faces.iter().map(|f| places(f, (count as f64 * f.area_mm2 / area).round() as usize)).collect()
+}
+
+/// The bound over faces with about `count` places in all.
+///
+/// # Errors
+/// [`OptimumError`] of limits that are none and of an empty list of tools.
+pub fn ideal(
+    faces: &[Patch<'_>],
+    tools: &[Feeding<'_>],
+    tolerance: &Tolerance,
+    count: usize,
+) -> Result<Ideal, OptimumError> {
+    if tools.is_empty() {
+        return Err(OptimumError::NoTools);
+    }
+    for tool in tools {
+        optimum::check(std::slice::from_ref(tool.cutter), &limits(tool, tolerance))?;
+    }
+    let places: Vec<(usize, Place)> = shared_places(faces, count)
+        .into_iter()
+        .enumerate()
+        .flat_map(|(face, all)| all.into_iter().map(move |p| (face, p)))
+        .collect();
+    let best: Vec<Option<(usize, f64)>> =
+        places.par_iter().map(|(face, p)| best_at(faces[*face].surface, p.at, tools, tolerance)).collect();
+    let mut out = Ideal {
+        time_min: 0.0,
+        error_min: 0.0,
+        places: places.len(),
+        unreached_mm2: 0.0,
+        best_mm2: vec![0.0; tools.len()],
+    };
+    for (face, patch) in faces.iter().enumerate() {
+        // Area and time of the black and of the white cells.
+        let mut half = [[0.0; 2]; 2];
+        for ((_, p), best) in places.iter().zip(&best).filter(|(p, _)| p.0 == face) {
+            let h = &mut half[(p.cell[0] + p.cell[1]) % 2];
+            h[0] += p.area_mm2;
+            match best {
+                Some((tool, rate)) => {
+                    h[1] += p.area_mm2 / rate;
+                    out.best_mm2[*tool] += p.area_mm2;
+                }
+                None => out.unreached_mm2 += p.area_mm2,
+            }
+        }
+        out.time_min += half[0][1] + half[1][1];
+        if half.iter().all(|h| h[0] > 0.0) {
+            let [a, b] = half.map(|h| h[1] / h[0] * patch.area_mm2);
+            out.error_min += 0.5 * (a - b).abs();
+        }
+    }
+    Ok(out)
+}
+
+fn limits(tool: &Feeding<'_>, tolerance: &Tolerance) -> Limits {
+    let ball = tool.cutter.is_ball();
+    let caps = Caps {
+        spindle_rpm: FAST_RPM,
+        teeth: 1,
+        feed_mm_min: tool.feed_mm_min,
+        feed_per_tooth_mm: f64::INFINITY,
+    };
+    Limits {
+        scallop_mm: tolerance.scallop_mm,
+        gouge_mm: tolerance.gouge_mm,
+        lead: if ball {
+            Range::only(BALL_LEAD_RAD)
+        } else {
+            Range { least_rad: 0.0, most_rad: MOST_LEAD_RAD }
+        },
+        tilt: if ball { Range::only(0.0) } else { Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 } },
+        axis: None,
+        caps,
+    }
+}
+
+/// The tool of the greatest area per minute at a place, mm2/min.
+fn best_at(
+    surface: &dyn Surface,
+    at: Uv,
+    tools: &[Feeding<'_>],
+    tolerance: &Tolerance,
+) -> Option<(usize, f64)> {
+    let seen: Vec<f64> = if tools.len() > 1 {
+        tools.iter().map(|t| coarse_mm2_min(surface, at, t, tolerance)).collect()
+    } else {
+        vec![0.0]
+    };
+    let enough = BEHIND * seen.iter().copied().fold(0.0, f64::max);
+    let mut best: Option<(usize, f64)> = None;
+    for (k, tool) in tools.iter().enumerate().filter(|(k, _)| seen[*k] >= enough) {
+        let found = optimum::at(surface, at, std::slice::from_ref(tool.cutter), &limits(tool, tolerance));
+        if let Ok(o) = found
+            && best.is_none_or(|b| o.rate.area_mm2_min > b.1)
+        {
+            best = Some((k, o.rate.area_mm2_min));
+        }
+    }
+    best
+}
+
+/// Area per minute of the widest strip of a coarse look; zero where it finds none.
+fn coarse_mm2_min(surface: &dyn Surface, at: Uv, tool: &Feeding<'_>, tolerance: &Tolerance) -> f64 {
+    let reach = LOOK_REACH * tool.cutter.radius_mm();
+    let Ok(chart) = Chart::new(surface, at, reach, LOOK_MISFIT * tolerance.scallop_mm) else { return 0.0 };
+    let within = Within { scallop_mm: tolerance.scallop_mm, gouge_mm: tolerance.gouge_mm };
+    let leads: &[f64] = if tool.cutter.is_ball() { &[BALL_LEAD_RAD] } else { &LOOK_LEADS_RAD };
+    let mut widest = 0.0f64;
+    for k in 0..LOOK_DIRECTIONS {
+        let angle_rad = PI * k as f64 / LOOK_DIRECTIONS as f64;
+        for lead_rad in leads {
+            let lean = Lean { lead_rad: *lead_rad, tilt_rad: 0.0 };
+            if let Ok(strip) = chart.strip(tool.cutter, angle_rad, lean, within) {
+                widest = widest.max(strip.width_mm);
+            }
+        }
+    }
+    widest * tool.feed_mm_min
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closed_form::{Section, width_37};
+    use osculate_geom::analytic::{Paraboloid, Sphere};
+    use osculate_tools::CutterSpec;
+
+    const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.002, chord_mm: 0.002 };
+
+    fn ball(diameter_mm: f64) -> Cutter {
+        Cutter::try_from(CutterSpec::Ball { diameter_mm, length_mm: 80.0 }).unwrap()
+    }
+
+    /// A ball on a sphere: every strip is the planar one of R97 (37).
+    #[test]
+    fn a_ball_on_a_sphere_has_a_closed_form() {
+        let sphere = Sphere::new(30.0).unwrap();
+        let area_mm2 = 4.0 * PI * 900.0;
+        let (small, large) = (ball(6.0), ball(10.0));
+        let tools = [&small, &large].map(|cutter| Feeding { cutter, feed_mm_min: 1500.0 });
+        let found = ideal(&[Patch { surface: &sphere, area_mm2 }], &tools, &TOLERANCE, 16).unwrap();
+        let section = Section { part_per_mm: 1.0 / 30.0, tool_per_mm: 0.2, scallop_mm: TOLERANCE.scallop_mm };
+        let expected = area_mm2 / (1500.0 * width_37(section).unwrap());
+        // The share of the tolerance that goes to tooth marks anyway is 1e-4, half of that of the width.
+        assert!((found.time_min / expected - 1.0).abs() < 2e-4, "{found:?} {expected}");
+        assert!(found.error_min < 1e-4 * expected && found.unreached_mm2 == 0.0, "{found:?}");
+        assert!((found.best_mm2[1] - area_mm2).abs() < 1e-6 * area_mm2 && found.best_mm2[0] == 0.0);
+        // The slower tool loses where its feed is less by more than its strip is wider.
+        let tools = [tools[0], Feeding { feed_mm_min: 1000.0, ..tools[1] }];
+        let found = ideal(&[Patch { surface: &sphere, area_mm2 }], &tools, &TOLERANCE, 16).unwrap();
+        assert!(found.best_mm2[1] == 0.0, "{found:?}");
+    }
+
+    #[test]
+    fn what_no_tool_reaches_is_named() {
+        // Hollow with a radius of 10 mm in the middle, 12.8 mm in the corners, and a ball of 15.
+        let bowl = Paraboloid::new([0.05, 0.05], 3.0).unwrap();
+        let cutter = ball(30.0);
+        let tools = [Feeding { cutter: &cutter, feed_mm_min: 1000.0 }];
+        let found = ideal(&[Patch { surface: &bowl, area_mm2: 36.0 }], &tools, &TOLERANCE, 9).unwrap();
+        assert!((found.unreached_mm2 - 36.0).abs() < 1e-9, "{found:?}");
+        assert!(ideal(&[Patch { surface: &bowl, area_mm2: 36.0 }], &[], &TOLERANCE, 9).is_err());
+    }
+}

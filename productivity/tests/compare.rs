@@ -1,0 +1,107 @@
+//! Screening of candidates: against closed forms where strips have one, and the reasons for what is not possible.
+#![allow(clippy::unwrap_used)]
+
+use osculate_geom::analytic::{Paraboloid, Sphere};
+use osculate_geom::{Axis, Surface};
+use osculate_productivity::closed_form::{Section, width_37};
+use osculate_productivity::compare::{Around, Candidate, Reason, Screened, Setting, Tool, screen};
+use osculate_productivity::ideal::{Feeding, Patch, ideal};
+use osculate_productivity::plan::{Along, Strategy, Tolerance};
+use osculate_tools::{Cutter, CutterSpec, Lean};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.002, chord_mm: 0.002 };
+const FEED: f64 = 1200.0;
+
+fn ball(diameter_mm: f64) -> Cutter {
+    Cutter::try_from(CutterSpec::Ball { diameter_mm, length_mm: 60.0 }).unwrap()
+}
+
+fn toroidal(diameter_mm: f64) -> Cutter {
+    let spec = CutterSpec::Toroidal { diameter_mm, corner_radius_mm: 1.0, length_mm: 8.0 };
+    Cutter::try_from(spec).unwrap()
+}
+
+fn along(axis: Axis, lead_deg: f64) -> Candidate {
+    Candidate {
+        tool: 0,
+        strategy: Strategy::Isoparametric { along: Along::Fixed(axis) },
+        lean: Lean { lead_rad: f64::to_radians(lead_deg), tilt_rad: 0.0 },
+    }
+}
+
+fn screened(patch: Patch<'_>, tool: Tool<'_>, around: &Around, candidates: &[Candidate]) -> Vec<Screened> {
+    let (faces, tools) = ([patch], [tool]);
+    screen(&Setting { faces: &faces, tools: &tools, tolerance: TOLERANCE, around }, candidates)
+}
+
+/// Meridians of a sphere lie as far apart as the equator lets them: pi / 2 times as long as strips side by side.
+#[test]
+fn meridians_overlap_and_parallels_do_not() {
+    let sphere = Sphere::new(25.0).unwrap();
+    let area_mm2 = 4.0 * PI * 625.0;
+    let cutter = ball(8.0);
+    let tool = Tool { cutter: &cutter, holder: None, feed_mm_min: FEED };
+    let both = [along(Axis::U, 15.0), along(Axis::V, 15.0)];
+    let found = screened(Patch { surface: &sphere, area_mm2 }, tool, &Around::default(), &both);
+    let section = Section { part_per_mm: 0.04, tool_per_mm: 0.25, scallop_mm: TOLERANCE.scallop_mm };
+    let bare = area_mm2 / (width_37(section).unwrap() * FEED);
+    for (s, overlap) in found.iter().zip([1.0, FRAC_PI_2]) {
+        assert!(s.out.is_none(), "{s:?}");
+        assert!((s.pointwise_min / bare - 1.0).abs() < 5e-3, "{s:?} {bare}");
+        // The rows nearest to the equator stand half a cell, 11 degrees, off it.
+        assert!((s.layout_min / bare / overlap - 1.0).abs() < 0.04, "{s:?} {}", s.layout_min / bare);
+        assert!((s.length_mm / FEED - s.layout_min).abs() < 1e-9 * s.layout_min);
+    }
+    // No candidate is below the least time of all.
+    let tools = [Feeding { cutter: &cutter, feed_mm_min: FEED }];
+    let least = ideal(&[Patch { surface: &sphere, area_mm2 }], &tools, &TOLERANCE, 9).unwrap();
+    assert!(found.iter().all(|s| s.pointwise_min > 0.995 * least.time_min));
+}
+
+#[test]
+fn what_is_too_large_is_told_what_fits() {
+    // Hollow with 10 mm in the middle, 12.8 mm in the corners.
+    let bowl = Paraboloid::new([0.05, 0.05], 3.0).unwrap();
+    let patch = Patch { surface: &bowl, area_mm2: 36.0 };
+    let cutter = ball(30.0);
+    let tool = Tool { cutter: &cutter, holder: None, feed_mm_min: FEED };
+    let found = screened(patch, tool, &Around::default(), &[along(Axis::U, 15.0)]);
+    let Some(Reason::TooLarge { percent, largest_mm }) = found[0].out else { panic!("{found:?}") };
+    assert!(percent > 95.0 && (20.0..20.2).contains(&largest_mm), "{found:?}");
+    // A tool of the size that is named does fit.
+    let cutter = ball(largest_mm - 0.2);
+    let tool = Tool { cutter: &cutter, holder: None, feed_mm_min: FEED };
+    assert!(screened(patch, tool, &Around::default(), &[along(Axis::U, 15.0)])[0].out.is_none());
+    // Of toroidal cutters a larger lead fits where a smaller one does not.
+    let cutter = toroidal(10.0);
+    let tool = Tool { cutter: &cutter, holder: None, feed_mm_min: FEED };
+    let found = screened(patch, tool, &Around::default(), &[along(Axis::U, 5.0), along(Axis::U, 35.0)]);
+    assert!(matches!(found[0].out, Some(Reason::TooLarge { .. })) && found[1].out.is_none(), "{found:?}");
+}
+
+/// A wall beside a flat floor: a steep bowl stands for it.
+#[test]
+fn bodies_and_holders_that_meet_something_are_named() {
+    let floor = Paraboloid::new([0.0, 0.0], 10.0).unwrap();
+    // z = x^2 / 2, a trough whose sides rise 50 mm over the floor.
+    let trough = Paraboloid::new([0.5, 0.0], 10.0).unwrap();
+    let patch = Patch { surface: &floor, area_mm2: 400.0 };
+    let cutter = ball(6.0);
+    let tool = Tool { cutter: &cutter, holder: None, feed_mm_min: FEED };
+    let around = Around::of([(&floor as &dyn Surface, "F1"), (&trough, "F2")].into_iter());
+    let upright = along(Axis::V, 0.0);
+    let found = screened(patch, tool, &around, &[upright]);
+    let Some(Reason::Body { ref face, depth_mm, .. }) = found[0].out else { panic!("{found:?}") };
+    assert!(face == "F2" && depth_mm > 0.1, "{found:?}");
+    // Alone on the floor it may; its holder, where the cutter is short, meets the floor at a great lead only.
+    let alone = Around::of(std::iter::once((&floor as &dyn Surface, "F1")));
+    let (cutter, holder) = (toroidal(6.0), Cutter::cylinder(80.0, 40.0).unwrap());
+    let tool = Tool { cutter: &cutter, holder: Some(&holder), feed_mm_min: FEED };
+    let found = screened(patch, tool, &alone, &[along(Axis::V, 5.0), along(Axis::V, 60.0)]);
+    assert!(found[0].out.is_none(), "{found:?}");
+    let Some(Reason::Holder { ref face, .. }) = found[1].out else { panic!("{found:?}") };
+    assert_eq!(face, "F1");
+    let text = found[1].out.as_ref().unwrap().to_string();
+    assert!(text.contains("holder") && text.contains("F1"), "{text}");
+}

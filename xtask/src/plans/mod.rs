@@ -1,0 +1,262 @@
+//! `cargo xtask plans --data FOLDER`: docs/plans.md, what `auto` makes of real faces and of the four surfaces of M86.
+//!
+//! Every face is planned three times with the same tolerances and feeds: by `auto` over a list of tools, by plain isoparametric
+//! lines with the first tool, and in parallel planes with the ball. Jobs and results stay below `target/plans`.
+
+mod dense;
+
+use crate::cmd::{Failure, cargo, root};
+use dense::{Cloud, Cutter};
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+
+/// Where a face comes from.
+enum Source {
+    /// A built-in surface over the unit square.
+    BuiltIn(&'static str),
+    /// A file below the folder of data, its face, and further keys of `[part]`.
+    File { path: &'static str, face: &'static str, keys: &'static str },
+}
+
+/// A face to plan, with its tools (a ball last).
+struct Case {
+    name: &'static str,
+    source: Source,
+    tools: [&'static str; 3],
+    scallop_mm: f64,
+}
+
+const LARGE: [&str; 3] = [
+    "kind = \"toroidal\", diameter_mm = 16, corner_radius_mm = 2, length_mm = 80",
+    "kind = \"flat\", diameter_mm = 12, length_mm = 80",
+    "kind = \"ball\", diameter_mm = 10, length_mm = 80",
+];
+const SMALL: [&str; 3] = [
+    "kind = \"toroidal\", diameter_mm = 6, corner_radius_mm = 1, length_mm = 50",
+    "kind = \"flat\", diameter_mm = 4, length_mm = 50",
+    "kind = \"ball\", diameter_mm = 6, length_mm = 50",
+];
+const TINY: [&str; 3] = [
+    "kind = \"toroidal\", diameter_mm = 0.6, corner_radius_mm = 0.1, length_mm = 6",
+    "kind = \"flat\", diameter_mm = 0.4, length_mm = 6",
+    "kind = \"ball\", diameter_mm = 0.4, length_mm = 6",
+];
+const HUGE: [&str; 3] = [
+    "kind = \"toroidal\", diameter_mm = 40, corner_radius_mm = 6, length_mm = 150",
+    "kind = \"flat\", diameter_mm = 32, length_mm = 150",
+    "kind = \"ball\", diameter_mm = 20, length_mm = 150",
+];
+
+const fn m86(name: &'static str) -> Case {
+    Case { name, source: Source::BuiltIn(name), tools: LARGE, scallop_mm: 0.01 }
+}
+
+const fn file(name: &'static str, path: &'static str, face: &'static str) -> Case {
+    Case { name, source: Source::File { path, face, keys: "" }, tools: SMALL, scallop_mm: 0.01 }
+}
+
+const BLADE: &str = "blade/nasa_pyturbo_centrif_compressor_mainblade_xyz_pts.csv";
+const BLADE_KEYS: &str = "unit_mm = 1000\nnormals = \"file\"\n";
+
+const fn blade(name: &'static str, face: &'static str) -> Case {
+    let source = Source::File { path: BLADE, face, keys: BLADE_KEYS };
+    Case { name, source, tools: SMALL, scallop_mm: 0.01 }
+}
+
+const CASES: [Case; 12] = [
+    m86("m86-1"),
+    m86("m86-2"),
+    m86("m86-3"),
+    m86("m86-4"),
+    blade("compressor blade, suction side", "F1"),
+    blade("compressor blade, pressure side", "F2"),
+    file("impeller blade", "iges/pyiges_impeller.igs", "F118"),
+    file("impeller hub", "iges/pyiges_impeller.igs", "F33"),
+    file("propeller", "step/autogiro_propeller.step", "F7"),
+    Case { tools: HUGE, scallop_mm: 0.05, ..file("hull", "step/dealii_wigley_hull.step", "F1") },
+    Case { tools: LARGE, scallop_mm: 0.02, ..file("manifold", "step/kcl_exhaust-manifold.step", "F4") },
+    Case { tools: TINY, scallop_mm: 0.001, ..file("teapot patch", "bezier/newell_teapot.txt", "F5") },
+];
+
+/// Points of a face for the second opinion, about.
+const POINTS: f64 = 40_000.0;
+
+/// The three plans of a face.
+const KINDS: [&str; 3] = ["auto", "isoparametric", "ball, 3 axes"];
+
+/// The job of a case.
+fn job(case: &Case, kind: &str, data: &str) -> String {
+    let part = match case.source {
+        Source::BuiltIn(name) => format!("builtin = {{ kind = \"{name}\" }}"),
+        Source::File { path, face, keys } => {
+            format!("file = \"{data}/{path}\"\nfaces = [\"{face}\"]\n{keys}")
+        }
+    };
+    let h = case.scallop_mm;
+    let (tools, strategy): (Vec<&str>, &str) = match kind {
+        "auto" => (case.tools.to_vec(), "kind = \"auto\""),
+        "isoparametric" => (case.tools[..1].to_vec(), "kind = \"isoparametric\""),
+        _ => (case.tools[2..].to_vec(), "kind = \"isoplanar_3c\""),
+    };
+    let tools: String = tools.iter().map(|t| format!("  {{ {t} }},\n")).collect();
+    format!(
+        "format = 1\ntools = [\n{tools}]\n[part]\n{part}\n[tolerance]\nscallop_mm = {h}\ngouge_mm = {}\nchord_mm = {}\n\
+         [strategy]\n{strategy}\n[cutting]\nspindle_rpm = 12000\nfeed_mm_min = 2000\n[machine]\nname = \"trunnion-ac\"\n\
+         dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[verification]\nmax_samples = 300000\n",
+        0.5 * h,
+        0.2 * h
+    )
+}
+
+/// Plans every case whose name has `only` in it and writes the page.
+pub fn run(data: &str, only: &str) -> Result<(), Failure> {
+    let root = root()?;
+    let data = std::fs::canonicalize(data).map_err(|why| Failure::Read { path: data.into(), why })?;
+    crate::cmd::run(cargo(&root, &["build", "--release", "--locked", "-p", "osculate"]))?;
+    let program = root.join("target/release/osculate");
+    let mut page = String::from(HEAD);
+    for case in CASES.iter().filter(|c| c.name.contains(only)) {
+        let place = root.join("target/plans").join(case.name.replace([' ', ','], "-"));
+        let mut times = Vec::new();
+        let mut cloud = None;
+        for kind in KINDS {
+            let folder = place.join(kind.replace([' ', ','], "-"));
+            let file = folder.join("job.toml");
+            write(&file, &job(case, kind, &data.to_string_lossy()))?;
+            let summary = plan(&program, &file, &folder);
+            if cloud.is_none()
+                && let Some(area) = summary.as_ref().ok().and_then(|s| s["area_mm2"].as_f64())
+            {
+                cloud = Some(points(&program, case, &data, &place, area)?);
+            }
+            let second = summary.as_ref().ok().zip(cloud.as_ref()).and_then(|(s, c)| look(s, c, &folder));
+            let line = row(case.name, kind, &summary, second);
+            print!("{line}");
+            page.push_str(&line);
+            times.push(summary.ok().and_then(|s| s["cutting_time_min"].as_f64()));
+        }
+        if let [Some(auto), iso, planes] = times[..] {
+            let share = |t: Option<f64>| t.map_or("-".to_owned(), |t| format!("{:.2}", auto / t));
+            let line = format!(
+                "| | *cutting time of auto over that of the two* | | | | {}, {} | | | | | |\n",
+                share(iso),
+                share(planes)
+            );
+            print!("{line}");
+            page.push_str(&line);
+        }
+    }
+    if only.is_empty() { write(&root.join("docs/plans.md"), &page) } else { Ok(()) }
+}
+
+/// Points of the face for the second opinion.
+fn points(program: &Path, case: &Case, data: &Path, place: &Path, area_mm2: f64) -> Result<Cloud, Failure> {
+    let spacing = (area_mm2 / POINTS).sqrt();
+    let run = |args: &[String]| {
+        let mut command = Command::new(program);
+        command.args(args);
+        crate::cmd::output_quietly(command)
+    };
+    // Cells that hold some ten points.
+    let cell_mm = 3.0 * spacing;
+    match case.source {
+        Source::BuiltIn(name) => {
+            let side = POINTS.sqrt() as usize;
+            let at = |k: usize| {
+                format!("{},{}", (k % side) as f64 / (side - 1) as f64, (k / side) as f64 / (side - 1) as f64)
+            };
+            let all: Vec<usize> = (0..side * side).collect();
+            let mut found = Vec::with_capacity(side * side);
+            for chunk in all.chunks(4000) {
+                let mut args = ["probe", "--json", "--builtin", &format!("kind = \"{name}\"")]
+                    .map(str::to_owned)
+                    .to_vec();
+                args.extend(chunk.iter().flat_map(|k| ["--at".to_owned(), at(*k)]));
+                let answer: Value = serde_json::from_str(&run(&args)?).unwrap_or_default();
+                for p in answer["points"].as_array().into_iter().flatten() {
+                    found.push(std::array::from_fn(|k| p["point_mm"][k].as_f64().unwrap_or(f64::NAN)));
+                }
+            }
+            Ok(Cloud::new(found.into_iter(), cell_mm))
+        }
+        Source::File { path, face, keys } => {
+            // The files of points have no unit; the job says it.
+            let scale = if keys.contains("unit_mm = 1000") { 1000.0 } else { 1.0 };
+            let mesh = place.join("face.stl");
+            let words = [
+                "export".to_owned(),
+                data.join(path).to_string_lossy().into_owned(),
+                "--faces".to_owned(),
+                face.to_owned(),
+                "--out".to_owned(),
+                mesh.to_string_lossy().into_owned(),
+                "--max-edge-mm".to_owned(),
+                (1.5 * spacing / scale).to_string(),
+            ];
+            run(&words)?;
+            let bytes = std::fs::read(&mesh).map_err(|why| Failure::Read { path: mesh.clone(), why })?;
+            Ok(Cloud::new(dense::stl_points(&bytes).map(|p| p.map(|x| x * scale)), cell_mm))
+        }
+    }
+}
+
+/// The second opinion on a plan, mm.
+fn look(summary: &Value, cloud: &Cloud, folder: &Path) -> Option<f64> {
+    let cutter = Cutter::of(&summary["tool"])?;
+    let cl = std::fs::read_to_string(folder.join("path.cl")).ok()?;
+    let step_mm = 0.02 * summary["tool"]["diameter_mm"].as_f64()?;
+    Some(dense::deepest_mm(&cl, &cutter, cloud, step_mm).0)
+}
+
+const HEAD: &str = "# Plans of real faces\n\nMade by `cargo xtask plans --data FOLDER`: every face planned by `auto` over three tools, by isoparametric lines with \
+the first of them, and in parallel planes with the ball on three axes, at the same tolerances (gouge half the scallop, chord a fifth) and 2000 mm/min. Scallop and gouge are measured from \
+the NC text. *Ideal* is the least time of any plan with those tools, *efficiency* that time over the cutting time; `auto` chooses by time within tolerance. The *second opinion* is how deep the cutter goes into some 40,000 points of the face at poses a fiftieth of its diameter apart, by formulas that share \
+no code with the verification.\n\n\
+| face | plan | tool, lead | passes | length mm | cutting min | ideal min | efficiency % | scallop / gouge mm | second opinion mm | within |\n\
+|---|---|---|---|---|---|---|---|---|---|---|\n";
+
+/// Runs the program and reads its summary; what it says where there is none.
+fn plan(program: &Path, job: &Path, out: &Path) -> Result<Value, String> {
+    // A summary of an earlier run must not be taken for this one's.
+    let _ = std::fs::remove_file(out.join("summary.json"));
+    let done = Command::new(program).arg("plan").arg(job).arg("--out").arg(out).output();
+    let said = done.map_err(|e| e.to_string())?;
+    let text = std::fs::read_to_string(out.join("summary.json")).map_err(|_| {
+        String::from_utf8_lossy(&said.stderr).lines().next().unwrap_or("no summary").to_owned()
+    })?;
+    serde_json::from_str(&text).map_err(|e| e.to_string())
+}
+
+fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f64>) -> String {
+    let s = match summary {
+        Ok(s) => s,
+        Err(why) => {
+            let why = why.rsplit("job.toml: ").next().unwrap_or(why);
+            return format!("| {name} | {kind} | not possible: {why} | | | | | | | | |\n");
+        }
+    };
+    let text = |k: &str| s[k].as_str().unwrap_or("-").to_owned();
+    let n = |v: &Value, digits: usize| v.as_f64().map_or("-".to_owned(), |x| format!("{x:.digits$}"));
+    let v = &s["verification"];
+    format!(
+        "| {name} | {kind}: {} | {}, {} deg | {} | {} | {} | {} | {} | {} / {} | {} | {} |\n",
+        text("strategy"),
+        text("tool_words"),
+        n(&s["lead_deg"], 0),
+        n(&s["passes"], 0),
+        n(&s["cutting_length_mm"], 0),
+        n(&s["cutting_time_min"], 2),
+        n(&s["ideal"]["time_min"], 2),
+        n(&s["efficiency_percent"], 0),
+        n(&v["scallop_max_mm"], 4),
+        n(&v["gouge_max_mm"], 4),
+        second.map_or("-".to_owned(), |d| format!("{d:.4}")),
+        if v["within_tolerance"] == true { "yes" } else { "**no**" }
+    )
+}
+
+fn write(to: &Path, text: &str) -> Result<(), Failure> {
+    let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
+    made.and_then(|()| std::fs::write(to, text)).map_err(|why| Failure::Write { path: to.to_path_buf(), why })
+}
