@@ -178,7 +178,7 @@ impl<'de> Deserialize<'de> for AutoOr {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StrategyTable {
-    /// `auto`, `isoparametric` or `contour_2cl`.
+    /// `auto` or the name of a strategy.
     #[serde(default = "auto")]
     pub kind: String,
     /// Lead.
@@ -194,6 +194,8 @@ pub struct StrategyTable {
     pub axis: Option<[f64; 3]>,
     /// The way of three-axis passes, across the axis; the longest side of the faces where not given.
     pub feed_direction: Option<[f64; 3]>,
+    /// Normal of the planes of isoplanar passes.
+    pub normal: Option<[f64; 3]>,
 }
 
 fn auto() -> String {
@@ -209,6 +211,7 @@ impl Default for StrategyTable {
             along: auto(),
             axis: None,
             feed_direction: None,
+            normal: None,
         }
     }
 }

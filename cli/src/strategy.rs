@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::{AutoOr, Job};
-use osculate_geom::Axis;
+use osculate_geom::{Axis, Unit3, Vec3};
 use osculate_productivity::plan::{Along, Strategy};
 
 /// The strategy of a job.
@@ -14,12 +14,16 @@ pub fn of_job(job: &Job) -> Result<Strategy, Failure> {
     let strategy = match table.kind.as_str() {
         "auto" | "isoparametric" => Strategy::Isoparametric { along: along(job)? },
         "contour_2cl" => Strategy::Contour2cl { axis: job.contour_axis()? },
+        "isoplanar" => Strategy::Isoplanar { normal: normal(job)? },
+        "isoscallop" => Strategy::Isoscallop,
+        "streamline" => Strategy::Streamline,
+        "curvature_5c" => Strategy::Curvature5c,
         other => {
             return Err(Failure::file(
                 &job.path,
                 format!(
-                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\", \
-                     \"contour_2cl\" or \"isoplanar_3c\""
+                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\", \"isoplanar\", \
+                     \"isoscallop\", \"streamline\", \"curvature_5c\", \"contour_2cl\" or \"isoplanar_3c\""
                 ),
             ));
         }
@@ -47,4 +51,12 @@ fn along(job: &Job) -> Result<Along, Failure> {
             format!("[strategy] along = \"{other}\" must be \"u\", \"v\" or \"auto\""),
         )),
     }
+}
+
+/// The normal of the planes that isoplanar passes lie in.
+fn normal(job: &Job) -> Result<Unit3, Failure> {
+    let n = job.strategy.normal.unwrap_or([0.0, 1.0, 0.0]);
+    Unit3::try_new(Vec3::from(n), 1e-9)
+        .filter(|u| u.iter().all(|c| c.is_finite()))
+        .ok_or_else(|| Failure::file(&job.path, format!("[strategy] normal = {n:?} has no direction")))
 }

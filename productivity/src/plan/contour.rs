@@ -7,13 +7,13 @@
 //! levels that do so for the whole face are the fewest numbers that stab the intervals of H over discs of half a
 //! strip around a dense set of places: taken greedily from below.
 
+use super::march::Grid;
 use super::resample::{Knot, contact_points};
 use super::{MAX_PASSES, Pass, Passes, PlanError, Task};
 use osculate_geom::{Axis, Diagnostic, Unit3, Uv, uv};
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
 use osculate_tools::{Contact, FeedLine, Lean, Pose, strip};
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Grid nodes along one parameter, at most.
 const MAX_NODES: usize = 700;
@@ -278,9 +278,6 @@ fn stab(mut intervals: Vec<[f64; 2]>) -> Vec<f64> {
     levels
 }
 
-/// An edge of the grid: the node it starts from and whether it runs along v.
-type Edge = (usize, usize, bool);
-
 /// The passes on one level: marching squares, the pieces chained, refined and thinned.
 fn passes_at(f: &Field<'_>, z: f64) -> Vec<Pass> {
     let chains = march(f, z);
@@ -371,93 +368,17 @@ fn join(f: &Field<'_>, z: f64, tolerance: f64, a: Knot, b: Knot, depth: u32, out
 
 /// Chains of parameters near the level line, each with whether it closes.
 fn march(f: &Field<'_>, z: f64) -> Vec<(Vec<Uv>, bool)> {
-    let mut at: HashMap<Edge, Uv> = HashMap::new();
-    let mut links: HashMap<Edge, Vec<Edge>> = HashMap::new();
-    let mut order: Vec<Edge> = Vec::new();
-    let crossing = |i: usize, j: usize, along_v: bool| -> Option<Uv> {
-        let (i2, j2) = if along_v { (i, j + 1) } else { (i + 1, j) };
-        let (a, b) = (f.height[f.index(i, j)] - z, f.height[f.index(i2, j2)] - z);
-        if (a < 0.0) == (b < 0.0) || a.is_nan() || b.is_nan() {
-            return None;
-        }
-        let t = a / (a - b);
-        let (p, q) = (f.uv(i, j), f.uv(i2, j2));
-        Some(uv(p.u + (q.u - p.u) * t, p.v + (q.v - p.v) * t))
-    };
     let inside = |i: usize, j: usize| {
         // Cells that touch the face: a pass may run out over its trim by one cell.
         [(0, 0), (1, 0), (0, 1), (1, 1)].iter().any(|(a, b)| !f.facing[f.index(i + a, j + b)].is_nan())
     };
-    for i in 0..f.n[0] {
-        for j in 0..f.n[1] {
-            if !inside(i, j) {
-                continue;
-            }
-            let sides: [Edge; 4] = [(i, j, false), (i + 1, j, true), (i, j + 1, false), (i, j, true)];
-            let hit: Vec<(Edge, Uv)> =
-                sides.iter().filter_map(|e| crossing(e.0, e.1, e.2).map(|p| (*e, p))).collect();
-            let pairs: &[[usize; 2]] = match hit.len() {
-                2 => &[[0, 1]],
-                4 => {
-                    // A saddle: the middle decides which corners the level line cuts off.
-                    let mid: f64 = [(0, 0), (1, 0), (0, 1), (1, 1)]
-                        .iter()
-                        .map(|(a, b)| f.height[f.index(i + a, j + b)])
-                        .sum::<f64>()
-                        / 4.0
-                        - z;
-                    if (mid < 0.0) == (f.height[f.index(i, j)] - z < 0.0) {
-                        &[[0, 1], [2, 3]]
-                    } else {
-                        &[[0, 3], [1, 2]]
-                    }
-                }
-                _ => &[],
-            };
-            for [a, b] in pairs {
-                let ((ea, pa), (eb, pb)) = (hit[*a], hit[*b]);
-                for (e, p) in [(ea, pa), (eb, pb)] {
-                    if at.insert(e, p).is_none() {
-                        order.push(e);
-                    }
-                }
-                links.entry(ea).or_default().push(eb);
-                links.entry(eb).or_default().push(ea);
-            }
-        }
-    }
-    chain(&order, &at, &links)
-}
-
-/// Walks the links: open chains from their ends first, then what closes.
-fn chain(order: &[Edge], at: &HashMap<Edge, Uv>, links: &HashMap<Edge, Vec<Edge>>) -> Vec<(Vec<Uv>, bool)> {
-    let mut used: std::collections::HashSet<Edge> = std::collections::HashSet::new();
-    let mut out = Vec::new();
-    let degree = |e: &Edge| links.get(e).map_or(0, Vec::len);
-    let starts = order.iter().filter(|e| degree(e) == 1).chain(order.iter().filter(|e| degree(e) != 1));
-    for start in starts {
-        if used.contains(start) {
-            continue;
-        }
-        let mut line = vec![*start];
-        used.insert(*start);
-        while let Some(next) =
-            line.last().and_then(|e| links.get(e)).and_then(|l| l.iter().find(|n| !used.contains(*n)))
-        {
-            used.insert(*next);
-            line.push(*next);
-        }
-        let closed =
-            line.len() > 2 && line.last().and_then(|e| links.get(e)).is_some_and(|l| l.contains(start));
-        let mut points: Vec<Uv> = line.iter().map(|e| at[e]).collect();
-        if closed {
-            points.push(points[0]);
-        }
-        if points.len() >= 2 {
-            out.push((points, closed));
-        }
-    }
-    out
+    let domain = f.task.surface.domain();
+    let place = |p: [f64; 2]| domain.at(p[0] / f.n[0] as f64, p[1] / f.n[1] as f64);
+    let grid = Grid { count: f.n, values: &f.height, closes: [false; 2] };
+    grid.lines(z, inside)
+        .into_iter()
+        .map(|(l, closed)| (l.into_iter().map(place).collect(), closed))
+        .collect()
 }
 
 #[cfg(test)]

@@ -8,14 +8,15 @@
 
 use super::columns::{Column, column_parameters, first_step, rough_columns, stretches};
 use super::cover::{across_range, union};
+use super::fits::fits;
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
+use super::walk::Walk;
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::roots::{End, bracketed};
 use osculate_geom::{Axis, Diagnostic, Interval, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
-use osculate_tools::{Contact, ContactError, ContactMotion, FeedLine};
+use osculate_tools::{Contact, ContactMotion, FeedLine};
 use rayon::prelude::*;
 
 /// Rows to each side of a pass in which the stretches that it must run over are looked for.
@@ -203,7 +204,7 @@ impl Cover<'_> {
         let (frame, speed) = line.frame(t)?;
         // The frame turns forward about b at the normal curvature along the feed.
         let h = task.design_scallop_mm(frame.turn.dot(&frame.left), column.left);
-        let averaged = Averaged { seat: self.seat, line };
+        let averaged = Averaged { seat: self.seat, line: &line };
         let led: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &line };
         let motion = ContactMotion { line: led, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
         let step = 0.05 * task.cutter.radius_mm() / speed.abs().max(1e-12);
@@ -212,52 +213,18 @@ impl Cover<'_> {
         Ok(reach.map_or(task.cutter.radius_mm(), |r| r.at_mm - h))
     }
 
-    /// The largest argument in `[from, hi]` up to which `f` stays at or below zero, walking in growing steps.
-    fn last_below(
-        &self,
-        from: f64,
-        mut f: impl FnMut(f64) -> Result<f64, LineError>,
-    ) -> Result<f64, LineError> {
-        let mut a = End { x: from, f: f(from)? };
-        if a.f > 0.0 {
-            return Ok(from);
-        }
-        let mut step = 0.5 * self.guess;
-        loop {
-            let x = (a.x + step).min(self.hi);
-            let b = End { x, f: f(x)? };
-            if b.f > 0.0 {
-                let mut failed = None;
-                let root = bracketed(a, b, 1e-4 * self.guess, |x| match f(x) {
-                    Ok(y) => y,
-                    Err(e) => {
-                        failed = Some(e);
-                        f64::NAN
-                    }
-                });
-                return match (root, failed) {
-                    // The lower end of the last bracket is certainly below.
-                    (Ok(r), _) => Ok((r.x - r.error).max(a.x)),
-                    (Err(_), Some(e)) => Err(e),
-                    (Err(_), None) => Ok(a.x),
-                };
-            }
-            if x >= self.hi {
-                return Ok(self.hi);
-            }
-            a = b;
-            step *= 1.3;
-        }
+    const fn walk(&self, from: f64) -> Walk {
+        Walk { from, to: self.hi, guess: self.guess, tolerance: 1e-4 * self.guess }
     }
 
     /// How far on a pass may lie that still covers the frontier of a column.
     fn furthest_pass(&self, column: &Column, frontier: f64) -> Result<f64, LineError> {
-        self.last_below(frontier, |pass| self.excess(column, frontier, pass))
+        self.walk(frontier).last_below(|pass| self.excess(column, frontier, pass))
     }
 
     /// How far the strip of a pass reaches at a column.
     fn reached(&self, column: &Column, pass: f64) -> Result<f64, LineError> {
-        self.last_below(pass, |point| self.excess(column, point, pass))
+        self.walk(pass).last_below(|point| self.excess(column, point, pass))
     }
 }
 
@@ -300,7 +267,8 @@ fn measure(
             widths.extend(width(s.at(0.5))?);
         }
     }
-    fits(seat, &line, columns)?;
+    let parameters: Vec<f64> = columns.iter().map(|c| c.t).collect();
+    fits(seat, &line, &parameters)?;
     let mut length = 0.0;
     let mut last = None;
     for c in columns {
@@ -312,50 +280,6 @@ fn measure(
         last = here;
     }
     Ok((Level { fixed, reversed, widths }, length))
-}
-
-/// Refuses a pass on which the part is too hollow for the tool over more than half its radius or a fifth of the pass.
-/// Shorter stretches are roughness, which seating deals with and verification judges.
-fn fits(seat: &Seat<'_>, line: &IsoLine<'_>, columns: &[Column]) -> Result<(), PlanError> {
-    let task = seat.task();
-    let held: Vec<Option<ContactError>> = columns
-        .par_iter()
-        .map(|c| {
-            let at = line.uv(c.t);
-            let feed = FeedLine::Iso(line.along);
-            let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean).ok()?;
-            let refusal = contact.fits().err()?;
-            let wide = seat.wide_lift(line, c.t).ok()?;
-            (task.surface.contains(at) && wide > task.tolerance.gouge_mm).then_some(refusal)
-        })
-        .collect();
-    let radius = |e: &ContactError| match e {
-        ContactError::DoesNotFit { largest_radius_mm, .. } => *largest_radius_mm,
-        _ => f64::INFINITY,
-    };
-    // Arc length along the columns: a stretch is long against the tool, or against a face that is smaller than it.
-    let points: Vec<_> = columns.iter().map(|c| task.surface.point(line.uv(c.t))).collect();
-    let length = |first: usize, last: usize| -> f64 {
-        points[first..=last].windows(2).map(|w| (w[1] - w[0]).norm()).sum()
-    };
-    let limit = (0.5 * task.cutter.radius_mm()).min(0.2 * length(0, points.len() - 1));
-    let (mut start, mut worst): (Option<usize>, Option<ContactError>) = (None, None);
-    for (k, e) in held.iter().enumerate() {
-        let Some(e) = e else {
-            (start, worst) = (None, None);
-            continue;
-        };
-        let first = *start.get_or_insert(k);
-        if worst.is_none_or(|w| radius(e) < radius(&w)) {
-            worst = Some(*e);
-        }
-        if let Some(w) = worst
-            && length(first, k) > limit
-        {
-            return Err(task.contact(w));
-        }
-    }
-    Ok(())
 }
 
 /// The passes of one level: stretches of inside, widened by what their strip reaches to both sides, resampled.

@@ -1,8 +1,9 @@
 //! Points along a pass: as few as hold the chord tolerance at the contact.
 
+use super::line::PassLine;
 use super::seat::Seat;
 use super::{CcPoint, Task};
-use osculate_geom::line::{IsoLine, LineError};
+use osculate_geom::line::LineError;
 use osculate_geom::{Point3, Unit3};
 use osculate_tools::Pose;
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
@@ -28,7 +29,7 @@ pub(super) struct Knot {
     pub height: f64,
 }
 
-fn knot(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, t: f64) -> Result<Knot, LineError> {
+fn knot(seat: &Seat<'_>, task: &Task<'_>, line: &dyn PassLine, t: f64) -> Result<Knot, LineError> {
     let (pose, frame, _) = seat.at(line, t)?;
     let height = task.cutter.distance(&pose, &frame.point);
     Ok(Knot { t, v: 0.0, point: frame.point, normal: frame.normal, pose, height })
@@ -39,7 +40,7 @@ fn knot(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, t: f64) -> Result<
 pub(super) fn resample(
     seat: &Seat<'_>,
     task: &Task<'_>,
-    line: &IsoLine<'_>,
+    line: &dyn PassLine,
     [from, to]: [f64; 2],
     breaks: &[f64],
 ) -> Result<Vec<Knot>, LineError> {
@@ -68,7 +69,7 @@ pub(super) fn resample(
 fn halve(
     seat: &Seat<'_>,
     task: &Task<'_>,
-    line: &IsoLine<'_>,
+    line: &dyn PassLine,
     a: Knot,
     b: Knot,
     depth: u32,
@@ -101,7 +102,7 @@ fn holds(task: &Task<'_>, pose: &Pose, knot: &Knot) -> bool {
 fn straight(
     seat: &Seat<'_>,
     task: &Task<'_>,
-    line: &IsoLine<'_>,
+    line: &dyn PassLine,
     a: &Knot,
     b: &Knot,
     mid: Option<&Knot>,
@@ -133,7 +134,7 @@ fn straight(
 }
 
 /// Drops knots whose neighbours can be joined directly: the halving leaves up to twice as many as needed.
-fn thin(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, knots: &[Knot]) -> Vec<Knot> {
+fn thin(seat: &Seat<'_>, task: &Task<'_>, line: &dyn PassLine, knots: &[Knot]) -> Vec<Knot> {
     let mut out = vec![knots[0]];
     let mut at = 0;
     while at + 1 < knots.len() {
@@ -148,7 +149,7 @@ fn thin(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, knots: &[Knot]) ->
     out
 }
 
-fn joins(seat: &Seat<'_>, task: &Task<'_>, line: &IsoLine<'_>, knots: &[Knot]) -> bool {
+fn joins(seat: &Seat<'_>, task: &Task<'_>, line: &dyn PassLine, knots: &[Knot]) -> bool {
     let (a, b) = (&knots[0], &knots[knots.len() - 1]);
     if !straight(seat, task, line, a, b, None).unwrap_or(false) {
         return false;

@@ -7,8 +7,9 @@
 //! nothing: the average of a symmetric stretch is the normal up to second order, and the contact itself is the highest place.
 
 use super::Task;
+use super::line::{PassLine, Rectangle};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Darboux, Surface, Unit3, Uv, Vec3};
+use osculate_geom::{Axis, Darboux, Unit3, Uv, Vec3};
 use osculate_tools::Pose;
 use rayon::prelude::*;
 
@@ -44,23 +45,13 @@ const MOST_SPANS: usize = 500;
 /// The motion of a tool led by averaged normals, not seated.
 pub(super) struct Averaged<'a> {
     pub(super) seat: &'a Seat<'a>,
-    pub(super) line: IsoLine<'a>,
+    pub(super) line: &'a dyn PassLine,
 }
 
 impl SurfaceLine for Averaged<'_> {
     fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError> {
-        self.seat.frame(&self.line, t)
+        self.seat.frame(self.line, t)
     }
-}
-
-/// Whether a face is the same line of points at both ends of a parameter, to a millionth of its size.
-fn meets_itself(surface: &dyn Surface, axis: Axis) -> bool {
-    let (i, across) = (surface.domain().get(axis), surface.domain().get(axis.other()));
-    let at = |t: f64, f: f64| surface.point(Uv::from_axis(axis, t, across.at(f)));
-    let fractions = [0.0, 0.3, 0.5, 0.8, 1.0];
-    let gap = fractions.iter().map(|f| (at(i.hi, *f) - at(i.lo, *f)).norm()).fold(0.0, f64::max);
-    let size = fractions.iter().map(|f| (at(i.at(0.5), *f) - at(i.lo, *f)).norm()).fold(0.0, f64::max);
-    i.periodic || gap <= 1e-6 * size
 }
 
 /// Knots of a face, fetched once.
@@ -68,51 +59,46 @@ pub(super) struct Seat<'a> {
     task: &'a Task<'a>,
     breaks: [Vec<f64>; 2],
     rough: bool,
-    /// Whether the face meets itself at the ends of u and of v, smoothly or in a crease.
-    closes: [bool; 2],
+    /// The face's parameters and where it meets itself.
+    pub(super) rectangle: Rectangle,
 }
 
 impl<'a> Seat<'a> {
-    /// For passes along `along`.
+    /// For passes that run about along `along`.
     pub(super) fn new(task: &'a Task<'a>, along: Axis) -> Self {
-        let surface = task.surface;
-        let breaks = [surface.breaks(Axis::U), surface.breaks(Axis::V)];
-        let closes = [Axis::U, Axis::V].map(|axis| meets_itself(surface, axis));
-        let mut seat = Self { task, breaks, rough: false, closes };
-        let knots = &seat.breaks[usize::from(along == Axis::V)];
+        let mut seat = Self::smooth(task);
+        seat.rough = seat.is_rough_along(along);
+        seat
+    }
+
+    /// For passes in any direction.
+    pub(super) fn any(task: &'a Task<'a>) -> Self {
+        let mut seat = Self::smooth(task);
+        seat.rough = seat.is_rough_along(Axis::U) || seat.is_rough_along(Axis::V);
+        seat
+    }
+
+    fn smooth(task: &'a Task<'a>) -> Self {
+        let breaks = [task.surface.breaks(Axis::U), task.surface.breaks(Axis::V)];
+        Self { task, breaks, rough: false, rectangle: Rectangle::of(task.surface) }
+    }
+
+    fn is_rough_along(&self, along: Axis) -> bool {
+        let surface = self.task.surface;
+        let knots = &self.breaks[usize::from(along == Axis::V)];
         let stride = knots.len().div_ceil(MOST_SPANS);
         let across = surface.domain().get(along.other());
-        let rough = [0.02, 0.25, 0.5, 0.75, 0.98].par_iter().any(|f| {
+        [0.02, 0.25, 0.5, 0.75, 0.98].par_iter().any(|f| {
             let line = IsoLine { surface, along, fixed: across.at(*f), reversed: false };
             knots.windows(2).step_by(stride).any(|w| {
-                [0.0, 0.25, 0.5, 0.75].iter().any(|g| seat.is_rough(&line, w[0] + (w[1] - w[0]) * g))
+                [0.0, 0.25, 0.5, 0.75].iter().any(|g| self.is_rough(&line, w[0] + (w[1] - w[0]) * g))
             })
-        });
-        seat.rough = rough;
-        seat
+        })
     }
 
     /// Whether the face meets itself at the ends of `axis`.
     pub(super) const fn closes(&self, axis: Axis) -> bool {
-        match axis {
-            Axis::U => self.closes[0],
-            Axis::V => self.closes[1],
-        }
-    }
-
-    /// The parameters brought round where the face closes; None outside it.
-    fn bring(&self, at: Uv) -> Option<Uv> {
-        let domain = self.task.surface.domain();
-        let round = |axis: Axis| {
-            let i = domain.get(axis);
-            let t = at.get(axis);
-            if i.contains(t) {
-                Some(t)
-            } else {
-                self.closes(axis).then(|| (t - i.lo).rem_euclid(i.length()) + i.lo)
-            }
-        };
-        Some(Uv { u: round(Axis::U)?, v: round(Axis::V)? })
+        self.rectangle.closes(axis)
     }
 
     /// Whether the face changes its normal faster than the tool can follow.
@@ -128,12 +114,19 @@ impl<'a> Seat<'a> {
         span_at(&self.breaks[usize::from(axis == Axis::V)], t)
     }
 
+    /// Length of the knot span around a place of a line, in the line's parameter.
+    fn span_along(&self, line: &dyn PassLine, t: f64) -> f64 {
+        let (at, rate) = (self.rectangle.domain.bring(line.uv(t)), line.rate(t));
+        let of = |axis: Axis| self.span(axis, at.get(axis)) / rate.get(axis).abs();
+        of(Axis::U).min(of(Axis::V))
+    }
+
     /// The frame at `t` with its normal and tangent averaged along the line, and the speed there.
-    pub(super) fn frame(&self, line: &IsoLine<'_>, t: f64) -> Result<(Darboux, f64), LineError> {
+    pub(super) fn frame(&self, line: &dyn PassLine, t: f64) -> Result<(Darboux, f64), LineError> {
         let (here, speed) = line.frame(t)?;
-        let i = self.task.surface.domain().get(line.along);
+        let i = line.range();
         let reach = (AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12))
-            .min(SPANS * self.span(line.along, i.bring(t)));
+            .min(SPANS * self.span_along(line, t));
         // Sums of normals and tangents and of their rates.
         let mut sums = [Vec3::zeros(); 4];
         for k in -3..=3 {
@@ -166,7 +159,7 @@ impl<'a> Seat<'a> {
     }
 
     /// Whether the normal at `t` differs from its average by more than the limit.
-    fn is_rough(&self, line: &IsoLine<'_>, t: f64) -> bool {
+    fn is_rough(&self, line: &dyn PassLine, t: f64) -> bool {
         match (line.frame(t), self.frame(line, t)) {
             (Ok((a, _)), Ok((b, _))) => a.normal.angle(&b.normal) > ROUGH_ANGLE,
             _ => false,
@@ -194,7 +187,7 @@ impl<'a> Seat<'a> {
         for i in -nu..=nu {
             for j in -nv..=nv {
                 let p = Uv { u: at.u + du * f64::from(i), v: at.v + dv * f64::from(j) };
-                points.extend(self.bring(p).map(|p| surface.point(p)));
+                points.extend(self.rectangle.bring(p).map(|p| surface.point(p)));
             }
         }
         let mut seated = pose;
@@ -211,7 +204,7 @@ impl<'a> Seat<'a> {
     }
 
     /// The seated pose at a line parameter, its frame, and the lift.
-    pub(super) fn at(&self, line: &IsoLine<'_>, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
+    pub(super) fn at(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
         let (frame, _) = self.frame(line, t)?;
         let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
         let radius = self.task.cutter.radius_mm();
@@ -229,9 +222,9 @@ impl<'a> Seat<'a> {
 
     /// What a pass leaves at its own line at `t`, the tool seated there and a little before and after: zero on a smooth
     /// face, the depth of what the tool cannot enter on a rough one.
-    pub(super) fn left_over(&self, line: &IsoLine<'_>, t: f64) -> Result<f64, LineError> {
+    pub(super) fn left_over(&self, line: &dyn PassLine, t: f64) -> Result<f64, LineError> {
         let (here, speed) = line.frame(t)?;
-        let i = self.task.surface.domain().get(line.along);
+        let i = line.range();
         let step = AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12);
         let mut least = f64::INFINITY;
         for k in -4..=4 {
@@ -245,7 +238,7 @@ impl<'a> Seat<'a> {
     }
 
     /// How far the whole end of the tool, not only the part of it next to the contact, is held off the face.
-    pub(super) fn wide_lift(&self, line: &IsoLine<'_>, t: f64) -> Result<f64, LineError> {
+    pub(super) fn wide_lift(&self, line: &dyn PassLine, t: f64) -> Result<f64, LineError> {
         let (frame, _) = self.frame(line, t)?;
         let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
         Ok(self.rest(line.uv(t), &frame.normal, pose, WIDE * self.task.cutter.radius_mm()).1)

@@ -1,6 +1,9 @@
 //! The strategies by name, and the one call that plans by any of them.
 
-use super::{Along, Passes, PlanError, Task, contour_2cl, isoparametric};
+use super::{
+    Along, Passes, PlanError, Task, contour_2cl, curvature_5c, isoparametric, isoplanar, isoscallop,
+    streamline,
+};
 use osculate_geom::Unit3;
 
 /// How passes are placed on a face.
@@ -16,6 +19,17 @@ pub enum Strategy {
         /// The tool axis.
         axis: Unit3,
     },
+    /// In parallel planes (5C).
+    Isoplanar {
+        /// Normal of the planes.
+        normal: Unit3,
+    },
+    /// With the same scallop all along (5C).
+    Isoscallop,
+    /// Along the directions of the widest strip, evenly spaced (5C).
+    Streamline,
+    /// Along lines of curvature with a toroidal or flat cutter (5C, M86).
+    Curvature5c,
 }
 
 impl Strategy {
@@ -25,6 +39,10 @@ impl Strategy {
         match self {
             Self::Isoparametric { .. } => "isoparametric",
             Self::Contour2cl { .. } => "contour_2cl",
+            Self::Isoplanar { .. } => "isoplanar",
+            Self::Isoscallop => "isoscallop",
+            Self::Streamline => "streamline",
+            Self::Curvature5c => "curvature_5c",
         }
     }
 
@@ -33,7 +51,11 @@ impl Strategy {
     pub const fn fixed_axis(&self) -> Option<Unit3> {
         match self {
             Self::Contour2cl { axis } => Some(*axis),
-            Self::Isoparametric { .. } => None,
+            Self::Isoparametric { .. }
+            | Self::Isoplanar { .. }
+            | Self::Isoscallop
+            | Self::Streamline
+            | Self::Curvature5c => None,
         }
     }
 }
@@ -46,5 +68,9 @@ pub fn run(task: &Task<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {
     match *strategy {
         Strategy::Isoparametric { along } => isoparametric(task, along),
         Strategy::Contour2cl { axis } => contour_2cl(task, axis),
+        Strategy::Isoplanar { normal } => isoplanar(task, normal),
+        Strategy::Isoscallop => isoscallop(task),
+        Strategy::Streamline => streamline(task),
+        Strategy::Curvature5c => curvature_5c(task),
     }
 }

@@ -1,0 +1,185 @@
+//! A face that goes on a little beyond the border of its parameters, so that passes can run out over it.
+//!
+//! A strip that meets the border at a slant must go on until its far edge has left the face. Beyond the border the face is
+//! continued by its Taylor polynomial there: what it does there decides only where the tool leaves. What lies inside
+//! ([`Surface::contains`]) stays what it was. Across a seam at which a field is cut the face itself goes on.
+
+use super::cells::AXES;
+use crate::plan::line::meets_itself;
+use osculate_geom::{Axis, Domain, Interval, Jet2, Side, Surface, Taylor, Uv, Vec3};
+
+/// Order of the continuation; of a face that is rough on the scale of the tool: there higher derivatives belong to ripples.
+const ORDER: usize = 4;
+const ROUGH_ORDER: usize = 2;
+/// A border is not gone over where the face is thinner there than this share of its thickest.
+const THIN: f64 = 0.02;
+/// Places along a border at which that is looked at.
+const LOOKS: u32 = 16;
+
+/// The continued face.
+pub(super) struct Extended<'a> {
+    base: &'a dyn Surface,
+    inner: Domain,
+    outer: Domain,
+    /// Axes whose parameters wrap beyond the border.
+    wraps: [bool; 2],
+    order: usize,
+}
+
+impl<'a> Extended<'a> {
+    /// Continued by `margin_mm`, but not where the face closes, unless a field is cut there, nor at poles.
+    pub fn new(base: &'a dyn Surface, margin_mm: f64, cut: Option<Axis>, rough: bool) -> Self {
+        let inner = base.domain();
+        let closes = AXES.map(|axis| meets_itself(base, axis));
+        let mut wraps = [false; 2];
+        let mut outer = inner;
+        for (k, axis) in AXES.into_iter().enumerate() {
+            let i = inner.get(axis);
+            wraps[k] = closes[k] && cut == Some(axis);
+            if closes[k] && !wraps[k] {
+                continue;
+            }
+            let margin = |t: f64| margin(base, axis, t, margin_mm).min(0.1 * i.length());
+            let wider = Interval::new(i.lo - margin(i.lo), i.hi + margin(i.hi));
+            match axis {
+                Axis::U => outer.u = wider,
+                Axis::V => outer.v = wider,
+            }
+        }
+        Self { base, inner, outer, wraps, order: if rough { ROUGH_ORDER } else { ORDER } }
+    }
+
+    /// The place of the face itself that stands for one of the continuation: the nearest of the border.
+    pub fn inner(&self, at: Uv) -> Uv {
+        let held = |axis: Axis| {
+            let i = self.inner.get(axis);
+            let t = at.get(axis);
+            if self.wraps[usize::from(axis == Axis::V)] && !(t >= i.lo && t <= i.hi) {
+                (t - i.lo).rem_euclid(i.length()) + i.lo
+            } else if i.periodic {
+                t
+            } else {
+                t.clamp(i.lo, i.hi)
+            }
+        };
+        Uv { u: held(Axis::U), v: held(Axis::V) }
+    }
+
+    /// Offset beyond the border.
+    fn beyond(&self, at: Uv, near: Uv) -> [f64; 2] {
+        [(at.u - near.u, 0), (at.v - near.v, 1)].map(|(d, k)| if self.wraps[k] { 0.0 } else { d })
+    }
+}
+
+/// The length of `margin_mm` across a border in the parameter; none where the face is thin along it.
+fn margin(base: &dyn Surface, axis: Axis, t: f64, margin_mm: f64) -> f64 {
+    let (i, across) = (base.domain().get(axis), base.domain().get(axis.other()));
+    let jet = |t: f64, k: u32| base.jet2(Uv::from_axis(axis, t, across.at(f64::from(k) / f64::from(LOOKS))));
+    let area = |jet: &Jet2| jet.du.cross(&jet.dv).norm();
+    let thickest = (0..=LOOKS).map(|k| area(&jet(i.at(0.5), k))).fold(0.0, f64::max);
+    let border: Vec<Jet2> = (0..=LOOKS).map(|k| jet(t, k)).collect();
+    if border.iter().any(|j| !(area(j) > THIN * thickest)) {
+        return 0.0;
+    }
+    let speed = border.iter().map(|j| if axis == Axis::U { j.du.norm() } else { j.dv.norm() });
+    margin_mm / speed.fold(f64::INFINITY, f64::min)
+}
+
+/// Falling powers over factorials: what the derivative `k` of `x^n / n!` is at `d`.
+fn power(n: usize, k: usize, d: f64) -> f64 {
+    (1..=n - k).fold(1.0, |p, m| p * d / m as f64)
+}
+
+impl Surface for Extended<'_> {
+    fn domain(&self) -> Domain {
+        self.outer
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        let near = self.inner(at);
+        let [a, b] = self.beyond(at, near);
+        if a == 0.0 && b == 0.0 {
+            return Jet2 { uv: at, ..self.base.jet2(near) };
+        }
+        let taylor = self.base.taylor(near, self.order);
+        let order = self.order.min(taylor.order());
+        let sum = |p: usize, q: usize| -> Vec3 {
+            let mut out = Vec3::zeros();
+            for i in p..=order {
+                for j in q..=order - i {
+                    out += taylor.derivative(i, j) * (power(i, p, a) * power(j, q, b));
+                }
+            }
+            out
+        };
+        let side: Side = taylor.side;
+        Jet2 {
+            uv: at,
+            point: sum(0, 0).into(),
+            du: sum(1, 0),
+            dv: sum(0, 1),
+            duu: sum(2, 0),
+            duv: sum(1, 1),
+            dvv: sum(0, 2),
+            side,
+        }
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        self.base.taylor(self.inner(at), order)
+    }
+    fn contains(&self, at: Uv) -> bool {
+        let i = self.inner;
+        let within =
+            |t: f64, i: Interval, k: usize| (i.periodic && !self.wraps[k]) || (t >= i.lo && t <= i.hi);
+        within(at.u, i.u, 0) && within(at.v, i.v, 1) && self.base.contains(at)
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        let (i, mut all) = (self.outer.get(axis), self.base.breaks(axis));
+        if i.lo < all[0] {
+            all.insert(0, i.lo);
+        }
+        if i.hi > all[all.len() - 1] {
+            all.push(i.hi);
+        }
+        all
+    }
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        let across = self.inner.get(axis.other());
+        if fixed < across.lo || fixed > across.hi { Vec::new() } else { self.base.spans(axis, fixed) }
+    }
+    fn turns(&self) -> Vec<Uv> {
+        self.base.turns()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use osculate_geom::analytic::Torus;
+    use osculate_geom::{Patch, uv};
+
+    /// Beyond the border the continuation stays on the whole torus to the fifth power of the distance.
+    #[test]
+    fn goes_on_as_the_face_would() {
+        let surface = Torus::new(60.0, 20.0).unwrap();
+        let domain = Domain { u: Interval::new(0.2, 0.9), v: Interval::new(0.5, 1.4) };
+        let piece = Patch { surface, domain, side: Side::Along };
+        let more = Extended::new(&piece, 1.5, None, false);
+        assert!(more.domain().u.lo < 0.2 && more.domain().v.hi > 1.4);
+        for at in [uv(0.19, 0.7), uv(0.5, 1.43), uv(0.19, 1.43), uv(0.5, 0.6)] {
+            let (a, b) = (more.jet2(at), surface.jet2(at));
+            let far = (0.2 - at.u).max(0.0).hypot((at.v - 1.4).max(0.0));
+            assert!((a.point - b.point).norm() <= 80.0 * far.powi(5), "{at:?}");
+            assert!(
+                (a.duv - b.duv).norm() <= 80.0 * far.powi(3) && (a.duu - b.duu).norm() <= 80.0 * far.powi(3)
+            );
+            assert_eq!(more.contains(at), piece.contains(at));
+        }
+        // The whole ring closes: nothing is beyond it, but where it is cut.
+        let ring = Torus::new(60.0, 20.0).unwrap();
+        assert_eq!(Extended::new(&ring, 1.0, None, false).domain(), ring.domain());
+        let cut = Extended::new(&ring, 1.0, Some(Axis::U), false);
+        let (at, hi) = (uv(cut.domain().u.hi, 0.3), ring.domain().u.hi);
+        assert!(at.u > hi && !cut.contains(at) && cut.contains(uv(0.5 * hi, 0.3)));
+        assert!((cut.point(at) - ring.point(at)).norm() < 1e-9);
+    }
+}

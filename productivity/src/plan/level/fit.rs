@@ -1,0 +1,192 @@
+//! The field whose gradient comes nearest to wanted vectors: a linear least-squares problem over the face.
+//!
+//! Minimises `integral |grad phi - X|^2 dA` over bicubic splines, in the metric of the face at Gauss points, plus small second
+//! differences of the poles, which settle what lies outside the trims. X has the length 1/w, w the width of the strip,
+//! and points across the wanted feed; what no field can do (a curl of X) is spread over the face. Where only the length of the
+//! gradient matters X follows the field's own direction and the problem is solved again: the matrix stays the same.
+
+use super::band::{Band, Factor, NotDefinite};
+use super::spline::{Four, Spline};
+use crate::plan::Task;
+use crate::plan::line::Rectangle;
+use osculate_geom::{Axis, Forms, Jet2, Uv};
+use rayon::prelude::*;
+
+/// Gauss points along each side of a span, on [0, 1], and their weights.
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// Weight of the second differences of the poles.
+const SMOOTH: f64 = 3e-4;
+/// Weight of places outside the trims: a margin that guides the lines over the boundary.
+const OUTSIDE: f64 = 0.02;
+/// Holds the constant that no gradient sees.
+const HOLD: f64 = 1e-9;
+
+/// A Gauss point of the face.
+pub(super) struct Place {
+    pub jet: Jet2,
+    pub forms: Forms,
+    /// Area that it stands for, mm2; less outside the trims.
+    pub area_mm2: f64,
+    pub inside: bool,
+    u: Four,
+    v: Four,
+    /// Rates of u and v along the tangent frame's two directions.
+    along: [Uv; 2],
+}
+
+impl Place {
+    /// The gradient of a field in the tangent frame, 1/mm.
+    pub fn gradient(&self, field: &Spline) -> [f64; 2] {
+        let [a, b] = field.slope(&self.u, &self.v);
+        self.along.map(|r| a * r.u + b * r.v)
+    }
+
+    /// The gradient of a parameter.
+    pub fn parameter_gradient(&self, axis: Axis) -> [f64; 2] {
+        self.along.map(|r| r.get(axis))
+    }
+}
+
+/// The least-squares problem over a face.
+pub(super) struct Problem {
+    pub places: Vec<Place>,
+    zero: Spline,
+    factor: Factor,
+}
+
+impl Problem {
+    /// The places and the factored matrix.
+    pub fn new(task: &Task<'_>, rectangle: &Rectangle, spans: [usize; 2]) -> Result<Self, NotDefinite> {
+        let zero = Spline::zero(rectangle, spans);
+        let places = places(task, rectangle, &zero);
+        let mut band = zero.band();
+        for p in &places {
+            let rows = p.rows(&zero);
+            for (k, (i, a)) in rows.iter().enumerate() {
+                for (j, b) in &rows[..=k] {
+                    // Both residuals of the place.
+                    band.add(*i, *j, p.area_mm2 * (a[0] * b[0] + a[1] * b[1]));
+                }
+            }
+        }
+        zero.smooth(&mut band);
+        Ok(Self { places, zero, factor: band.factor()? })
+    }
+
+    /// The field that is zero everywhere.
+    pub fn zero(&self) -> Spline {
+        self.zero.clone()
+    }
+
+    /// The field for wanted gradients in the tangent frames of the places.
+    pub fn solve(&self, wanted: &[[f64; 2]]) -> Spline {
+        let mut right = vec![0.0; self.zero.poles.len()];
+        for (p, x) in self.places.iter().zip(wanted) {
+            for (i, a) in p.rows(&self.zero) {
+                right[i] += p.area_mm2 * (a[0] * x[0] + a[1] * x[1]);
+            }
+        }
+        let x = self.factor.solve(right);
+        let mut out = self.zero.clone();
+        for i in 0..out.bases[0].count() {
+            for j in 0..out.bases[1].count() {
+                let k = out.index(i, j);
+                out.poles[k] = x[out.row(i, j)];
+            }
+        }
+        out
+    }
+}
+
+impl Place {
+    /// What each pole adds to the gradient in the tangent frame, by row of the matrix.
+    fn rows(&self, spline: &Spline) -> [(usize, [f64; 2]); 16] {
+        std::array::from_fn(|k| {
+            let (a, b) = (k / 4, k % 4);
+            let (du, dv) = (self.u.first[a] * self.v.value[b], self.u.value[a] * self.v.first[b]);
+            let row = spline.row(self.u.index[a], self.v.index[b]);
+            (row, self.along.map(|r| du * r.u + dv * r.v))
+        })
+    }
+}
+
+impl Spline {
+    /// Row of the matrix of a pole.
+    fn row(&self, i: usize, j: usize) -> usize {
+        self.bases[0].order(i) * self.bases[1].count() + self.bases[1].order(j)
+    }
+
+    fn band(&self) -> Band {
+        let n = self.bases[1].count();
+        // In a row of blocks the farthest pole is the last of the block.
+        Band::zeros(
+            self.poles.len(),
+            ((self.bases[0].width() - 1) * n + self.bases[1].width()).min(self.poles.len()),
+        )
+    }
+
+    /// Adds the squares of the poles' second differences, and a trace of the poles themselves.
+    fn smooth(&self, band: &mut Band) {
+        let [nu, nv] = self.bases.map(|b| b.count());
+        let mut add = |poles: [usize; 3]| {
+            for (i, a) in poles.iter().zip([1.0, -2.0, 1.0]) {
+                for (j, b) in poles.iter().zip([1.0, -2.0, 1.0]) {
+                    if i >= j {
+                        band.add(*i, *j, SMOOTH * a * b);
+                    }
+                }
+            }
+        };
+        for i in 0..nu {
+            for j in 0..nv {
+                if i + 2 < nu {
+                    add([0, 1, 2].map(|d| self.row(i + d, j)));
+                }
+                if j + 2 < nv {
+                    add([0, 1, 2].map(|d| self.row(i, j + d)));
+                }
+            }
+        }
+        for k in 0..self.poles.len() {
+            band.add(k, k, HOLD);
+        }
+    }
+}
+
+fn places(task: &Task<'_>, rectangle: &Rectangle, spline: &Spline) -> Vec<Place> {
+    let spans = spline.bases.map(|b| b.spans);
+    let surface = task.surface;
+    (0..spans[0] * GAUSS.len())
+        .into_par_iter()
+        .flat_map_iter(|row| {
+            let (gu, wu) = GAUSS[row % GAUSS.len()];
+            let fu = ((row / GAUSS.len()) as f64 + gu) / spans[0] as f64;
+            let u = rectangle.domain.u.at(fu);
+            let inside = surface.spans(Axis::V, u);
+            let mut out = Vec::with_capacity(spans[1] * GAUSS.len());
+            for column in 0..spans[1] * GAUSS.len() {
+                let (gv, wv) = GAUSS[column % GAUSS.len()];
+                let v = rectangle.domain.v.at(((column / GAUSS.len()) as f64 + gv) / spans[1] as f64);
+                let at = Uv { u, v };
+                let jet = surface.jet2(at);
+                let Ok(forms) = jet.forms() else { continue };
+                let inside = inside.iter().any(|s| s.lo <= v && v <= s.hi);
+                let cell =
+                    rectangle.domain.u.length() * rectangle.domain.v.length() / (spans[0] * spans[1]) as f64;
+                let area = forms.area_density() * cell * wu * wv;
+                let along = [0, 1].map(|k| forms.rate(&jet, &forms.frame[k]));
+                out.push(Place {
+                    jet,
+                    forms,
+                    area_mm2: if inside { area } else { OUTSIDE * area },
+                    inside,
+                    u: spline.bases[0].at(u),
+                    v: spline.bases[1].at(v),
+                    along,
+                });
+            }
+            out
+        })
+        .collect()
+}

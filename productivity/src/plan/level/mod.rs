@@ -1,0 +1,195 @@
+//! Passes as level lines of a scalar field over the face.
+//!
+//! Whatever the field, one engine cuts its level lines into passes: [`reach`] asks the exact motion of the tool how far a
+//! pass covers the face to both sides, [`cells`] takes levels as far apart as that allows everywhere, [`trace`] finds
+//! all components of a level, and [`passes`] keeps what the trims need of them, in an order that saves links.
+
+mod band;
+mod cells;
+mod even;
+mod extended;
+mod field;
+mod fit;
+mod passes;
+mod reach;
+mod spline;
+mod trace;
+
+use super::line::Rectangle;
+use super::seat::Seat;
+use super::{Passes, PlanError, Task, Tolerance};
+use cells::Cells;
+use even::{Wish, even};
+use extended::Extended;
+use field::{Face, Height, ScalarField};
+use fit::Place;
+use osculate_geom::{Axis, Diagnostic, Unit3};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Strip widths that passes can run out over the border.
+const RUN_OUT: f64 = 0.7;
+
+/// Most of the scallop that the chords of the path may take.
+const CHORD: f64 = 0.08;
+
+/// The face continued over its border, for a field that does not close across the seam of the axis `cut`.
+fn continued<'a>(task: &Task<'a>, cut: Option<Axis>) -> Extended<'a> {
+    Extended::new(task.surface, RUN_OUT * even::widest_mm(task), cut, Seat::any(task).rough())
+}
+
+/// Passes along the level lines of a field over the continued face.
+fn level_passes(
+    task: &Task<'_>,
+    face: &Extended<'_>,
+    field: &dyn ScalarField,
+    name: &str,
+) -> Result<Passes, PlanError> {
+    // On hollow lines chords take from the scallop: points cost less than passes.
+    let chord_mm = task.tolerance.chord_mm.min(CHORD * task.tolerance.scallop_mm);
+    let task = &Task { surface: face, tolerance: Tolerance { chord_mm, ..task.tolerance }, ..*task };
+    (task.progress)(0.2);
+    let seat = Seat::any(task);
+    let over = Face { surface: task.surface, rectangle: Rectangle::of(task.surface), field };
+    let cells = Cells::new(&seat, over)?;
+    (task.progress)(0.4);
+    let levels = cells.levels(&seat)?;
+    (task.progress)(0.5);
+    let mut passes = passes::passes(&seat, &cells, &levels)?;
+    if passes.is_empty() {
+        return Err(PlanError::Nothing {
+            face: task.face.to_owned(),
+            why: format!("no {name} line crosses its inside; check the trim loops with inspect"),
+        });
+    }
+    for p in passes.iter_mut().flat_map(|p| &mut p.points) {
+        p.uv = face.inner(p.uv);
+    }
+    let mut out = Passes { passes, diagnostics: Vec::new() };
+    let (n, length) = (out.passes.len(), out.length_mm());
+    out.diagnostics.push(Diagnostic::note(
+        task.face,
+        format!("{n} {name} passes on {} levels, {length:.0} mm", levels.len()),
+    ));
+    Ok(out)
+}
+
+/// Plans passes in parallel planes; lead leans towards the feed on every pass.
+///
+/// # Errors
+/// [`PlanError`]; where the face lies level in the planes, [`PlanError::Contact`]: it has no lines there.
+pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
+    task.check()?;
+    level_passes(task, &continued(task, None), &Height(normal), "isoplanar")
+}
+
+/// Passes along the level lines of the even field with the shorter predicted path of those that start along u and along v.
+fn even_passes(
+    task: &Task<'_>,
+    name: &str,
+    wish: &dyn Fn(&[Place]) -> Vec<Wish>,
+    trusts: &[f64],
+) -> Result<Passes, PlanError> {
+    let along = |grows: Axis| {
+        let face = continued(task, Some(grows));
+        let even = even(&Task { surface: &face, ..*task }, grows, wish, trusts)?;
+        Ok((face, even))
+    };
+    let (face, even) = match (along(Axis::U), along(Axis::V)) {
+        (Ok(u), Ok(v)) => {
+            if v.1.length_mm < u.1.length_mm {
+                v
+            } else {
+                u
+            }
+        }
+        (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
+        (Err(e), Err(_)) => return Err(e),
+    };
+    let mut out = level_passes(task, &face, &even.field, name)?;
+    out.diagnostics.push(Diagnostic::note(
+        task.face,
+        format!(
+            "spacing of {name} passes uneven by {:.1} % (root mean square) after {} rounds",
+            100.0 * even.deviation,
+            even.rounds
+        ),
+    ));
+    Ok(out)
+}
+
+/// Plans passes with the same scallop all along: level lines of a field whose gradient is one over the strip width.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn isoscallop(task: &Task<'_>) -> Result<Passes, PlanError> {
+    task.check()?;
+    even_passes(task, "isoscallop", &|places| vec![Wish::default(); places.len()], &[0.0])
+}
+
+/// Plans passes across the direction of the widest strip, as far as they can also be evenly spaced; whatever of both gives
+/// the shorter path.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn streamline(task: &Task<'_>) -> Result<Passes, PlanError> {
+    task.check()?;
+    let wish = |places: &[Place]| places.par_iter().map(|p| widest(task, p)).collect();
+    even_passes(task, "streamline", &wish, &[0.0, 0.3, 1.0])
+}
+
+/// Directions in which widths are compared, over half a turn.
+const DIRECTIONS: u32 = 36;
+
+/// The direction of the widest strip, trusted by how much wider it is than the narrowest.
+fn widest(task: &Task<'_>, place: &Place) -> Wish {
+    let widths = (0..DIRECTIONS).map(|k| {
+        let (s, c) = (PI * f64::from(k) / f64::from(DIRECTIONS)).sin_cos();
+        ([c, s], place.width_mm(task, [c, s]))
+    });
+    let (mut most, mut least) = (([1.0, 0.0], 0.0), f64::INFINITY);
+    for (across, w) in widths {
+        if w > most.1 {
+            most = (across, w);
+        }
+        least = least.min(w);
+    }
+    Wish { across: most.0, trust: 1.0 - least / most.1 }
+}
+
+/// Difference of the principal curvatures, of its mean over the face, at which a line of curvature is trusted by half:
+/// towards an umbilic the lines run as their surroundings let them.
+const NEAR_UMBILIC: f64 = 0.15;
+
+/// Plans passes along the lines of the more convex curvature, so that the flatter or hollower one lies across [M86, 5C].
+///
+/// # Errors
+/// [`PlanError::Tool`] for a ball, which has no use of them; else [`PlanError`].
+pub fn curvature_5c(task: &Task<'_>) -> Result<Passes, PlanError> {
+    task.check()?;
+    if task.cutter.is_ball() {
+        return Err(PlanError::Tool { strategy: "curvature_5c", need: "toroidal or flat cutter" });
+    }
+    let difference = |p: &Place| {
+        let principal = p.forms.principal();
+        principal.k_max - principal.k_min
+    };
+    even_passes(task, "curvature_5c", &|places| places_by_difference(places, difference), &[1.0, 0.6])
+}
+
+/// The wish of every place for the flattest direction across, trusted by the difference of the principal curvatures.
+fn places_by_difference(places: &[Place], difference: impl Fn(&Place) -> f64) -> Vec<Wish> {
+    let inside = || places.iter().filter(|p| p.inside);
+    let area: f64 = inside().map(|p| p.area_mm2).sum();
+    let mean = inside().map(|p| difference(p) * p.area_mm2).sum::<f64>() / area;
+    let half = NEAR_UMBILIC * mean;
+    places
+        .iter()
+        .map(|p| {
+            let (d, across) = (difference(p), p.forms.principal().d_min);
+            let square = d * d + half * half;
+            let trust = if square > 0.0 { d * d / square } else { 0.0 };
+            Wish { across: p.forms.frame.map(|e| across.dot(&e)), trust }
+        })
+        .collect()
+}

@@ -1,0 +1,92 @@
+//! How far the pass on a level covers a place: the interval of levels whose strip takes it in.
+//!
+//! The pass of a level is followed exactly where it is nearest, at its foot steepest up or down from the place, and the
+//! swept tool is asked how far it comes down there, as for isoparametric passes.
+
+use super::field::{Face, Near};
+use crate::plan::Task;
+use crate::plan::seat::{Averaged, Seat};
+use crate::plan::walk::Walk;
+use osculate_geom::line::{LineError, SurfaceLine};
+use osculate_geom::{Relative, Uv};
+use osculate_tools::ContactMotion;
+use osculate_tools::strip::standoff;
+
+/// Accuracy of a reach, of itself.
+const TOLERANCE: f64 = 2e-3;
+/// A reach is looked for up to so many times the leading-order half width.
+const FURTHEST: f64 = 12.0;
+/// Leading-order half width at most, of the tool's radius.
+const WIDEST: f64 = 0.8;
+
+/// Reaches of the passes above and below a place, as differences of the field; None where the face ends before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reach {
+    pub up: Option<f64>,
+    pub down: Option<f64>,
+    /// The field's slope, 1/mm.
+    pub slope_per_mm: f64,
+}
+
+/// One place and one direction of feed.
+struct Asked<'a> {
+    task: &'a Task<'a>,
+    seat: &'a Seat<'a>,
+    face: Face<'a>,
+    at: Uv,
+    value: f64,
+    height_mm: f64,
+    reversed: bool,
+}
+
+impl Asked<'_> {
+    /// Standoff above the design height at the place, of the pass `by` away.
+    fn excess(&self, by: f64) -> Result<f64, LineError> {
+        let task = self.task;
+        let near = Near::below(self.face, self.at, self.value + by, self.reversed)?;
+        let averaged = Averaged { seat: self.seat, line: &near };
+        let line: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &near };
+        let motion = ContactMotion { line, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
+        let radius = task.cutter.radius_mm();
+        let reach = standoff(task.cutter, task.surface, self.at, &motion, 0.0, 0.05 * radius)?;
+        Ok(reach.map_or(radius, |r| r.at_mm - self.height_mm))
+    }
+
+    /// How far up (`sign` 1) or down (-1) passes cover the place, from a guess; None where there are none so far: the face
+    /// ends before, or the field turns back.
+    fn reach(&self, sign: f64, guess: f64) -> Option<f64> {
+        let walk = Walk { from: 0.0, to: FURTHEST * guess, guess: 2.0 * guess, tolerance: TOLERANCE * guess };
+        walk.last_below(|by| self.excess(sign * by)).ok()
+    }
+}
+
+/// The reaches around a place, both feeds along the level lines allowed for.
+///
+/// # Errors
+/// [`LineError`] where the level lines have no frame.
+pub(super) fn reach(seat: &Seat<'_>, face: Face<'_>, at: Uv) -> Result<Reach, LineError> {
+    let task = seat.task();
+    let (_, jet, phi) = face.at(at).ok_or(LineError::Outside { at })?;
+    let (_, slope) = Face::ascent(&jet, &phi)?;
+    let (frame, ..) = face.frame(at, false)?;
+    let forms = jet.forms()?;
+    let q = Relative::new(&forms, &task.lean.tool_curvature(task.cutter, &frame)).along(&frame.left);
+    let left_mm =
+        if seat.rough() { seat.left_over(&Near::below(face, at, phi.value, false)?, 0.0)? } else { 0.0 };
+    let height_mm = task.design_scallop_mm(frame.turn.dot(&frame.left), left_mm);
+    let radius = task.cutter.radius_mm();
+    let half = (2.0 * height_mm / q.max(1e-9)).sqrt().min(WIDEST * radius);
+    // A tool without side is the same both ways.
+    let ways: &[bool] = if task.cutter.is_ball() { &[false] } else { &[false, true] };
+    let least = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => Some(f64::min(a, b)),
+        (a, b) => a.or(b),
+    };
+    let mut out = Reach { up: None, down: None, slope_per_mm: slope };
+    for reversed in ways {
+        let asked = Asked { task, seat, face, at, value: phi.value, height_mm, reversed: *reversed };
+        out.up = least(out.up, asked.reach(1.0, half * slope));
+        out.down = least(out.down, asked.reach(-1.0, half * slope));
+    }
+    Ok(out)
+}

@@ -1,0 +1,128 @@
+//! Passes along level lines of a field: what they leave on analytic faces, by material removal, and spacings in closed form.
+#![allow(clippy::unwrap_used)]
+
+#[path = "common/cutting.rs"]
+mod cutting;
+
+use cutting::{cusps, motions, verdict};
+use osculate_geom::analytic::{Cylinder, Paraboloid, Plane, Sphere, Torus};
+use osculate_geom::{Domain, Flipped, Interval, Patch, Side, Surface, Unit3, Vec3};
+use osculate_productivity::plan::{Passes, Strategy, Task, Tolerance, run};
+use osculate_tools::removal::{Kind, Swept};
+use osculate_tools::{Cutter, CutterSpec, Lean};
+
+const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.004, chord_mm: 0.002 };
+
+fn ball(diameter_mm: f64) -> Cutter {
+    Cutter::try_from(CutterSpec::Ball { diameter_mm, length_mm: 50.0 }).unwrap()
+}
+
+/// A tool at a lead and what it must hold.
+struct Job {
+    cutter: Cutter,
+    lead_rad: f64,
+    tolerance: Tolerance,
+    /// Of the samples of the verification.
+    spacing_mm: f64,
+}
+
+impl Job {
+    fn new(cutter: Cutter, lead_rad: f64) -> Self {
+        Self { cutter, lead_rad, tolerance: TOLERANCE, spacing_mm: 0.2 }
+    }
+
+    fn plan(&self, surface: &dyn Surface, strategy: &Strategy) -> Passes {
+        let lean = Lean { lead_rad: self.lead_rad, tilt_rad: 0.0 };
+        let (cutter, tolerance) = (&self.cutter, self.tolerance);
+        let task = Task { surface, face: "F1", cutter, lean, tolerance, progress: &|_| {} };
+        run(&task, strategy).unwrap()
+    }
+
+    /// Plans and verifies; the motions come back.
+    fn holds(&self, name: &str, surface: &dyn Surface, strategy: &Strategy) -> Vec<Swept> {
+        let passes = self.plan(surface, strategy);
+        let moves = motions(surface, &passes.passes, &self.cutter);
+        let v = verdict(surface, &moves, &self.cutter, self.tolerance, self.spacing_mm);
+        println!(
+            "{name}: {} passes {:.0} mm, scallop {:.5}, gouge {:.5}",
+            passes.passes.len(),
+            passes.length_mm(),
+            v.scallop_max_mm,
+            v.gouge_max_mm
+        );
+        let worst = |kind: Kind| v.worst.iter().find(|w| w.kind == kind);
+        assert!(v.scallop_max_mm <= self.tolerance.scallop_mm, "{name}: {:?}", worst(Kind::Scallop));
+        assert!(v.gouge_max_mm <= self.tolerance.gouge_mm, "{name}: {:?}", worst(Kind::Gouge));
+        assert!(v.uncut_samples == 0, "{name}: {:?}", worst(Kind::Uncut));
+        moves
+    }
+}
+
+fn patch<S: Surface>(surface: S, u: [f64; 2], v: [f64; 2]) -> Patch<S> {
+    let domain = Domain { u: Interval::new(u[0], u[1]), v: Interval::new(v[0], v[1]) };
+    Patch { surface, domain, side: Side::Along }
+}
+
+fn isoplanar(normal: [f64; 3]) -> Strategy {
+    Strategy::Isoplanar { normal: Unit3::new_normalize(Vec3::from(normal)) }
+}
+
+#[test]
+fn parallel_planes_on_a_plane_at_any_angle() {
+    let i = Interval::new(0.0, 12.0);
+    let face = Plane::new(Domain { u: i, v: i });
+    let job = Job::new(ball(6.0), 0.1);
+    for normal in [[0.0, 1.0, 0.0], [1.0, 2.0, 0.0], [-1.0, 0.9, 0.3]] {
+        job.holds("plane", &face, &isoplanar(normal));
+        let passes = job.plan(&face, &isoplanar(normal)).passes;
+        // On a plane the ball leaves R - sqrt(R^2 - (s/2)^2) between passes s apart.
+        let h: f64 = 0.98 * TOLERANCE.scallop_mm;
+        let spacing = 2.0 * (h * (6.0 - h)).sqrt();
+        let d = Vec3::new(normal[0], normal[1], 0.0).normalize();
+        let mut heights: Vec<f64> = passes.iter().map(|p| p.points[1].point.coords.dot(&d)).collect();
+        heights.sort_by(f64::total_cmp);
+        for w in heights[..heights.len() - 2].windows(2) {
+            assert!(((w[1] - w[0]) / spacing - 1.0).abs() < 0.02, "{w:?} against {spacing}");
+        }
+    }
+}
+
+#[test]
+fn parallel_planes_on_round_faces() {
+    let cylinder = patch(Cylinder::new(15.0, Interval::new(0.0, 10.0)).unwrap(), [0.3, 1.5], [0.0, 10.0]);
+    Job::new(ball(6.0), 0.1).holds("cylinder, along", &cylinder, &isoplanar([1.0, -1.0, 0.0]));
+    Job::new(ball(6.0), 0.1).holds("cylinder, around", &cylinder, &isoplanar([0.0, 0.0, 1.0]));
+    Job::new(ball(6.0), 0.1).holds("cylinder, slanted", &cylinder, &isoplanar([-0.5, 0.5, 1.0]));
+    let whole = Cylinder::new(8.0, Interval::new(0.0, 5.0)).unwrap();
+    Job::new(ball(6.0), 0.1).holds("whole cylinder, loops", &whole, &isoplanar([0.0, 0.0, 1.0]));
+    let cap = patch(Sphere::new(20.0).unwrap(), [-0.3, 0.4], [-0.2, 0.4]);
+    Job::new(ball(8.0), 0.1).holds("sphere", &cap, &isoplanar([0.0, 0.0, 1.0]));
+    let groove = Flipped(patch(Torus::new(200.0, 60.0).unwrap(), [0.0, 0.1], [2.9, 3.3]));
+    let spec = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 2.0, length_mm: 60.0 };
+    Job::new(Cutter::try_from(spec).unwrap(), 0.25).holds("groove", &groove, &isoplanar([0.0, 0.1, 1.0]));
+}
+
+#[test]
+fn even_passes_on_round_and_free_faces() {
+    let saddle = Paraboloid::new([0.01, -0.006], 8.0).unwrap();
+    for strategy in [Strategy::Isoscallop, Strategy::Streamline] {
+        let job = Job::new(ball(6.0), 0.1);
+        let moves = job.holds(strategy.name(), &saddle, &strategy);
+        let used = cusps(&saddle, &moves, &job.cutter, TOLERANCE.scallop_mm);
+        assert!(used > 0.8, "{used}");
+    }
+}
+
+/// The faces of M86 with umbilics, with a larger tolerance so that the tests stay short.
+#[test]
+fn umbilics_leave_no_hole() {
+    let spec = CutterSpec::Toroidal { diameter_mm: 8.0, corner_radius_mm: 2.0, length_mm: 60.0 };
+    let tolerance = Tolerance { scallop_mm: 0.06, gouge_mm: 0.01, chord_mm: 0.01 };
+    let job = Job { cutter: Cutter::try_from(spec).unwrap(), lead_rad: 0.3, tolerance, spacing_mm: 0.5 };
+    for k in [3, 4] {
+        let face = osculate_surfaces::gallery::m86(k);
+        for strategy in [Strategy::Isoscallop, Strategy::Curvature5c] {
+            job.holds(&format!("m86-{k} {}", strategy.name()), &face, &strategy);
+        }
+    }
+}
