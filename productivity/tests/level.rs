@@ -43,13 +43,6 @@ impl Job {
         let passes = self.plan(surface, strategy);
         let moves = motions(surface, &passes.passes, &self.cutter);
         let v = verdict(surface, &moves, &self.cutter, self.tolerance, self.spacing_mm);
-        println!(
-            "{name}: {} passes {:.0} mm, scallop {:.5}, gouge {:.5}",
-            passes.passes.len(),
-            passes.length_mm(),
-            v.scallop_max_mm,
-            v.gouge_max_mm
-        );
         let worst = |kind: Kind| v.worst.iter().find(|w| w.kind == kind);
         assert!(v.scallop_max_mm <= self.tolerance.scallop_mm, "{name}: {:?}", worst(Kind::Scallop));
         assert!(v.gouge_max_mm <= self.tolerance.gouge_mm, "{name}: {:?}", worst(Kind::Gouge));

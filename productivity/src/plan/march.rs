@@ -9,7 +9,7 @@ pub(super) struct Grid<'a> {
     pub count: [usize; 2],
     /// NaN where there is no value.
     pub values: &'a [f64],
-    /// Whether the last node along an index is the first again.
+    /// Whether the last node along an index is the first again, with the same value to the last bit.
     pub closes: [bool; 2],
 }
 
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn a_line_around_a_tube_closes_over_the_seam() {
         let count = [12, 8];
-        let wave = values(count, |x, y| y + (x * std::f64::consts::TAU / 12.0).sin());
+        let wave = values(count, |x, y| y + ((x % 12.0) * std::f64::consts::TAU / 12.0).sin());
         let grid = Grid { count, values: &wave, closes: [true, false] };
         let lines = grid.lines(4.0, |_, _| true);
         assert_eq!((lines.len(), lines[0].1), (1, true));

@@ -47,7 +47,7 @@ impl Band {
                 self.entries[a - j] = if j < i {
                     e / self.entries[j * w]
                 } else {
-                    if !(e > LOST * self.entries[a - j].abs()) {
+                    if e.is_nan() || e <= LOST * self.entries[a - j].abs() {
                         return Err(NotDefinite);
                     }
                     e.sqrt()

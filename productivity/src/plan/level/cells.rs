@@ -96,7 +96,9 @@ fn values(face: &Face<'_>, count: [usize; 2]) -> Vec<f64> {
     (0..(count[0] + 1) * (count[1] + 1))
         .into_par_iter()
         .map(|k| {
-            let (i, j) = (k / (count[1] + 1), k % (count[1] + 1));
+            // On a seam both sides have the value of the first, rounding and all.
+            let seam = |i: usize, axis: usize| if face.rectangle.closes[axis] { i % count[axis] } else { i };
+            let (i, j) = (seam(k / (count[1] + 1), 0), seam(k % (count[1] + 1), 1));
             face.at(place(face, count, i as f64, j as f64)).map_or(f64::NAN, |(.., phi)| phi.value)
         })
         .collect()

@@ -54,7 +54,7 @@ pub(super) fn width_mm(task: &Task<'_>, jet: &Jet2, forms: &Forms, c: [f64; 2]) 
     let part_per_mm = forms.normal_curvature(&left);
     let section =
         Section { part_per_mm, tool_per_mm: q - part_per_mm, scallop_mm: task.tolerance.scallop_mm };
-    if !(q > 0.0) {
+    if q.is_nan() || q <= 0.0 {
         return most;
     }
     width_37(section).unwrap_or(most).min(most)

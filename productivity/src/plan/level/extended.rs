@@ -78,7 +78,7 @@ fn margin(base: &dyn Surface, axis: Axis, t: f64, margin_mm: f64) -> f64 {
     let area = |jet: &Jet2| jet.du.cross(&jet.dv).norm();
     let thickest = (0..=LOOKS).map(|k| area(&jet(i.at(0.5), k))).fold(0.0, f64::max);
     let border: Vec<Jet2> = (0..=LOOKS).map(|k| jet(t, k)).collect();
-    if border.iter().any(|j| !(area(j) > THIN * thickest)) {
+    if border.iter().map(area).any(|a| a.is_nan() || a <= THIN * thickest) {
         return 0.0;
     }
     let speed = border.iter().map(|j| if axis == Axis::U { j.du.norm() } else { j.dv.norm() });
