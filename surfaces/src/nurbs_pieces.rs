@@ -83,16 +83,23 @@ impl Pieces {
             let ends = knots[a].breaks().windows(2);
             ends.map(|w| Frame { lo: w[0], hi: w[1], rate: 1.0 / (w[1] - w[0]) }).collect()
         });
+        let terms = [knots[0].degree() + 1, knots[1].degree() + 1];
+        let count = powers[0].len() * powers[1].len();
         let mut pieces = Self {
-            terms: [knots[0].degree() + 1, knots[1].degree() + 1],
+            terms,
             frames,
             rational,
-            heads: Vec::new(),
-            coefficients: Vec::new(),
+            heads: Vec::with_capacity(count),
+            coefficients: Vec::with_capacity(count * terms[0] * terms[1]),
         };
         // Equal weights divide out.
-        let plain = Net { count: net.count, points: net.points.clone(), weights: None };
-        let net = if rational { net } else { &plain };
+        let plain: Net;
+        let net = if rational || net.weights.is_none() {
+            net
+        } else {
+            plain = Net { count: net.count, points: net.points.clone(), weights: None };
+            &plain
+        };
         for (su, pu) in powers[0].iter().enumerate() {
             for (sv, pv) in powers[1].iter().enumerate() {
                 let (origin, sums) = piece_powers(knots, net, [su, sv], [pu, pv]);
@@ -376,9 +383,10 @@ pub(crate) fn piece_powers(
         Vector4::new(d.x, d.y, d.z, w)
     };
     let mut sums = vec![Vector4::zeros(); nu * nv];
+    let mut row = vec![Vector4::zeros(); nv];
     for i in 0..nu {
         // The row of poles along v, in powers of y.
-        let mut row = vec![Vector4::zeros(); nv];
+        row.fill(Vector4::zeros());
         for (j, polynomial) in powers[1].iter().enumerate() {
             let p = pole(i, j);
             for (c, sum) in polynomial.iter().zip(&mut row) {

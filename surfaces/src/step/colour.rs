@@ -10,7 +10,7 @@ const MAX_CHAIN: usize = 16;
 /// Colours by the number of the styled item.
 pub(crate) fn colours(graph: &Graph<'_>) -> HashMap<u64, Colour> {
     let mut found = HashMap::new();
-    for record in graph.records() {
+    for record in graph.structure() {
         let Some((_, args)) = record.any(&["STYLED_ITEM", "OVER_RIDING_STYLED_ITEM"]) else { continue };
         // Complex records leave the name to REPRESENTATION_ITEM: (styles, item) at the beginning or behind a name.
         let from = usize::from(args.len() > 2);

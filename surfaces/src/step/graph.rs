@@ -74,9 +74,13 @@ impl<'t> Graph<'t> {
         self.position(id).unwrap_or(usize::MAX)
     }
 
-    /// All records in file order.
-    pub(crate) fn records(&self) -> impl Iterator<Item = Record<'_>> {
-        (0..self.order.len()).map(|k| self.at(k))
+    /// The records that are looked for by keyword, in file order: all but points, edges and the like.
+    pub(crate) fn structure(&self) -> impl Iterator<Item = Record<'_>> {
+        self.order.iter().filter_map(|(chunk, entry)| {
+            let chunk = &self.chunks[*chunk as usize];
+            let entry = chunk.entries[*entry as usize];
+            (!entry.bulk).then(|| Record::new(self.text, chunk, entry))
+        })
     }
 
     /// Number of records.

@@ -59,7 +59,21 @@ pub(crate) struct Entry {
     pub(crate) at: u32,
     /// Range of its parts.
     pub(crate) parts: [u32; 2],
+    /// Whether it is of a [`BULK`] kind.
+    pub(crate) bulk: bool,
 }
+
+/// Kinds that are only ever reached by reference, and make up most of a file.
+const BULK: [&str; 8] = [
+    "CARTESIAN_POINT",
+    "DIRECTION",
+    "VECTOR",
+    "LINE",
+    "AXIS2_PLACEMENT_3D",
+    "VERTEX_POINT",
+    "EDGE_CURVE",
+    "ORIENTED_EDGE",
+];
 
 /// What stands between the records.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,6 +185,10 @@ fn chunk(text: &[u8], start: usize) -> Chunk {
         scopes: Vec::new(),
     };
     while reader.statement(text) {}
+    // The records stay until the last face is made.
+    reader.out.atoms.shrink_to_fit();
+    reader.out.parts.shrink_to_fit();
+    reader.out.entries.shrink_to_fit();
     reader.out
 }
 
@@ -195,7 +213,7 @@ impl Reader<'_> {
             Ok(Token::Id(id)) => {
                 // The offset of the sign: lines are told by it.
                 let sign = text[..at].iter().rposition(|c| matches!(c, b'#' | b'@')).unwrap_or(at);
-                self.record(id, sign)
+                self.record(text, id, sign)
             }
             Ok(Token::Word(word)) if word.of(text).eq_ignore_ascii_case(b"ENDSCOPE") => {
                 let Some((id, sign)) = self.scopes.pop() else {
@@ -206,7 +224,7 @@ impl Reader<'_> {
                     return self.skip(at);
                 };
                 self.export_list();
-                self.body(id, sign)
+                self.body(text, id, sign)
             }
             Ok(Token::Word(word)) => {
                 self.event(Event::Word(word), word.at as usize);
@@ -253,19 +271,23 @@ impl Reader<'_> {
     }
 
     /// The rest of an instance after its number.
-    fn record(&mut self, id: u64, sign: usize) -> bool {
+    fn record(&mut self, text: &[u8], id: u64, sign: usize) -> bool {
         match self.lexer.next() {
-            Ok(Token::Equals) => self.body(id, sign),
+            Ok(Token::Equals) => self.body(text, id, sign),
             other => self.fault(id, sign, fault("'='", other)),
         }
     }
 
-    fn body(&mut self, id: u64, sign: usize) -> bool {
+    fn body(&mut self, text: &[u8], id: u64, sign: usize) -> bool {
         let (parts, atoms) = (self.out.parts.len(), self.out.atoms.len());
         match self.parts() {
             Ok(true) => {
-                let entry = Entry { id, at: sign as u32, parts: [parts as u32, self.out.parts.len() as u32] };
-                self.out.entries.push(entry);
+                let bulk = match &self.out.parts[parts..] {
+                    [one] => BULK.iter().any(|b| one.word.of(text).eq_ignore_ascii_case(b.as_bytes())),
+                    _ => false,
+                };
+                let parts = [parts as u32, self.out.parts.len() as u32];
+                self.out.entries.push(Entry { id, at: sign as u32, parts, bulk });
                 true
             }
             Ok(false) => {

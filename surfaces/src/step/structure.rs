@@ -74,7 +74,7 @@ impl<'g> Web<'g> {
         let mut relations = Vec::new();
         let mut definitions = Vec::new();
         let mut uses: HashMap<u64, u64> = HashMap::new();
-        for record in graph.records() {
+        for record in graph.structure() {
             if record.part_ending("REPRESENTATION_RELATIONSHIP").is_some()
                 || record.part_ending("RELATIONSHIP_WITH_TRANSFORMATION").is_some()
             {

@@ -30,7 +30,7 @@ impl Contexts {
     /// Reads all contexts.
     pub(crate) fn read(graph: &Graph<'_>) -> Self {
         let mut result = Self::default();
-        for record in graph.records() {
+        for record in graph.structure() {
             if let Some(args) = record.part("GLOBAL_UNIT_ASSIGNED_CONTEXT")
                 && let Some((units, name)) = assigned(graph, &record, &arg(&args, 0).list())
             {

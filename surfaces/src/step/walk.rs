@@ -171,7 +171,7 @@ impl Walk<'_, '_> {
         let oriented = ["ORIENTED_CLOSED_SHELL", "ORIENTED_OPEN_SHELL", "ORIENTED_FACE"];
         let stages: [&[&'static str]; 4] = [&CONTAINERS[..5], &oriented, &CONTAINERS[5..], &FACES];
         for stage in stages {
-            for record in graph.records().filter(|r| r.any(stage).is_some()) {
+            for record in graph.structure().filter(|r| r.any(stage).is_some()) {
                 let inner = if stage == oriented { record.references().next() } else { Some(record.id()) };
                 let known = inner.is_none_or(|i| self.items.contains(&i) || self.seen.contains(&i));
                 if !known && self.room() {

@@ -28,7 +28,7 @@ fn simple_and_complex_records() {
 #[test]
 fn damage_is_skipped_and_told() {
     let g = read("#1=A(1;#2=A(2);\n#2=A(3);#3=;#4=A((?));#5=A('x\n);\n#6=A(5);END-ISO-10303-21;");
-    let ids: Vec<u64> = g.records().map(|r| r.id()).collect();
+    let ids: Vec<u64> = g.structure().map(|r| r.id()).collect();
     assert_eq!(ids, [2, 6]);
     assert_eq!(arg(&g.get(2).unwrap().part("A").unwrap(), 0).number(), Some(2.0));
     let said: Vec<String> = g.diagnostics.iter().map(ToString::to_string).collect();
