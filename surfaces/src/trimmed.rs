@@ -63,7 +63,7 @@ pub enum TrimError {
         size_mm: f64,
     },
     /// The loops enclose nothing.
-    #[error("the {loops} loops enclose no area in the parameter rectangle")]
+    #[error("its loops ({loops}) enclose no area of the surface")]
     Empty {
         /// How many.
         loops: usize,

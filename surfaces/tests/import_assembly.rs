@@ -6,7 +6,7 @@ mod part21;
 
 use osculate_geom::Point3;
 use osculate_surfaces::{Colour, Part, step};
-use part21::{SQUARE, circle, file, polygon};
+use part21::{SQUARE, circle, file, numbered, polygon};
 
 /// A square face in a shell model #410, and the placements #500 to #504: the origin, 20 to the right, a quarter turn
 /// about z at (0, 40, 0), a scaled and a mirrored operator.
@@ -90,18 +90,12 @@ fn assemblies_nest_and_the_product_structure_decides_the_sense() {
     assert_eq!(middles(&read(&nested)), [[5, 5, 0], [25, 5, 0], [-5, 45, 0], [-5, 65, 0]]);
     // Written the other way round: the first representation is the assembly, as the products say.
     let products = |n: u64, rep: u64| {
-        format!(
-            "#{n}=PRODUCT('id{n}','part {n}','',());#{}=PRODUCT_DEFINITION_FORMATION('','',#{n});\
-             #{}=PRODUCT_DEFINITION('','',#{},$);#{}=PRODUCT_DEFINITION_SHAPE('','',#{});\
-             #{}=SHAPE_DEFINITION_REPRESENTATION(#{},#{rep});",
-            n + 1,
-            n + 2,
-            n + 1,
-            n + 3,
-            n + 2,
-            n + 4,
-            n + 3
-        )
+        let records = format!(
+            "@0=PRODUCT('id{n}','part {n}','',());@1=PRODUCT_DEFINITION_FORMATION('','',@0);\
+             @2=PRODUCT_DEFINITION('','',@1,$);@3=PRODUCT_DEFINITION_SHAPE('','',@2);\
+             @4=SHAPE_DEFINITION_REPRESENTATION(@3,#{rep});"
+        );
+        numbered(n, &records)
     };
     let turned = format!(
         "{}#710=SHAPE_REPRESENTATION('',(#500),#3);{}{}#720=ITEM_DEFINED_TRANSFORMATION('','',#501,#500);\
@@ -248,5 +242,26 @@ fn bounded_surfaces_of_geometric_sets_are_faces() {
     for (face, want) in part.faces.iter().zip(want) {
         part21::assert_area(face, want);
         assert!(!face.oriented);
+    }
+}
+
+#[test]
+fn senses_say_which_part_of_a_torus_is_meant() {
+    // Ways of u and v: from the first value to the second, up where the flag is true and down where it is false.
+    let cases = [("5.5,.5,.5,4.5", ".T.,.T."), ("5.5,.5,.5,4.5", ".T.,.F."), (".5,5.5,5.5,.5", ".F.,.T.")];
+    let tau = std::f64::consts::TAU;
+    let over_seam = [5.5, 0.5 + tau];
+    let ways = [(over_seam, [0.5, 4.5]), (over_seam, [4.5, 0.5 + tau]), (over_seam, over_seam)];
+    for ((values, senses), (u, v)) in cases.into_iter().zip(ways) {
+        let part = read(&format!(
+            "#700=TOROIDAL_SURFACE('',#7,3.,1.);#701=RECTANGULAR_TRIMMED_SURFACE('',#700,{values},{senses});\
+             #702=GEOMETRIC_SET('',(#701));#703=SHAPE_REPRESENTATION('',(#702),#3);"
+        ));
+        assert_eq!(part.faces.len(), 1, "{}", said(&part));
+        // The integral of 3 + cos v.
+        part21::assert_area(
+            &part.faces[0],
+            (u[1] - u[0]) * (3.0 * (v[1] - v[0]) + f64::sin(v[1]) - f64::sin(v[0])),
+        );
     }
 }

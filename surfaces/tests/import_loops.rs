@@ -6,7 +6,7 @@
 mod part21;
 
 use osculate_surfaces::{Face, FaceKind, step};
-use part21::{AREA, file};
+use part21::{AREA, file, numbered, triple};
 use std::f64::consts::PI;
 
 fn only(data: &str) -> (Face, Vec<String>) {
@@ -18,30 +18,18 @@ fn only(data: &str) -> (Face, Vec<String>) {
 
 /// Records of a vertex, `n` its point and `n + 1` the vertex.
 fn vertex(n: u64, p: [f64; 3]) -> String {
-    let [x, y, z] = p;
-    format!("#{n}=CARTESIAN_POINT('',({x:?},{y:?},{z:?}));\n#{}=VERTEX_POINT('',#{n});\n", n + 1)
+    numbered(n, &format!("@0=CARTESIAN_POINT('',{});\n@1=VERTEX_POINT('',@0);\n", triple(p)))
 }
 
 /// Records of an edge on a circle about the origin with the given axis and start direction, and its use: the curve is
 /// `n + 3`, the edge `n + 4`, its oriented use `n + 5`.
 fn arc(n: u64, axis: [f64; 3], x: [f64; 3], radius: f64, ends: [u64; 2], forward: bool) -> String {
-    let [d, e] = [axis, x].map(|d| format!("({:?},{:?},{:?})", d[0], d[1], d[2]));
-    let sense = if forward { ".T." } else { ".F." };
-    format!(
-        "#{n}=DIRECTION('',{d});\n#{}=DIRECTION('',{e});\n#{}=AXIS2_PLACEMENT_3D('',#6,#{n},#{});\n\
-         #{}=CIRCLE('',#{},{radius:?});\n#{}=EDGE_CURVE('',#{},#{},#{},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},{sense});\n",
-        n + 1,
-        n + 2,
-        n + 1,
-        n + 3,
-        n + 2,
-        n + 4,
-        ends[0],
-        ends[1],
-        n + 3,
-        n + 5,
-        n + 4,
-    )
+    let frame = format!(
+        "@0=DIRECTION('',{});\n@1=DIRECTION('',{});\n@2=AXIS2_PLACEMENT_3D('',#6,@0,@1);\n",
+        triple(axis),
+        triple(x)
+    );
+    part21::arc(n, &frame, radius, ends, [true, forward])
 }
 
 /// A face over a loop of oriented edges on the surface of number 900.
@@ -196,22 +184,11 @@ fn the_inside_of_a_spindle_torus() {
     // down at x = -1 and up at x = 1. The natural normal points to the axis, so that is the half with y > 0.
     let z = 3.0_f64.sqrt();
     let meridian = |n: u64, centre: f64, ends: [u64; 2]| {
-        format!(
-            "#{n}=CARTESIAN_POINT('',({centre:?},0.,0.));\n#{}=DIRECTION('',(0.,1.,0.));\n\
-             #{}=AXIS2_PLACEMENT_3D('',#{n},#{},#5);\n#{}=CIRCLE('',#{},2.);\n#{}=EDGE_CURVE('',#{},#{},#{},.F.);\n\
-             #{}=ORIENTED_EDGE('',*,*,#{},.T.);\n",
-            n + 1,
-            n + 2,
-            n + 1,
-            n + 3,
-            n + 2,
-            n + 4,
-            ends[0],
-            ends[1],
-            n + 3,
-            n + 5,
-            n + 4,
-        )
+        let frame = format!(
+            "@0=CARTESIAN_POINT('',({centre:?},0.,0.));\n@1=DIRECTION('',(0.,1.,0.));\n\
+             @2=AXIS2_PLACEMENT_3D('',@0,@1,#5);\n"
+        );
+        part21::arc(n, &frame, 2.0, ends, [false, true])
     };
     let data = vertex(10, [0.0, 0.0, z])
         + &vertex(20, [0.0, 0.0, -z])

@@ -14,7 +14,7 @@ use super::walk::{Occurrence, occurrences};
 use crate::part::{Face, FaceKind, Format, Leftovers, Part, PlaceError};
 use crate::trim::boundary::{Boundary, Built, build};
 use crate::trim::curve::{Curve, Line, Piece};
-use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface};
+use osculate_geom::{Box3, Diagnostic, Interval, Point3, Side, Surface};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -258,15 +258,19 @@ fn rectangle(geometry: &Geometry<'_>, id: u64, args: &Args<'_>) -> Result<Vec<Bo
     for (k, t) in at.iter_mut().enumerate() {
         *t = geometry.number(id, args, 2 + k)? * scale[k / 2];
     }
-    let [u0, mut u1, v0, mut v1] = at;
-    // Closed directions are passed in their own sense: over the seam where the second value is the smaller one.
     let domain = surface.domain();
-    if domain.u.periodic && u1 <= u0 {
-        u1 += domain.u.length();
-    }
-    if domain.v.periodic && v1 <= v0 {
-        v1 += domain.v.length();
-    }
+    // The senses say on which way a closed direction is passed from the first value to the second (ISO 10303-42,
+    // rectangular_trimmed_surface); elsewhere only one way leads there.
+    let range = |k: usize, interval: Interval| {
+        let [first, second] = [at[2 * k], at[2 * k + 1]];
+        let forward = arg(args, 6 + k).flag().unwrap_or(true);
+        if !interval.periodic {
+            return [first.min(second), first.max(second)];
+        }
+        let [lo, hi] = if forward { [first, second] } else { [second, first] };
+        [lo, if hi <= lo { hi + interval.length() } else { hi }]
+    };
+    let ([u0, u1], [v0, v1]) = (range(0, domain.u), range(1, domain.v));
     let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)].map(|(u, v)| Point3::new(u, v, 0.0));
     let side = |k: usize| Line::segment(corners[k], corners[(k + 1) % 4]);
     let piece = |k| Boundary::Parameter { piece: Piece { curve: Arc::new(side(k)), ends: [0.0, 1.0] } };

@@ -24,37 +24,40 @@ pub fn file(data: &str) -> String {
     )
 }
 
+/// Records whose numbers are written as `@0`, `@1`, ...: they count from `n` on.
+pub fn numbered(n: u64, records: &str) -> String {
+    let mut pieces = records.split('@');
+    let mut out = pieces.next().unwrap().to_owned();
+    for piece in pieces {
+        let digits = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
+        out += &format!("#{}{}", n + piece[..digits].parse::<u64>().unwrap(), &piece[digits..]);
+    }
+    out
+}
+
+/// A list of numbers as a point or direction has it.
+pub fn triple([x, y, z]: [f64; 3]) -> String {
+    format!("({x:?},{y:?},{z:?})")
+}
+
 /// Records of straight edges around points, from number `n` on, and their loop's number.
 pub fn polygon(n: u64, points: &[[f64; 3]]) -> (String, u64) {
     let mut out = String::new();
     let k = points.len() as u64;
     for (i, p) in points.iter().enumerate() {
-        let at = n + 10 * i as u64;
         let next = n + 10 * ((i as u64 + 1) % k);
         let q = points[(i + 1) % points.len()];
         let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
-        out += &format!(
-            "#{at}=CARTESIAN_POINT('',({:?},{:?},{:?}));\n#{}=VERTEX_POINT('',#{at});\n\
-             #{}=DIRECTION('',({:?},{:?},{:?}));\n#{}=VECTOR('',#{},1.);\n#{}=LINE('',#{at},#{});\n\
-             #{}=EDGE_CURVE('',#{},#{},#{},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},.T.);\n",
-            p[0],
-            p[1],
-            p[2],
-            at + 1,
-            at + 2,
-            d[0],
-            d[1],
-            d[2],
-            at + 3,
-            at + 2,
-            at + 4,
-            at + 3,
-            at + 5,
-            at + 1,
-            next + 1,
-            at + 4,
-            at + 6,
-            at + 5,
+        out += &numbered(
+            n + 10 * i as u64,
+            &format!(
+                "@0=CARTESIAN_POINT('',{});\n@1=VERTEX_POINT('',@0);\n@2=DIRECTION('',{});\n\
+                 @3=VECTOR('',@2,1.);\n@4=LINE('',@0,@3);\n@5=EDGE_CURVE('',@1,#{},@4,.T.);\n\
+                 @6=ORIENTED_EDGE('',*,*,@5,.T.);\n",
+                triple(*p),
+                triple(d),
+                next + 1,
+            ),
         );
     }
     let edges: Vec<String> = (0..k).map(|i| format!("#{}", n + 10 * i + 6)).collect();
@@ -67,26 +70,26 @@ pub fn polygon(n: u64, points: &[[f64; 3]]) -> (String, u64) {
 pub fn circle(n: u64, centre: [f64; 3], radius: f64, forward: bool) -> String {
     let [x, y, z] = centre;
     let sense = if forward { ".T." } else { ".F." };
-    format!(
-        "#{n}=CARTESIAN_POINT('',({x:?},{y:?},{z:?}));\n#{}=AXIS2_PLACEMENT_3D('',#{n},#4,#5);\n\
-         #{}=CIRCLE('',#{},{radius:?});\n#{}=CARTESIAN_POINT('',({:?},{y:?},{z:?}));\n#{}=VERTEX_POINT('',#{});\n\
-         #{}=EDGE_CURVE('',#{},#{},#{},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},{sense});\n#{}=EDGE_LOOP('',(#{}));\n",
-        n + 1,
-        n + 2,
-        n + 1,
-        n + 3,
-        x + radius,
-        n + 4,
-        n + 3,
-        n + 5,
-        n + 4,
-        n + 4,
-        n + 2,
-        n + 6,
-        n + 5,
-        n + 9,
-        n + 6,
-    )
+    let records = format!(
+        "@0=CARTESIAN_POINT('',{});\n@1=AXIS2_PLACEMENT_3D('',@0,#4,#5);\n@2=CIRCLE('',@1,{radius:?});\n\
+         @3=CARTESIAN_POINT('',{});\n@4=VERTEX_POINT('',@3);\n@5=EDGE_CURVE('',@4,@4,@2,.T.);\n\
+         @6=ORIENTED_EDGE('',*,*,@5,{sense});\n@9=EDGE_LOOP('',(@6));\n",
+        triple(centre),
+        triple([x + radius, y, z]),
+    );
+    numbered(n, &records)
+}
+
+/// Records of an edge on a circle and its use: `@3` is the curve, over a frame that the records of `frame` end with as
+/// `@2`, `@4` the edge with the given sense, `@5` its oriented use.
+pub fn arc(n: u64, frame: &str, radius: f64, ends: [u64; 2], senses: [bool; 2]) -> String {
+    let [edge, used] = senses.map(|forward| if forward { ".T." } else { ".F." });
+    let records = format!(
+        "{frame}@3=CIRCLE('',@2,{radius:?});\n@4=EDGE_CURVE('',#{},#{},@3,{edge});\n\
+         @5=ORIENTED_EDGE('',*,*,@4,{used});\n",
+        ends[0], ends[1],
+    );
+    numbered(n, &records)
 }
 
 pub fn only_face(text: &str) -> Face {
