@@ -5,7 +5,7 @@ use crate::builtin::{self, Builtin};
 use crate::failure::{Failure, beside, read};
 use crate::job::{FaceChoice, Job, Normals};
 use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
-use osculate_surfaces::{Face, NurbsSurface, TrimmedSurface, orient, tessellate};
+use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface, orient, tessellate};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub struct LoadedFace {
 
 /// A part ready for work.
 pub struct Loaded {
-    /// `step`, `iges`, `patches`, `sections` or `builtin`.
+    /// `step`, `iges`, `patches`, `sections`, `json` or `builtin`.
     pub format: &'static str,
     /// The file's unit.
     pub unit: String,
@@ -43,8 +43,8 @@ pub struct Loaded {
     pub schema: String,
     /// Faces.
     pub faces: Vec<LoadedFace>,
-    /// What the file has that is not used: kind, count, why.
-    pub not_used: Vec<(String, usize, String)>,
+    /// What the file has that is not used.
+    pub not_used: Vec<NotUsed>,
     /// The message for a file that ends too early.
     pub truncated: Option<String>,
     /// Findings.
@@ -126,6 +126,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         osculate_surfaces::Format::Iges => "iges",
         osculate_surfaces::Format::Patches => "patches",
         osculate_surfaces::Format::Sections => "sections",
+        osculate_surfaces::Format::Json => "json",
     };
     let faces = part
         .faces
@@ -147,7 +148,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         unit: part.unit,
         schema: part.schema,
         faces,
-        not_used: part.not_used.into_iter().map(|n| (n.kind, n.count, n.why)).collect(),
+        not_used: part.not_used,
         truncated: part.truncated.then(|| {
             let what =
                 "is truncated: faces may be missing (inspect shows what was read); export or copy it again";

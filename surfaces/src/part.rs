@@ -6,8 +6,9 @@
 use crate::trim::carrier::FaceSurface;
 use crate::trim::curve::Motion;
 use crate::trimmed::TrimmedSurface;
-use crate::{iges, patches, sections, step};
+use crate::{iges, json, patches, sections, step};
 use osculate_geom::{Axis, Box3, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
+use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
@@ -22,6 +23,8 @@ pub enum Format {
     Patches,
     /// Sections of points as text.
     Sections,
+    /// The JSON of [`json`].
+    Json,
 }
 
 impl fmt::Display for Format {
@@ -31,6 +34,7 @@ impl fmt::Display for Format {
             Self::Iges => "IGES",
             Self::Patches => "Bezier patches",
             Self::Sections => "point sections",
+            Self::Json => "JSON of faces",
         })
     }
 }
@@ -240,6 +244,17 @@ impl Face {
         range
     }
 
+    /// About how much memory a copy at another place takes, bytes: poles and polynomial pieces of a spline, and the loops'
+    /// points, which edges and trims keep.
+    pub(crate) fn copy_bytes(&self) -> usize {
+        let spline = self.degree().zip(self.pole_count()).map_or(0, |([p, q], [n, m])| {
+            let pieces = n.saturating_sub(p) * m.saturating_sub(q);
+            32 * (n * m + pieces * (p + 1) * (q + 1))
+        });
+        let loops: usize = self.surface.edges().iter().map(|e| 512 + 64 * e.points.len()).sum();
+        1024 + spline + loops
+    }
+
     /// The face at a place: edges are shared with the other faces of the same place number.
     pub(crate) fn placed(&self, motion: Option<&Motion>, place: u64) -> Result<Self, PlaceError> {
         let mut face = self.clone();
@@ -325,7 +340,7 @@ pub enum ImportError {
     #[error(
         "no format that is read: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
          in column 73 of its lines, a set of Bezier patches begins with their number and a line of vertex numbers, \
-         sections are rows of x y z"
+         sections are rows of x y z, and faces that were exported as JSON begin with a brace"
     )]
     Unknown {
         /// The first characters.
@@ -343,6 +358,9 @@ pub enum ImportError {
     /// Sections that no surface goes through.
     #[error("point sections: {0}")]
     Sections(#[from] sections::SectionsError),
+    /// Faces as JSON that cannot be read.
+    #[error(transparent)]
+    Json(#[from] json::JsonError),
 }
 
 /// The format of a file, by its first lines.
@@ -356,6 +374,8 @@ pub fn detect(bytes: &[u8]) -> Option<Format> {
         Some(Format::Patches)
     } else if sections::looks_like(bytes) {
         Some(Format::Sections)
+    } else if json::looks_like(bytes) {
+        Some(Format::Json)
     } else {
         None
     }
@@ -381,6 +401,7 @@ pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
         Some(Format::Iges) => Ok(iges::read(bytes)?),
         Some(Format::Patches) => Ok(patches::read(bytes)?),
         Some(Format::Sections) => Ok(sections::read(bytes)?),
+        Some(Format::Json) => Ok(json::read_part(bytes)?),
         None if is_wide(bytes) => Err(ImportError::Wide),
         None => {
             let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
@@ -389,10 +410,28 @@ pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
     }
 }
 
+/// Memory that copies of faces at other places may take in all, bytes ([`Face::copy_bytes`]): a file of a few kilobytes
+/// can ask for any number of copies of a large face.
+pub(crate) const MAX_COPIES: usize = 1 << 30;
+
+/// What is said where [`MAX_COPIES`] ends the placing.
+pub(crate) fn too_many_copies(left_out: usize) -> Diagnostic {
+    Diagnostic::loss(
+        "",
+        format!(
+            "{left_out} instances of faces are left out: the copies would take more than {} MiB. Export the parts of the \
+             assembly one by one",
+            MAX_COPIES >> 20
+        ),
+    )
+}
+
 /// Counts of entities left out, by kind and reason, in order of first appearance.
 #[derive(Debug, Default)]
 pub(crate) struct Leftovers {
     entries: Vec<NotUsed>,
+    /// Places of kind and reason in the list.
+    index: HashMap<(String, String), usize>,
 }
 
 impl Leftovers {
@@ -406,19 +445,14 @@ impl Leftovers {
 
     /// Counts several, the first ones on these lines.
     pub(crate) fn add_lines(&mut self, kind: &str, count: usize, why: &str, lines: &[usize]) {
-        match self.entries.iter_mut().find(|e| e.kind == kind && e.why == why) {
-            Some(e) => {
-                e.count += count;
-                let room = Self::LINES.saturating_sub(e.lines.len());
-                e.lines.extend(lines.iter().take(room));
-            }
-            None => self.entries.push(NotUsed {
-                kind: kind.to_owned(),
-                count,
-                why: why.to_owned(),
-                lines: lines.to_vec(),
-            }),
+        let at = *self.index.entry((kind.to_owned(), why.to_owned())).or_insert(self.entries.len());
+        if at == self.entries.len() {
+            let (kind, why) = (kind.to_owned(), why.to_owned());
+            self.entries.push(NotUsed { kind, count: 0, why, lines: Vec::new() });
         }
+        let entry = &mut self.entries[at];
+        entry.count += count;
+        entry.lines.extend(lines.iter().take(Self::LINES.saturating_sub(entry.lines.len())));
     }
 
     pub(crate) fn into_entries(self) -> Vec<NotUsed> {

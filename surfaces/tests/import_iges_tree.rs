@@ -111,6 +111,15 @@ fn bombs_and_circles_end() {
     // The last group leads to itself, which is told; the others and the matrix are left.
     assert_eq!(told.not_used.iter().map(|n| n.count).sum::<usize>(), 3, "{:?}", told.not_used);
     assert!(told.diagnostics.iter().any(|d| d.message.contains("in a circle")), "{:?}", told.diagnostics);
+    // Composite curves of a hundred members each, down to one without any.
+    let mut list = vec![flat_patch()];
+    for k in 0..12_usize {
+        let members = vec![format!("@{}", k + 2); 100].join(",");
+        list.push(entity(102, format!("100,{members}")));
+    }
+    list.extend([entity(102, "0"), entity(142, "0,@0,0,@1,2"), entity(144, "@0,1,0,@14")]);
+    let told = part(&list);
+    assert!(told.diagnostics.iter().any(|d| d.message.contains("or too many")), "{:?}", told.diagnostics);
     // A matrix that refers to itself.
     let mut list = vec![flat_patch(), Entity(124, 0, 2, "1.,0.,0.,0.,0.,1.,0.,0.,0.,0.,1.,0.".into())];
     list[0].2 = 2;

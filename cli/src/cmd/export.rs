@@ -89,17 +89,12 @@ pub fn run(args: &ExportArgs, as_json: bool) -> Outcome {
 /// The faces asked for, of a file that is whole.
 fn chosen(args: &ExportArgs) -> Result<Vec<Face>, Failure> {
     let bytes = read(&args.part)?;
-    let from_json = args.part.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let mut faces = if from_json {
-        json::read(&bytes).map_err(|e| Failure::file(&args.part, e))?
-    } else {
-        let part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(&args.part, e))?;
-        if part.truncated {
-            let what = "the file is truncated: faces may be missing; export or copy it again";
-            return Err(Failure::file(&args.part, what));
-        }
-        part.faces
-    };
+    let part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(&args.part, e))?;
+    if part.truncated {
+        let what = "the file is truncated: faces may be missing; export or copy it again";
+        return Err(Failure::file(&args.part, what));
+    }
+    let mut faces = part.faces;
     if !args.faces.is_empty() {
         if let Some(id) = args.faces.iter().find(|id| faces.iter().all(|f| f.id != **id)) {
             let (count, part) = (faces.len(), &args.part);

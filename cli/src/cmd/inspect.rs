@@ -5,13 +5,19 @@ use crate::failure::{Done, Outcome};
 use crate::part::{self, Loaded, LoadedFace};
 use crate::render::{self, Table, number};
 use osculate_geom::{Box3, Surface};
+use osculate_surfaces::Colour;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::HashMap;
 
 #[derive(Serialize)]
 struct FaceRow {
     id: String,
     name: String,
+    /// The product that it belongs to; empty where the file names none.
+    product: String,
+    /// `#rrggbb`; empty where the file has none.
+    colour: String,
     kind: String,
     entity: u64,
     degree: Vec<usize>,
@@ -31,6 +37,17 @@ struct NotUsed {
     kind: String,
     count: usize,
     why: String,
+    /// Where the first ones stand.
+    lines: Vec<usize>,
+}
+
+/// Faces of one product.
+#[derive(Serialize)]
+struct Product {
+    name: String,
+    faces: usize,
+    /// How often the face that stands most often does.
+    instances: usize,
 }
 
 #[derive(Serialize)]
@@ -38,6 +55,8 @@ struct Answer {
     format: &'static str,
     unit: String,
     schema: String,
+    /// Empty where the file names no product.
+    products: Vec<Product>,
     faces: Vec<FaceRow>,
     bbox_mm: Vec<f64>,
     area_mm2: f64,
@@ -49,6 +68,32 @@ fn corners(b: &Box3) -> Vec<f64> {
     if b.is_empty() { Vec::new() } else { b.min.iter().chain(b.max.iter()).copied().collect() }
 }
 
+fn hex(c: Colour) -> String {
+    let [r, g, b] = [c.red, c.green, c.blue].map(|x| (255.0 * x).round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// The products in the order of their first faces.
+fn products(faces: &[FaceRow]) -> Vec<Product> {
+    let mut out: Vec<Product> = Vec::new();
+    if faces.iter().all(|f| f.product.is_empty()) {
+        return out;
+    }
+    let mut times: HashMap<(&str, u64), usize> = HashMap::new();
+    for f in faces {
+        let times = times.entry((&f.product, f.entity)).or_default();
+        *times += 1;
+        match out.iter_mut().find(|p| p.name == f.product) {
+            Some(p) => {
+                p.faces += 1;
+                p.instances = p.instances.max(*times);
+            }
+            None => out.push(Product { name: f.product.clone(), faces: 1, instances: 1 }),
+        }
+    }
+    out
+}
+
 fn row(face: &LoadedFace) -> (FaceRow, Box3) {
     let b = part::bounds(face);
     let d = face.surface.domain();
@@ -56,6 +101,8 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
     let row = FaceRow {
         id: face.id.clone(),
         name: face.name.clone(),
+        product: source.map_or_else(String::new, |f| f.product.clone()),
+        colour: source.and_then(|f| f.colour).map_or_else(String::new, hex),
         kind: face.kind.clone(),
         entity: source.map_or(0, |f| f.entity),
         degree: source.and_then(|f| f.degree()).map_or_else(Vec::new, |d| d.to_vec()),
@@ -96,18 +143,56 @@ fn answer(part: &Loaded) -> Answer {
         bbox_mm: corners(&whole),
         // An empty sum is minus zero.
         area_mm2: faces.iter().map(|f| f.area_mm2).sum::<f64>() + 0.0,
+        products: products(&faces),
         faces,
-        not_used: part
-            .not_used
-            .iter()
-            .map(|(kind, count, why)| NotUsed { kind: kind.clone(), count: *count, why: why.clone() })
-            .collect(),
+        not_used: part.not_used.iter().map(not_used).collect(),
         diagnostics: part.diagnostics.iter().map(ToString::to_string).collect(),
     }
 }
 
+fn not_used(n: &osculate_surfaces::NotUsed) -> NotUsed {
+    NotUsed { kind: n.kind.clone(), count: n.count, why: n.why.clone(), lines: n.lines.clone() }
+}
+
+/// The first lines, and that there are more.
+fn lines(n: &NotUsed) -> String {
+    const SHOWN: usize = 3;
+    let shown: Vec<String> = n.lines.iter().take(SHOWN).map(ToString::to_string).collect();
+    let more = if n.count > shown.len() && !shown.is_empty() { ", ..." } else { "" };
+    format!("{}{more}", shown.join(", "))
+}
+
+/// The table of faces; names, products and colours where the file has any.
+fn face_table(faces: &[FaceRow]) -> String {
+    let pair = |v: &[usize]| v.iter().map(ToString::to_string).collect::<Vec<_>>().join("x");
+    let yes = |b: bool| if b { "yes" } else { "-" }.to_owned();
+    let named: [(&str, fn(&FaceRow) -> &String); 3] =
+        [("name", |f| &f.name), ("product", |f| &f.product), ("colour", |f| &f.colour)];
+    let named: Vec<_> = named.into_iter().filter(|n| faces.iter().any(|f| !n.1(f).is_empty())).collect();
+    let plain =
+        ["face", "kind", "degree", "poles", "rational", "trimmed", "area mm2", "k_min 1/mm", "k_max 1/mm"];
+    let mut t = Table::new(plain.into_iter().chain(named.iter().map(|n| n.0)));
+    for f in faces {
+        let k = |i: usize| f.principal_curvature_per_mm.get(i).map_or_else(|| "-".into(), |k| number(*k, 4));
+        let plain = [
+            f.id.clone(),
+            f.kind.clone(),
+            pair(&f.degree),
+            pair(&f.poles),
+            yes(f.rational),
+            yes(f.trimmed),
+            number(f.area_mm2, 6),
+            k(0),
+            k(1),
+        ];
+        t.row(plain.into_iter().chain(named.iter().map(|n| n.1(f).clone())));
+    }
+    t.render()
+}
+
 fn describe(a: &Answer, part: &Loaded) -> String {
-    let mut out = format!("\n  {} file, unit {}", a.format, a.unit);
+    let unit = if a.unit.is_empty() { "no unit stated".to_owned() } else { format!("unit {}", a.unit) };
+    let mut out = format!("\n  {} file, {unit}", a.format);
     if !a.schema.is_empty() {
         out.push_str(&format!(", schema {}", a.schema));
     }
@@ -116,40 +201,19 @@ fn describe(a: &Answer, part: &Loaded) -> String {
         out.push_str(&format!("  box mm: {x0:.3} {y0:.3} {z0:.3} to {x1:.3} {y1:.3} {z1:.3}\n"));
     }
     if !a.faces.is_empty() {
-        let mut t = Table::new([
-            "face",
-            "kind",
-            "degree",
-            "poles",
-            "rational",
-            "trimmed",
-            "area mm2",
-            "k_min 1/mm",
-            "k_max 1/mm",
-        ]);
-        let pair = |v: &[usize]| v.iter().map(ToString::to_string).collect::<Vec<_>>().join("x");
-        let yes = |b: bool| if b { "yes" } else { "-" }.to_owned();
-        for f in &a.faces {
-            let k =
-                |i: usize| f.principal_curvature_per_mm.get(i).map_or_else(|| "-".into(), |k| number(*k, 4));
-            t.row([
-                f.id.clone(),
-                f.kind.clone(),
-                pair(&f.degree),
-                pair(&f.poles),
-                yes(f.rational),
-                yes(f.trimmed),
-                number(f.area_mm2, 6),
-                k(0),
-                k(1),
-            ]);
+        out.push_str(&format!("\n{}", face_table(&a.faces)));
+    }
+    if a.products.iter().any(|p| p.instances > 1) || a.products.len() > 1 {
+        let mut t = Table::new(["product", "faces", "instances"]);
+        for p in &a.products {
+            t.row([p.name.clone(), p.faces.to_string(), p.instances.to_string()]);
         }
         out.push_str(&format!("\n{}", t.render()));
     }
     if !a.not_used.is_empty() {
-        let mut t = Table::new(["not used", "count", "why"]);
+        let mut t = Table::new(["not used", "count", "lines", "why"]);
         for n in &a.not_used {
-            t.row([n.kind.clone(), n.count.to_string(), n.why.clone()]);
+            t.row([n.kind.clone(), n.count.to_string(), lines(n), n.why.clone()]);
         }
         out.push_str(&format!("\n{}", t.render()));
     }

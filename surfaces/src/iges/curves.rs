@@ -10,8 +10,9 @@ use osculate_geom::{Point3, Vec3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Pieces of composite curves at most, a bound for files whose composites contain each other.
-const MAX_PIECES: usize = 20_000;
+/// Members of composite curves within composite curves of one face at most: a bound for files whose composites contain
+/// each other, empty ones included.
+const MAX_MEMBERS: usize = 20_000;
 
 /// Forms of copious data that are paths.
 const PATHS: [i32; 7] = [1, 2, 3, 11, 12, 13, 63];
@@ -32,9 +33,7 @@ impl Geometry<'_> {
         depth: usize,
         out: &mut Vec<Piece>,
     ) -> Result<(), Unread> {
-        if depth >= MAX_CHAIN || out.len() >= MAX_PIECES {
-            return Err(self.malformed(de, "composite curves contain each other, or too many"));
-        }
+        self.within_chain(de, depth)?;
         let e = self.entity(de)?;
         let motion = match space {
             Space::Model => self.motion(e)?.then(outer),
@@ -57,6 +56,15 @@ impl Geometry<'_> {
         } else {
             Piece { curve: Arc::new(Moved { curve: piece.curve, motion }), ends: piece.ends }
         });
+        Ok(())
+    }
+
+    /// Refuses composites that contain each other, or each other's parts any number of times.
+    fn within_chain(&self, de: i64, depth: usize) -> Result<(), Unread> {
+        self.members.set(self.members.get() + usize::from(depth > 1));
+        if depth >= MAX_CHAIN || self.members.get() > MAX_MEMBERS {
+            return Err(self.malformed(de, "composite curves contain each other, or too many"));
+        }
         Ok(())
     }
 
@@ -241,9 +249,7 @@ impl Geometry<'_> {
         depth: usize,
         out: &mut Vec<Spline>,
     ) -> Result<(), Unread> {
-        if depth >= MAX_CHAIN || out.len() >= MAX_PIECES {
-            return Err(self.malformed(de, "composite curves contain each other, or too many"));
-        }
+        self.within_chain(de, depth)?;
         let e = self.entity(de)?;
         let motion = self.motion(e)?.then(outer);
         let unit = self.scale_mm;

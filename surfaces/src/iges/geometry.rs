@@ -9,7 +9,7 @@ use super::names::kind_name;
 use crate::knots::MAX_DEGREE;
 use crate::trim::curve::Motion;
 use osculate_geom::Vec3;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// Why an entity could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -50,6 +50,8 @@ pub(crate) struct Geometry<'c> {
     pub(crate) scale_mm: f64,
     /// Findings on the way.
     pub(crate) findings: RefCell<Vec<String>>,
+    /// Members of composite curves within composite curves so far.
+    pub(super) members: Cell<usize>,
 }
 
 impl<'c> Geometry<'c> {
@@ -58,6 +60,7 @@ impl<'c> Geometry<'c> {
             cards,
             scale_mm: cards.global.unit_mm / cards.global.scale,
             findings: RefCell::new(Vec::new()),
+            members: Cell::new(0),
         }
     }
 

@@ -8,7 +8,7 @@ use super::links::{own_parameters, parts};
 use super::loops::surface_pointer;
 use super::names::kind_name;
 use super::tree::{Model, Placed, model};
-use crate::part::{Colour, Face, Format, Leftovers, Part};
+use crate::part::{Colour, Face, Format, Leftovers, MAX_COPIES, Part, too_many_copies};
 use osculate_geom::Diagnostic;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,8 +47,11 @@ pub(crate) fn part(mut cards: Cards) -> Part {
         .enumerate()
         .map(|(k, (de, p))| (k + 1, de, p))
         .collect();
-    let outcomes: Vec<Outcome> =
-        jobs.par_iter().map(|(number, de, placed)| made(&cards, *number, *de, placed)).collect();
+    let outcomes = outcomes(&cards, &jobs);
+    let left_out = jobs.len() - outcomes.len();
+    if left_out > 0 {
+        diagnostics.push(too_many_copies(left_out));
+    }
     let mut faces = Vec::with_capacity(outcomes.len());
     let mut left = Left::default();
     for outcome in outcomes {
@@ -71,9 +74,42 @@ pub(crate) fn part(mut cards: Cards) -> Part {
         schema: cards.global.version.clone(),
         faces,
         not_used: left.entries(&cards).into_entries(),
-        truncated: cards.truncated,
+        truncated: cards.truncated || left_out > 0 || tree.overflow,
         diagnostics,
     }
+}
+
+/// Makes the faces: each once, then its copies at other places as far as they may take memory.
+fn outcomes(cards: &Cards, jobs: &[(usize, i64, &Placed)]) -> Vec<Outcome> {
+    let make = |(number, de, placed): &(usize, i64, &Placed)| made(cards, *number, *de, placed);
+    // The places of a face follow each other.
+    let is_first = |k: usize| k == 0 || jobs[k - 1].1 != jobs[k].1;
+    let mut all: Vec<Option<Outcome>> =
+        (0..jobs.len()).into_par_iter().map(|k| is_first(k).then(|| make(&jobs[k]))).collect();
+    let (mut each, mut copied) = (0, 0_usize);
+    let copies: Vec<bool> = all
+        .iter()
+        .map(|outcome| match outcome {
+            Some(Outcome::Face(face, _)) => {
+                each = face.copy_bytes();
+                false
+            }
+            Some(Outcome::Lost(..)) => {
+                each = 0;
+                false
+            }
+            None => {
+                copied += each;
+                copied <= MAX_COPIES
+            }
+        })
+        .collect();
+    all.par_iter_mut().zip(&copies).zip(jobs).filter(|((_, wanted), _)| **wanted).for_each(
+        |((outcome, _), job)| {
+            *outcome = Some(make(job));
+        },
+    );
+    all.into_iter().flatten().collect()
 }
 
 fn made(cards: &Cards, number: usize, de: i64, placed: &Placed) -> Outcome {

@@ -7,7 +7,7 @@ mod surfaces;
 use crate::knots::MAX_DEGREE;
 use crate::nurbs::NurbsError;
 use crate::nurbs_curve::CurveError;
-use crate::part::{Colour, Face, FaceKind};
+use crate::part::{Colour, Face, FaceKind, Format, Part};
 use crate::trim::boundary::{Boundary, build};
 use crate::trimmed::TrimError;
 use osculate_geom::analytic::BadSize;
@@ -18,11 +18,18 @@ use std::sync::Arc;
 pub const FORMAT: u32 = 1;
 
 /// Why a text is no faces.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JsonError {
     /// Not the JSON of the form.
-    #[error("not the JSON of faces: {0}")]
-    Syntax(#[from] serde_json::Error),
+    #[error("not the JSON of faces: {what}")]
+    Syntax {
+        /// Line of the text, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What is wrong, with the place.
+        what: String,
+    },
     /// Another form.
     #[error("format {got}, but only format {FORMAT} is read")]
     Format {
@@ -122,7 +129,11 @@ pub fn write(faces: &[Face]) -> Result<String, JsonWriteError> {
 /// # Errors
 /// [`JsonError`] with the place in the text, or the face and what is wrong with it.
 pub fn read(bytes: &[u8]) -> Result<Vec<Face>, JsonError> {
-    let file: spec::File = serde_json::from_slice(bytes)?;
+    let file: spec::File = serde_json::from_slice(unmarked(bytes)).map_err(|e| JsonError::Syntax {
+        line: e.line(),
+        column: e.column(),
+        what: e.to_string(),
+    })?;
     if file.format != FORMAT {
         return Err(JsonError::Format { got: file.format });
     }
@@ -133,6 +144,33 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Face>, JsonError> {
             to_face(f, k as u64 + 1).map_err(|why| JsonError::Face { face: id, why })
         })
         .collect()
+}
+
+/// Whether the bytes begin as JSON does.
+pub(crate) fn looks_like(bytes: &[u8]) -> bool {
+    unmarked(bytes).iter().find(|c| !c.is_ascii_whitespace()) == Some(&b'{')
+}
+
+/// The text without a byte order mark.
+fn unmarked(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// Reads faces as a part.
+///
+/// # Errors
+/// [`JsonError`].
+pub fn read_part(bytes: &[u8]) -> Result<Part, JsonError> {
+    Ok(Part {
+        format: Format::Json,
+        uncertainty_mm: None,
+        unit: "mm".to_owned(),
+        schema: format!("format {FORMAT}"),
+        faces: read(bytes)?,
+        not_used: Vec::new(),
+        truncated: false,
+        diagnostics: Vec::new(),
+    })
 }
 
 const KINDS: [FaceKind; 12] = [

@@ -1,6 +1,6 @@
 //! Curves of a Part 21 file, in millimetres and radians.
 
-use super::geometry::{Geometry, MAX_CHAIN, Unread};
+use super::geometry::{Geometry, MAX_CHAIN, MAX_NESTED, Unread};
 use super::graph::{Args, Record, arg};
 use super::units::Units;
 use crate::trim::carrier::FaceSurface;
@@ -75,6 +75,12 @@ impl Geometry<'_> {
             let mut pieces = Vec::new();
             for segment in list.iter().flat_map(Args::references) {
                 let (parent, forward) = self.segment(segment)?;
+                self.nested.set(self.nested.get() + usize::from(depth > 0));
+                if self.nested.get() > MAX_NESTED {
+                    return Err(malformed(format!(
+                        "composite curves within each other have more than {MAX_NESTED} segments; export them as one"
+                    )));
+                }
                 let whole = Piece::whole(self.curve(parent, depth + 1)?);
                 let piece = whole.ok_or_else(|| malformed(format!("its segment #{segment} has no ends")))?;
                 pieces.push(if forward { piece } else { piece.reversed() });
@@ -122,7 +128,10 @@ impl Geometry<'_> {
         let surface = self.surface(self.to(id, &args, 1)?, &[], depth + 1)?.surface;
         // Parameters are plain numbers; those that are lengths or angles follow the context's units.
         let plain = Units { length_mm: 1.0, angle_rad: self.units.angle_rad, uncertainty_mm: None };
-        let flat = Self { graph: self.graph, units: plain }.curve(curve, depth + 1)?;
+        let inner = Self { graph: self.graph, units: plain, nested: self.nested.clone() };
+        let flat = inner.curve(curve, depth + 1);
+        self.nested.set(inner.nested.get());
+        let flat = flat?;
         let scale = surface.parameter_units(self.units.length_mm, self.units.angle_rad);
         let linear = nalgebra::Matrix3::from_diagonal(&Vec3::new(scale[0], scale[1], 1.0));
         let motion = Motion { linear, shift: Vec3::zeros() };

@@ -11,7 +11,7 @@ use super::structure::is_face;
 use super::units::Contexts;
 use super::unused;
 use super::walk::{Occurrence, occurrences};
-use crate::part::{Face, FaceKind, Format, Leftovers, Part, PlaceError};
+use crate::part::{Face, FaceKind, Format, Leftovers, MAX_COPIES, Part, PlaceError, too_many_copies};
 use crate::trim::boundary::{Boundary, Built, build};
 use crate::trim::curve::{Curve, Line, Piece};
 use osculate_geom::{Box3, Diagnostic, Interval, Point3, Side, Surface};
@@ -41,13 +41,14 @@ pub(crate) fn part(mut graph: Graph<'_>) -> Part {
     let read: Vec<Result<Made, FaceError>> = own
         .par_iter()
         .map(|o| {
-            let geometry = Geometry { graph, units: contexts.units(o.context) };
+            let geometry = Geometry::new(graph, contexts.units(o.context));
             face(&geometry, o)
         })
         .collect();
     let mut left = Leftovers::default();
     let mut told = vec![false; read.len()];
     let mut faces = Vec::with_capacity(found.faces.len());
+    let (mut copied, mut left_out) = (0, 0_usize);
     for (number, o) in found.faces.iter().enumerate() {
         let label = format!("F{}", number + 1);
         let Some(k) = index.get(&(o.face, o.turned, o.context)).copied() else { continue };
@@ -55,6 +56,11 @@ pub(crate) fn part(mut graph: Graph<'_>) -> Part {
         let place = || format!("{label} ({})", graph.place(o.face));
         let placed = match &read[k] {
             Ok(made) => {
+                copied += if first { 0 } else { made.face.copy_bytes() };
+                if copied > MAX_COPIES {
+                    left_out += 1;
+                    continue;
+                }
                 if first {
                     diagnostics.extend(made.findings.iter().map(|f| Diagnostic::warning(place(), f.clone())));
                 }
@@ -80,6 +86,9 @@ pub(crate) fn part(mut graph: Graph<'_>) -> Part {
             }
         }
     }
+    if left_out > 0 {
+        diagnostics.push(too_many_copies(left_out));
+    }
     unused::leftovers(graph, &mut left);
     Part {
         format: Format::Step,
@@ -88,7 +97,7 @@ pub(crate) fn part(mut graph: Graph<'_>) -> Part {
         schema: graph.schemas.join(", "),
         faces,
         not_used: left.into_entries(),
-        truncated: graph.truncated || found.cut_short,
+        truncated: graph.truncated || found.cut_short || left_out > 0,
         diagnostics,
     }
 }

@@ -5,6 +5,7 @@ use super::units::Units;
 use crate::trim::curve::Motion;
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Unit3, Vec3};
+use std::cell::Cell;
 
 /// Why an entity could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -23,13 +24,23 @@ pub(crate) enum Unread {
 /// References followed from one curve or surface to another at most.
 pub(super) const MAX_CHAIN: usize = 16;
 
+/// Segments of composite curves within composite curves of one face at most: writers nest a handful, and a file of
+/// composites that name each other several times would reach any number.
+pub(super) const MAX_NESTED: usize = 20_000;
+
 /// A reader of geometry with the units of its context.
 pub(crate) struct Geometry<'g> {
     pub(crate) graph: &'g Graph<'g>,
     pub(crate) units: Units,
+    /// Segments of composite curves within composite curves so far.
+    pub(super) nested: Cell<usize>,
 }
 
 impl<'g> Geometry<'g> {
+    pub(crate) const fn new(graph: &'g Graph<'g>, units: Units) -> Self {
+        Self { graph, units, nested: Cell::new(0) }
+    }
+
     pub(super) fn record(&self, id: u64) -> Result<Record<'g>, Unread> {
         self.graph.get(id).ok_or(Unread::Missing { id })
     }

@@ -259,8 +259,9 @@ impl<'a> Lexer<'a> {
                 self.at += n + 2;
                 Ok(Token::Resource)
             }
-            Some(_) => {
-                self.at += 1;
+            // Up to the semicolon there is no end: what stands between is not looked through again.
+            Some(n) => {
+                self.at += n + 1;
                 Err(Stop::Bad(Mark::Byte(b'<')))
             }
             None => {

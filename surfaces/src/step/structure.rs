@@ -123,8 +123,10 @@ impl<'g> Web<'g> {
         web
     }
 
-    fn representative(&self, mut r: usize) -> usize {
+    fn representative(&mut self, mut r: usize) -> usize {
         while self.group[r] != r {
+            // Every second step is taken out of the way, so that long chains are walked once.
+            self.group[r] = self.group[self.group[r]];
             r = self.group[r];
         }
         r
@@ -207,7 +209,7 @@ impl<'g> Web<'g> {
     }
 
     pub(super) fn geometry(&self, context: Option<usize>) -> Geometry<'g> {
-        Geometry { graph: self.graph, units: self.contexts.units(context) }
+        Geometry::new(self.graph, self.contexts.units(context))
     }
 
     /// Mapped items among the items: which representations they place.

@@ -9,7 +9,7 @@ use super::units::Contexts;
 use crate::trim::curve::Motion;
 use osculate_geom::Diagnostic;
 use osculate_geom::analytic::Placement;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 /// Faces placed at most: a bomb of nested instances ends here.
@@ -85,8 +85,8 @@ pub(crate) fn occurrences(graph: &Graph<'_>, contexts: &Contexts, out: &mut Vec<
         web: &web,
         faces: Vec::new(),
         seen: HashSet::new(),
-        items: HashSet::new(),
-        before: HashSet::new(),
+        items: HashMap::new(),
+        round: 0,
         visits: 0,
         path: Vec::new(),
         said: BTreeMap::new(),
@@ -104,10 +104,10 @@ pub(crate) fn occurrences(graph: &Graph<'_>, contexts: &Contexts, out: &mut Vec<
     }
     // Representations of no product repeat items for other ends: only what is new counts. Circles have no root.
     for root in second {
-        walk.before = walk.items.clone();
+        walk.round += 1;
         walk.group(root, None, true);
     }
-    walk.before = walk.items.clone();
+    walk.round += 1;
     for r in 0..web.reps.len() {
         if web.group[r] == r && web.members[r].iter().any(|m| web.placed[*m]) {
             walk.group(r, None, true);
@@ -146,10 +146,10 @@ struct Walk<'w, 'g> {
     faces: Vec<Occurrence>,
     /// Faces placed somewhere.
     seen: HashSet<u64>,
-    /// Items placed somewhere.
-    items: HashSet<u64>,
-    /// Items placed by the roots before the one in hand.
-    before: HashSet<u64>,
+    /// Items placed somewhere, and the round of roots that placed them first.
+    items: HashMap<u64, usize>,
+    /// The round in hand.
+    round: usize,
     visits: usize,
     /// Groups from the root down.
     path: Vec<usize>,
@@ -173,7 +173,7 @@ impl Walk<'_, '_> {
         for stage in stages {
             for record in graph.structure().filter(|r| r.any(stage).is_some()) {
                 let inner = if stage == oriented { record.references().next() } else { Some(record.id()) };
-                let known = inner.is_none_or(|i| self.items.contains(&i) || self.seen.contains(&i));
+                let known = inner.is_none_or(|i| self.items.contains_key(&i) || self.seen.contains(&i));
                 if !known && self.room() {
                     self.item(record.id(), &nobody, false, 0);
                 }
@@ -189,6 +189,11 @@ impl Walk<'_, '_> {
 
     fn say(&mut self, what: String, at: u64) {
         self.said.entry(what).or_insert((0, at)).0 += 1;
+    }
+
+    /// Whether roots before the ones in hand have placed an item.
+    fn placed_before(&self, item: u64) -> bool {
+        self.items.get(&item).is_some_and(|round| *round < self.round)
     }
 
     fn room(&mut self) -> bool {
@@ -229,7 +234,7 @@ impl Walk<'_, '_> {
                 _ => motion,
             };
             for item in &rep.items {
-                if !own.insert(*item) || only_new && self.before.contains(item) {
+                if !own.insert(*item) || only_new && self.placed_before(*item) {
                     continue;
                 }
                 // A representation of a tolerance or a datum names faces of the solid: they have their place already.
@@ -322,7 +327,7 @@ impl Walk<'_, '_> {
         }
         if record.any(&CONTAINERS).is_some() {
             self.web.graph.get(id);
-            self.items.insert(id);
+            self.items.entry(id).or_insert(self.round);
             let free = record.is("GEOMETRIC_SET");
             let inner: Vec<u64> = record.references().collect();
             for r in inner {
