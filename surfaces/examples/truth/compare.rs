@@ -32,6 +32,7 @@ pub enum Difference {
     Unread { why: ImportError },
     Panic { said: String },
     Slow { wall_s: f64 },
+    Message { wanted: &'static str },
     OnlyOurs { status: String, faces: usize },
     FaceCount { ours: usize, reference: usize },
     Missing { id: Option<u64>, kind: String, ours: usize, reference: usize },
@@ -53,6 +54,7 @@ impl Difference {
             Self::Unread { .. } => "not read",
             Self::Panic { .. } => "panic",
             Self::Slow { .. } => "slow",
+            Self::Message { .. } => "message",
             Self::OnlyOurs { .. } => "faces without a reference",
             Self::FaceCount { .. } => "number of faces",
             Self::Missing { .. } => "number of faces of one entity",
@@ -100,6 +102,7 @@ impl fmt::Display for Difference {
             Self::Unread { why } => write!(f, "{why}"),
             Self::Panic { said } => write!(f, "{said}"),
             Self::Slow { wall_s } => write!(f, "{wall_s:.2} s"),
+            Self::Message { wanted } => write!(f, "{wanted:?} is not said"),
             Self::OnlyOurs { status, faces } => write!(f, "{faces} faces where the reference has {status}"),
             Self::FaceCount { ours, reference } => write!(f, "{ours}, reference {reference}"),
             Self::Missing { id, kind, ours, reference } => {

@@ -5,11 +5,13 @@
 //! FOLDER holds `manifest.json`, `files/` and `truth/` (schema `cam-truth/1`: faces with kind, area and box, and 25
 //! samples on spline faces). A file agrees where everything that the reference states is met; the tolerances stand
 //! in `compare.rs`. Files that differ for a reason found out stand in `explained.rs` and are counted apart. `--only` keeps the files whose name has the text, `--all` prints every difference instead of the
-//! first three, `--malformed` adds the damaged files.
+//! first three, `--malformed` adds the damaged files, of which `malformed.rs` says what has to be
+//! said.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod compare;
 mod explained;
+mod malformed;
 mod reference;
 
 use compare::Difference;
@@ -104,7 +106,10 @@ fn examine(data: &Path, entry: &Entry) -> Outcome {
         let part: Result<Part, ImportError> = osculate_surfaces::read(&bytes);
         let read_s = begin.elapsed().as_secs_f64();
         let faces = part.as_ref().map_or(0, |p| p.faces.len());
-        (read_s, faces, compare::differences(&entry.reference, &part))
+        let mut differences = compare::differences(&entry.reference, &part);
+        let message = entry.file.strip_prefix("malformed/").and_then(|name| malformed::missing(name, &part));
+        differences.extend(message.map(|wanted| Difference::Message { wanted }));
+        (read_s, faces, differences)
     });
     let mut differences = match result {
         Ok((s, n, d)) => {

@@ -133,6 +133,10 @@ impl<'t> Graph<'t> {
         graph.chunks = chunks;
         graph.number();
         graph.report_end(&state);
+        // What a truncated file lacks needs no list.
+        if !graph.truncated {
+            graph.report_missing();
+        }
         graph
     }
 
@@ -215,6 +219,25 @@ impl<'t> Graph<'t> {
         if duplicates.len() > MAX_LISTED {
             let rest = duplicates.len() - MAX_LISTED;
             self.diagnostics.push(Diagnostic::warning("", format!("{rest} more numbers defined twice")));
+        }
+    }
+
+    /// Says which references lead to no record.
+    fn report_missing(&mut self) {
+        let mut missing: BTreeMap<u64, (u64, usize)> = BTreeMap::new();
+        for record in (0..self.order.len()).map(|k| self.at(k)) {
+            for id in record.references().filter(|id| self.position(*id).is_none()) {
+                missing.entry(id).or_insert((record.id(), 0)).1 += 1;
+            }
+        }
+        for (id, (by, count)) in missing.iter().take(MAX_LISTED) {
+            let times = if *count > 1 { format!(" ({count} times)") } else { String::new() };
+            let said = format!("it refers to #{id}, which is not in the file{times}");
+            self.diagnostics.push(Diagnostic::warning(self.place(*by), said));
+        }
+        if missing.len() > MAX_LISTED {
+            let said = format!("{} more numbers that are not in the file", missing.len() - MAX_LISTED);
+            self.diagnostics.push(Diagnostic::warning("", said));
         }
     }
 

@@ -362,6 +362,9 @@ pub(crate) fn string_end(text: &[u8], start: usize) -> StringEnd {
             None => return StringEnd::Open,
             Some(b'\'') if text.get(end + 1) == Some(&b'\'') => end += 2,
             Some(b'\'') => return StringEnd::At(end),
+            // A reverse solidus for itself, and \S\ with the character it shifts, which may be an apostrophe.
+            Some(b'\\') if text.get(end + 1) == Some(&b'\\') => end += 2,
+            Some(b'\\') if text[end..].starts_with(b"\\S\\'") => end += 4,
             Some(b';') if record_follows(&text[end + 1..]) => return StringEnd::Lost(end),
             Some(_) => end += 1,
         }

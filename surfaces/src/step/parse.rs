@@ -103,6 +103,9 @@ pub(crate) enum Fault {
         /// What stands here.
         found: &'static str,
     },
+    /// `#1=<file#name>;` of edition 3.
+    #[error("it stands in another file, which is not read; export the parts into one file")]
+    External,
     /// Lists in lists in lists.
     #[error("lists nested deeper than {MAX_DEPTH}")]
     Deep,
@@ -329,6 +332,7 @@ impl Reader<'_> {
                 self.lexer.next()?;
                 return Ok(false);
             }
+            Token::Resource => return Err(Fault::External),
             other => return Err(fault("a keyword", Ok(other))),
         }
         match self.lexer.next()? {

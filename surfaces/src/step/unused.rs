@@ -134,6 +134,9 @@ fn reason(record: &Record<'_>, kind: &str) -> &'static str {
     if kind.starts_with('!') {
         return "a user-defined entity";
     }
+    if kind.starts_with("IFC") {
+        return "a building model, which is not read; export AP203, AP214 or AP242";
+    }
     if record.is("FACE") {
         return "a face without surface";
     }
