@@ -166,12 +166,11 @@ fn lines(n: &NotUsed) -> String {
 fn face_table(faces: &[FaceRow]) -> String {
     let pair = |v: &[usize]| v.iter().map(ToString::to_string).collect::<Vec<_>>().join("x");
     let yes = |b: bool| if b { "yes" } else { "-" }.to_owned();
-    let named: [(&str, fn(&FaceRow) -> &String); 3] =
-        [("name", |f| &f.name), ("product", |f| &f.product), ("colour", |f| &f.colour)];
-    let named: Vec<_> = named.into_iter().filter(|n| faces.iter().any(|f| !n.1(f).is_empty())).collect();
+    let words = |f: &FaceRow| [f.name.clone(), f.product.clone(), f.colour.clone()];
+    let named: Vec<usize> = (0..3).filter(|k| faces.iter().any(|f| !words(f)[*k].is_empty())).collect();
     let plain =
         ["face", "kind", "degree", "poles", "rational", "trimmed", "area mm2", "k_min 1/mm", "k_max 1/mm"];
-    let mut t = Table::new(plain.into_iter().chain(named.iter().map(|n| n.0)));
+    let mut t = Table::new(plain.into_iter().chain(named.iter().map(|k| ["name", "product", "colour"][*k])));
     for f in faces {
         let k = |i: usize| f.principal_curvature_per_mm.get(i).map_or_else(|| "-".into(), |k| number(*k, 4));
         let plain = [
@@ -185,7 +184,8 @@ fn face_table(faces: &[FaceRow]) -> String {
             k(0),
             k(1),
         ];
-        t.row(plain.into_iter().chain(named.iter().map(|n| n.1(f).clone())));
+        let words = words(f);
+        t.row(plain.into_iter().chain(named.iter().map(|k| words[*k].clone())));
     }
     t.render()
 }
