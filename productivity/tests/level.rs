@@ -6,7 +6,7 @@ mod cutting;
 
 use cutting::{cusps, motions, verdict};
 use osculate_geom::analytic::{Cylinder, Paraboloid, Plane, Sphere, Torus};
-use osculate_geom::{Domain, Flipped, Interval, Patch, Side, Surface, Unit3, Vec3};
+use osculate_geom::{Domain, Flipped, Interval, Jet2, Patch, Side, Surface, Taylor, Unit3, Uv, Vec3};
 use osculate_productivity::plan::{Passes, Strategy, Task, Tolerance, run};
 use osculate_tools::removal::{Kind, Swept};
 use osculate_tools::{Cutter, CutterSpec, Lean};
@@ -118,4 +118,51 @@ fn umbilics_leave_no_hole() {
             job.holds(&format!("m86-{k} {}", strategy.name()), &face, &strategy);
         }
     }
+}
+
+/// A tilted ring around a sphere's cap: the outer loop and a hole, as the trims of a file would have them.
+struct Ring(Patch<Sphere>);
+
+impl Surface for Ring {
+    fn domain(&self) -> Domain {
+        self.0.domain()
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        self.0.jet2(at)
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        self.0.taylor(at, order)
+    }
+    fn contains(&self, at: Uv) -> bool {
+        let r = (1.3 * at.u + 0.2 * at.v).hypot(at.v - 0.1 * at.u);
+        self.0.contains(at) && (0.12..0.33).contains(&r)
+    }
+}
+
+#[test]
+fn trims_and_holes_are_covered_and_not_more_than_they_need() {
+    let ring = Ring(patch(Sphere::new(20.0).unwrap(), [-0.5, 0.5], [-0.5, 0.5]));
+    let job = Job::new(ball(6.0), 0.1);
+    for strategy in [isoplanar([0.3, 0.2, 1.0]), Strategy::Isoscallop] {
+        job.holds(strategy.name(), &ring, &strategy);
+        let whole = job.plan(&ring.0, &strategy);
+        let trimmed = job.plan(&ring, &strategy);
+        // The ring is a quarter of the rectangle; its passes run out by half a strip at each end.
+        assert!(
+            trimmed.length_mm() < 0.45 * whole.length_mm(),
+            "{}",
+            trimmed.length_mm() / whole.length_mm()
+        );
+    }
+}
+
+/// Passes around a tube close; passes along it meet at the seam across which their field is cut.
+#[test]
+fn seams_leave_no_mark() {
+    let tube = Cylinder::new(6.0, Interval::new(0.0, 8.0)).unwrap();
+    let job = Job::new(ball(6.0), 0.1);
+    let around = job.plan(&tube, &isoplanar([0.1, 0.0, 1.0]));
+    assert!(around.passes.iter().filter(|p| p.closed).count() > 10);
+    job.holds("around", &tube, &isoplanar([0.1, 0.0, 1.0]));
+    job.holds("isoscallop", &tube, &Strategy::Isoscallop);
 }

@@ -6,8 +6,8 @@ use osculate_tools::Cutter;
 use osculate_tools::removal::{Job, Limits, Sample, Swept, Verdict, cut, judge, sample_surface};
 
 /// Rows along each parameter on which cusps are looked for, and samples on a row.
-const ROWS: usize = 15;
-const ON_ROW: usize = 1500;
+const ROWS: usize = 8;
+const ON_ROW: usize = 4000;
 
 /// The linked path of passes over a face, as motions.
 pub fn motions(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> Vec<Swept> {

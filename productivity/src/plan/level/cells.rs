@@ -23,6 +23,8 @@ const ALONG: [f64; 2] = [12.0, 320.0];
 const ROWS: usize = 4;
 /// Most turns of the boundary with rows of their own.
 const MOST_TURNS: usize = 200;
+/// The share of a reach that is counted on where the face is rough.
+const ROUGH: f64 = 0.96;
 /// Most nodes along a parameter of the grid for level lines.
 const FINEST: usize = 600;
 /// How near an extreme of the field a pass must come, of half a strip, and how finely extremes are looked for.
@@ -251,12 +253,17 @@ impl<'a> Cells<'a> {
                 why: "its trim loops leave no inside; check them with inspect".to_owned(),
             });
         }
+        // Ripples change from place to place within a cell.
+        let sure = if seat.rough() { ROUGH } else { 1.0 };
         let mut lost = None;
         let mut count = 0;
         let mut values = vec![[f64::NAN; 3]; found.len()];
         for (v, f) in values.iter_mut().zip(found) {
             match f {
-                Some(Ok(r)) => *v = r.map(|x| x.filter(|x| *x > 0.0).unwrap_or(f64::NAN)),
+                Some(Ok([up, down, slope])) => {
+                    let sound = |x: Option<f64>| x.filter(|x| *x > 0.0).unwrap_or(f64::NAN);
+                    *v = [sure * sound(up), sure * sound(down), sound(slope)];
+                }
                 Some(Err(e)) => {
                     count += 1;
                     lost = Some(e);

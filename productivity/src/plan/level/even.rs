@@ -149,7 +149,7 @@ pub(super) fn even(
 ) -> Result<Even, PlanError> {
     let nothing = |why: &str| PlanError::Nothing { face: task.face.to_owned(), why: why.to_owned() };
     let rectangle = Rectangle::of(task.surface);
-    let problem = Problem::new(task, &rectangle, spans(task, &rectangle))
+    let problem = Problem::new(task, &rectangle, spans(task, &rectangle), trusts.iter().all(|t| *t > 0.0))
         .map_err(|_| nothing("no field can be laid over it: it has no area"))?;
     let wishes = wish(&problem.places);
     trusts

@@ -15,8 +15,9 @@ use rayon::prelude::*;
 /// Gauss points along each side of a span, on [0, 1], and their weights.
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-/// Weight of the second differences of the poles.
-const SMOOTH: f64 = 3e-4;
+/// Weight of the second differences of the poles where the field may follow its own direction, and where it has wishes to
+/// follow: those turn on the scale of a span near umbilics, and passes with them.
+const SMOOTH: [f64; 2] = [3e-4, 1.0];
 /// Weight of places outside the trims: a margin that guides the lines over the boundary.
 const OUTSIDE: f64 = 0.02;
 /// Holds the constant that no gradient sees.
@@ -57,7 +58,12 @@ pub(super) struct Problem {
 
 impl Problem {
     /// The places and the factored matrix.
-    pub fn new(task: &Task<'_>, rectangle: &Rectangle, spans: [usize; 2]) -> Result<Self, NotDefinite> {
+    pub fn new(
+        task: &Task<'_>,
+        rectangle: &Rectangle,
+        spans: [usize; 2],
+        wishes: bool,
+    ) -> Result<Self, NotDefinite> {
         let zero = Spline::zero(rectangle, spans);
         let places = places(task, rectangle, &zero);
         let mut band = zero.band();
@@ -70,7 +76,7 @@ impl Problem {
                 }
             }
         }
-        zero.smooth(&mut band);
+        zero.smooth(&mut band, SMOOTH[usize::from(wishes)]);
         Ok(Self { places, zero, factor: band.factor()? })
     }
 
@@ -127,13 +133,13 @@ impl Spline {
     }
 
     /// Adds the squares of the poles' second differences, and a trace of the poles themselves.
-    fn smooth(&self, band: &mut Band) {
+    fn smooth(&self, band: &mut Band, weight: f64) {
         let [nu, nv] = self.bases.map(|b| b.count());
         let mut add = |poles: [usize; 3]| {
             for (i, a) in poles.iter().zip([1.0, -2.0, 1.0]) {
                 for (j, b) in poles.iter().zip([1.0, -2.0, 1.0]) {
                     if i >= j {
-                        band.add(*i, *j, SMOOTH * a * b);
+                        band.add(*i, *j, weight * a * b);
                     }
                 }
             }

@@ -28,7 +28,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Strip widths that passes can run out over the border.
-const RUN_OUT: f64 = 0.7;
+const RUN_OUT: f64 = 1.0;
 
 /// Most of the scallop that the chords of the path may take.
 const CHORD: f64 = 0.08;

@@ -86,7 +86,9 @@ fn stretches<'a>(cells: &Cells<'a>, grid: Grid<'_>, levels: &[f64], k: usize) ->
         for j in 0..=looks as usize {
             let t = at(j);
             if needed(&line, t) {
-                found.push([(t - length / looks).max(0.0), (t + length / looks).min(length)]);
+                // The edge of a strip is cut a little before or after its middle.
+                let half = 0.5 * cells.width_mm(line.between(t));
+                found.push([(t - half).max(0.0), (t + half).min(length)]);
             }
         }
         for range in union(found, 1.5 * length / looks + 0.5 * middle) {
