@@ -2,7 +2,10 @@
 //!
 //! OpenCASCADE comes as a Python package into `target/peers/occt`; `xtask/peers/occt.py` asks it. Every part is exported
 //! as STEP and as IGES and read by OpenCASCADE together with the original: the faces must be as many, valid, and have
-//! the original's areas to 1e-6, and ours to 1e-5.
+//! the original's areas to 1e-6 and ours to 1e-5 (`equal`), or ours alone (the original has parameter curves that say something
+//! else than its space curves), or differ from ours by no more than the tolerances leave open that OpenCASCADE itself gives
+//! the edges, each times its length: our exports have no parameter curves, and where edges lie off their surface it makes
+//! its own.
 
 use crate::cmd::{Failure, cargo, output, root, run as start};
 use std::path::{Path, PathBuf};
