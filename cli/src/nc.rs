@@ -8,7 +8,7 @@ use osculate_geom::{Diagnostic, Unit3, Vec3};
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
-use osculate_postproc::nc::readback::{self, ReadOptions};
+use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Posted, Setup, built_in_names, suggest};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::Swept;
@@ -236,7 +236,13 @@ pub struct Motions {
 pub fn read_back(text: &str, control: &Control, setup: &Setup, lenient: bool) -> Result<Motions, String> {
     let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
     let read = readback::read(text, control.dialect, &control.machine, setup, &options)
-        .map_err(|e| e.to_string())?;
+        .map_err(|e| match e {
+            ReadError::Word { line, word } => format!(
+                "line {line}: {word} is not interpreted and may change the tool's way; --lenient leaves such words out \
+                 and lists them"
+            ),
+            other => other.to_string(),
+        })?;
     let mut out = Motions {
         motions: Vec::with_capacity(read.moves.len()),
         times_min: Vec::with_capacity(read.moves.len()),

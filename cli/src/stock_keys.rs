@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, beside, read};
 use crate::job::Job;
-use crate::part::JobFaces;
+use crate::part::{self, JobFaces};
 use osculate_geom::{Box3, Diagnostic, Point3};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::stock::{Blank, Carved, Resolution, Stock, StockJob, Upper, read_stl};
@@ -129,6 +129,41 @@ pub fn fixtures(job: &Job, face: u32) -> Result<Vec<Sample>, Failure> {
     Ok(out)
 }
 
+/// The box around the faces of a job.
+pub fn around(faces: &JobFaces) -> Box3 {
+    faces.faces.iter().fold(Box3::empty(), |all, f| all.union(&part::bounds(f)))
+}
+
+/// A box by two corners.
+pub fn corners(b: &Box3) -> String {
+    format!(
+        "({:.1}, {:.1}, {:.1}) to ({:.1}, {:.1}, {:.1})",
+        b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z
+    )
+}
+
+/// Tells raw material that does not hold the part: in another unit or another frame.
+fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
+    const INCH: f64 = 25.4;
+    // A part may be as large as its raw material.
+    let slack = 1e-3 * part.diagonal_mm();
+    let holds = |scale: f64| {
+        (0..3).all(|k| {
+            stock.min[k] * scale <= part.min[k] + slack && stock.max[k] * scale >= part.max[k] - slack
+        })
+    };
+    let hint = if holds(INCH) {
+        "it would if it were in inches: give it in mm"
+    } else {
+        "is it in mm, and in the part's frame?"
+    };
+    (!holds(1.0)).then(|| {
+        let (stock, part) = (corners(stock), corners(part));
+        let text = format!("the raw material, {stock} mm, does not hold the part, {part} mm; {hint}");
+        Diagnostic::warning("stock", text)
+    })
+}
+
 /// Moves the tool through the raw material of a job, where it has one.
 pub fn run(
     job: &Job,
@@ -190,6 +225,7 @@ pub fn run(
         ));
     }
     let mut stock = made.stock;
+    notes.extend(holds(stock.bounds(), &around(faces)));
     let volume_mm3 = stock.volume().mm3;
     let (cutter, shank) = job.flutes()?;
     let holder = job.holder()?;

@@ -101,6 +101,10 @@ fn stock_collisions_and_the_cut_surface() {
     let coarse = run("[stock]\nallowance_mm = 1\ncell_mm = 0.001\nmemory_mb = 2\n", &[]).json();
     let notes = coarse["diagnostics"].to_string();
     assert!(notes.contains("memory_mb") && coarse["stock"]["cell_mm"].as_f64().unwrap() > 0.05, "{notes}");
+    // Raw material that is too small, as a mesh in inches would be.
+    let small = run("[stock]\nbox_mm = [-0.25, -0.25, -0.2, 0.25, 0.25, 0.1]\n", &[]).json();
+    let notes = small["diagnostics"].to_string();
+    assert!(notes.contains("does not hold the part") && notes.contains("inches"), "{notes}");
     // A clamp in the way of the passes, and what a job may get wrong.
     let clamp = "solid c\nfacet normal 0 0 1\nouter loop\nvertex -9 -1 0.5\nvertex -6 -1 0.5\nvertex -6 2 0.5\nendloop\nendfacet\nendsolid\n";
     scratch.write("clamp.stl", clamp);
@@ -125,6 +129,9 @@ fn paths_of_another_unit_or_tool() {
     let far = |_: usize, _: usize, p: [f64; 3]| [p[0] + 10.0, p[1], p[2]];
     let text = raster(25.4, far).replace("GOTO/0,0,40,", "GOTO/254,0,400,");
     verify(&text).refused(&["do not meet", "25.4"]);
+    // One around the part that is much larger is verified, and told.
+    let around = verify(&raster(25.4, |_, _, p| p)).json();
+    assert!(around["diagnostics"].to_string().contains("times the size of the part"), "{around}");
     // Another cutter in the CL data is said.
     let other = raster(1.0, |_, _, p| p).replace("CUTTER/8, 4", "CUTTER/6, 3");
     assert!(verify(&other).json()["diagnostics"].to_string().contains("another cutter"));

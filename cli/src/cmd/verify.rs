@@ -133,7 +133,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     if motions.is_empty() {
         return Err(Failure::file(file, "has no motion: at least two positions are needed"));
     }
-    meet(file, &motions, &faces)?;
+    diagnostics.extend(meet(file, &motions, &faces)?);
     let stage = Stage::begin("verify");
     let v = verify::run(&job, &faces, &motions, source, None, &|f| stage.at(f))?;
     let wall = stage.end();
@@ -305,36 +305,39 @@ fn unit_hint(path: &Box3, reach: &Box3) -> &'static str {
     }
 }
 
-/// Refuses a path that never comes near the part: a wrong unit or a wrong part zero.
-fn meet(file: &Path, motions: &[Swept], faces: &part::JobFaces) -> Result<(), Failure> {
+/// Feed moves that span more than this many times the part, or less than its share, are told.
+const SPAN: f64 = 8.0;
+
+/// Refuses a path that never comes near the part, a wrong unit or a wrong part zero, and tells one of another size.
+fn meet(file: &Path, motions: &[Swept], faces: &part::JobFaces) -> Result<Option<Diagnostic>, Failure> {
     let mut path = Box3::empty();
     for m in motions.iter().filter(|m| !m.rapid) {
         path.add(&m.from.tip);
         path.add(&m.to.tip);
     }
-    let mut whole = Box3::empty();
-    for f in &faces.faces {
-        whole = whole.union(&part::bounds(f));
-    }
+    let whole = stock_keys::around(faces);
     let reach = whole.grown(0.5 * whole.diagonal_mm());
     let apart = path.is_empty() || (0..3).any(|k| path.min[k] > reach.max[k] || path.max[k] < reach.min[k]);
+    let part = stock_keys::corners(&whole);
     if apart {
-        let show = |b: &Box3| {
-            format!(
-                "({:.1}, {:.1}, {:.1}) to ({:.1}, {:.1}, {:.1})",
-                b.min.x, b.min.y, b.min.z, b.max.x, b.max.y, b.max.z
-            )
-        };
+        let path_text = if path.is_empty() { "nothing".to_owned() } else { stock_keys::corners(&path) };
         return Err(Failure::file(
             file,
             format!(
-                "the feed moves lie in {} mm, the part in {} mm: they do not meet; is the unit right (inch against \
-                 mm), or [setup] part_zero_mm?{}",
-                if path.is_empty() { "nothing".to_owned() } else { show(&path) },
-                show(&whole),
+                "the feed moves lie in {path_text} mm, the part in {part} mm: they do not meet; is the unit right (inch \
+                 against mm), or [setup] part_zero_mm?{}",
                 unit_hint(&path, &reach)
             ),
         ));
     }
-    Ok(())
+    let times = path.diagonal_mm() / whole.diagonal_mm();
+    let strange = !(1.0 / SPAN..=SPAN).contains(&times);
+    Ok(strange.then(|| {
+        let text = format!(
+            "the feed moves lie in {} mm, {times:.3} times the size of the part in {part} mm: is the unit right (inch against \
+             mm)?",
+            stock_keys::corners(&path)
+        );
+        Diagnostic::warning("units", text)
+    }))
 }

@@ -10,3 +10,4 @@ mod rasters;
 mod sampling;
 mod stock;
 mod verdicts;
+mod volumes;

@@ -4,6 +4,7 @@
 //! at cells of a fiftieth of the tool's radius volumes are good to well below 0.1 percent.
 
 use crate::common::{ball, flat, pose, shapes, through, toroidal, upright};
+use crate::volumes::cases;
 use osculate_geom::{Box3, Point3};
 use osculate_tools::removal::stock::{Blank, BlankError, Carved, Resolution, Stock, StockJob, Upper};
 use osculate_tools::removal::{Body, Swept};
@@ -39,97 +40,28 @@ fn close(got: f64, want: f64) {
 }
 
 #[test]
-fn slots() {
-    // Off the grid in y and z, along x and oblique to it.
-    for (cutter, section) in [
-        (flat(10.0), 10.0 * 3.3),
-        // A ball 3.3 deep: the segment of a circle of radius 5.
-        (ball(10.0), 25.0 * (1.7f64 / 5.0).acos() - 1.7 * (25.0f64 - 1.7 * 1.7).sqrt()),
-        // A bull of corner 2: two quarter circles and the rest.
-        (toroidal(10.0, 2.0), 10.0 * 3.3 - 2.0 * (4.0 - PI)),
-    ] {
-        let mut stock = block([40.0, 30.0, 20.0], 0.1);
-        let motions = through(&[upright(-10.0, 13.37, 16.7), upright(50.0, 13.37, 16.7)]);
-        let carved = carve(&mut stock, &cutter, &motions);
-        close(carved.volume_mm3(), section.abs() * 40.0);
+fn volumes_of_slots_pockets_and_a_sphere() {
+    for case in cases() {
+        let mut stock = block(case.size_mm, case.cell_mm);
+        let carved = carve(&mut stock, &case.cutter, &case.motions);
+        close(carved.volume_mm3(), case.volume_mm3);
+        let spread = stock.volume().spread_mm3;
+        assert!(spread < 2e-3 * carved.volume_mm3(), "{}: {spread}", case.name);
+    }
+}
+
+#[test]
+fn what_a_slot_tells_of_its_chip() {
+    for case in cases().into_iter().filter(|c| c.name.starts_with("slot")) {
+        let mut stock = block(case.size_mm, 2.0 * case.cell_mm);
+        let carved = carve(&mut stock, &case.cutter, &case.motions);
         let work = carved.work[0];
         // Over the sides that face the way only, and as high as the slot is deep.
         assert!((work.arc_rad - PI).abs() < 0.2, "{work:?}");
         assert!(work.height_mm[1] <= 3.3 && work.height_mm[1] > 1.5, "{work:?}");
-        assert!((work.section_mm2 - carved.volume_mm3() / 60.0).abs() < 1e-12);
+        let length = (case.motions[0].to.tip - case.motions[0].from.tip).norm();
+        assert!((work.section_mm2 - carved.volume_mm3() / length).abs() < 1e-12);
     }
-}
-
-#[test]
-fn slots_of_other_kinds() {
-    // A cone of half angle 25 degrees with a flat of radius 1.5: a trapezium.
-    let [_, cone, _, _] = shapes();
-    let depth = 2.0;
-    let mut stock = block([20.0, 20.0, 10.0], 0.05);
-    let motions = through(&[upright(-10.0, 9.973, 10.0 - depth), upright(30.0, 9.973, 10.0 - depth)]);
-    let carved = carve(&mut stock, &cone, &motions);
-    close(carved.volume_mm3(), 20.0 * depth * (3.0 + depth * 25f64.to_radians().tan()));
-}
-
-#[test]
-fn a_pocket() {
-    let (w, h, r, depth) = (23.0, 14.0, 4.0, 5.0);
-    let mut poses = Vec::new();
-    let rows = 4;
-    for k in 0..=rows {
-        let y = 8.0 + h * f64::from(k) / f64::from(rows);
-        let (a, b) = (7.0, 7.0 + w);
-        let (from, to) = if k % 2 == 0 { (a, b) } else { (b, a) };
-        poses.extend([upright(from, y, 15.0 - depth), upright(to, y, 15.0 - depth)]);
-    }
-    poses.insert(0, upright(7.0, 8.0, 20.0));
-    let mut stock = block([40.0, 30.0, 15.0], 0.1);
-    // Sides between the rows' ends: the tool runs along all four sides of the rectangle of its centres.
-    poses.extend([
-        upright(7.0, 8.0 + h, 10.0),
-        upright(7.0, 8.0, 10.0),
-        upright(30.0, 8.0, 10.0),
-        upright(30.0, 22.0, 10.0),
-    ]);
-    let carved = carve(&mut stock, &flat(2.0 * r), &through(&poses));
-    close(carved.volume_mm3(), depth * (w * h + 2.0 * r * (w + h) + PI * r * r));
-    let spread = stock.volume().spread_mm3;
-    assert!(spread < 2e-3 * carved.volume_mm3(), "{spread}");
-}
-
-/// Half a sphere roughed in levels with a flat end along polygons: what is left at each level is a polygon.
-#[test]
-fn a_roughed_sphere() {
-    let (radius, tool, levels, sides) = (15.0, 4.0, 10, 60);
-    let (size, height) = (40.0, 20.0);
-    let step = radius / f64::from(levels);
-    let apothem = |k: u32| {
-        let z = step * f64::from(k);
-        (radius * radius - z * z).max(0.0).sqrt().max(1.0)
-    };
-    let turn = 2.0 * PI / f64::from(sides);
-    let mut poses = Vec::new();
-    let mut want = 0.0;
-    for k in (0..levels).rev() {
-        // The tool's bottom is at the level's lower end and keeps off its wider section.
-        let keep = apothem(k);
-        want += step * (size * size - f64::from(sides) * keep * keep * (0.5 * turn).tan());
-        let z = height - radius + step * f64::from(k);
-        // Outwards until the corners of the block are gone.
-        let mut at = keep + tool;
-        while at < keep + tool || at - 6.0 < 0.5 * size * 2f64.sqrt() + tool {
-            let corner = at / (0.5 * turn).cos();
-            for i in 0..=sides {
-                let (s, c) = (turn * f64::from(i)).sin_cos();
-                poses.push(upright(0.5 * size + corner * c, 0.5 * size + corner * s, z));
-            }
-            at += 6.0;
-        }
-        poses.push(Pose { tip: poses[poses.len() - 1].tip + osculate_geom::Vec3::z() * 40.0, ..poses[0] });
-    }
-    let mut stock = block([size, size, height], 0.2);
-    let carved = carve(&mut stock, &flat(2.0 * tool), &through(&poses));
-    close(carved.volume_mm3(), want);
 }
 
 /// Volume converges: smooth walls with the square of the cell, and the three directions agree.
