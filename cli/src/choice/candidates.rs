@@ -26,7 +26,12 @@ pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<
     let mut out = Vec::new();
     for (tool, cutter) in cutters.iter().enumerate() {
         for strategy in &strategies {
-            if matches!(strategy, Strategy::Contour2cl { .. }) && !cutter.is_ball() {
+            let fits = match strategy {
+                Strategy::Contour2cl { .. } => cutter.is_ball(),
+                Strategy::Curvature5c => !cutter.is_ball(),
+                _ => true,
+            };
+            if !fits {
                 continue;
             }
             for lean in leans(job, cutter, strategy)? {
@@ -35,7 +40,10 @@ pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<
         }
     }
     if out.is_empty() {
-        let text = format!("[strategy] {} is for balls, and none of the tools is one", job.strategy.kind);
+        let text = format!(
+            "[strategy] {} is not for any of these tools: contour_2cl takes a ball, curvature_5c a flat or toroidal cutter",
+            job.strategy.kind
+        );
         return Err(Failure::file(&job.path, text));
     }
     Ok(out)
@@ -55,9 +63,14 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<Lean>, F
 
 /// Every strategy that can be chosen.
 fn every(job: &Job, faces: &JobFaces) -> Result<Vec<Strategy>, Failure> {
-    let _ = plane_normals(faces);
+    let [first, second] = plane_normals(faces);
     Ok(vec![
         Strategy::Isoparametric { along: Along::Auto },
+        Strategy::Isoplanar { normal: first },
+        Strategy::Isoplanar { normal: second },
+        Strategy::Isoscallop,
+        Strategy::Streamline,
+        Strategy::Curvature5c,
         Strategy::Contour2cl { axis: job.contour_axis()? },
     ])
 }
@@ -87,6 +100,7 @@ pub(super) fn words(strategy: &Strategy) -> String {
         Strategy::Isoparametric { along: Along::Fixed(a) } => {
             format!("isoparametric {}", if *a == Axis::U { "u" } else { "v" })
         }
+        Strategy::Isoplanar { normal: n } => format!("isoplanar ({:.2}, {:.2}, {:.2})", n.x, n.y, n.z),
         other => other.name().to_owned(),
     }
 }

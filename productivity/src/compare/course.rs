@@ -25,6 +25,8 @@ pub(super) struct Course {
 pub(super) enum Level {
     /// Levels of v, or of u.
     Parameter(Axis),
+    /// Planes, levels of the distance along a normal.
+    Planes(Unit3),
     /// None.
     Free,
 }
@@ -32,6 +34,7 @@ pub(super) enum Level {
 pub(super) fn level(strategy: &Strategy) -> Level {
     match *strategy {
         Strategy::Isoparametric { along: Along::Fixed(axis) } => Level::Parameter(axis),
+        Strategy::Isoplanar { normal } => Level::Planes(normal),
         _ => Level::Free,
     }
 }
@@ -56,6 +59,17 @@ pub(super) fn courses(candidate: &Candidate, jet: &Jet2, forms: &Forms) -> Vec<C
         }
         Strategy::Isoparametric { along: Along::Fixed(Axis::V) } => {
             vec![fixed(jet.dv, Some(jet.dv.norm() / element))]
+        }
+        Strategy::Isoplanar { normal } => {
+            let direction = n.cross(&normal);
+            let slope = direction.norm();
+            // Where the face lies in the plane any direction does, and no spacing covers it.
+            if slope > 0.0 { vec![fixed(direction, Some(slope))] } else { Vec::new() }
+        }
+        Strategy::Curvature5c => {
+            let d = SymEigen::of(&forms.curvature).d_max;
+            let angle_rad = d[1].atan2(d[0]) * jet.side.sign();
+            vec![Course { angle_rad, lean: candidate.lean, across_per_mm: None }]
         }
         Strategy::Contour2cl { axis } => axial(&axis, n.cross(&axis), jet, forms),
         _ => {

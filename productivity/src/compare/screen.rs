@@ -3,7 +3,7 @@
 use super::course::{Course, Level, courses, level};
 use super::{Candidate, Reason, Screened, Setting};
 use crate::ideal::{Place, shared_places};
-use osculate_geom::{Axis, Forms, Jet2, Surface};
+use osculate_geom::{Axis, Forms, Jet2, Surface, Unit3};
 use osculate_tools::strip::{self, Chart, ChartError, StripError, Within};
 use osculate_tools::{Contact, Cutter, FeedLine, Pose};
 use rayon::prelude::*;
@@ -15,6 +15,9 @@ const REACH: f64 = 1.2;
 const MISFIT: f64 = 0.1;
 /// Share of the area where a candidate may fail before it is out. Below it the plan itself tells more than places do.
 const BAD_SHARE: f64 = 0.1;
+
+/// Rows that the distances of parallel planes are sorted into.
+const ROWS: usize = 9;
 
 /// What a candidate does at a place.
 #[derive(Clone, Copy)]
@@ -181,6 +184,7 @@ fn layout_mm(spots: &[Spot<'_>], there: &[There], fixed: Level) -> f64 {
     let row = |s: &Spot<'_>| match fixed {
         Level::Parameter(Axis::U) => s.place.cell[1],
         Level::Parameter(Axis::V) => s.place.cell[0],
+        Level::Planes(normal) => plane_row(spots, s, &normal),
         Level::Free => 0,
     };
     // By face and row: the narrowest step of the levels, and the integral of their density.
@@ -193,6 +197,14 @@ fn layout_mm(spots: &[Spot<'_>], there: &[There], fixed: Level) -> f64 {
         }
     }
     rows.values().map(|(step, density)| density / step).sum()
+}
+
+fn plane_row(spots: &[Spot<'_>], spot: &Spot<'_>, normal: &Unit3) -> usize {
+    let height = |s: &Spot<'_>| s.jet.point.coords.dot(normal);
+    let all = || spots.iter().filter(|s| s.face == spot.face).map(height);
+    let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
+    let share = (height(spot) - low) / (high - low).max(f64::MIN_POSITIVE);
+    ((share * ROWS as f64) as usize).min(ROWS - 1)
 }
 
 /// The reason that concerns most of the area.
