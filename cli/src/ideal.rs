@@ -5,11 +5,13 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
 use crate::program::{Planned, Posted};
-use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD};
+use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Search};
+use osculate_productivity::optimum::Range;
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
 
 /// Places over all faces at which the best posture is searched.
-const PLACES: usize = 32;
+const PLACES: usize = 24;
 
 /// The bound.
 #[derive(Debug, Clone, Serialize)]
@@ -45,7 +47,14 @@ pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
     for (one, cutter) in jobs.iter().zip(&cutters) {
         tools.push(Feeding { cutter, feed_mm_min: one.feed_mm_min()? });
     }
-    let found = ideal::ideal(&patches(faces), &tools, &job.tolerance()?, PLACES)
+    // Where the job does not tilt, nor does the bound: the feed is free to turn instead.
+    let (tilt, tilts) = if job.strategy.tilt_deg == 0.0 {
+        (Range::only(0.0), "no tilt")
+    } else {
+        (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt")
+    };
+    let search = Search { places: PLACES, tilt };
+    let found = ideal::ideal(&patches(faces), &tools, &job.tolerance()?, search)
         .map_err(|e| Failure::file(&job.path, e))?;
     Ok(Bound {
         time_min: found.time_min,
@@ -53,7 +62,7 @@ pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
         places: found.places,
         unreached_mm2: found.unreached_mm2,
         assumes: format!(
-            "the best posture at every point with leads to {:.0} deg, tool touching the part, contact at the \
+            "the best posture at every point with leads to {:.0} deg and {tilts}, tool touching the part, contact at the \
              tool's feed; no overlap, no links, no tooth marks, no limits of the machine",
             MOST_LEAD_RAD.to_degrees()
         ),

@@ -5,7 +5,8 @@ use osculate_geom::analytic::{Paraboloid, Sphere};
 use osculate_geom::{Axis, Surface};
 use osculate_productivity::closed_form::{Section, width_37};
 use osculate_productivity::compare::{Around, Candidate, Reason, Screened, Setting, Tool, screen};
-use osculate_productivity::ideal::{Feeding, Patch, ideal};
+use osculate_productivity::ideal::{Feeding, Patch, Search, ideal};
+use osculate_productivity::optimum::Range;
 use osculate_productivity::plan::{Along, Strategy, Tolerance};
 use osculate_tools::{Cutter, CutterSpec, Lean};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -54,8 +55,9 @@ fn meridians_overlap_and_parallels_do_not() {
         assert!((s.length_mm / FEED - s.layout_min).abs() < 1e-9 * s.layout_min);
     }
     // No candidate is below the least time of all.
+    let search = Search { places: 9, tilt: Range::only(0.0) };
     let tools = [Feeding { cutter: &cutter, feed_mm_min: FEED }];
-    let least = ideal(&[Patch { surface: &sphere, area_mm2 }], &tools, &TOLERANCE, 9).unwrap();
+    let least = ideal(&[Patch { surface: &sphere, area_mm2 }], &tools, &TOLERANCE, search).unwrap();
     assert!(found.iter().all(|s| s.pointwise_min > 0.995 * least.time_min));
 }
 

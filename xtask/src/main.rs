@@ -39,7 +39,7 @@ usage: cargo xtask COMMAND
                 docs/papers/r97.md and m86.md, docs/closed-forms.md: closed forms of strip width against the exact strip
   papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
   papers d98    docs/papers/d98.md: the values, errata and figures of D98, ours beside theirs
-  plans --data FOLDER [--only TEXT]
+  plans --data FOLDER [--only TEXT] [--program FILE]
                 docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
@@ -63,8 +63,10 @@ fn main() -> ExitCode {
         }
         ["papers", "z17"] => postproc_example("z17", &["docs/papers"]),
         ["papers", "d98"] => d98(),
-        ["plans", "--data", folder] => plans::run(folder, ""),
-        ["plans", "--data", folder, "--only", text] => plans::run(folder, text),
+        ["plans", rest @ ..] => match plans::Options::of(rest) {
+            Some(options) => plans::run(&options),
+            None => return wrong_usage("plans takes --data FOLDER, --only TEXT and --program FILE"),
+        },
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),
         ["interop", "occt", rest @ ..] => interop::occt(rest),

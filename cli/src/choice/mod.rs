@@ -79,6 +79,8 @@ pub struct Choice<'a> {
     jobs: Vec<Job>,
     entries: Vec<Entry>,
     plans: usize,
+    /// For each tool the greatest lead at which it dug in, whatever the strategy, rad.
+    dug_in_rad: Vec<f64>,
 }
 
 /// Areas of the faces to machine, with the faces.
@@ -117,7 +119,8 @@ impl<'a> Choice<'a> {
                 Entry { candidate, screened, state, figures: None, verified: None }
             })
             .collect();
-        let choice = Self { faces, jobs, entries, plans: 0 };
+        let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
+        let choice = Self { faces, jobs, entries, plans: 0, dug_in_rad };
         choice.any_left(job)?;
         Ok(choice)
     }
@@ -148,11 +151,13 @@ impl<'a> Choice<'a> {
         let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
         let mut open: Vec<usize> = Vec::new();
         for (k, e) in self.entries.iter().enumerate().filter(|(_, e)| waiting(e)) {
-            let ahead = |o: usize| {
-                // Once one lead is planned it stands for its group until it is out.
-                let (a, b) = (&self.entries[o], e);
-                (a.figures.is_none(), Self::least_min(a)) <= (b.figures.is_none(), Self::least_min(b))
+            // Once one lead is planned it stands for its group until it is out; then those above the leads at which the
+            // tool dug in on other lines come first.
+            let key = |e: &Entry| {
+                let doubtful = e.candidate.lean.lead_rad <= self.dug_in_rad[e.candidate.tool];
+                (e.figures.is_none(), doubtful, Self::least_min(e))
             };
+            let ahead = |o: usize| key(&self.entries[o]) <= key(e);
             match open.iter().position(|o| group(&self.entries[*o]) == group(e)) {
                 Some(p) if ahead(open[p]) => {}
                 Some(p) => open[p] = k,
@@ -234,6 +239,7 @@ impl<'a> Choice<'a> {
     /// Leaves out the smaller leads of a candidate that digs in: the heel comes down with the lead.
     fn no_smaller_lead(&mut self, k: usize) {
         let Candidate { tool, strategy, lean } = self.entries[k].candidate;
+        self.dug_in_rad[tool] = self.dug_in_rad[tool].max(lean.lead_rad);
         for e in &mut self.entries {
             let c = &e.candidate;
             let same = (c.tool, c.strategy, c.lean.tilt_rad) == (tool, strategy, lean.tilt_rad);

@@ -37,6 +37,8 @@ pub enum Outcome {
     Holds,
     /// Possible, and slower than the best by what is known of it.
     Slower,
+    /// Screened only: others promised more, or enough was planned.
+    NotPlanned,
     /// Planned or verified, and not within tolerance.
     Fails,
     /// Not possible.
@@ -86,6 +88,10 @@ fn of_entry(choice: &Choice<'_>, entry: &Entry, leads: usize) -> Row {
         State::Out(why) if f.is_some() => (Outcome::Fails, why.clone()),
         State::Out(why) => (Outcome::NotPossible, why.clone()),
         State::Taken if entry.verified.is_some_and(|v| v.within_tolerance) => (Outcome::Holds, String::new()),
+        State::Open => {
+            let promise = Choice::least_min(entry);
+            (Outcome::NotPlanned, format!("not planned: strips alone take {promise:.2} min"))
+        }
         _ => (Outcome::Slower, format!("takes {:.2} min at least", Choice::least_min(entry))),
     };
     Row {

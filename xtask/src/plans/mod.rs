@@ -109,12 +109,42 @@ fn job(case: &Case, kind: &str, data: &str) -> String {
     )
 }
 
-/// Plans every case whose name has `only` in it and writes the page.
-pub fn run(data: &str, only: &str) -> Result<(), Failure> {
+/// What the command takes.
+#[derive(Default)]
+pub struct Options<'a> {
+    data: Option<&'a str>,
+    only: &'a str,
+    program: Option<&'a str>,
+}
+
+impl<'a> Options<'a> {
+    /// Pairs of option and value; None where one is unknown or the folder of data is missing.
+    pub fn of(words: &[&'a str]) -> Option<Self> {
+        let mut out = Self::default();
+        for pair in words.chunks(2) {
+            match *pair {
+                ["--data", v] => out.data = Some(v),
+                ["--only", v] => out.only = v,
+                ["--program", v] => out.program = Some(v),
+                _ => return None,
+            }
+        }
+        out.data.map(|_| out)
+    }
+}
+
+/// Plans every case whose name has the text in it and writes the page where that is all of them.
+pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let root = root()?;
+    let (data, only) = (options.data.unwrap_or("."), options.only);
     let data = std::fs::canonicalize(data).map_err(|why| Failure::Read { path: data.into(), why })?;
-    crate::cmd::run(cargo(&root, &["build", "--release", "--locked", "-p", "osculate"]))?;
-    let program = root.join("target/release/osculate");
+    let program = match options.program {
+        Some(given) => given.into(),
+        None => {
+            crate::cmd::run(cargo(&root, &["build", "--release", "--locked", "-p", "osculate"]))?;
+            root.join("target/release/osculate")
+        }
+    };
     let mut page = String::from(HEAD);
     for case in CASES.iter().filter(|c| c.name.contains(only)) {
         let place = root.join("target/plans").join(case.name.replace([' ', ','], "-"));
