@@ -275,8 +275,10 @@ mod tests {
         let bowl = Paraboloid::new([0.05, 0.05], 3.0).unwrap();
         let cutter = ball(30.0);
         let tools = [Feeding { cutter: &cutter, feed_mm_min: 1000.0 }];
-        let found = ideal(&[Patch { surface: &bowl, area_mm2: 36.0 }], &tools, &TOLERANCE, SEARCH).unwrap();
+        // Places nearer to the corners see less of the bowl.
+        let search = Search { places: 9, ..SEARCH };
+        let found = ideal(&[Patch { surface: &bowl, area_mm2: 36.0 }], &tools, &TOLERANCE, search).unwrap();
         assert!((found.unreached_mm2 - 36.0).abs() < 1e-9, "{found:?}");
-        assert!(ideal(&[Patch { surface: &bowl, area_mm2: 36.0 }], &[], &TOLERANCE, SEARCH).is_err());
+        assert!(ideal(&[Patch { surface: &bowl, area_mm2: 36.0 }], &[], &TOLERANCE, search).is_err());
     }
 }

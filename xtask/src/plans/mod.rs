@@ -25,6 +25,8 @@ struct Case {
     source: Source,
     tools: [&'static str; 3],
     scallop_mm: f64,
+    /// Tool axis on three axes, about the mean normal.
+    axis: [f64; 3],
 }
 
 const LARGE: [&str; 3] = [
@@ -36,6 +38,11 @@ const SMALL: [&str; 3] = [
     "kind = \"toroidal\", diameter_mm = 6, corner_radius_mm = 1, length_mm = 50",
     "kind = \"flat\", diameter_mm = 4, length_mm = 50",
     "kind = \"ball\", diameter_mm = 6, length_mm = 50",
+];
+const MINI: [&str; 3] = [
+    "kind = \"toroidal\", diameter_mm = 3, corner_radius_mm = 0.5, length_mm = 30",
+    "kind = \"flat\", diameter_mm = 2, length_mm = 30",
+    "kind = \"ball\", diameter_mm = 2, length_mm = 30",
 ];
 const TINY: [&str; 3] = [
     "kind = \"toroidal\", diameter_mm = 0.6, corner_radius_mm = 0.1, length_mm = 6",
@@ -49,34 +56,47 @@ const HUGE: [&str; 3] = [
 ];
 
 const fn m86(name: &'static str) -> Case {
-    Case { name, source: Source::BuiltIn(name), tools: LARGE, scallop_mm: 0.01 }
+    let source = Source::BuiltIn(name);
+    Case { name, source, tools: LARGE, scallop_mm: 0.01, axis: [0.0, 0.0, 1.0] }
 }
 
-const fn file(name: &'static str, path: &'static str, face: &'static str) -> Case {
-    Case { name, source: Source::File { path, face, keys: "" }, tools: SMALL, scallop_mm: 0.01 }
+const fn file(name: &'static str, path: &'static str, face: &'static str, axis: [f64; 3]) -> Case {
+    let source = Source::File { path, face, keys: "" };
+    Case { name, source, tools: SMALL, scallop_mm: 0.01, axis }
 }
 
 const BLADE: &str = "blade/nasa_pyturbo_centrif_compressor_mainblade_xyz_pts.csv";
 const BLADE_KEYS: &str = "unit_mm = 1000\nnormals = \"file\"\n";
 
-const fn blade(name: &'static str, face: &'static str) -> Case {
+const fn blade(name: &'static str, face: &'static str, axis: [f64; 3]) -> Case {
     let source = Source::File { path: BLADE, face, keys: BLADE_KEYS };
-    Case { name, source, tools: SMALL, scallop_mm: 0.01 }
+    Case { name, source, tools: MINI, scallop_mm: 0.01, axis }
 }
+
+const TEAPOT: Source =
+    Source::File { path: "bezier/newell_teapot.txt", face: "F5", keys: "normals = \"file\"\n" };
 
 const CASES: [Case; 12] = [
     m86("m86-1"),
     m86("m86-2"),
     m86("m86-3"),
     m86("m86-4"),
-    blade("compressor blade, suction side", "F1"),
-    blade("compressor blade, pressure side", "F2"),
-    file("impeller blade", "iges/pyiges_impeller.igs", "F118"),
-    file("impeller hub", "iges/pyiges_impeller.igs", "F33"),
-    file("propeller", "step/autogiro_propeller.step", "F7"),
-    Case { tools: HUGE, scallop_mm: 0.05, ..file("hull", "step/dealii_wigley_hull.step", "F1") },
-    Case { tools: LARGE, scallop_mm: 0.02, ..file("manifold", "step/kcl_exhaust-manifold.step", "F4") },
-    Case { tools: TINY, scallop_mm: 0.001, ..file("teapot patch", "bezier/newell_teapot.txt", "F5") },
+    blade("compressor blade, suction side", "F1", [-0.45, -0.59, -0.67]),
+    blade("compressor blade, pressure side", "F2", [-0.44, -0.59, -0.67]),
+    file("impeller blade", "iges/pyiges_impeller.igs", "F118", [-0.12, 0.75, 0.65]),
+    file("impeller hub", "iges/pyiges_impeller.igs", "F33", [0.0, 0.06, -1.0]),
+    file("propeller", "step/autogiro_propeller.step", "F7", [-0.03, 0.9, 0.43]),
+    Case {
+        tools: HUGE,
+        scallop_mm: 0.05,
+        ..file("hull", "step/dealii_wigley_hull.step", "F1", [0.0, 0.97, -0.24])
+    },
+    Case {
+        tools: LARGE,
+        scallop_mm: 0.02,
+        ..file("manifold", "step/kcl_exhaust-manifold.step", "F1", [-1.0, 0.0, 0.0])
+    },
+    Case { name: "teapot patch", source: TEAPOT, tools: TINY, scallop_mm: 0.001, axis: [-0.67, 0.67, -0.34] },
 ];
 
 /// Points of a face for the second opinion, about.
@@ -94,10 +114,11 @@ fn job(case: &Case, kind: &str, data: &str) -> String {
         }
     };
     let h = case.scallop_mm;
+    let planes = format!("kind = \"isoplanar_3c\"\naxis = {:?}", case.axis);
     let (tools, strategy): (Vec<&str>, &str) = match kind {
         "auto" => (case.tools.to_vec(), "kind = \"auto\""),
         "isoparametric" => (case.tools[..1].to_vec(), "kind = \"isoparametric\""),
-        _ => (case.tools[2..].to_vec(), "kind = \"isoplanar_3c\""),
+        _ => (case.tools[2..].to_vec(), &planes),
     };
     let tools: String = tools.iter().map(|t| format!("  {{ {t} }},\n")).collect();
     format!(
