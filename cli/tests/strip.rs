@@ -85,3 +85,41 @@ fn contacts_that_cannot_be_are_refused() {
     run("[contact]\nat = [0, 0]\nalong = \"u\"\nlift_mm = 0.5\n").refused(&["lift_mm"]);
     run("[contact]\nat = [nan, 0]\nalong = \"u\"\n").refused(&["at"]);
 }
+
+/// What a contact cannot do is told with the quantities that matter; what it does all the same is measured.
+#[test]
+fn impossible_contacts_say_what_would_do() {
+    let scratch = Scratch::new();
+    let run = |part: &str, tool: &str, lead_deg: f64, scallop_mm: f64, json: bool| {
+        let text = format!(
+            "format = 1\n[part]\nbuiltin = {{ {part} }}\n[tool]\n{tool}\n[tolerance]\nscallop_mm = {scallop_mm}\n\
+             [strategy]\nlead_deg = {lead_deg}\n[contact]\nat = [0.5, 0.1]\nalong = \"u\"\n"
+        );
+        let path = scratch.write("job.toml", &text);
+        let path = path.to_str().unwrap();
+        if json { osculate(&["strip", "--json", path]) } else { osculate(&["strip", path]) }
+    };
+    let groove = "kind = \"torus\", major_radius_mm = 200, minor_radius_mm = 60, material = \"outside\"";
+    let flat = "kind = \"flat\"\ndiameter_mm = 20";
+    // Less lead than the groove is hollow: both curvatures, and the radius that fits, R = 60 sin(2 deg).
+    let digs = run(groove, flat, 2.0, 0.01, false);
+    assert_eq!(digs.code, 0, "{}", digs.err);
+    for word in ["does not fit", "-0.016667 1/mm", "0.003490 1/mm", "radius 2.094 mm"] {
+        assert!(digs.out.contains(word), "{word}: {}", digs.out);
+    }
+    let digs = run(groove, flat, 2.0, 0.01, true).json();
+    assert!(digs["does_not_fit"].is_string() && digs["exact"]["undercut_mm"].as_f64().unwrap() > 0.01);
+    run(groove, flat, 95.0, 0.01, true).refused(&["lead", "-90 and 90", "95"]);
+    // Higher than two arcs of the part and a ball can meet.
+    let ball = "kind = \"ball\"\ndiameter_mm = 4";
+    let tall = run("kind = \"sphere\", radius_mm = 50", ball, 0.0, 5.0, true);
+    let why = tall.json()["closed_forms"]["r97_37"]["why_not"].to_string();
+    assert!(why.contains("5 mm") && why.contains("beyond the arcs") && why.contains("0.50000"), "{why}");
+    // Without a lead a flat end stands on its whole bottom: on a ball a plane, 2 R acos(R / (R + h)).
+    let flat_on_top = run("kind = \"sphere\", radius_mm = 50", flat, 0.0, 0.01, true);
+    assert_eq!(flat_on_top.code, 0, "{}", flat_on_top.err);
+    let answer = flat_on_top.json();
+    let (exact, plane) = (&answer["exact"], 2.0 * 50.0 * (50.0f64 / 50.01).acos());
+    assert!((exact["width_mm"].as_f64().unwrap() / plane - 1.0).abs() < 1e-2, "{answer} against {plane}");
+    assert!(exact["undercut_mm"].as_f64().unwrap() < 1e-9, "{answer}");
+}

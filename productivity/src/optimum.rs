@@ -15,7 +15,7 @@ use crate::closed_form::{Section, width_37};
 use crate::rate::{Caps, CapsError, Rate, Share};
 use crate::split::leading_share;
 use osculate_geom::{Degenerate, Surface, Unit3, Uv};
-use osculate_tools::strip::{self, StripError};
+use osculate_tools::strip::{self, Demand, StripError};
 use osculate_tools::{Contact, Cutter, FeedLine, Lean};
 use search::Search;
 use std::f64::consts::TAU;
@@ -149,6 +149,9 @@ pub enum OptimumError {
     },
 }
 
+/// Error of the widths that the search compares.
+const COMPARED: f64 = 3e-4;
+
 /// One posture measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
@@ -185,10 +188,10 @@ pub fn measure(
     let contact = Contact::new(surface, at, cutter, FeedLine::Angle(posture.direction_rad), posture.lean)?;
     let (cap, _) = limits.caps.greatest_per_tooth();
     let share = share_of(&contact, cap, limits.scallop_mm, |c, h| strip::mark(c, h).map(|m| m.length_mm()))?;
-    measure_contact(&contact, share, limits)
+    measure_contact(&contact, share, limits, 0.0)
 }
 
-/// As [`measure`] with the planar closed form of the tooth mark: what the search compares.
+/// As [`measure`], to [`COMPARED`], with the planar closed form of the tooth mark: what the search compares.
 fn compare(
     surface: &dyn Surface,
     at: Uv,
@@ -208,21 +211,25 @@ fn compare(
         Ok(width_37(section).unwrap_or_else(|_| 2.0 * (2.0 * scallop_mm / along).sqrt()))
     };
     let share = share_of(&contact, cap, limits.scallop_mm, planar)?;
-    measure_contact(&contact, share, limits)
+    measure_contact(&contact, share, limits, COMPARED)
 }
 
 fn measure_contact(
     contact: &Contact<'_>,
     (share, mark_mm): (Share, f64),
     limits: &Limits,
+    relative: f64,
 ) -> Result<Measured, StripError> {
     let mut lift_mm = 0.0;
-    let mut strip = strip::exact(contact, share.across_mm())?;
+    let h = share.across_mm();
+    // Lifted by more than the tolerance it would leave no strip.
+    let mut strip = strip::exact_to(contact, h, Demand { deepest_mm: limits.gouge_mm + h, relative })?;
     if strip.undercut_mm > limits.gouge_mm {
         // The lift moves along one normal, the dip is a little off it: once more takes out what is left.
         for _ in 0..2 {
             lift_mm += strip.undercut_mm - limits.gouge_mm;
-            strip = strip::exact(&contact.lifted(lift_mm), share.across_mm())?;
+            strip =
+                strip::exact_to(&contact.lifted(lift_mm), h, Demand { deepest_mm: f64::INFINITY, relative })?;
             if strip.undercut_mm <= limits.gouge_mm * (1.0 + 1e-3) {
                 break;
             }

@@ -59,7 +59,8 @@ pub enum ContactError {
         part_per_mm: f64,
         /// Normal curvature of the tool in the same direction.
         tool_per_mm: f64,
-        /// Outer radius of the largest tool of this kind that fits at this lead, mm; zero where none does.
+        /// Outer radius of the largest tool of this kind that fits at this lead, mm; zero where none does, and for cutters that are
+        /// no end mills.
         largest_radius_mm: f64,
     },
 }
@@ -283,7 +284,9 @@ impl<'a> Contact<'a> {
         let r = self.cutter.corner_mm();
         // Across the lean the tool's curvature is s / (core + r s); along it 1/r.
         let hollow = -self.forms.principal().k_min;
-        let largest = if self.cutter.is_ball() {
+        let largest = if !self.cutter.is_end_mill() {
+            0.0
+        } else if self.cutter.is_ball() {
             1.0 / hollow
         } else if r * hollow > 1.0 {
             0.0

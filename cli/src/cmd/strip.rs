@@ -45,6 +45,9 @@ struct Answer {
     exact: Exact,
     closed_forms: BTreeMap<&'static str, Form>,
     relative_curvature_per_mm: MinMax,
+    /// Why the tool digs in next to the contact, with what would fit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    does_not_fit: Option<String>,
     widest_direction_deg: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     max_feed_per_tooth_mm: Option<f64>,
@@ -127,21 +130,10 @@ fn answer(contact: &Contact<'_>, exact: &strip::Strip, scallop_mm: f64) -> Answe
     if cutter.is_ball() {
         put("m86_2cl", closed_form::two_axis_ball(cutter.radius_mm(), scallop_mm), None);
     } else {
-        if cutter.corner_mm() == 0.0 {
-            let lead = contact.lean.lead_rad;
-            put(
-                "m86_3c",
-                closed_form::three_axis_flat(cutter.radius_mm(), lead, part_across, scallop_mm),
-                None,
-            );
-        }
-        let five = closed_form::five_axis_flat(
-            cutter.core_mm(),
-            cutter.corner_mm(),
-            part_along,
-            part_across,
-            scallop_mm,
-        );
+        let (arc, lead) = (cutter.touching(contact.lean.lead_rad), contact.lean.lead_rad);
+        let (core, corner) = (arc.centre_rho_mm, arc.radius_mm);
+        put("m86_3c", closed_form::three_axis_toroidal(core, corner, lead, part_across, scallop_mm), None);
+        let five = closed_form::five_axis_flat(core, corner, part_along, part_across, scallop_mm);
         let lead = five.as_ref().ok().map(|f| f.lead_rad.to_degrees());
         put("m86_5c", five.map(|f| f.width_mm), lead);
     }
@@ -163,6 +155,7 @@ fn answer(contact: &Contact<'_>, exact: &strip::Strip, scallop_mm: f64) -> Answe
         },
         closed_forms: forms,
         relative_curvature_per_mm: MinMax { min: q.min, max: q.max.is_finite().then_some(q.max) },
+        does_not_fit: contact.fits().err().map(|e| e.to_string()),
         // Directions are lines: the angle in (-90, 90].
         widest_direction_deg: if angle > 90.0 {
             angle - 180.0
@@ -203,6 +196,9 @@ fn describe(a: &Answer, scallop_mm: f64) -> String {
     let q = &a.relative_curvature_per_mm;
     let max = q.max.map_or_else(|| "infinite (sharp edge)".into(), |m| format!("{} 1/mm", number(m, 6)));
     out.push_str(&format!("  relative curvature: {} 1/mm to {max}\n", number(q.min, 6)));
+    if let Some(why) = &a.does_not_fit {
+        out.push_str(&format!("  {why}\n"));
+    }
     out.push_str(&format!(
         "  widest strip with the feed at {:.2} deg from S_u towards S_v\n",
         a.widest_direction_deg

@@ -3,33 +3,48 @@
 //! Postures are compared on a [`Chart`] of the place, which costs some microseconds each; where a strip reaches beyond the chart the exact
 //! strip is taken. What is found is measured exactly, so that the chart's error costs quality but never truth.
 
-use super::{Binding, Limits, Measured, Posture, Range, compare, measure, share_by};
+use super::{Binding, Limits, Measured, Posture, compare, measure, share_by};
 use crate::closed_form::{Section, leading_order_swept, width_37};
 use osculate_geom::{Degenerate, Relative, Surface, SymEigen, Uv, Vec3};
 use osculate_tools::strip::{Chart, ChartError, StripError, Within};
 use osculate_tools::{Cutter, Lean};
+use std::cmp::Ordering;
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 /// Directions, leads and tilts of the grid that is ranked.
 const GRID: [usize; 3] = [24, 7, 5];
-/// Postures of the grid above the least lead that are measured, and how many of all are settled.
+/// Directions measured at the least lead: rays of the chart, between which it need not interpolate.
+const DIRECTIONS: usize = 36;
+/// Postures of the grid above the least lead that are measured, how many of all enter the rounds of settling, and how many
+/// come through the first.
 const MEASURED: usize = 12;
+const ENTERED: usize = 6;
 const SETTLED: usize = 3;
+/// A neighbour this much lower lies beyond a jump: the strip has met a wave of the part.
+const JUMP: f64 = 0.88;
+const JUMPS: u32 = 2;
 /// Leads tried above an impossible one in the first look, and in each round of settling.
 const CLIMBS: u32 = 5;
 const BRINK: u32 = 7;
 /// Rounds of coordinate searches; steps shrink in each.
-const ROUNDS: u32 = 3;
+const ROUNDS: i32 = 3;
 const SHRINK: f64 = 0.35;
-/// Error of a chart that is as good as exact, of the tolerance; and what is level with the best on it.
+/// Error of a chart that is as good as exact, of the tolerance; and what is level with the best exact one on a fine and on a
+/// coarse chart.
 const FINE: f64 = 4e-3;
-const LEVEL: f64 = 0.995;
+const LEVEL: [f64; 2] = [0.995, 0.9];
+/// Error of a chart, of the tolerance, above which its best is settled on exact strips.
+const ROUGH: f64 = 4e-2;
 /// Steps of the last, exact round, of a step of the grid.
 const POLISH: f64 = 0.1;
 /// Radius of the chart, in the cutter's radius: strips are hardly ever wider.
 const REACH: f64 = 1.2;
 /// Misfit of the chart that is accepted, of the tolerance.
-const MISFIT: f64 = 5e-2;
+const MISFIT: f64 = 0.05;
+/// Postures that the chart's error may have cut short, which are measured exactly; and by how much they must promise to be better.
+const PROMISING: usize = 4;
+const PROMISE: f64 = 1.02;
 
 /// A search at one place with one tool.
 pub(super) struct Search<'a> {
@@ -37,10 +52,12 @@ pub(super) struct Search<'a> {
     pub at: Uv,
     pub cutter: &'a Cutter,
     pub limits: &'a Limits,
-    pub chart: Chart,
+    pub chart: Chart<'a>,
     pub side: f64,
     /// Whether postures are measured by the exact strip.
     exactly: bool,
+    /// The strip with the chart's error more, over the strip, of the posture measured last.
+    promise: f64,
     pub evaluations: u32,
     pub exact: u32,
     pub last: Option<StripError>,
@@ -65,6 +82,7 @@ impl<'a> Search<'a> {
             chart,
             side,
             exactly: false,
+            promise: 1.0,
             evaluations: 0,
             exact: 0,
             last: None,
@@ -101,6 +119,7 @@ impl<'a> Search<'a> {
             return None;
         }
         self.evaluations += 1;
+        self.promise = 1.0;
         let on_chart =
             if self.exactly { Err(ChartError::Beyond { radius_mm: 0.0 }) } else { self.on_chart(&p) };
         let measured = match on_chart {
@@ -112,7 +131,10 @@ impl<'a> Search<'a> {
                 Err(StripError::AboveTolerance { standoff_mm, scallop_mm: self.limits.scallop_mm })
             }
             Err(ChartError::Contact(e)) => Err(e.into()),
-            Ok(m) => Ok(m),
+            Ok((m, promise)) => {
+                self.promise = promise;
+                Ok(m)
+            }
         };
         match measured {
             Ok(m) => Some(m),
@@ -123,7 +145,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn on_chart(&self, p: &Posture) -> Result<Measured, ChartError> {
+    /// A posture on the chart, and how much wider the strip were with the chart's error more.
+    fn on_chart(&self, p: &Posture) -> Result<(Measured, f64), ChartError> {
         let (limits, cutter) = (self.limits, self.cutter);
         let (cap, _) = limits.caps.greatest_per_tooth();
         let tangent = self.tangent(p.direction_rad);
@@ -142,7 +165,8 @@ impl<'a> Search<'a> {
         let within = Within { scallop_mm: share.across_mm(), gouge_mm: limits.gouge_mm };
         let strip = self.chart.strip(cutter, p.direction_rad, p.lean, within)?;
         let rate = limits.caps.rate(strip.width_mm, mark);
-        Ok(Measured { lift_mm: strip.lift_mm, undercut_mm: strip.undercut_mm, share, rate })
+        let measured = Measured { lift_mm: strip.lift_mm, undercut_mm: strip.undercut_mm, share, rate };
+        Ok((measured, strip.most_mm / strip.width_mm))
     }
 
     /// Leading order of the productivity: the smaller Q's eigenvalue, the better, to where two contacts begin.
@@ -165,10 +189,14 @@ impl<'a> Search<'a> {
 
     pub fn run(&mut self) -> Option<Found> {
         // At the least lead the strip is usually widest and the leading order fails: all of it is measured.
-        let mut found = Vec::with_capacity(4 * GRID[0]);
+        let mut found = Vec::with_capacity(4 * DIRECTIONS);
+        let mut promises: Vec<(Found, f64)> = Vec::with_capacity(4 * DIRECTIONS);
         for p in self.least_lead() {
             match self.measure(p) {
-                Some(m) => found.push((p, m)),
+                Some(m) => {
+                    found.push((p, m));
+                    promises.push(((p, m), self.promise * m.rate.area_mm2_min));
+                }
                 // The tool dips too deep: two contacts at the lead where it just does not.
                 None => found.extend(self.brink_above(p, CLIMBS)),
             }
@@ -194,25 +222,23 @@ impl<'a> Search<'a> {
                 found.push((p, m));
             }
         }
-        found.sort_by(|a, b| b.1.rate.area_mm2_min.total_cmp(&a.1.rate.area_mm2_min));
-        // The best of each neighbourhood.
-        let most = if coarse { 2 * SETTLED } else { SETTLED };
-        let mut best: Vec<Found> = Vec::with_capacity(most);
-        for f in &found {
-            if best.len() < most && !best.iter().any(|b| near(&b.0, &f.0)) {
-                best.push(*f);
-            }
+        self.keep_promises(promises, &mut found);
+        let entered = distinct(found, ENTERED);
+        let first: Vec<Found> = entered.iter().map(|f| self.settle(*f, 0..1)).collect();
+        let kept = distinct(first, if coarse { ENTERED } else { SETTLED });
+        let mut settled: Vec<Found> = kept.into_iter().map(|f| self.settle(f, 1..ROUNDS)).collect();
+        if coarse {
+            // Settling on a coarse chart may have led over a brink that lies elsewhere.
+            settled.extend(entered);
         }
-        let found = best;
-        let mut settled: Vec<Found> = found.into_iter().map(|f| self.settle(f)).collect();
-        settled.sort_by(|a, b| b.1.rate.area_mm2_min.total_cmp(&a.1.rate.area_mm2_min));
-        // On the chart two may be level that are not: those near the best are measured exactly. Where the chart is
-        // coarse all are, and the best is settled once more.
-        let level = settled.first()?.1.rate.area_mm2_min * if coarse { 0.0 } else { LEVEL };
+        settled.sort_by(better_first);
+        // On the chart two may be level that are not, and some better than they are: the best are measured exactly until none
+        // of the others can be better. Where the chart is coarse the best is settled once more.
+        let level = LEVEL[usize::from(coarse)];
         self.exactly = true;
         let mut best: Option<Found> = None;
         for (p, on_chart) in settled {
-            if best.is_some() && on_chart.rate.area_mm2_min < level {
+            if best.is_some_and(|b| on_chart.rate.area_mm2_min < level * b.1.rate.area_mm2_min) {
                 break;
             }
             if let Some(m) = self.measure(p)
@@ -221,9 +247,25 @@ impl<'a> Search<'a> {
                 best = Some((p, m));
             }
         }
-        let (p, m) = if coarse { self.polish(best?) } else { best? };
+        let (p, m) = if coarse { self.refine(best?) } else { best? };
         // The search compares planar tooth marks; the answer has the exact one.
         Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).unwrap_or(m)))
+    }
+
+    /// Measures exactly what may be better than all that was found but for the chart's error.
+    fn keep_promises(&mut self, mut promises: Vec<(Found, f64)>, found: &mut Vec<Found>) {
+        let best = found.iter().map(|f| f.1.rate.area_mm2_min).fold(0.0, f64::max);
+        promises.retain(|p| p.1 > PROMISE * best && p.1 > PROMISE * p.0.1.rate.area_mm2_min);
+        promises.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut tried: Vec<Posture> = Vec::with_capacity(PROMISING);
+        self.exactly = true;
+        for ((p, _), _) in promises {
+            if tried.len() < PROMISING && !tried.iter().any(|o| near(o, &p)) {
+                tried.push(p);
+                found.extend(self.measure(p).map(|m| (p, m)));
+            }
+        }
+        self.exactly = false;
     }
 
     /// The least lead above an impossible posture that leaves a strip: widest where two contacts just hold.
@@ -257,10 +299,9 @@ impl<'a> Search<'a> {
         } else {
             vec![tilt.least_rad]
         };
-        let first = self.first_direction();
-        (0..GRID[0])
+        (0..DIRECTIONS)
             .flat_map(|k| {
-                let direction_rad = first + TAU * k as f64 / GRID[0] as f64;
+                let direction_rad = TAU * k as f64 / DIRECTIONS as f64;
                 let lead_rad = self.limits.lead.least_rad;
                 tilts
                     .iter()
@@ -277,7 +318,7 @@ impl<'a> Search<'a> {
     }
 
     fn grid(&self) -> Vec<(Posture, f64)> {
-        let steps = |r: Range, n: usize| -> Vec<f64> {
+        let steps = |r: super::Range, n: usize| -> Vec<f64> {
             if r.width() <= 0.0 {
                 vec![r.least_rad]
             } else {
@@ -316,15 +357,17 @@ impl<'a> Search<'a> {
     }
 
     /// Coordinate searches with shrinking steps, a parabola through three values in each.
-    fn settle(&mut self, from: Found) -> Found {
+    fn settle(&mut self, from: Found, rounds: Range<i32>) -> Found {
         let mut best = from;
         let limits = self.limits;
-        let mut step = [
-            0.5 * TAU / GRID[0] as f64,
-            limits.lead.width() / (GRID[1] - 1) as f64,
-            0.5 * limits.tilt.width() / (GRID[2] - 1) as f64,
-        ];
-        for _ in 0..ROUNDS {
+        for round in rounds {
+            let shrink = SHRINK.powi(round);
+            let step = [
+                0.5 * TAU / GRID[0] as f64,
+                limits.lead.width() / (GRID[1] - 1) as f64,
+                0.5 * limits.tilt.width() / (GRID[2] - 1) as f64,
+            ]
+            .map(|s| s * shrink);
             for (k, s) in step.iter().enumerate() {
                 if *s > 0.0 {
                     best = self.along(best, k, *s);
@@ -334,16 +377,16 @@ impl<'a> Search<'a> {
             if limits.tilt.width() > 0.0 {
                 best = self.along(best, 3, step[0]);
             }
-            step = step.map(|s| s * SHRINK);
         }
         best
     }
 
-    /// A last round with small steps.
-    fn polish(&mut self, from: Found) -> Found {
+    /// Last rounds, exact: the second of settling, and one with small steps.
+    fn refine(&mut self, from: Found) -> Found {
         let limits = self.limits;
         let widths = [TAU / GRID[0] as f64, limits.lead.width() / GRID[1] as f64, limits.tilt.width()];
-        let mut best = from;
+        let mut best =
+            if self.chart.error_mm() > ROUGH * limits.scallop_mm { self.settle(from, 1..2) } else { from };
         for (k, w) in widths.into_iter().enumerate().filter(|(_, w)| *w > 0.0) {
             best = self.along(best, k, POLISH * w);
         }
@@ -378,6 +421,20 @@ impl<'a> Search<'a> {
             best = brink.map_or(best, |(p, m)| better(best, p, Some(m)));
         }
         let (fa, f0, fb) = (value(a), from.1.rate.area_mm2_min, value(b));
+        // The best lies at a jump's brink where the slope leads there.
+        for (sign, beyond, other) in [(1.0, fb, fa), (-1.0, fa, fb)] {
+            if beyond >= JUMP * f0 || other >= f0 {
+                continue;
+            }
+            let (mut near, mut far) = (0.0, step);
+            for _ in 0..JUMPS {
+                let by = 0.5 * (near + far);
+                let p = self.moved(&from.0, coordinate, sign * by);
+                let m = self.measure(p);
+                best = better(best, p, m);
+                if value(m) < JUMP * f0 { far = by } else { near = by }
+            }
+        }
         let bend = fa - 2.0 * f0 + fb;
         let to = if bend < 0.0 { 0.5 * step * (fa - fb) / bend } else { 0.0 };
         if to != 0.0 && to.abs() < 2.0 * step {
@@ -390,7 +447,7 @@ impl<'a> Search<'a> {
 
     pub fn binding(&self, p: &Posture, m: &Measured) -> Binding {
         let limits = self.limits;
-        let close = |x: f64, y: f64, r: Range| (x - y).abs() <= 1e-3 * r.width().max(1e-9);
+        let close = |x: f64, y: f64, r: super::Range| (x - y).abs() <= 1e-3 * r.width().max(1e-9);
         let nudged = |by: f64| Posture { lean: Lean { lead_rad: p.lean.lead_rad + by, ..p.lean }, ..*p };
         if m.undercut_mm > 0.5 * limits.gouge_mm {
             Binding::Gouge
@@ -409,6 +466,22 @@ impl<'a> Search<'a> {
             Binding::Inside
         }
     }
+}
+
+fn better_first(a: &Found, b: &Found) -> Ordering {
+    b.1.rate.area_mm2_min.total_cmp(&a.1.rate.area_mm2_min)
+}
+
+/// The best of each neighbourhood, best first.
+fn distinct(mut found: Vec<Found>, most: usize) -> Vec<Found> {
+    found.sort_by(better_first);
+    let mut best: Vec<Found> = Vec::with_capacity(most);
+    for f in found {
+        if best.len() < most && !best.iter().any(|b| near(&b.0, &f.0)) {
+            best.push(f);
+        }
+    }
+    best
 }
 
 fn posture_lead(p: &Posture) -> f64 {

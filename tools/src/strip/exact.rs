@@ -2,7 +2,9 @@
 
 use super::ContactMotion;
 use super::local::{LocalMotion, Near, Pace, deepest};
+use super::passages::Passages;
 use super::traced::Traced;
+use super::undercut::{Place, Undercut};
 use crate::contact::{Contact, ContactError, ContactLine};
 use crate::cutter::{Cutter, Line};
 use crate::sweep::{Reach, SweptMotion, reach_from};
@@ -51,6 +53,17 @@ pub enum StripError {
         /// The tolerance, mm.
         scallop_mm: f64,
     },
+    /// The tool, elsewhere on its way, comes over the contact too deep.
+    #[error(
+        "the tool's far side goes {dip_mm:.4} mm below the part at the contact, more than the {deepest_mm:.4} mm \
+         accepted: use a larger lead or a smaller tool"
+    )]
+    TooDeep {
+        /// Depth, mm.
+        dip_mm: f64,
+        /// Greatest depth accepted, mm.
+        deepest_mm: f64,
+    },
     /// The cross line could not be followed.
     #[error(transparent)]
     Degenerate(#[from] Degenerate),
@@ -82,6 +95,10 @@ pub fn standoff(
 /// Steps in which a side of the strip is walked before its edge is bracketed; the profile between the contact and
 /// the edge is watched for undercut at these places.
 const STEPS_PER_SIDE: f64 = 6.0;
+/// Instants, a twentieth of the tool's radius apart, that are looked at to each side of the contact.
+const NEARBY: i32 = 20;
+/// Crests of the profile that come up to this share of the tolerance are looked at between places.
+const SUSPECT: f64 = 0.7;
 /// Most steps of the walk: strips that conform far better than the leading order says are still found.
 const MAX_STEPS: u32 = 4000;
 /// Rounding in the standoff at the contact itself, relative to the tolerance.
@@ -96,8 +113,8 @@ const CUTS: u32 = 16;
 /// Accuracy of the strip's edge relative to the half width.
 const EDGE_TOLERANCE: f64 = 1e-13;
 
-/// Most steps towards the deepest place across.
-const MOST_PARABOLAS: u32 = 30;
+/// What each source of error may have of the error that is accepted.
+pub(super) const SHARE: f64 = 0.1;
 /// Height above the deepest instant that counts as none, of the tool's radius.
 const SETTLED: f64 = 1e-15;
 /// Half the length of a piece of motion that is fitted at once, in leading-order half widths.
@@ -113,6 +130,23 @@ const MOTION_TOLERANCE: f64 = 2e-9;
 /// # Errors
 /// [`StripError`].
 pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError> {
+    exact_to(contact, scallop_mm, Demand { deepest_mm: f64::INFINITY, relative: 0.0 })
+}
+
+/// How much is asked of a strip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demand {
+    /// Where another passage of the tool goes deeper than this below the contact there is no answer, mm.
+    pub deepest_mm: f64,
+    /// Error of the width that may be left, of the width; zero: down to rounding.
+    pub relative: f64,
+}
+
+/// As [`exact`], only as far and as well as is asked for.
+///
+/// # Errors
+/// [`StripError`], with [`StripError::TooDeep`] at once where the demand says so.
+pub fn exact_to(contact: &Contact<'_>, scallop_mm: f64, demand: Demand) -> Result<Strip, StripError> {
     if !(scallop_mm > 0.0 && scallop_mm.is_finite()) {
         return Err(StripError::Tolerance { got: scallop_mm });
     }
@@ -134,7 +168,8 @@ pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError
     // Leading-order half width where Q allows it, a fraction of the tool elsewhere.
     let half = if across.is_finite() && across > 0.0 { (2.0 * h / across).sqrt() } else { 0.1 * radius };
     let contact_speed = speed_of_contact(&motion, t0, speed);
-    let reach = [radius, MOTION_TOLERANCE * h + 8.0 * f64::EPSILON * contact.frame.point.coords.amax()];
+    let misfit = MOTION_TOLERANCE.max(SHARE * demand.relative) * h;
+    let reach = [radius, misfit + 8.0 * f64::EPSILON * contact.frame.point.coords.amax()];
     let local = LocalMotion::new(&motion, t0, MOTION_PIECE * half.min(radius) / contact_speed, reach);
     let side = Side {
         contact,
@@ -144,9 +179,20 @@ pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError
         h,
         step: (half.min(radius) / STEPS_PER_SIDE).min(4.0 * contact.step_mm()),
         breaks: [contact.surface.breaks(Axis::U), contact.surface.breaks(Axis::V)],
+        passages: None,
+        relative: demand.relative,
     };
-    let left = side.walk(1.0)?;
-    let right = side.walk(-1.0)?;
+    let passages = |fine: bool| Passages::new(contact, &motion, (t0, contact_speed), fine);
+    let seldom = passages(false);
+    let here = Line { origin: contact.frame.point, direction: contact.frame.normal };
+    let dip_mm = -seldom.lowest_mm(contact.cutter, &here);
+    if dip_mm > demand.deepest_mm {
+        return Err(StripError::TooDeep { dip_mm, deepest_mm: demand.deepest_mm });
+    }
+    let [left, right] = match side.once(&seldom)? {
+        Some(sides) => sides,
+        None => Side { passages: Some(&passages(true)), ..side }.both()?,
+    };
     // Heights carry the rounding of coordinates; near its edge the profile rises by 2 h over the half width.
     let size = contact.frame.point.coords.amax() + radius;
     let height_error = 4.0 * f64::EPSILON * size + local.error_mm();
@@ -166,15 +212,19 @@ fn speed_of_contact(motion: &ContactMotion<'_>, t0: f64, fallback: f64) -> f64 {
     motion.line.frame(t0).map_or(fallback, |(_, speed)| speed.abs().max(1e-12))
 }
 
-struct Side<'a, M> {
+pub(super) struct Side<'a, M> {
     contact: &'a Contact<'a>,
     motion: &'a M,
     t0: f64,
     t_step: f64,
     h: f64,
-    step: f64,
+    pub step: f64,
     /// Where the surface is less smooth, along u and along v.
     breaks: [Vec<f64>; 2],
+    /// Where the tool comes over the strip more than once.
+    passages: Option<&'a Passages>,
+    /// Error of the width that may be left, of the width.
+    pub relative: f64,
 }
 
 /// The state on a knot within a step of length `x`, and the way there; None where Newton's method does not find it.
@@ -201,22 +251,74 @@ fn on_knot(
 
 struct HalfStrip {
     edge: f64,
+    /// The normal of the part there, and the instant of the contact's own passage.
+    at: Line,
+    t: f64,
     undercut: f64,
     error: f64,
     at_edge: bool,
 }
 
-impl<M: SweptMotion> Side<'_, M> {
-    fn standoff(&self, at: Uv, near: Near) -> Result<Option<(Reach, Near)>, Degenerate> {
+impl<'a, M: SweptMotion> Side<'a, M> {
+    /// Both halves, left first.
+    fn both(&self) -> Result<[HalfStrip; 2], StripError> {
+        Ok([self.walk(1.0)?, self.walk(-1.0)?])
+    }
+
+    /// Both halves, by the contact's own passage; None where the tool at another instant comes near the contact or an edge.
+    fn once(&self, passages: &Passages) -> Result<Option<[HalfStrip; 2]>, StripError> {
+        let matter = |line: &Line, t: f64| {
+            passages.matter(self.contact.cutter, line, self.h) || self.comes_again(line, t)
+        };
+        let here = Line { origin: self.contact.frame.point, direction: self.contact.frame.normal };
+        let first = self.both();
+        let again = match &first {
+            Ok(sides) => matter(&here, self.t0) || sides.iter().any(|s| matter(&s.at, s.t)),
+            Err(StripError::AboveTolerance { .. }) => matter(&here, self.t0),
+            Err(_) => false,
+        };
+        if again { Ok(None) } else { first.map(Some) }
+    }
+
+    /// Whether within a radius of the contact the tool comes down to the tolerance over a line at another instant than `t`.
+    fn comes_again(&self, line: &Line, t: f64) -> bool {
+        let entry = |k: i32| {
+            let pose = self.motion.at(self.t0 + f64::from(k) * self.t_step)?.pose;
+            Some(self.contact.cutter.entry(&pose, line)?.at_mm)
+        };
+        let mut before = [f64::INFINITY; 2];
+        for k in -NEARBY..=NEARBY {
+            let now = entry(k).unwrap_or(f64::INFINITY);
+            let other = (self.t0 + f64::from(k - 1) * self.t_step - t).abs() > 2.0 * self.t_step.abs();
+            if other && before[1] <= self.h && before[1] < before[0] && before[1] <= now {
+                return true;
+            }
+            before = [before[1], now];
+        }
+        false
+    }
+
+    fn normal(&self, at: Uv) -> Result<Line, Degenerate> {
         let jet = self.contact.surface.jet2(at);
-        let line = Line { origin: jet.point, direction: jet.normal()? };
-        let pace = Pace { step: self.t_step, settled_mm: SETTLED * self.contact.cutter.radius_mm() };
-        Ok(deepest(self.contact.cutter, &line, self.motion, near, pace))
+        Ok(Line { origin: jet.point, direction: jet.normal()? })
+    }
+
+    pub fn standoff(&self, at: Uv, near: Near) -> Result<Option<(Reach, Near)>, Degenerate> {
+        let line = self.normal(at)?;
+        let cutter = self.contact.cutter;
+        let settled_mm = (SETTLED * cutter.radius_mm()).max(SHARE * self.relative * self.h);
+        let pace = Pace { step: self.t_step, settled_mm };
+        let found = deepest(cutter, &line, self.motion, near, pace);
+        let Some(passages) = self.passages else { return Ok(found) };
+        let bound = found.map_or(f64::INFINITY, |f| f.0.at_mm);
+        // The next place is looked at from the contact's own passage on, and from all others.
+        let from = found.map_or(near, |f| f.1);
+        Ok(passages.deepest(cutter, &line, self.motion, bound).map(|other| (other, from)).or(found))
     }
 
     /// The cross line `x` further on. A step over knots, where the line's own equation has a kink, is taken from knot to
     /// knot, and cut small where these are not found.
-    fn advance(&self, here: &GeodesicState, x: f64) -> Result<GeodesicState, Degenerate> {
+    pub fn advance(&self, here: &GeodesicState, x: f64) -> Result<GeodesicState, Degenerate> {
         let surface = self.contact.surface;
         let (mut state, mut left) = (*here, x);
         for _ in 0..MOST_KNOTS {
@@ -278,6 +380,11 @@ impl<M: SweptMotion> Side<'_, M> {
             let reach = self.standoff(next.at, t)?;
             match reach {
                 Some((r, near)) if r.at_mm <= self.h => {
+                    if let Some((from, step, f_out)) = self.crest(&undercut, r.at_mm)? {
+                        let behind = if from.state.at == here.at { 0.0 } else { self.step };
+                        let to_crest = Side { step, breaks: self.breaks.clone(), ..*self };
+                        return to_crest.edge(from.state, q - behind, from.t, f_out, undercut);
+                    }
                     (t, here, q) = (near, next, q + self.step);
                     undercut.see(here, t, r.at_mm);
                 }
@@ -288,6 +395,23 @@ impl<M: SweptMotion> Side<'_, M> {
             }
         }
         Err(StripError::Edge(RootError::NotConverged { evaluations: MAX_STEPS, residual: q }))
+    }
+
+    /// Where the profile exceeds the tolerance between places that do not: the crest of the parabola through the last two
+    /// and the next. The place before it, the way there, and the excess.
+    fn crest(&self, seen: &Undercut, next: f64) -> Result<Option<(Place, f64, f64)>, Degenerate> {
+        let [Some(a), Some(b)] = seen.last else { return Ok(None) };
+        let (bend, slope) = (0.5 * (a.height + next) - b.height, 0.5 * (next - a.height));
+        let at = -0.5 * slope / bend;
+        let top = b.height + 0.5 * slope * at;
+        if !(bend < 0.0 && at.abs() < 1.0 && top > SUSPECT * self.h) {
+            return Ok(None);
+        }
+        let (from, step) = if at < 0.0 { (a, (1.0 + at) * self.step) } else { (b, at * self.step) };
+        let place = self.advance(&from.state, step)?.at;
+        let height = self.standoff(place, from.t)?.map_or(f64::INFINITY, |(r, _)| r.at_mm);
+        let f_out = (height - self.h).min(self.contact.cutter.radius_mm());
+        Ok((f_out > 0.0).then_some((from, step, f_out)))
     }
 
     /// The edge of the strip between `here` (inside, at arc length `q`) and one step further (outside).
@@ -310,11 +434,13 @@ impl<M: SweptMotion> Side<'_, M> {
         let root = bracketed(
             End { x: 0.0, f: excess(0.0).min(0.0) },
             End { x: self.step, f: f_out },
-            EDGE_TOLERANCE * (q + self.step),
+            EDGE_TOLERANCE.max(SHARE * self.relative) * (q + self.step),
             excess,
         )?;
         Ok(HalfStrip {
             edge: q + root.x,
+            at: self.normal(self.advance(&here, root.x)?.at)?,
+            t: t.t,
             undercut: undercut.deepest(self)?,
             error: root.error + self.integration_error(here, q + root.x)?,
             at_edge: false,
@@ -343,7 +469,15 @@ impl<M: SweptMotion> Side<'_, M> {
                 let mut undercut = undercut;
                 undercut.lowest = undercut.lowest.min(r.at_mm);
                 let error = hi - lo + self.integration_error(here, q + lo)?;
-                Ok(HalfStrip { edge: q + lo, undercut: undercut.deepest(self)?, error, at_edge: true })
+                let at = self.normal(end.at)?;
+                Ok(HalfStrip {
+                    edge: q + lo,
+                    at,
+                    t: t.t,
+                    undercut: undercut.deepest(self)?,
+                    error,
+                    at_edge: true,
+                })
             }
             outside => {
                 let f_out = outside.map_or(self.contact.cutter.radius_mm(), |(r, _)| r.at_mm - self.h);
@@ -362,89 +496,5 @@ impl<M: SweptMotion> Side<'_, M> {
         let jet = surface.jet2(one.at);
         let off = (jet.tangent(Uv { u: one.at.u - two.at.u, v: one.at.v - two.at.v })).norm();
         Ok(off * (1.0 + q / self.step))
-    }
-}
-
-/// The lowest standoff seen on a walk, with the stretch in which the true minimum lies.
-#[derive(Clone, Copy)]
-struct Undercut {
-    /// The last two places, oldest first.
-    last: [Option<Place>; 2],
-    lowest: f64,
-    /// The place before the lowest one, where a minimum stands between three places.
-    before_lowest: Option<Place>,
-}
-
-/// One place of the walk.
-#[derive(Clone, Copy)]
-struct Place {
-    state: GeodesicState,
-    t: Near,
-    height: f64,
-}
-
-impl Undercut {
-    fn new(state: GeodesicState, t: Near, height: f64) -> Self {
-        Self { last: [None, Some(Place { state, t, height })], lowest: height, before_lowest: None }
-    }
-
-    fn see(&mut self, state: GeodesicState, t: Near, height: f64) {
-        let new = Place { state, t, height };
-        if let [Some(a), Some(b)] = self.last
-            && b.height <= a.height
-            && b.height <= height
-            && b.height <= self.lowest
-        {
-            self.before_lowest = Some(a);
-        }
-        self.lowest = self.lowest.min(height);
-        self.last = [self.last[1], Some(new)];
-    }
-
-    /// Depth below the part, the minimum between places found by golden section over the two steps around it.
-    fn deepest<M: SweptMotion>(&self, side: &Side<'_, M>) -> Result<f64, Degenerate> {
-        let Some(a) = self.before_lowest else { return Ok((-self.lowest).max(0.0)) };
-        let height = |x: f64| -> Result<f64, Degenerate> {
-            let at = side.advance(&a.state, x)?.at;
-            Ok(side.standoff(at, a.t)?.map_or(f64::INFINITY, |(r, _)| r.at_mm))
-        };
-        // Three places around the minimum, closed in on by parabolas, by halves where these stand still.
-        let mut x = [0.0, side.step, 2.0 * side.step];
-        let mut f = [a.height, height(x[1])?, height(x[2])?];
-        for round in 0..MOST_PARABOLAS {
-            let (da, dc) = (x[1] - x[0], x[1] - x[2]);
-            let (fa, fc) = (f[1] - f[0], f[1] - f[2]);
-            let bottom = da * fc - dc * fa;
-            let by = 0.5 * (da * da * fc - dc * dc * fa) / bottom;
-            let inside = bottom != 0.0 && x[1] - by > x[0] && x[1] - by < x[2];
-            // Every third step halves the longer side.
-            let new = if inside && round % 3 != 2 {
-                x[1] - by
-            } else if da > -dc {
-                x[1] - 0.5 * da
-            } else {
-                x[1] - 0.5 * dc
-            };
-            // A height is flat at its minimum: its place to half of double precision's digits is enough.
-            if (new - x[1]).abs() < 1e-7 * side.step {
-                break;
-            }
-            let g = height(new)?;
-            let above = new > x[1];
-            if g < f[1] {
-                if above {
-                    (x[0], f[0]) = (x[1], f[1]);
-                } else {
-                    (x[2], f[2]) = (x[1], f[1]);
-                }
-                (x[1], f[1]) = (new, g);
-            } else if above {
-                (x[2], f[2]) = (new, g);
-            } else {
-                (x[0], f[0]) = (new, g);
-            }
-        }
-        let lowest = self.lowest.min(f[1]);
-        Ok((-lowest).max(0.0))
     }
 }

@@ -10,10 +10,12 @@ mod chart;
 mod exact;
 mod local;
 mod mark;
+mod passages;
 mod traced;
+mod undercut;
 
 pub use chart::{Chart, ChartError, Nearly, Within};
-pub use exact::{Strip, StripError, exact, standoff};
+pub use exact::{Demand, Strip, StripError, exact, exact_to, standoff};
 pub use mark::{Mark, mark};
 
 use crate::contact::ContactMotion;

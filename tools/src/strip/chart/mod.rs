@@ -5,11 +5,13 @@
 //! Lines in directions between are interpolated over six neighbours, places between nodes by Hermite's cubics. A strip on a
 //! chart then costs no evaluation of the surface.
 //!
-//! *Error.* [`Chart::error_mm`] is the largest deviation found midway between nodes of some rays, the normal's times the
-//! chart's radius: heights are off by about as much at most, the width by that over twice the tolerance, relative. Outside
-//! the surface's rectangle it goes on by its Taylor polynomial; strips end at the rectangle. For a final figure take
-//! [`super::exact`].
+//! *Error.* [`Chart::error_mm`] is the larger of the deviation found midway between nodes of some rays, and of what rays
+//! deviate by from those interpolated from their other neighbours, an eighth of it: half the angle between
+//! them makes it less; the normal's counts times the chart's radius. Heights are off by about as much at most, the width by that over twice
+//! the tolerance, relative. Where it is too large, nodes and rays are doubled, rays twice. Outside the surface's rectangle the chart goes on
+//! by its Taylor polynomial; strips end at the rectangle. For a final figure take [`super::exact`].
 
+mod heel;
 mod posture;
 mod walk;
 
@@ -25,9 +27,10 @@ use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-/// Directions, and nodes on each.
+/// Directions, and nodes on each; how many there may be in a second and a third attempt.
 const RAYS: usize = 36;
 const NODES: usize = 16;
+const MOST: [[usize; 2]; 2] = [[2 * RAYS, 2 * NODES], [4 * RAYS, 2 * NODES]];
 /// Every so manieth ray is looked at midway between nodes.
 const CHECKED: usize = 6;
 /// Point, normal, parameters and the derivatives of the first two along the ray.
@@ -37,15 +40,22 @@ const KEPT: usize = 8;
 /// Neighbours of a direction that are interpolated, and places before it.
 const NEIGHBOURS: usize = 6;
 const BEFORE: usize = 2;
+/// What half the angle between rays makes of the error of interpolation between them; its order, 6, promises less.
+const FINER: f64 = 1.0 / 8.0;
 /// Most turn of the normal from node to node, rad, by the curvature at the place.
 const TURN: f64 = 0.25;
 /// Order of the continuation outside the rectangle.
 const BEYOND: usize = 4;
 
 /// A surface around a place.
-pub struct Chart {
+pub struct Chart<'a> {
     /// Forms of the surface at the place.
     pub forms: Forms,
+    surface: &'a dyn Surface,
+    /// Count of rays, and of nodes on each.
+    size: [usize; 2],
+    /// Largest curvature with which the part is hollow anywhere on the chart, 1/mm.
+    hollow: f64,
     centre: Point3,
     at: Uv,
     domain: Domain,
@@ -59,8 +69,9 @@ pub struct Chart {
     error: f64,
     /// By ray and node; the place itself, which all rays share, first.
     table: Vec<[f64; PARTS]>,
-    /// The last rays made.
+    /// The last rays made, and frames further along the feed.
     rays: RefCell<[Option<KeptRay>; KEPT]>,
+    trails: RefCell<[Option<heel::KeptTrail>; KEPT]>,
 }
 
 /// The surface, beyond its rectangle by Taylor polynomials at the nearest place of it.
@@ -108,31 +119,50 @@ fn factorial(n: usize) -> f64 {
     (2..=n).map(|k| k as f64).product()
 }
 
-impl Chart {
-    /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm`; tabulated anew to 0.4 of the radius, three
-    /// times at most, where that is less than a third.
+impl<'a> Chart<'a> {
+    /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm`; with more nodes and rays where that is
+    /// less, tabulated anew to 0.4 of the radius, three times at most, where it still is less than a third.
     ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane at the place.
-    pub fn new(surface: &dyn Surface, at: Uv, radius_mm: f64, tolerance_mm: f64) -> Result<Self, Degenerate> {
+    pub fn new(
+        surface: &'a dyn Surface,
+        at: Uv,
+        radius_mm: f64,
+        tolerance_mm: f64,
+    ) -> Result<Self, Degenerate> {
         let p = surface.jet2(at).forms()?.principal();
         let bend = p.k_max.abs().max(p.k_min.abs());
         let mut radius = radius_mm.min(TURN * NODES as f64 / bend);
-        let mut chart = Self::of_radius(surface, at, radius, tolerance_mm)?;
+        let mut size = [RAYS, NODES];
+        let (mut chart, mut finer) = Self::of_radius(surface, at, (radius, tolerance_mm), size)?;
+        for most in MOST {
+            let next = [0, 1].map(|k| if finer[k] { (2 * size[k]).min(most[k]) } else { size[k] });
+            if next == size {
+                break;
+            }
+            size = next;
+            (chart, finer) = Self::of_radius(surface, at, (radius, tolerance_mm), size)?;
+        }
         for _ in 0..3 {
             if 3.0 * chart.reach >= radius {
                 break;
             }
             radius *= 0.4;
-            chart = Self::of_radius(surface, at, radius, tolerance_mm)?;
+            chart = Self::of_radius(surface, at, (radius, tolerance_mm), size)?.0;
         }
         Ok(chart)
     }
 
-    /// Largest deviation found midway between nodes, mm.
+    /// Largest deviation found, mm.
     #[must_use]
     pub const fn error_mm(&self) -> f64 {
         self.error
+    }
+
+    /// Whether the usual size was too coarse.
+    const fn is_wavy(&self) -> bool {
+        self.size[0] > RAYS || self.size[1] > NODES
     }
 
     /// How far the chart reaches, mm.
@@ -141,35 +171,43 @@ impl Chart {
         self.reach
     }
 
-    fn of_radius(surface: &dyn Surface, at: Uv, radius: f64, tolerance_mm: f64) -> Result<Self, Degenerate> {
+    /// The chart of a size, and whether more rays and more nodes are wanted.
+    fn of_radius(
+        surface: &'a dyn Surface,
+        at: Uv,
+        (radius, tolerance_mm): (f64, f64),
+        [rays, nodes]: [usize; 2],
+    ) -> Result<(Self, [bool; 2]), Degenerate> {
         let domain = surface.domain();
         let extended = Extended(surface);
         let jet = surface.jet2(at);
         let forms = jet.forms()?;
         let side = jet.side.sign();
         let [e1, e2] = [forms.frame[0].into_inner(), forms.frame[1].into_inner() * side];
-        let step = radius / NODES as f64;
-        let mut table = vec![[0.0; PARTS]; RAYS * (NODES + 1)];
-        let mut halfway: Vec<(usize, usize, [f64; PARTS])> = Vec::with_capacity(RAYS / CHECKED * NODES);
-        let mut whole = true;
-        let mut lost = false;
-        for ray in 0..RAYS {
-            let (s, c) = (TAU * ray as f64 / RAYS as f64).sin_cos();
+        let step = radius / nodes as f64;
+        let mut table = vec![[0.0; PARTS]; rays * (nodes + 1)];
+        let mut halfway: Vec<(usize, usize, [f64; PARTS])> = Vec::with_capacity(rays / CHECKED * nodes);
+        let (mut whole, mut lost, mut hollow) = (true, false, 0.0f64);
+        for ray in 0..rays {
+            let (s, c) = (TAU * ray as f64 / rays as f64).sin_cos();
             let mut state = GeodesicState::start(surface, at, &(e1 * c + e2 * s))?;
-            for node in 0..=NODES {
+            for node in 0..=nodes {
                 let jet_here = extended.jet2(state.at);
                 match parts(&jet, &jet_here, &forms, state) {
-                    Ok(values) => table[ray * (NODES + 1) + node] = values,
+                    Ok((values, k_min)) => {
+                        table[ray * (nodes + 1) + node] = values;
+                        hollow = hollow.max(-k_min);
+                    }
                     Err(_) => lost = true,
                 }
                 whole &= domain.contains(state.at);
-                if node == NODES {
+                if node == nodes {
                     break;
                 }
                 let next = if ray % CHECKED == 0 {
                     state.step(&extended, 0.5 * step).and_then(|half| {
                         let there = extended.jet2(half.at);
-                        halfway.push((ray, node, parts(&jet, &there, &forms, half)?));
+                        halfway.push((ray, node, parts(&jet, &there, &forms, half)?.0));
                         half.step(&extended, 0.5 * step)
                     })
                 } else {
@@ -184,6 +222,9 @@ impl Chart {
         }
         let mut chart = Self {
             forms,
+            surface,
+            size: [rays, nodes],
+            hollow,
             centre: jet.point,
             at,
             domain,
@@ -194,20 +235,57 @@ impl Chart {
             error: 0.0,
             table,
             rays: RefCell::new([const { None }; KEPT]),
+            trails: RefCell::new([const { None }; KEPT]),
         };
-        let mut errors = [if lost { f64::INFINITY } else { 0.0f64 }; NODES];
-        for (ray, node, want) in halfway {
-            let (s, c) = (TAU * ray as f64 / RAYS as f64).sin_cos();
-            let got = chart.ray_of([c, s]).values((node as f64 + 0.5) / NODES as f64);
-            let off = |k: usize| (got[k] - want[k]).powi(2);
-            let way = step * (node + 1) as f64;
-            let height = (off(0) + off(1) + off(2)).sqrt() + way * (off(3) + off(4) + off(5)).sqrt();
-            errors[node] = if height.is_finite() { errors[node].max(height) } else { f64::INFINITY };
-        }
-        let good = errors.iter().position(|e| *e > tolerance_mm).unwrap_or(NODES);
+        let along = if lost { vec![f64::INFINITY; nodes] } else { chart.errors_along(&halfway) };
+        let between = chart.errors_between();
+        let finer = [&between, &along].map(|errors| errors.iter().any(|e| *e > tolerance_mm));
+        let error = |k: usize| along[k].max(between[k]);
+        let good = (0..nodes).find(|k| error(*k) > tolerance_mm).unwrap_or(nodes);
         chart.reach = step * good as f64;
-        chart.error = errors[..good].iter().copied().fold(0.0, f64::max);
-        Ok(chart)
+        chart.error = (0..good).map(error).fold(0.0, f64::max);
+        Ok((chart, finer))
+    }
+
+    /// What the normal and the place are off by, `way` mm from the centre; infinite where that is no number.
+    fn off(got: &[f64; DERIVATIVES], want: &[f64; PARTS], way: f64) -> f64 {
+        let off = |k: usize| (got[k] - want[k]).powi(2);
+        let height = (off(0) + off(1) + off(2)).sqrt() + way * (off(3) + off(4) + off(5)).sqrt();
+        if height.is_finite() { height } else { f64::INFINITY }
+    }
+
+    /// Deviations midway between nodes, by node.
+    fn errors_along(&self, halfway: &[(usize, usize, [f64; PARTS])]) -> Vec<f64> {
+        let [rays, nodes] = self.size;
+        let mut errors = vec![0.0f64; nodes];
+        for (ray, node, want) in halfway {
+            let (s, c) = (TAU * *ray as f64 / rays as f64).sin_cos();
+            let got = self.ray_of([c, s]).values((*node as f64 + 0.5) / nodes as f64);
+            let way = self.radius * (node + 1) as f64 / nodes as f64;
+            errors[*node] = errors[*node].max(Self::off(&got, want, way));
+        }
+        errors
+    }
+
+    /// Deviations of every second ray from its interpolation between the others, by node, less what half their angle makes.
+    fn errors_between(&self) -> Vec<f64> {
+        let [rays, nodes] = self.size;
+        let weights = lagrange(0.5);
+        let mut errors = vec![0.0f64; nodes];
+        for ray in (0..rays).step_by(2) {
+            for (node, error) in errors.iter_mut().enumerate() {
+                let mut got = [0.0; DERIVATIVES];
+                for (k, weight) in weights.iter().enumerate() {
+                    let other = (ray + rays + 2 * k - 2 * BEFORE - 1) % rays;
+                    let from = &self.table[other * (nodes + 1) + node + 1];
+                    got.iter_mut().zip(from).for_each(|(g, f)| *g += weight * f);
+                }
+                let way = self.radius * (node + 1) as f64 / nodes as f64;
+                let want = &self.table[ray * (nodes + 1) + node + 1];
+                *error = error.max(FINER * Self::off(&got, want, way));
+            }
+        }
+        errors
     }
 
     /// Frame of the feed at an angle from S_u towards S_v.
@@ -239,30 +317,31 @@ impl Chart {
     }
 
     fn ray_of(&self, [c, s]: [f64; 2]) -> Ray {
-        let mut nodes = [[0.0; PARTS]; 2 * NODES + 1];
+        let [rays, count] = self.size;
+        let mut nodes = vec![[0.0; PARTS]; 2 * count + 1];
         for back in [true, false] {
             let turn = if back { (-s).atan2(-c) } else { s.atan2(c) };
-            let x = turn.rem_euclid(TAU) / TAU * RAYS as f64;
+            let x = turn.rem_euclid(TAU) / TAU * rays as f64;
             let (low, share) = (x.floor(), x - x.floor());
             let weights = lagrange(share);
             for (k, weight) in weights.into_iter().enumerate() {
-                let ray = (low as usize + RAYS + k - BEFORE) % RAYS;
-                let from = &self.table[ray * (NODES + 1)..(ray + 1) * (NODES + 1)];
+                let ray = (low as usize + rays + k - BEFORE) % rays;
+                let from = &self.table[ray * (count + 1)..(ray + 1) * (count + 1)];
                 for (node, values) in from.iter().enumerate().skip(usize::from(back)) {
-                    let into = &mut nodes[if back { NODES - node } else { NODES + node }];
+                    let into = &mut nodes[if back { count - node } else { count + node }];
                     for (i, v) in into.iter_mut().zip(values) {
                         *i += weight * v;
                     }
                 }
             }
         }
-        for node in &mut nodes[..NODES] {
+        for node in &mut nodes[..count] {
             // Behind the place the way runs against the ray.
             for v in &mut node[DERIVATIVES..] {
                 *v = -*v;
             }
         }
-        let step = self.radius / NODES as f64;
+        let step = self.radius / count as f64;
         for node in &mut nodes {
             for v in &mut node[DERIVATIVES..] {
                 *v *= step;
@@ -291,8 +370,13 @@ type KeptRay = ([f64; 2], Rc<Ray>);
 /// Where the derivatives begin among the parts.
 const DERIVATIVES: usize = 8;
 
-/// The parts of a node, less those of the place.
-fn parts(place: &Jet2, here: &Jet2, forms: &Forms, state: GeodesicState) -> Result<[f64; PARTS], Degenerate> {
+/// The parts of a node, less those of the place, and the smaller principal curvature there.
+fn parts(
+    place: &Jet2,
+    here: &Jet2,
+    forms: &Forms,
+    state: GeodesicState,
+) -> Result<([f64; PARTS], f64), Degenerate> {
     let own = here.forms()?;
     let tangent = here.tangent(state.rate);
     // Weingarten: the normal turns with the frame.
@@ -301,7 +385,8 @@ fn parts(place: &Jet2, here: &Jet2, forms: &Forms, state: GeodesicState) -> Resu
     let (x, n) = (here.point - place.point, own.normal.into_inner() - forms.normal.into_inner());
     let (u, v) = (state.at.u - place.uv.u, state.at.v - place.uv.v);
     let d = frame.tangent;
-    Ok([x.x, x.y, x.z, n.x, n.y, n.z, u, v, d.x, d.y, d.z, n_rate.x, n_rate.y, n_rate.z])
+    let parts = [x.x, x.y, x.z, n.x, n.y, n.z, u, v, d.x, d.y, d.z, n_rate.x, n_rate.y, n_rate.z];
+    Ok((parts, own.principal().k_min))
 }
 
 /// Weights of equally spaced neighbours for a place `share` behind the one with `BEFORE` others before it.
@@ -315,14 +400,15 @@ fn lagrange(share: f64) -> [f64; NEIGHBOURS] {
 
 /// A line through the chart's centre by nodes, the centre in the middle; derivatives are per step of nodes.
 struct Ray {
-    nodes: [[f64; PARTS]; 2 * NODES + 1],
+    nodes: Vec<[f64; PARTS]>,
 }
 
 impl Ray {
     /// The piece at `x` (length over the chart's radius) and the place in it from 0 to 1.
     fn piece(&self, x: f64) -> (&[f64; PARTS], &[f64; PARTS], f64) {
-        let at = (x + 1.0) * NODES as f64;
-        let k = (at.floor().max(0.0) as usize).min(2 * NODES - 1);
+        let last = self.nodes.len() - 1;
+        let at = 0.5 * (x + 1.0) * last as f64;
+        let k = (at.floor().max(0.0) as usize).min(last - 1);
         (&self.nodes[k], &self.nodes[k + 1], at - k as f64)
     }
 

@@ -1,12 +1,13 @@
 //! The contact motion on a chart, and the walk across the strip.
 
 use super::posture::ChartError;
-use super::{Chart, NODES, Ray};
+use super::{Chart, Ray};
 use crate::contact::Lean;
-use crate::cutter::Cutter;
+use crate::cutter::{Cutter, Line};
 use crate::meridian::Arc;
 use crate::pose::Pose;
 use crate::strip::local::{Near, Pace, deepest};
+use crate::strip::passages::dip;
 use crate::sweep::{Moving, SweptMotion};
 use osculate_geom::roots::{End, bracketed};
 use osculate_geom::{Unit3, Vec3};
@@ -15,7 +16,7 @@ use std::rc::Rc;
 
 /// The contact motion along a line of the chart.
 pub(super) struct ChartMotion<'a> {
-    pub chart: &'a Chart,
+    pub chart: &'a Chart<'a>,
     pub feed: Rc<Ray>,
     pub lean: Lean,
     pub arc: Arc,
@@ -31,7 +32,7 @@ impl SweptMotion for ChartMotion<'_> {
             return None;
         }
         let (p, d, dd) = self.feed.moving(x);
-        let rate = NODES as f64 / self.chart.radius;
+        let rate = self.chart.size[1] as f64 / self.chart.radius;
         let point = self.chart.centre + Vec3::new(p[0], p[1], p[2]);
         let velocity = Vec3::new(d[0], d[1], d[2]) * rate;
         let speed = velocity.norm();
@@ -61,6 +62,8 @@ impl SweptMotion for ChartMotion<'_> {
     }
 }
 
+/// Crests of the profile that come up to this share of the tolerance are looked at between places.
+const SUSPECT: f64 = 0.5;
 /// Most places of a profile.
 const PLACES: usize = 40;
 
@@ -78,6 +81,11 @@ impl Profile {
         Self { ray, places, count: 0, at_edge: false }
     }
 
+    /// The normal of the part at the last place.
+    pub(super) fn end(&self, chart: &Chart<'_>) -> Line {
+        chart.line(&self.ray, self.seen().last().map_or(0.0, |p| p.0))
+    }
+
     fn seen(&self) -> &[(f64, f64, Near)] {
         &self.places[..self.count]
     }
@@ -91,14 +99,51 @@ pub(super) struct Side<'a> {
     pub step: f64,
     /// Whether Q is positive definite.
     pub fits: bool,
+    /// Whether every place takes the deepest of all passages within a radius of the contact.
+    pub everywhere: bool,
 }
+
+/// Instants, a twentieth of the tool's radius apart, that are looked at to each side of the contact.
+const NEARBY: i32 = 20;
 
 impl Side<'_> {
     fn height(&self, ray: &Ray, q: f64, near: Near) -> (f64, Near) {
         let line = self.motion.chart.line(ray, q);
         // A tool that does not pass over the place stands above it by more than any tolerance.
-        deepest(self.cutter, &line, self.motion, near, self.pace)
-            .map_or((self.cutter.radius_mm(), near), |(reach, near)| (reach.at_mm, near))
+        let (own, near) = deepest(self.cutter, &line, self.motion, near, self.pace)
+            .map_or((self.cutter.radius_mm(), near), |(reach, near)| (reach.at_mm, near));
+        (if self.everywhere { self.lowest(&line, None).min(own) } else { own }, near)
+    }
+
+    /// The lowest entry of the line within a radius of the contact, at instants away from `but`, by parabolas.
+    fn lowest(&self, line: &Line, but: Option<f64>) -> f64 {
+        let entry = |k: i32| {
+            let t = f64::from(k) * self.pace.step;
+            // Beyond the chart there is nothing to ask.
+            let pose = if t.abs() < self.motion.chart.reach { self.motion.at(t)?.pose } else { return None };
+            Some(self.cutter.entry(&pose, line)?.at_mm)
+        };
+        let mut lowest = f64::INFINITY;
+        let mut before = [f64::INFINITY; 2];
+        for k in -NEARBY..=NEARBY {
+            let now = entry(k).unwrap_or(f64::INFINITY);
+            let [a, b] = before;
+            let other =
+                but.is_none_or(|t| (f64::from(k - 1) * self.pace.step - t).abs() > 2.0 * self.pace.step);
+            if other && b < a && b <= now {
+                lowest = lowest.min(b - dip([a, b, now]));
+            }
+            before = [b, now];
+        }
+        lowest
+    }
+
+    /// Whether the tool at another instant than the profile's own comes down to the tolerance over its end.
+    pub(super) fn comes_again(&self, profile: &Profile) -> bool {
+        profile
+            .seen()
+            .last()
+            .is_some_and(|(_, _, near)| self.lowest(&profile.end(self.motion.chart), Some(near.t)) <= self.h)
     }
 
     pub(super) fn walk(&self, profile: &mut Profile) -> Result<(), ChartError> {
@@ -120,6 +165,9 @@ impl Side<'_> {
             if f > self.h || profile.at_edge {
                 return Ok(());
             }
+            if self.crest(profile) {
+                return Ok(());
+            }
             if q + step > chart.reach {
                 return Err(ChartError::Beyond { radius_mm: chart.reach });
             }
@@ -136,6 +184,26 @@ impl Side<'_> {
             q += step;
         }
         Err(ChartError::Beyond { radius_mm: chart.reach })
+    }
+
+    /// Whether the profile exceeds the tolerance at the crest of the parabola through its last three places, which then ends
+    /// it.
+    fn crest(&self, profile: &mut Profile) -> bool {
+        let [.., a, b, c] = profile.seen() else { return false };
+        let (bend, slope) = (0.5 * (a.1 + c.1) - b.1, 0.5 * (c.1 - a.1));
+        let at = -0.5 * slope / bend;
+        if !(bend < 0.0 && at.abs() < 1.0 && b.1 + 0.5 * slope * at > SUSPECT * self.h) {
+            return false;
+        }
+        let q = b.0 + at * self.step;
+        let (f, near) = self.height(&profile.ray, q, b.2);
+        if f > self.h {
+            // In the order of their distance: the crest lies before the last place, or before the last but one.
+            profile.count -= if at < 0.0 { 2 } else { 1 };
+            profile.places[profile.count] = (q, f, near);
+            profile.count += 1;
+        }
+        f > self.h
     }
 
     /// Depth below the part: the lowest place, and the parabola through it and its neighbours.

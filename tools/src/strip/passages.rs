@@ -1,0 +1,225 @@
+//! The other times at which a moving tool comes over a strip: its heel behind the contact, its shank before it.
+//!
+//! The entry of a fixed line into the tool has a minimum near the instant of contact. Over a part that is hollow along the
+//! feed it may have others: a leaning disc's far rim comes over the same place a tool's diameter later and lies deeper than
+//! its near one where the lead is less than about R over the hollow's radius. The tool is looked at every quarter of its radius
+//! as long as its body can lie over the contact; where an entry comes down to the tolerance, or heads there, every place of the
+//! strip takes the deepest of all passages.
+//!
+//! *Limits.* Of a shank only the part below two radii is looked at where a hollow of twice the local curvature would not reach
+//! higher. Instants at which the part has turned by a right angle are not: the tool is on the part's other side.
+
+use super::ContactMotion;
+use crate::contact::{Contact, Lean};
+use crate::cutter::{Cutter, Line};
+use crate::pose::Pose;
+use crate::sweep::{Reach, SweptMotion, reach_from};
+use osculate_geom::Darboux;
+
+/// Distance between the instants looked at, in the tool's radius, and most of them to a side.
+pub(super) const APART: f64 = 0.25;
+const MOST: f64 = 48.0;
+/// Way along a hollow over the straight distance: enough for one of one and a third times the tool's radius.
+const AROUND: f64 = 1.25;
+/// How far an entry that falls is taken to go on falling, in steps.
+const AHEAD: f64 = 1.5;
+/// On wavy parts: the distance within one radius.
+const FINE: f64 = 0.0625;
+/// First step of the search from an instant looked at, of the distance between them.
+const FIRST: f64 = 0.25;
+
+/// Poses of the tool along the feed, to both sides of the contact.
+pub(super) struct Passages {
+    /// By side, with the instant, from the contact on.
+    poses: [Vec<(f64, Pose)>; 2],
+    /// First step of a search, in the motion's parameter.
+    step: f64,
+}
+
+impl Passages {
+    /// Poses while the body can lie over the contact at `t0`, `speed` mm per unit of the motion's parameter.
+    /// `fine`: closely within a radius of the contact.
+    pub(super) fn new(
+        contact: &Contact<'_>,
+        motion: &ContactMotion<'_>,
+        (t0, speed): (f64, f64),
+        fine: bool,
+    ) -> Self {
+        let radius = contact.cutter.radius_mm();
+        let forward = motion.line.frame(t0).map_or(1.0, |f| f.1.signum());
+        let hollow = (-contact.forms.principal().k_min).max(0.0);
+        let [behind, ahead] = extent(contact.cutter, contact.lean, &contact.frame, hollow);
+        // The body lies behind the contact: it comes over it later.
+        let reach = if forward > 0.0 { [-behind, ahead] } else { [ahead, -behind] };
+        let apart = (APART * radius).max(reach[0].max(reach[1]) / MOST);
+        let poses = [1.0, -1.0].map(|sign| {
+            let far = if sign > 0.0 { reach[0] } else { reach[1] };
+            let close = if fine { (1.0 / FINE) as usize } else { 0 };
+            let last = if fine { radius } else { 0.0 };
+            let count = ((far - last) / apart).ceil().max(0.0) as usize;
+            let at = |k: usize| {
+                if k <= close { k as f64 * FINE * radius } else { last + (k - close) as f64 * apart }
+            };
+            let mut poses = Vec::with_capacity(close + count + 1);
+            for k in 0..=close + count {
+                let t = t0 + sign * at(k) / speed;
+                let Ok((frame, _)) = motion.line.frame(t) else { break };
+                if frame.normal.dot(&contact.frame.normal) <= 0.0 {
+                    break;
+                }
+                poses.push((t, contact.lean.pose(contact.cutter, &frame, contact.lift_mm)));
+            }
+            poses
+        });
+        Self { poses, step: FIRST * if fine { FINE * radius } else { apart } / speed }
+    }
+
+    /// Whether the tool comes down to `height_mm` over a line at another instant than that of contact, or heads there.
+    pub(super) fn matter(&self, cutter: &Cutter, line: &Line, height_mm: f64) -> bool {
+        self.poses.iter().any(|side| {
+            let mut last: Option<f64> = None;
+            side.iter().enumerate().any(|(k, (_, pose))| {
+                let now = cutter.entry(pose, line).map(|e| e.at_mm);
+                let falls = last.zip(now).map_or(0.0, |(a, b)| (a - b).max(0.0));
+                last = now;
+                k > 0 && now.is_some_and(|s| s - AHEAD * falls <= height_mm)
+            })
+        })
+    }
+
+    /// The deepest of the passages over a line that go below `bound_mm` over it.
+    pub(super) fn deepest(
+        &self,
+        cutter: &Cutter,
+        line: &Line,
+        motion: &impl SweptMotion,
+        bound_mm: f64,
+    ) -> Option<Reach> {
+        let mut best = Reach { at_mm: bound_mm, t: f64::NAN };
+        for side in &self.poses {
+            let entry = |pose: &Pose| cutter.entry(pose, line).map_or(f64::INFINITY, |e| e.at_mm);
+            let mut before = [f64::INFINITY; 2];
+            // One more than there are, so that the last can be the lowest.
+            let ahead = side.iter().map(|p| entry(&p.1)).chain([f64::INFINITY]);
+            for (k, next) in ahead.enumerate() {
+                let [a, b] = before;
+                // The one before is as low as both its neighbours, and what it falls in a step leads below the bound.
+                let falls = if a.is_finite() { (a - b).max(0.0) } else { 0.0 };
+                let falls = if next.is_finite() { falls.max(next - b) } else { falls };
+                if k > 1 && b.is_finite() && b <= a && b <= next && b - AHEAD * falls < best.at_mm {
+                    let found = reach_from(cutter, line, motion, side[k - 1].0, self.step);
+                    best = found.filter(|f| f.at_mm < best.at_mm).unwrap_or(best);
+                }
+                before = [b, next];
+            }
+        }
+        best.t.is_finite().then_some(best)
+    }
+
+    /// The lowest of the entries looked at over a line, where the tool has come down from higher; infinite without.
+    pub(super) fn lowest_mm(&self, cutter: &Cutter, line: &Line) -> f64 {
+        let mut lowest = f64::INFINITY;
+        for side in &self.poses {
+            let mut last = f64::INFINITY;
+            for (_, pose) in side {
+                let now = cutter.entry(pose, line).map_or(f64::INFINITY, |e| e.at_mm);
+                if last.is_finite() && now < last {
+                    lowest = lowest.min(now);
+                }
+                last = now;
+            }
+        }
+        lowest
+    }
+}
+
+/// How far the lowest point of the parabola through three equally spaced heights lies below the middle one.
+pub(super) fn dip([a, b, c]: [f64; 3]) -> f64 {
+    let (bend, slope) = (0.5 * (a + c) - b, 0.5 * (c - a));
+    if bend.is_finite() && bend > 0.0 { 0.25 * slope * slope / bend } else { 0.0 }
+}
+
+/// How far the body reaches along the feed from the contact, mm: backward (at most zero) and forward; of the shank only as
+/// much as can matter where the part is hollow by `hollow_per_mm`.
+pub(super) fn extent(cutter: &Cutter, lean: Lean, frame: &Darboux, hollow_per_mm: f64) -> [f64; 2] {
+    let (radius, length) = (cutter.radius_mm(), cutter.length_mm());
+    let pose = lean.pose(cutter, frame, 0.0);
+    // A shank at a length l from the tip stands l cos(lead) high; a hollow of twice the curvature rises to half its square
+    // over the radius. The difference is concave in l: above zero at both ends it is so between.
+    let clear = |l: f64| l * lean.lead_rad.cos() > hollow_per_mm * (l + radius).powi(2);
+    let low = (2.0 * radius).min(length);
+    let looked_at = if clear(low) && clear(length) { low } else { length };
+    let along = |l: f64| {
+        let p = pose.tip + pose.axis.into_inner() * l;
+        (p - frame.point).dot(&frame.tangent)
+    };
+    let (a, b) = (along(0.0), along(looked_at));
+    [(a.min(b) - radius).min(0.0) * AROUND, (a.max(b) + radius).max(0.0) * AROUND]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::strip::{Chart, Demand, StripError, Within, exact, exact_to};
+    use crate::{Contact, Cutter, CutterSpec, FeedLine, Lean};
+    use osculate_geom::analytic::Cylinder;
+    use osculate_geom::{Axis, Flipped, Interval, uv};
+
+    const HOLLOW_MM: f64 = 40.0;
+    const RADIUS_MM: f64 = 10.0;
+
+    fn flat() -> Cutter {
+        let spec = CutterSpec::Flat { diameter_mm: 2.0 * RADIUS_MM, length_mm: 60.0 };
+        Cutter::try_from(spec).unwrap()
+    }
+
+    fn bore() -> Flipped<Cylinder> {
+        Flipped(Cylinder::new(HOLLOW_MM, Interval::new(-80.0, 80.0)).unwrap())
+    }
+
+    /// Around a bore of radius P the far rim of a leaning disc stands `sqrt(P^2 - 4 P R sin(lead) + 4 R^2)` from its axis.
+    fn depth(lead_rad: f64) -> f64 {
+        let (p, r) = (HOLLOW_MM, RADIUS_MM);
+        (p * p - 4.0 * p * r * lead_rad.sin() + 4.0 * r * r).sqrt() - p
+    }
+
+    #[test]
+    fn the_heel_of_a_disc_in_a_bore() {
+        let (bore, cutter) = (bore(), flat());
+        let chart = Chart::new(&bore, uv(1.0, 3.0), 1.2 * RADIUS_MM, 1e-4).unwrap();
+        for (lead_rad, feed, angle) in [
+            (0.17, FeedLine::Iso(Axis::U), 0.0),
+            (0.2, FeedLine::IsoReversed(Axis::U), std::f64::consts::PI),
+            (0.24, FeedLine::Angle(0.0), 0.0),
+            (-0.2, FeedLine::Angle(0.0), 0.0),
+        ] {
+            let lean = Lean { lead_rad, tilt_rad: 0.0 };
+            let contact = Contact::new(&bore, uv(1.0, 3.0), &cutter, feed, lean).unwrap();
+            let want = depth(lead_rad.abs());
+            // Next to the contact the tool fits: only the far rim goes deep, and deepest over the contact.
+            assert!(contact.fits().is_ok() && want > 0.1);
+            let got = exact(&contact, 0.01).unwrap();
+            assert!((got.undercut_mm / want - 1.0).abs() < 1e-9, "{got:?} against {want}");
+            let refused = exact_to(&contact, 0.01, Demand { deepest_mm: 0.05, relative: 0.0 });
+            assert!(
+                matches!(refused, Err(StripError::TooDeep { dip_mm, .. }) if dip_mm > 0.05),
+                "{refused:?}"
+            );
+            let within = Within { scallop_mm: 0.01, gouge_mm: want + 1.0 };
+            let near = chart.strip(&cutter, angle, lean, within).unwrap();
+            assert!((near.undercut_mm / want - 1.0).abs() < 1e-3, "{near:?} against {want}");
+        }
+    }
+
+    /// Where the heel stays clear the strip is that of the contact's own passage.
+    #[test]
+    fn a_heel_that_clears() {
+        let (bore, cutter) = (bore(), flat());
+        let lean = Lean { lead_rad: 0.3, tilt_rad: 0.0 };
+        assert!(depth(lean.lead_rad) < -0.1);
+        let contact = Contact::new(&bore, uv(1.0, 3.0), &cutter, FeedLine::Iso(Axis::U), lean).unwrap();
+        let got = exact_to(&contact, 0.01, Demand { deepest_mm: 0.0, relative: 0.0 }).unwrap();
+        assert!(got.undercut_mm < 1e-12 && got.width_mm > 1.0, "{got:?}");
+        let nearly = exact_to(&contact, 0.01, Demand { deepest_mm: 0.0, relative: 1e-3 }).unwrap();
+        assert!((nearly.width_mm / got.width_mm - 1.0).abs() < 1e-3, "{nearly:?} {got:?}");
+    }
+}
