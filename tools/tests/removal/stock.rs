@@ -5,7 +5,7 @@
 
 use crate::common::{ball, flat, pose, shapes, through, toroidal, upright};
 use crate::volumes::cases;
-use osculate_geom::{Box3, Point3};
+use osculate_geom::{Box3, Point3, Unit3, Vec3};
 use osculate_tools::removal::stock::{Blank, BlankError, Carved, Resolution, Stock, StockJob, Upper};
 use osculate_tools::removal::{Body, Swept};
 use osculate_tools::{Cutter, Pose};
@@ -61,6 +61,24 @@ fn what_a_slot_tells_of_its_chip() {
         assert!(work.height_mm[1] <= 3.3 && work.height_mm[1] > 1.5, "{work:?}");
         let length = (case.motions[0].to.tip - case.motions[0].from.tip).norm();
         assert!((work.section_mm2 - carved.volume_mm3() / length).abs() < 1e-12);
+    }
+}
+
+/// A ball that goes down along its own axis into a thin layer takes a cap of it, whichever way the axis leans: the way has no
+/// direction across the axis but for rounding.
+#[test]
+fn a_plunge_along_a_leaning_axis_takes_a_cap() {
+    let (cutter, deep) = (ball(4.0, 30.0), 0.6);
+    let cap = PI * deep * deep * (2.0 - deep / 3.0);
+    for k in 0..24 {
+        let lean = 0.3 * f64::from(k) / 24.0;
+        let axis = Unit3::new_normalize(Vec3::new(lean.sin(), 0.3 * lean.sin(), lean.cos()));
+        let tip = Point3::new(3.0, 3.0, 2.0) - axis.into_inner() * 2.0;
+        let mut stock = block([6.0, 6.0, deep], 0.04);
+        let from = Pose { tip: tip + axis.into_inner() * 20.0, axis };
+        let down = Swept { from, to: Pose { tip, axis }, rapid: false, block: 1 };
+        let got = carve(&mut stock, &cutter, &[down]).volume_mm3();
+        assert!((got / cap - 1.0).abs() < 2e-3, "lean {lean}: {got} mm3, the cap has {cap}");
     }
 }
 

@@ -24,6 +24,8 @@ const LEVEL_MM: f64 = -ENDS_MM;
 const AT_LEVEL_MM: f64 = 0.1 * ENDS_MM;
 /// Where the body met material is told when it is this near, of its radius: a fraction of a sector.
 const MET: f64 = 0.01;
+/// A way that is less than this part of it across the axis has no direction there: rounding is a billionth of that.
+const ACROSS: f64 = 1e-6;
 /// Steps towards the least x: Newton's are two or three, at kinks tangents cross in a few more.
 const MOST_STILL: u32 = 40;
 /// Steps by Newton's rule among them.
@@ -115,7 +117,8 @@ impl<'a> Glide<'a> {
     pub fn new(body: Body<'a>, approach: &Approach, view: &View) -> Self {
         let View { axis, way, stray_mm } = *view;
         let up = approach.axis;
-        let ahead = Unit3::try_new(way - up * way.dot(&up), 0.0)
+        // A way along the axis has rounding across it, which is at no right angle to the axis.
+        let ahead = Unit3::try_new(way - up * way.dot(&up), ACROSS * way.norm())
             .unwrap_or_else(|| any_perpendicular(&Unit3::new_unchecked(up)))
             .into_inner();
         let frame = [ahead, up.cross(&ahead), up];
