@@ -8,7 +8,8 @@
 //!
 //! *Error.* The integral is a sum over places. They are cut in two halves, chequered, whose answers differ by twice
 //! [`Ideal::error_min`]. The search at a place is a heuristic, and tools that a coarse look finds far behind another are not
-//! searched; what is missed so makes the bound too long by as much.
+//! searched; what is missed so makes the bound too long by as much. Halves that a symmetry of the face maps onto each other
+//! differ too little: the error is an indication, no guarantee.
 
 use crate::optimum::{self, Limits, OptimumError, Range};
 use crate::plan::Tolerance;

@@ -8,7 +8,7 @@
 //! - [`optimum`]: the tool, feed direction, lead and tilt of greatest productivity at a point.
 //! - [`field`]: the best postures over a face, as arrays.
 //! - [`compare`]: tools, strategies, directions and leads screened side by side.
-//! - [`ideal`]: the least time over faces that no plan beats.
+//! - [`ideal`]: the time that the best posture at every place of the faces would take, to hold plans against.
 //! - [`levels`]: productivity at an instant, along a pass and over the whole face.
 //! - [`finish`], [`rough`]: area and volume of stock per minute under any change of parameters; [`given`]: tolerance and stock
 //!   that vary over the face; [`engagement`]: what a cutter takes out of real stock at an instant.

@@ -44,7 +44,7 @@ pub fn run(path: &Path, json: bool) -> Outcome {
         render::json(&answer)?;
     } else {
         render::text(&format!(
-            "\n{}\n  {}\n  least time of any plan {:.2} +- {:.2} min: {}\n\n",
+            "\n{}\n  {}\n  ideal time, estimated {:.2} +- {:.2} min: {}\n\n",
             choice::text_table(&answer.candidates),
             answer.story,
             answer.ideal.time_min,
