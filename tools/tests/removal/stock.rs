@@ -68,7 +68,7 @@ fn what_a_slot_tells_of_its_chip() {
 /// direction across the axis but for rounding.
 #[test]
 fn a_plunge_along_a_leaning_axis_takes_a_cap() {
-    let (cutter, deep) = (ball(4.0, 30.0), 0.6);
+    let (cutter, deep) = (ball(4.0), 0.6);
     let cap = PI * deep * deep * (2.0 - deep / 3.0);
     for k in 0..24 {
         let lean = 0.3 * f64::from(k) / 24.0;
