@@ -49,6 +49,33 @@ impl Taylor {
         }
     }
 
+    /// Point and derivatives to second order of the polynomial at another place, with the side of this one.
+    ///
+    /// Off the surface's own by the first terms left out, in the steps of u and v to the power of the order and one.
+    #[must_use]
+    pub fn jet2_at(&self, at: Uv) -> Jet2 {
+        let (order, steps) = (self.order(), [at.u - self.uv.u, at.v - self.uv.v]);
+        let sum = |p: usize, q: usize| {
+            let mut total = Vec3::zeros();
+            for i in p..=order {
+                for j in q..=order - i {
+                    total += self.derivative(i, j) * (term(i - p, steps[0]) * term(j - q, steps[1]));
+                }
+            }
+            total
+        };
+        Jet2 {
+            uv: at,
+            point: sum(0, 0).into(),
+            du: sum(1, 0),
+            dv: sum(0, 1),
+            duu: sum(2, 0),
+            duv: sum(1, 1),
+            dvv: sum(0, 2),
+            side: self.side,
+        }
+    }
+
     /// Point and derivatives to third order.
     #[must_use]
     pub fn jet3(&self) -> Jet3 {
@@ -81,6 +108,11 @@ impl Taylor {
         self.side = self.side.flipped();
         self
     }
+}
+
+/// The n-th power of a step over n factorial.
+fn term(n: usize, step: f64) -> f64 {
+    (1..=n).fold(1.0, |product, m| product * step / m as f64)
 }
 
 /// Cross product of vectors of series.

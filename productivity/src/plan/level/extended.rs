@@ -6,7 +6,7 @@
 
 use super::cells::AXES;
 use crate::plan::line::meets_itself;
-use osculate_geom::{Axis, Domain, Interval, Jet2, Side, Surface, Taylor, Uv, Vec3};
+use osculate_geom::{Axis, Domain, Interval, Jet2, Surface, Taylor, Uv};
 
 /// Order of the continuation; of a face that is rough on the scale of the tool: there higher derivatives belong to ripples.
 const ORDER: usize = 4;
@@ -85,11 +85,6 @@ fn margin(base: &dyn Surface, axis: Axis, t: f64, margin_mm: f64) -> f64 {
     margin_mm / speed.fold(f64::INFINITY, f64::min)
 }
 
-/// Falling powers over factorials: what the derivative `k` of `x^n / n!` is at `d`.
-fn power(n: usize, k: usize, d: f64) -> f64 {
-    (1..=n - k).fold(1.0, |p, m| p * d / m as f64)
-}
-
 impl Surface for Extended<'_> {
     fn domain(&self) -> Domain {
         self.outer
@@ -100,28 +95,8 @@ impl Surface for Extended<'_> {
         if a == 0.0 && b == 0.0 {
             return Jet2 { uv: at, ..self.base.jet2(near) };
         }
-        let taylor = self.base.taylor(near, self.order);
-        let order = self.order.min(taylor.order());
-        let sum = |p: usize, q: usize| -> Vec3 {
-            let mut out = Vec3::zeros();
-            for i in p..=order {
-                for j in q..=order - i {
-                    out += taylor.derivative(i, j) * (power(i, p, a) * power(j, q, b));
-                }
-            }
-            out
-        };
-        let side: Side = taylor.side;
-        Jet2 {
-            uv: at,
-            point: sum(0, 0).into(),
-            du: sum(1, 0),
-            dv: sum(0, 1),
-            duu: sum(2, 0),
-            duv: sum(1, 1),
-            dvv: sum(0, 2),
-            side,
-        }
+        let beyond = Uv { u: near.u + a, v: near.v + b };
+        Jet2 { uv: at, ..self.base.taylor(near, self.order).jet2_at(beyond) }
     }
     fn taylor(&self, at: Uv, order: usize) -> Taylor {
         self.base.taylor(self.inner(at), order)
@@ -155,7 +130,7 @@ impl Surface for Extended<'_> {
 mod tests {
     use super::*;
     use osculate_geom::analytic::Torus;
-    use osculate_geom::{Patch, uv};
+    use osculate_geom::{Patch, Side, uv};
 
     /// Beyond the border the continuation stays on the whole torus to the fifth power of the distance.
     #[test]

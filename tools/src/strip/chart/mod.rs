@@ -86,37 +86,11 @@ impl Surface for Extended<'_> {
         if domain.contains(at) {
             return self.0.jet2(at);
         }
-        let edge = domain.bring(at);
-        let t = self.0.taylor(edge, BEYOND);
-        let (x, y) = (at.u - edge.u, at.v - edge.v);
-        let sum = |i: usize, j: usize| {
-            let mut total = Vec3::zeros();
-            for a in i..=t.order() {
-                for b in j..=t.order() - a {
-                    let steps = x.powi((a - i) as i32) * y.powi((b - j) as i32);
-                    total += t.derivative(a, b) * (steps / (factorial(a - i) * factorial(b - j)));
-                }
-            }
-            total
-        };
-        Jet2 {
-            uv: at,
-            point: sum(0, 0).into(),
-            du: sum(1, 0),
-            dv: sum(0, 1),
-            duu: sum(2, 0),
-            duv: sum(1, 1),
-            dvv: sum(0, 2),
-            side: t.side,
-        }
+        self.0.taylor(domain.bring(at), BEYOND).jet2_at(at)
     }
     fn taylor(&self, at: Uv, order: usize) -> Taylor {
         self.0.taylor(at, order)
     }
-}
-
-fn factorial(n: usize) -> f64 {
-    (2..=n).map(|k| k as f64).product()
 }
 
 impl<'a> Chart<'a> {
