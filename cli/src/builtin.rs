@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 enum Keys {
     Plane {
-        half_size_mm: f64,
+        half_size_mm: Option<f64>,
         #[serde(default)]
         material: Material,
         u_range: Option<[f64; 2]>,
@@ -22,7 +22,7 @@ enum Keys {
     },
     Cylinder {
         radius_mm: f64,
-        height_mm: f64,
+        height_mm: Option<f64>,
         #[serde(default)]
         material: Material,
         u_range: Option<[f64; 2]>,
@@ -31,7 +31,7 @@ enum Keys {
     Cone {
         radius_mm: f64,
         half_angle_deg: f64,
-        height_mm: f64,
+        height_mm: Option<f64>,
         #[serde(default)]
         material: Material,
         u_range: Option<[f64; 2]>,
@@ -95,7 +95,7 @@ enum Keys {
     Paraboloid {
         a_per_mm: f64,
         b_per_mm: f64,
-        half_size_mm: f64,
+        half_size_mm: Option<f64>,
         #[serde(default)]
         material: Material,
         u_range: Option<[f64; 2]>,
@@ -141,6 +141,10 @@ pub struct Builtin {
     pub spline: Option<Arc<NurbsSurface>>,
 }
 
+fn no_range(key: &str, [lo, hi]: [f64; 2]) -> String {
+    format!("{key} = [{lo}, {hi}] must be two finite numbers, the lower one first")
+}
+
 /// The rectangle that the ranges leave of a surface's own one.
 fn cut_domain(kind: &str, whole: Domain, ranges: [Option<[f64; 2]>; 2]) -> Result<Domain, String> {
     let cut = |key: &str, i: Interval, r: Option<[f64; 2]>| match r {
@@ -158,9 +162,7 @@ fn cut_domain(kind: &str, whole: Domain, ranges: [Option<[f64; 2]>; 2]) -> Resul
                 Err(format!("{key} = [{lo}, {hi}] leaves the parameters of the {kind}, [{}, {}]", i.lo, i.hi))
             }
         }
-        Some([lo, hi]) => {
-            Err(format!("{key} = [{lo}, {hi}] must be two finite numbers, the lower one first"))
-        }
+        Some(r) => Err(no_range(key, r)),
     };
     Ok(Domain { u: cut("u_range", whole.u, ranges[0])?, v: cut("v_range", whole.v, ranges[1])? })
 }
@@ -209,30 +211,50 @@ fn between(
     spline(kind, surface, cut)
 }
 
+/// A size that must be positive.
+fn size(key: &str, v: f64) -> Result<f64, String> {
+    if v.is_finite() && v > 0.0 { Ok(v) } else { Err(format!("{key} must be positive and finite, got {v}")) }
+}
+
+/// Half the side of the square about the origin: as given, or so that it holds both ranges.
+fn half_size(given: Option<f64>, ranges: [Option<[f64; 2]>; 2]) -> Result<f64, String> {
+    match (given, ranges) {
+        (Some(half), _) => size("half_size_mm", half),
+        (None, [Some(u), Some(v)]) => {
+            let largest = [u, v].concat().iter().fold(0.0f64, |most, x| most.max(x.abs()));
+            size("the largest of u_range and v_range", largest)
+        }
+        _ => Err("give half_size_mm, or both u_range and v_range".into()),
+    }
+}
+
+/// The parameter along a straight side: from the start to a length, or the range itself.
+fn along(length_mm: Option<Result<f64, String>>, v_range: Option<[f64; 2]>) -> Result<Interval, String> {
+    match (length_mm, v_range) {
+        (Some(length), _) => Ok(Interval::new(0.0, length?)),
+        (None, Some([lo, hi])) if lo.is_finite() && hi.is_finite() && lo < hi => Ok(Interval::new(lo, hi)),
+        (None, Some(r)) => Err(no_range("v_range", r)),
+        (None, None) => Err("give height_mm or v_range".into()),
+    }
+}
+
 /// The surface that the keys describe.
 pub fn build(keys: &toml::Table) -> Result<Builtin, String> {
     let keys: Keys = keys.clone().try_into().map_err(|e: toml::de::Error| e.message().to_owned())?;
     let say = |e: osculate_geom::analytic::BadSize| e.to_string();
-    let size = |key: &str, v: f64| {
-        if v.is_finite() && v > 0.0 {
-            Ok(v)
-        } else {
-            Err(format!("{key} must be positive and finite, got {v}"))
-        }
-    };
     match keys {
         Keys::Plane { half_size_mm, material, u_range, v_range } => {
-            let h = size("half_size_mm", half_size_mm)?;
+            let h = half_size(half_size_mm, [u_range, v_range])?;
             let i = Interval::new(-h, h);
             patch("plane", Plane::new(Domain { u: i, v: i }), material, [u_range, v_range])
         }
         Keys::Cylinder { radius_mm, height_mm, material, u_range, v_range } => {
-            let z = Interval::new(0.0, size("height_mm", height_mm)?);
+            let z = along(height_mm.map(|h| size("height_mm", h)), v_range)?;
             patch("cylinder", Cylinder::new(radius_mm, z).map_err(say)?, material, [u_range, v_range])
         }
         Keys::Cone { radius_mm, half_angle_deg, height_mm, material, u_range, v_range } => {
             let angle = half_angle_deg.to_radians();
-            let v = Interval::new(0.0, size("height_mm", height_mm)? / angle.cos());
+            let v = along(height_mm.map(|h| Ok(size("height_mm", h)? / angle.cos())), v_range)?;
             patch("cone", Cone::new(radius_mm, angle, v).map_err(say)?, material, [u_range, v_range])
         }
         Keys::Sphere { radius_mm, material, u_range, v_range } => {
@@ -277,7 +299,8 @@ pub fn build(keys: &toml::Table) -> Result<Builtin, String> {
         Keys::MonkeySaddle(cut) => spline("monkey_saddle", gallery::monkey_saddle(), cut),
         Keys::Enneper(cut) => spline("enneper", gallery::enneper(), cut),
         Keys::Paraboloid { a_per_mm, b_per_mm, half_size_mm, material, u_range, v_range } => {
-            let p = Paraboloid::new([a_per_mm, b_per_mm], half_size_mm).map_err(say)?;
+            let h = half_size(half_size_mm, [u_range, v_range])?;
+            let p = Paraboloid::new([a_per_mm, b_per_mm], h).map_err(say)?;
             patch("paraboloid", p, material, [u_range, v_range])
         }
     }
@@ -325,6 +348,25 @@ mod tests {
         assert_eq!(piece.spline.unwrap().domain().u.lo, 0.25);
     }
 
+    /// Ranges say the size of what has no size of its own.
+    #[test]
+    fn ranges_stand_for_sizes() {
+        let size = |keys: &str| {
+            let d = parse(keys).unwrap().surface.domain();
+            [d.u.lo, d.u.hi, d.v.lo, d.v.hi]
+        };
+        assert_eq!(
+            size("kind = \"plane\", u_range = [0, 100], v_range = [-5, 20]"),
+            [0.0, 100.0, -5.0, 20.0]
+        );
+        let bowl =
+            "kind = \"paraboloid\", a_per_mm = 0.1, b_per_mm = 0.2, u_range = [-3, 2], v_range = [1, 4]";
+        assert_eq!(size(bowl), [-3.0, 2.0, 1.0, 4.0]);
+        assert_eq!(size("kind = \"cylinder\", radius_mm = 2, v_range = [-5, 20]")[2..], [-5.0, 20.0]);
+        let cone = "kind = \"cone\", radius_mm = 9, half_angle_deg = 10, v_range = [1, 2]";
+        assert_eq!(size(cone)[2..], [1.0, 2.0]);
+    }
+
     #[test]
     fn mistakes_are_named() {
         for (keys, word) in [
@@ -333,6 +375,10 @@ mod tests {
             ("kind = \"sphere\", radius = 1", "radius"),
             ("kind = \"sphere\", radius_mm = 1, v_range = [0, 9]", "v_range"),
             ("kind = \"torus\", major_radius_mm = 2", "minor_radius_mm"),
+            ("kind = \"plane\", u_range = [0, 1]", "v_range"),
+            ("kind = \"plane\", u_range = [0, 1], v_range = [1, nan]", "v_range"),
+            ("kind = \"cylinder\", radius_mm = 2", "height_mm"),
+            ("kind = \"cylinder\", radius_mm = 2, v_range = [2, 1]", "v_range"),
             ("kind = ", "--builtin"),
         ] {
             let error = parse(keys).err().unwrap();
