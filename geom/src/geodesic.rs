@@ -39,6 +39,14 @@ impl GeodesicState {
         Ok(Self { at, rate: forms.rate(&jet, &unit) })
     }
 
+    /// The rate of [`rate`](Self::rate) per mm of arc length.
+    ///
+    /// # Errors
+    /// [`Degenerate`] without a tangent plane.
+    pub fn acceleration(&self, surface: &dyn Surface) -> Result<Uv, Degenerate> {
+        acceleration(surface, *self)
+    }
+
     /// The state after `length_mm` more of arc length (negative: back), by one classical Runge-Kutta step.
     /// The local error is of fifth order in `length_mm` times the curvature of the surface.
     ///

@@ -1,5 +1,6 @@
 //! The optimum at random places of three real faces against a brute-force scan of direction, lead and tilt, and the searches
-//! a second: `cargo run --release -p osculate-productivity --example optimum_bench -- [PLACES [speed]]` from the repository's root; `speed` leaves the scan out.
+//! a second: `cargo run --release -p osculate-productivity --example optimum_bench -- [PLACES [speed|scan [FILE]]]` from the repository's root;
+//! `speed` leaves the scan out, FILE is a part of the only file wanted.
 #![allow(clippy::print_stdout)]
 
 use osculate_geom::{Surface, Uv};
@@ -29,6 +30,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("examples/propeller/propeller.step", "F7", 6.0, 1.0),
         ("examples/wigley-hull/hull.step", "F1", 40.0, 6.0),
     ] {
+        if std::env::args().nth(3).is_some_and(|wanted| !file.contains(&wanted)) {
+            continue;
+        }
         let part: Part = read(&std::fs::read(file)?)?;
         let face = part.face(face).ok_or("no such face")?;
         let cutter = [Cutter::try_from(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm })?];
@@ -41,24 +45,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let by_cpu = at.len() as f64 / (cpu_s() - used).max(1e-9);
         let exact = best.iter().flatten().map(|b| b.exact).sum::<u32>() / at.len() as u32;
         let scanning = std::env::args().nth(2).as_deref() != Some("speed");
-        let results: Vec<Option<[f64; 2]>> = at
+        let results: Vec<Option<([f64; 2], Posture)>> = at
             .par_iter()
             .zip(&best)
             .map(|(p, b)| {
                 let own = b.as_ref().ok()?.rate.area_mm2_min;
                 if !scanning {
-                    return Some([f64::NAN; 2]);
+                    return Some(([f64::NAN; 2], plain()));
                 }
-                let (scanned, first) = scan(face, *p, &cutter[0], &limits);
-                Some([scanned / own - 1.0, own / first - 1.0])
+                let (scanned, posture, first) = scan(face, *p, &cutter[0], &limits);
+                Some(([scanned / own - 1.0, own / first - 1.0], posture))
             })
             .collect();
         let none = results.iter().filter(|r| r.is_none()).count();
-        let worst = results.iter().flatten().map(|r| r[0]).fold(f64::NEG_INFINITY, f64::max);
-        let mut misses: Vec<f64> = results.iter().flatten().map(|r| r[0]).collect();
+        let worst = results.iter().flatten().map(|r| r.0[0]).fold(f64::NEG_INFINITY, f64::max);
+        let mut misses: Vec<f64> = results.iter().flatten().map(|r| r.0[0]).collect();
         misses.sort_by(f64::total_cmp);
         let over = misses.iter().filter(|m| **m > 0.005).count();
-        let gain: Vec<f64> = results.iter().flatten().map(|r| r[1]).filter(|g| g.is_finite()).collect();
+        let gain: Vec<f64> = results.iter().flatten().map(|r| r.0[1]).filter(|g| g.is_finite()).collect();
         println!(
             "{:>24}  {:>16}  {:>6}  {none:>9}  {:>11.3}  {:>11.1}  {rate:>9.0}  {by_cpu:>13.0}   over 0.5 %: {over}, evaluations {} ({exact} exact)",
             file.rsplit('/').next().unwrap_or(file),
@@ -70,12 +74,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
         let mut shown = 0;
         for (k, r) in results.iter().enumerate() {
-            if let Some([miss, _]) = r
+            if let Some(([miss, _], posture)) = r
                 && *miss > 0.005
                 && shown < 6
             {
                 shown += 1;
-                println!("    {:?} {:.4} {:?}", at[k], miss, best[k]);
+                println!("    {:?} {miss:.4}: {posture:?} beats {:?}", at[k], best[k]);
             }
         }
     }
@@ -100,23 +104,31 @@ fn inside(face: &dyn Surface, count: usize) -> Vec<Uv> {
         .collect()
 }
 
-/// The greatest productivity of the scan, and that of plain iso-u feed with 20 degrees of lead.
-fn scan(face: &dyn Surface, at: Uv, cutter: &Cutter, limits: &Limits) -> (f64, f64) {
+/// Feed along u with 20 degrees of lead.
+fn plain() -> Posture {
+    Posture { direction_rad: 0.0, lean: Lean { lead_rad: 20f64.to_radians(), tilt_rad: 0.0 } }
+}
+
+/// The greatest productivity of the scan, with its posture, and that of the plain posture.
+fn scan(face: &dyn Surface, at: Uv, cutter: &Cutter, limits: &Limits) -> (f64, Posture, f64) {
     let step =
         |r: Range, k: usize, n: usize| r.least_rad + (r.most_rad - r.least_rad) * k as f64 / (n - 1) as f64;
-    let value = |direction_rad: f64, lead_rad: f64, tilt_rad: f64| {
-        let posture = Posture { direction_rad, lean: Lean { lead_rad, tilt_rad } };
+    let value = |posture: Posture| {
         optimum::measure(face, at, cutter, posture, limits).map_or(0.0, |m| m.rate.area_mm2_min)
     };
-    let mut best = 0.0f64;
+    let mut best = (0.0, plain());
     for i in 0..SCAN[0] {
         for j in 0..SCAN[1] {
             for k in 0..SCAN[2] {
-                let direction = TAU * i as f64 / SCAN[0] as f64;
-                best =
-                    best.max(value(direction, step(limits.lead, j, SCAN[1]), step(limits.tilt, k, SCAN[2])));
+                let lean =
+                    Lean { lead_rad: step(limits.lead, j, SCAN[1]), tilt_rad: step(limits.tilt, k, SCAN[2]) };
+                let posture = Posture { direction_rad: TAU * i as f64 / SCAN[0] as f64, lean };
+                let own = value(posture);
+                if own > best.0 {
+                    best = (own, posture);
+                }
             }
         }
     }
-    (best, value(0.0, 20f64.to_radians(), 0.0))
+    (best.0, best.1, value(plain()))
 }

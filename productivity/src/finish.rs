@@ -165,29 +165,6 @@ mod tests {
         assert!((total / area(&sphere, 1e-10).value - 1.0).abs() < 1e-8);
     }
 
-    /// [R97, eq. 22] prints `dU dV` under one integral over w: with the area element of the whole patch it has the unit of
-    /// area, not of area per time, and does not change with the speed of machining.
-    #[test]
-    fn the_printed_element_is_no_rate() {
-        let torus = Torus::new(30.0, 11.0).unwrap();
-        let across = Across { from: 0.0, to: 1.0, panels: 4 };
-        let rate = |speed: f64| {
-            let line = |w: f64| Place { at: uv(0.3, w), by_time: uv(speed, 0.0), by_across: uv(0.0, 1.0) };
-            area_rate_mm2_min(&torus, across, line).unwrap()
-        };
-        assert!((rate(2.0) / rate(1.0) - 2.0).abs() < 1e-12);
-        // As printed: |J| dU dV is |J|^2 dt dw, here four times as much at double speed for the same minute.
-        let printed = |speed: f64| {
-            gauss(0.0, 1.0, 1, |_| {
-                gauss(0.0, 1.0, 4, |w| {
-                    let jet = torus.jet2(uv(0.3, w));
-                    jet.du.cross(&jet.dv).norm() * speed * speed
-                })
-            })
-        };
-        assert!((printed(2.0) / printed(1.0) - 4.0).abs() < 1e-12);
-    }
-
     #[test]
     fn a_fold_is_refused() {
         let torus = Torus::new(30.0, 11.0).unwrap();

@@ -167,7 +167,6 @@ impl Share {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
     const CAPS: Caps = Caps { spindle_rpm: 10_000.0, teeth: 2, feed_mm_min: 2000.0, feed_per_tooth_mm: 0.06 };
 
@@ -180,16 +179,6 @@ mod tests {
         assert_eq!((by_mark.limit, by_mark.feed_mm_min), (FeedLimit::ToothMark, 400.0));
         let by_feed = Caps { feed_mm_min: 1000.0, ..CAPS }.rate(0.5, 1.0);
         assert_eq!((by_feed.limit, by_feed.feed_mm_min), (FeedLimit::Feed, 1000.0));
-    }
-
-    /// (1) as printed is a dot product, which at a right angle would be nothing; (2) is the product of the lengths.
-    #[test]
-    fn the_printed_dot_product_contradicts_its_own_limit() {
-        let (feed, strip) = (0.2, 3.0);
-        let printed = feed * strip * FRAC_PI_2.cos();
-        assert!(printed < 1e-15);
-        assert!((area_per_tooth_mm2(feed, strip, FRAC_PI_2) - feed * strip).abs() < 1e-15);
-        assert!((area_per_tooth_mm2(feed, strip, FRAC_PI_6) - 0.5 * feed * strip).abs() < 1e-15);
     }
 
     #[test]

@@ -8,9 +8,11 @@
 
 mod chart;
 mod exact;
+mod knotted;
 mod local;
 mod mark;
 mod passages;
+mod side;
 mod traced;
 mod undercut;
 

@@ -1,13 +1,16 @@
-//! The other times at which a moving tool comes over a strip: its heel behind the contact, its shank before it.
+//! The other times at which a moving tool comes over a strip: its heel behind the contact, its shank before it, and on wavy
+//! parts the same bottom at a neighbouring instant.
 //!
-//! The entry of a fixed line into the tool has a minimum near the instant of contact. Over a part that is hollow along the
-//! feed it may have others: a leaning disc's far rim comes over the same place a tool's diameter later and lies deeper than
-//! its near one where the lead is less than about R over the hollow's radius. The tool is looked at every quarter of its radius
-//! as long as its body can lie over the contact; where an entry comes down to the tolerance, or heads there, every place of the
-//! strip takes the deepest of all passages.
+//! The entry of a fixed line into the tool has a minimum near the instant of contact. It may have others: over a part that is
+//! hollow along the feed a leaning disc's far rim comes over the same place a tool's diameter later and lies deeper than
+//! its near one where the lead is less than about R over the hollow's radius; over waves a tool that turns with the normal
+//! rocks. The tool is looked at as long as its body can lie over the contact, every quarter of its radius; as far as its bottom reaches
+//! every third of the distance between the surface's knots where that is less: between knots a spline has no finer waves. Where an entry comes down to
+//! the tolerance, or heads there, at another instant than that of contact, every place of the strip takes the deepest of all passages.
 //!
 //! *Limits.* Of a shank only the part below two radii is looked at where a hollow of twice the local curvature would not reach
-//! higher. Instants at which the part has turned by a right angle are not: the tool is on the part's other side.
+//! higher. Instants at which the part has turned by a right angle are not: the tool is on the part's other side. Knots closer than
+//! three hundredths of the tool's radius are looked at every hundredth.
 
 use super::ContactMotion;
 use crate::contact::{Contact, Lean};
@@ -16,121 +19,135 @@ use crate::pose::Pose;
 use crate::sweep::{Reach, SweptMotion, reach_from};
 use osculate_geom::Darboux;
 
-/// Distance between the instants looked at, in the tool's radius, and most of them to a side.
+/// Greatest and least distance between the instants looked at, in the tool's radius, and most of them to a side at the greatest.
 pub(super) const APART: f64 = 0.25;
+const CLOSEST: f64 = 0.01;
 const MOST: f64 = 48.0;
+/// Instants looked at between two knots.
+const OF_PITCH: f64 = 1.0 / 3.0;
 /// Way along a hollow over the straight distance: enough for one of one and a third times the tool's radius.
 const AROUND: f64 = 1.25;
-/// How far an entry that falls is taken to go on falling, in steps.
-const AHEAD: f64 = 1.5;
-/// On wavy parts: the distance within one radius.
-const FINE: f64 = 0.0625;
+/// How far an entry is taken to go on falling between instants, of what it falls from one to the next.
+const AHEAD: f64 = 1.0;
 /// First step of the search from an instant looked at, of the distance between them.
 const FIRST: f64 = 0.25;
 
-/// Poses of the tool along the feed, to both sides of the contact.
+/// Poses of the tool along the feed, from the last instant before the contact to the last one after it.
 pub(super) struct Passages {
-    /// By side, with the instant, from the contact on.
-    poses: [Vec<(f64, Pose)>; 2],
-    /// First step of a search, in the motion's parameter.
-    step: f64,
+    poses: Vec<(f64, Pose)>,
+    /// The contact's own.
+    own: usize,
+}
+
+/// How far from the contact waves are looked at, mm: as far as the tool's bottom reaches, not its shank.
+pub(super) fn bottom_mm(cutter: &Cutter) -> f64 {
+    2.0 * AROUND * cutter.radius_mm()
 }
 
 impl Passages {
-    /// Poses while the body can lie over the contact at `t0`, `speed` mm per unit of the motion's parameter.
-    /// `fine`: closely within a radius of the contact.
+    /// Poses while the body can lie over the contact at `t0`, `speed` mm per unit of the motion's parameter; `pitch_mm` is the
+    /// distance between knots along the feed.
     pub(super) fn new(
         contact: &Contact<'_>,
         motion: &ContactMotion<'_>,
         (t0, speed): (f64, f64),
-        fine: bool,
+        (reach, pitch_mm): ([f64; 2], f64),
     ) -> Self {
         let radius = contact.cutter.radius_mm();
-        let forward = motion.line.frame(t0).map_or(1.0, |f| f.1.signum());
-        let hollow = (-contact.forms.principal().k_min).max(0.0);
-        let [behind, ahead] = extent(contact.cutter, contact.lean, &contact.frame, hollow);
-        // The body lies behind the contact: it comes over it later.
-        let reach = if forward > 0.0 { [-behind, ahead] } else { [ahead, -behind] };
-        let apart = (APART * radius).max(reach[0].max(reach[1]) / MOST);
-        let poses = [1.0, -1.0].map(|sign| {
-            let far = if sign > 0.0 { reach[0] } else { reach[1] };
-            let close = if fine { (1.0 / FINE) as usize } else { 0 };
-            let last = if fine { radius } else { 0.0 };
-            let count = ((far - last) / apart).ceil().max(0.0) as usize;
-            let at = |k: usize| {
-                if k <= close { k as f64 * FINE * radius } else { last + (k - close) as f64 * apart }
-            };
-            let mut poses = Vec::with_capacity(close + count + 1);
-            for k in 0..=close + count {
-                let t = t0 + sign * at(k) / speed;
-                let Ok((frame, _)) = motion.line.frame(t) else { break };
-                if frame.normal.dot(&contact.frame.normal) <= 0.0 {
-                    break;
+        let coarse = (APART * radius).max(reach[0].max(reach[1]) / MOST);
+        let fine = coarse.min((OF_PITCH * pitch_mm).max(CLOSEST * radius));
+        let side = |sign: f64, reach_mm: f64| {
+            let mut way = 0.0;
+            std::iter::from_fn(|| {
+                if way >= reach_mm {
+                    return None;
                 }
-                poses.push((t, contact.lean.pose(contact.cutter, &frame, contact.lift_mm)));
-            }
-            poses
-        });
-        Self { poses, step: FIRST * if fine { FINE * radius } else { apart } / speed }
-    }
-
-    /// Whether the tool comes down to `height_mm` over a line at another instant than that of contact, or heads there.
-    pub(super) fn matter(&self, cutter: &Cutter, line: &Line, height_mm: f64) -> bool {
-        self.poses.iter().any(|side| {
-            let mut last: Option<f64> = None;
-            side.iter().enumerate().any(|(k, (_, pose))| {
-                let now = cutter.entry(pose, line).map(|e| e.at_mm);
-                let falls = last.zip(now).map_or(0.0, |(a, b)| (a - b).max(0.0));
-                last = now;
-                k > 0 && now.is_some_and(|s| s - AHEAD * falls <= height_mm)
+                way += if way < bottom_mm(contact.cutter) { fine } else { coarse };
+                let t = t0 + sign * way / speed;
+                let (frame, _) = motion.line.frame(t).ok()?;
+                let same_side = frame.normal.dot(&contact.frame.normal) > 0.0;
+                same_side.then(|| (t, contact.lean.pose(contact.cutter, &frame, contact.lift_mm)))
             })
-        })
+            .collect::<Vec<_>>()
+        };
+        let mut poses = side(-1.0, reach[1]);
+        poses.reverse();
+        let own = poses.len();
+        poses.push((t0, contact.pose()));
+        poses.extend(side(1.0, reach[0]));
+        Self { poses, own }
     }
 
-    /// The deepest of the passages over a line that go below `bound_mm` over it.
+    /// The longer of the ways to the instants before and after one, in the motion's parameter.
+    fn apart(&self, k: usize) -> f64 {
+        let t = |k: usize| self.poses[k.min(self.poses.len() - 1)].0;
+        (t(k + 1) - t(k)).abs().max((t(k) - t(k.saturating_sub(1))).abs())
+    }
+
+    /// Calls `see` with the instants at which the entry of a line is lower than at its neighbours, or as low, with the entry and
+    /// the most that it falls to there.
+    fn minima(&self, cutter: &Cutter, line: &Line, mut see: impl FnMut(usize, f64, f64)) {
+        let entry = |pose: &Pose| cutter.entry(pose, line).map_or(f64::INFINITY, |e| e.at_mm);
+        let mut before = [f64::INFINITY; 2];
+        // One more than there are, so that the last can be the lowest.
+        let ahead = self.poses.iter().map(|p| entry(&p.1)).chain([f64::INFINITY]);
+        for (k, next) in ahead.enumerate() {
+            let [a, b] = before;
+            if b.is_finite() && b <= a && b <= next {
+                let fall = |x: f64| if x.is_finite() { x - b } else { 0.0 };
+                see(k - 1, b, fall(a).max(fall(next)));
+            }
+            before = [b, next];
+        }
+    }
+
+    /// Whether the tool comes down to `height_mm` over a line at another instant than near `t`, or heads there.
+    pub(super) fn matter(&self, cutter: &Cutter, line: &Line, t: f64, height_mm: f64) -> bool {
+        let mut found = false;
+        self.minima(cutter, line, |k, low, falls| {
+            let other = (self.poses[k].0 - t).abs() > 1.5 * self.apart(k);
+            found |= other && low - AHEAD * falls <= height_mm;
+        });
+        found
+    }
+
+    /// The deepest of the passages over a line that go below `bound_mm` over it; `but` is the instant of one that is known.
     pub(super) fn deepest(
         &self,
         cutter: &Cutter,
         line: &Line,
         motion: &impl SweptMotion,
-        bound_mm: f64,
+        (bound_mm, but): (f64, f64),
     ) -> Option<Reach> {
         let mut best = Reach { at_mm: bound_mm, t: f64::NAN };
-        for side in &self.poses {
-            let entry = |pose: &Pose| cutter.entry(pose, line).map_or(f64::INFINITY, |e| e.at_mm);
-            let mut before = [f64::INFINITY; 2];
-            // One more than there are, so that the last can be the lowest.
-            let ahead = side.iter().map(|p| entry(&p.1)).chain([f64::INFINITY]);
-            for (k, next) in ahead.enumerate() {
-                let [a, b] = before;
-                // The one before is as low as both its neighbours, and what it falls in a step leads below the bound.
-                let falls = if a.is_finite() { (a - b).max(0.0) } else { 0.0 };
-                let falls = if next.is_finite() { falls.max(next - b) } else { falls };
-                if k > 1 && b.is_finite() && b <= a && b <= next && b - AHEAD * falls < best.at_mm {
-                    let found = reach_from(cutter, line, motion, side[k - 1].0, self.step);
-                    best = found.filter(|f| f.at_mm < best.at_mm).unwrap_or(best);
-                }
-                before = [b, next];
+        self.minima(cutter, line, |k, low, falls| {
+            let t = self.poses[k].0;
+            if low - AHEAD * falls < best.at_mm && (t - but).abs() > self.apart(k) {
+                let found = reach_from(cutter, line, motion, t, FIRST * self.apart(k));
+                best = found.filter(|f| f.at_mm < best.at_mm).unwrap_or(best);
             }
-        }
+        });
         best.t.is_finite().then_some(best)
     }
 
-    /// The lowest of the entries looked at over a line, where the tool has come down from higher; infinite without.
+    /// The lowest of the entries looked at over a line at other instants than that of contact; infinite without.
     pub(super) fn lowest_mm(&self, cutter: &Cutter, line: &Line) -> f64 {
         let mut lowest = f64::INFINITY;
-        for side in &self.poses {
-            let mut last = f64::INFINITY;
-            for (_, pose) in side {
-                let now = cutter.entry(pose, line).map_or(f64::INFINITY, |e| e.at_mm);
-                if last.is_finite() && now < last {
-                    lowest = lowest.min(now);
-                }
-                last = now;
+        self.minima(cutter, line, |k, low, _| {
+            if k != self.own {
+                lowest = lowest.min(low);
             }
-        }
+        });
         lowest
     }
+}
+
+/// How far the tool's body reaches over the contact, ahead of and behind it in the motion's sense, mm.
+pub(super) fn reach(contact: &Contact<'_>, forward: f64) -> [f64; 2] {
+    let hollow = (-contact.forms.principal().k_min).max(0.0);
+    let [behind, ahead] = extent(contact.cutter, contact.lean, &contact.frame, hollow);
+    // The body lies behind the contact: it comes over it later.
+    if forward > 0.0 { [-behind, ahead] } else { [ahead, -behind] }
 }
 
 /// How far the lowest point of the parabola through three equally spaced heights lies below the middle one.

@@ -1,7 +1,7 @@
 //! How deep the tool goes below the part on a walk across the strip.
 
-use super::exact::{SHARE, Side};
 use super::local::Near;
+use super::side::{SHARE, Side};
 use crate::sweep::SweptMotion;
 use osculate_geom::Degenerate;
 use osculate_geom::geodesic::GeodesicState;

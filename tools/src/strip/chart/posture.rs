@@ -23,7 +23,7 @@ pub struct Within {
 pub struct Nearly {
     /// Width, mm.
     pub width_mm: f64,
-    /// Width at a tolerance that is larger by the chart's error, mm: much more than `width_mm` where a wave of the part ends
+    /// Nearly the width at a tolerance that is larger by the chart's error, mm: much more than `width_mm` where a wave of the part ends
     /// the strip by less than that.
     pub most_mm: f64,
     /// Undercut after the lift, mm, that of the cutter's far side over the contact and the strip's ends
@@ -134,8 +134,8 @@ impl Chart<'_> {
         };
         // n x t in the chart's coordinates.
         let left = self.ray([-s * self.side, c * self.side]);
-        let right = self.ray([s * self.side, -c * self.side]);
-        let mut profiles = [Profile::new(Rc::clone(&left)), Profile::new(Rc::clone(&right))];
+        let new = || [1.0, -1.0].map(|sign| Profile::new(Rc::clone(&left), sign));
+        let mut profiles = new();
         let dip = |line: &Line| self.dip_mm(cutter, angle_rad, lean, line);
         // Lifted by more than the tolerance it would stand above it.
         let too_deep = |undercut: f64| match undercut - within.gouge_mm {
@@ -149,7 +149,7 @@ impl Chart<'_> {
         // A surface that a chart of the usual size cannot follow may have waves over which the tool comes twice.
         if self.is_wavy() && profiles.iter().any(|p| side.comes_again(p)) {
             side.everywhere = true;
-            profiles = [Profile::new(Rc::clone(&left)), Profile::new(Rc::clone(&right))];
+            profiles = new();
             for profile in &mut profiles {
                 side.walk(profile)?;
             }
@@ -160,8 +160,8 @@ impl Chart<'_> {
         let lift = (undercut - within.gouge_mm).max(0.0);
         let (mut width, mut most) = (0.0, 0.0);
         for profile in &profiles {
-            width += side.edge(profile, within.scallop_mm - lift)?;
-            most += side.edge(profile, within.scallop_mm + self.error_mm() - lift)?;
+            let [edge, higher] = side.edges(profile, within.scallop_mm - lift, self.error_mm())?;
+            (width, most) = (width + edge, most + higher);
         }
         if motion.beyond.get() {
             return Err(ChartError::Beyond { radius_mm: self.reach });

@@ -64,26 +64,34 @@ impl SweptMotion for ChartMotion<'_> {
 
 /// Crests of the profile that come up to this share of the tolerance are looked at between places.
 const SUSPECT: f64 = 0.5;
+/// Chords drawn before the edge of a strip is bracketed.
+const CHORDS: u32 = 3;
 /// Most places of a profile.
 const PLACES: usize = 40;
 
-/// Heights along one side, until they exceed the tolerance.
+/// Heights along one side, until they exceed the tolerance; the ray runs to the left, `sign` says to which side.
 pub(super) struct Profile {
     ray: Rc<Ray>,
+    sign: f64,
     places: [(f64, f64, Near); PLACES],
     count: usize,
     at_edge: bool,
 }
 
 impl Profile {
-    pub(super) fn new(ray: Rc<Ray>) -> Self {
+    pub(super) fn new(ray: Rc<Ray>, sign: f64) -> Self {
         let places = [(0.0, 0.0, Near { t: 0.0, bend: None }); PLACES];
-        Self { ray, places, count: 0, at_edge: false }
+        Self { ray, sign, places, count: 0, at_edge: false }
+    }
+
+    /// The normal of the part at the distance `q` from the contact.
+    fn line(&self, chart: &Chart<'_>, q: f64) -> Line {
+        chart.line(&self.ray, self.sign * q)
     }
 
     /// The normal of the part at the last place.
     pub(super) fn end(&self, chart: &Chart<'_>) -> Line {
-        chart.line(&self.ray, self.seen().last().map_or(0.0, |p| p.0))
+        self.line(chart, self.seen().last().map_or(0.0, |p| p.0))
     }
 
     fn seen(&self) -> &[(f64, f64, Near)] {
@@ -107,8 +115,8 @@ pub(super) struct Side<'a> {
 const NEARBY: i32 = 20;
 
 impl Side<'_> {
-    fn height(&self, ray: &Ray, q: f64, near: Near) -> (f64, Near) {
-        let line = self.motion.chart.line(ray, q);
+    fn height(&self, profile: &Profile, q: f64, near: Near) -> (f64, Near) {
+        let line = profile.line(self.motion.chart, q);
         // A tool that does not pass over the place stands above it by more than any tolerance.
         let (own, near) = deepest(self.cutter, &line, self.motion, near, self.pace)
             .map_or((self.cutter.radius_mm(), near), |(reach, near)| (reach.at_mm, near));
@@ -152,7 +160,7 @@ impl Side<'_> {
         while profile.count < PLACES {
             // A tool that fits touches where it is.
             let touches = profile.count == 0 && self.fits;
-            let (f, found) = if touches { (0.0, near) } else { self.height(&profile.ray, q, near) };
+            let (f, found) = if touches { (0.0, near) } else { self.height(profile, q, near) };
             if self.motion.beyond.get() {
                 return Err(ChartError::Beyond { radius_mm: chart.reach });
             }
@@ -171,12 +179,12 @@ impl Side<'_> {
             if q + step > chart.reach {
                 return Err(ChartError::Beyond { radius_mm: chart.reach });
             }
-            if !chart.inside(&profile.ray, q + step) {
+            if !chart.inside(&profile.ray, profile.sign * (q + step)) {
                 // Bisection to a thousandth of the step.
                 let (mut lo, mut hi) = (0.0, step);
                 for _ in 0..10 {
                     let m = 0.5 * (lo + hi);
-                    if chart.inside(&profile.ray, q + m) { lo = m } else { hi = m }
+                    if chart.inside(&profile.ray, profile.sign * (q + m)) { lo = m } else { hi = m }
                 }
                 step = lo;
                 profile.at_edge = true;
@@ -196,7 +204,7 @@ impl Side<'_> {
             return false;
         }
         let q = b.0 + at * self.step;
-        let (f, near) = self.height(&profile.ray, q, b.2);
+        let (f, near) = self.height(profile, q, b.2);
         if f > self.h {
             // In the order of their distance: the crest lies before the last place, or before the last but one.
             profile.count -= if at < 0.0 { 2 } else { 1 };
@@ -224,7 +232,7 @@ impl Side<'_> {
                 if !(x > a.0 && x < c.0) || (x - b.0).abs() < 1e-3 * self.step {
                     break;
                 }
-                let (f, near) = self.height(&profile.ray, x, b.2);
+                let (f, near) = self.height(profile, x, b.2);
                 lowest = lowest.min(f);
                 let new = (x, f, near);
                 if f < b.1 {
@@ -244,18 +252,42 @@ impl Side<'_> {
         (-lowest).max(0.0)
     }
 
-    /// Where the profile first exceeds the height.
-    pub(super) fn edge(&self, profile: &Profile, height: f64) -> Result<f64, ChartError> {
+    /// Where the profile first exceeds the height, and nearly where it first exceeds one that is higher by `more`.
+    pub(super) fn edges(&self, profile: &Profile, height: f64, more: f64) -> Result<[f64; 2], ChartError> {
         let seen = profile.seen();
-        let Some(k) = seen.iter().position(|p| p.1 > height) else {
-            return Ok(seen.last().map_or(0.0, |p| p.0));
-        };
+        let last = seen.last().map_or(0.0, |p| p.0);
+        let Some(k) = seen.iter().position(|p| p.1 > height) else { return Ok([last; 2]) };
         if k == 0 {
             return Err(ChartError::Above { standoff_mm: seen[0].1 + self.h - height });
         }
-        let (a, b) = (seen[k - 1], seen[k]);
-        let ends = [End { x: a.0, f: a.1 - height }, End { x: b.0, f: b.1 - height }];
-        let root = bracketed(ends[0], ends[1], 1e-4 * b.0, |q| self.height(&profile.ray, q, a.2).0 - height);
-        Ok(root.map_or(a.0, |r| r.x))
+        let edge = self.edge(profile, k, height);
+        let higher = match seen.iter().position(|p| p.1 > height + more) {
+            None => last,
+            Some(j) => {
+                let from = if j == k { (edge, height) } else { (seen[j - 1].0, seen[j - 1].1) };
+                let share = (height + more - from.1) / (seen[j].1 - from.1);
+                from.0 + share.clamp(0.0, 1.0) * (seen[j].0 - from.0)
+            }
+        };
+        Ok([edge, higher])
+    }
+
+    /// Where the profile exceeds the height between the places before and at `k`, to a ten-thousandth of the way.
+    fn edge(&self, profile: &Profile, k: usize, height: f64) -> f64 {
+        let (from, to) = (profile.seen()[k - 1], profile.seen()[k]);
+        // Profiles are nearly parabolas: their root is nearly straight, and chords find where it passes that of the height.
+        let straight = |f: f64| f.abs().sqrt().copysign(f) - height.sqrt();
+        let (mut a, mut b) = (End { x: from.0, f: straight(from.1) }, End { x: to.0, f: straight(to.1) });
+        let tolerance = 1e-4 * to.0;
+        for _ in 0..CHORDS {
+            let slope = (b.f - a.f) / (b.x - a.x);
+            let x = a.x - a.f / slope;
+            let f = straight(self.height(profile, x, from.2).0);
+            if f.abs() <= tolerance * slope {
+                return (x - f / slope).clamp(a.x, b.x);
+            }
+            *(if f > 0.0 { &mut b } else { &mut a }) = End { x, f };
+        }
+        bracketed(a, b, tolerance, |q| straight(self.height(profile, q, from.2).0)).map_or(a.x, |r| r.x)
     }
 }
