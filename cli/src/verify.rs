@@ -200,8 +200,12 @@ pub fn run(
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
     let mut verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
     let surfaces: Vec<&dyn Surface> = all.iter().map(|(f, _)| &*f.surface as &dyn Surface).collect();
-    verdict.hidden = removal::hidden(&surfaces, &work, (&patches, &cuts), limits.uncut_mm, effective)
-        .map_err(Failure::job)?;
+    let wanted = removal::Wanted {
+        uncut_mm: limits.uncut_mm,
+        enough_mm: limits.scallop_mm,
+        tool_radius_mm: effective,
+    };
+    verdict.hidden = removal::hidden(&surfaces, &work, (&patches, &cuts), wanted).map_err(Failure::job)?;
     let sharpest =
         patches.iter().flatten().map(|p| p.convex_per_mm.max(p.concave_per_mm)).fold(0.0, f64::max);
     // Worst first: by how much of its own limit a place takes.

@@ -10,7 +10,7 @@
 use osculate_geom::analytic::{Cylinder, Paraboloid, Torus};
 use osculate_geom::{Interval, Surface, Uv, uv};
 use osculate_surfaces::{read, sections};
-use osculate_tools::removal::{Job, Patch, Sample, Sampling, Swept, cut, hidden, sample_surface};
+use osculate_tools::removal::{Job, Patch, Sample, Sampling, Swept, Wanted, cut, hidden, sample_surface};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 use std::error::Error;
 use std::path::Path;
@@ -154,7 +154,8 @@ impl Case {
         let cuts = cut(&job, &|_| ())?;
         let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
         let patches: Vec<Option<Patch>> = patches.into_iter().map(Some).collect();
-        let more = hidden(&[&*self.surface], &job, (&patches, &cuts), STOCK_MM, self.radius_mm)?;
+        let wanted = Wanted { uncut_mm: STOCK_MM, enough_mm: 0.0, tool_radius_mm: self.radius_mm };
+        let more = hidden(&[&*self.surface], &job, (&patches, &cuts), wanted)?;
         Ok((samples.len(), seen, seen + more.scallop_mm))
     }
 }

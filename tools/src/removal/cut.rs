@@ -204,7 +204,8 @@ impl<'a> Work<'a> {
         let swept = &self.world.job.motions[piece.motion as usize];
         let target = Target::segment(self.line.point(middle), &self.line.direction, radius);
         let Passes::Near { sagitta, .. } = approach.passes(body, &target, 0.0) else { return None };
-        let passage = Passage { body: *body, swept, piece: *piece, line: self.line, instant: EXACT };
+        let passage =
+            Passage { body: *body, swept, piece: *piece, line: self.line, instant: EXACT, met: 0.0 };
         let first = passage.height(height, depth);
         if sagitta <= FINE_MM {
             return first;
@@ -227,8 +228,14 @@ impl<'a> Work<'a> {
             match Approach::new(swept, &half).passes(body, &target, FINE_MM) {
                 Passes::Clear => {}
                 Passes::Near { sagitta, .. } if sagitta <= FINE_MM => {
-                    let passage =
-                        Passage { body: *body, swept, piece: half, line: self.line, instant: EXACT };
+                    let passage = Passage {
+                        body: *body,
+                        swept,
+                        piece: half,
+                        line: self.line,
+                        instant: EXACT,
+                        met: 0.0,
+                    };
                     lower = passage.height(height, depth).or(lower);
                 }
                 Passes::Near { .. } => lower = self.deeper(body, swept, &half, height).or(lower),

@@ -38,6 +38,8 @@ pub(super) struct Passage<'a> {
     pub line: Line,
     /// Accuracy of instants relative to the piece, such as [`EXACT`].
     pub instant: f64,
+    /// Distance that counts as touching where it is more than rounding, mm.
+    pub met: f64,
 }
 
 /// D and its derivatives by instant and height.
@@ -122,7 +124,7 @@ impl Passage<'_> {
     /// is a gouge, followed down to `-depth`.
     pub fn height(&self, current: f64, depth: f64) -> Option<f64> {
         let size = self.line.origin.coords.amax() + self.swept.from.tip.coords.amax() + self.body.above_mm;
-        let touch = TOUCH * (1.0 + size);
+        let touch = (TOUCH * (1.0 + size)).max(self.met);
         let here = self.lowest(Probe::Height, 0.0);
         if here.value > touch {
             return self.entry(here, current, touch);

@@ -43,14 +43,28 @@ pub const DIVISIONS: u32 = 3;
 const MOST_MOTIONS: usize = 8;
 /// Bounds are expected within this multiple of the highest standoff seen.
 const MOST_SEEN: f64 = 3.0;
+/// Cells that are divided before the highest bound is looked at again.
+const TOGETHER: usize = 256;
+/// Height at which a motion counts as met, mm: bounds are above the truth by more.
+const MET: f64 = 1e-9;
 /// Accuracy of the instant, of the motion: an instant that is off gives a bound that is higher.
 const INSTANT: f64 = 1e-7;
+
+/// What is asked of the bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Samples that stand higher have not been cut.
+    pub uncut_mm: f64,
+    /// Bounds on the height that are no higher need not be sharper, such as the tolerance; 0 for the sharpest.
+    pub enough_mm: f64,
+    /// The tool's effective radius for the gouge bound, see [`Density::bound`](super::Density::bound).
+    pub tool_radius_mm: f64,
+}
 
 /// Bounds on what may hide between samples on the faces of a job, in the order of the samples.
 ///
 /// `surfaces` are the faces by number, `patches` the cells of the job's samples; samples without a cell (on a trim) have
-/// none of their own and are left aside, as are those that nothing cut and those above `uncut_mm`. `tool_radius_mm` is the
-/// tool's effective radius for the gouge bound, see [`Density::bound`](super::Density::bound).
+/// none of their own and are left aside, as are those that nothing cut and those above what counts as uncut.
 ///
 /// # Errors
 /// [`JobError`] for samples that are not finite.
@@ -58,9 +72,9 @@ pub fn hidden(
     surfaces: &[&dyn Surface],
     job: &Job<'_>,
     (patches, cuts): (&[Option<Patch>], &[Cut]),
-    uncut_mm: f64,
-    tool_radius_mm: f64,
+    wanted: Wanted,
 ) -> Result<Hidden, JobError> {
+    let Wanted { uncut_mm, enough_mm, tool_radius_mm } = wanted;
     let judged = |k: usize| {
         let (s, c) = (&job.samples[k], &cuts[k]);
         !s.check_only && c.by.is_some() && c.standoff_mm <= uncut_mm
@@ -70,26 +84,38 @@ pub fn hidden(
     let pieces = pieces(job.motions, job.cutter.length_mm().hypot(job.cutter.radius_mm()))?;
     let world =
         World { job, body, tree: Tree::new(job.motions, &pieces, job.cutter.radius_mm()), pieces, seen };
-    let found: Vec<[f64; 2]> = clusters(job.samples)?
+    let cells: Vec<Cell<'_>> = clusters(job.samples)?
         .par_iter()
-        .map(|group| {
-            let mut bounds = [seen, 0.0];
-            for k in &group.members {
+        .flat_map_iter(|group| {
+            let world = &world;
+            group.members.iter().filter_map(move |k| {
                 let k = *k as usize;
-                let (Some(patch), true) = (patches.get(k).copied().flatten(), judged(k)) else { continue };
+                let (Some(patch), true) = (patches.get(k).copied().flatten(), judged(k)) else { return None };
                 let surface = surfaces[job.samples[k].face as usize];
                 let own = cuts[k].by.map_or(0, |by| by.motion);
-                let beside = world.beside(k, &group.members, cuts);
-                let cell = Cell { surface, world: &world, own, beside };
-                let (height, radius) = cell.bound(&patch, &mut None, DIVISIONS);
-                let level = 0.5 * (1.0 / tool_radius_mm + patch.convex_per_mm) * radius * radius;
-                bounds = [bounds[0].max(height), bounds[1].max(level)];
-            }
-            bounds
+                Some(Cell { surface, world, patch, own, beside: world.beside(k, &group.members, cuts) })
+            })
         })
         .collect();
-    let most = |i: usize| found.iter().map(|b| b[i]).fold(0.0, f64::max);
-    Ok(Hidden { scallop_mm: (most(0) - seen).max(0.0), gouge_mm: most(1) })
+    let whole: Vec<(f64, f64)> = cells.par_iter().map(|cell| cell.bound(seen, 0)).collect();
+    let level = |(cell, (_, radius)): (&Cell<'_>, &(f64, f64))| {
+        0.5 * (1.0 / tool_radius_mm + cell.patch.convex_per_mm) * radius * radius
+    };
+    let gouge_mm = cells.iter().zip(&whole).map(level).fold(0.0, f64::max);
+    // The highest first: what they come to need not be undercut by the others.
+    let mut order: Vec<usize> = (0..cells.len()).collect();
+    order.sort_unstable_by(|a, b| whole[*b].0.total_cmp(&whole[*a].0).then(a.cmp(b)));
+    let mut highest = seen;
+    for group in order.chunks(TOGETHER) {
+        let (first, enough) = (whole[group[0]].0, highest.max(enough_mm));
+        if first <= enough {
+            highest = highest.max(first);
+            break;
+        }
+        let bounds = group.par_iter().map(|k| cells[*k].bound(enough, DIVISIONS).0);
+        highest = bounds.reduce(|| highest, f64::max);
+    }
+    Ok(Hidden { scallop_mm: highest - seen, gouge_mm })
 }
 
 struct World<'a> {
@@ -141,72 +167,134 @@ fn stretched(corners: [Point3; 4], middle: Point3, margin: f64) -> [Point3; 4] {
     corners.map(|p| p + (p - middle) * by)
 }
 
+/// The cell of one sample.
 struct Cell<'a> {
     surface: &'a dyn Surface,
     world: &'a World<'a>,
+    patch: Patch,
     /// The motion that cut the sample.
     own: u32,
     /// Motions that cut the samples around.
     beside: Vec<u32>,
 }
 
-impl Cell<'_> {
-    /// Bound on the heights over a patch and the radius of the patch; `near` keeps the motions around, once looked for.
-    fn bound(&self, patch: &Patch, near: &mut Option<Vec<u32>>, divisions: u32) -> (f64, f64) {
-        let seen = self.world.seen;
+/// What the motions tried so far leave above one patch.
+struct Level {
+    points: [Point3; 4],
+    middle: Point3,
+    normal: Unit3,
+    radius: f64,
+    /// Corners of the patch that is wider by what turning normals need.
+    wide: [Point3; 4],
+    slack: f64,
+    /// Above this the allowance is of first order.
+    most: f64,
+    first: f64,
+    second: f64,
+    /// The least bound, and the motions whose mean it is.
+    best: f64,
+    pair: [u32; 2],
+    tried: Vec<(u32, [f64; 4])>,
+}
+
+impl Level {
+    /// Nothing tried yet; the radius alone where the patch has no tangent plane in its middle.
+    fn new(cell: &Cell<'_>, patch: &Patch) -> Result<Self, f64> {
         let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
-        let middle = uv(0.5 * (u0 + u1), 0.5 * (v0 + v1));
-        let jet = self.surface.jet2(middle);
-        let corners = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)];
-        let points = corners.map(|c| self.surface.point(c));
+        let jet = cell.surface.jet2(patch.middle());
+        let points = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)].map(|c| cell.surface.point(c));
         let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
-        let Ok(normal) = jet.normal() else { return (seen, radius) };
+        let normal = jet.normal().map_err(|_| radius)?;
         let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
         // Nothing stands higher than the stock, and what does stand higher than this gets the allowance of first order.
-        let most = (MOST_SEEN * seen).min(self.world.job.stock_mm);
+        let most = (MOST_SEEN * cell.world.seen).min(cell.world.job.stock_mm);
         let wide = stretched(points, jet.point, most * bend);
         let radius_wide = wide.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
-        let slack = 0.5 * patch.concave_per_mm * radius_wide * radius_wide;
-        let (first, second) = (1.0 / (1.0 - bend.min(0.5)), 1.0 / (1.0 - (3.0 * bend * bend).min(0.5)));
-        let upper = |heights: f64| {
-            let bound = (heights + slack) * second;
-            if bound <= most { bound } else { bound.max((heights + slack) * first) }
+        Ok(Self {
+            points,
+            middle: jet.point,
+            normal,
+            radius,
+            wide,
+            slack: 0.5 * patch.concave_per_mm * radius_wide * radius_wide,
+            most,
+            first: 1.0 / (1.0 - bend.min(0.5)),
+            second: 1.0 / (1.0 - (3.0 * bend * bend).min(0.5)),
+            best: f64::INFINITY,
+            pair: [cell.own; 2],
+            tried: Vec::new(),
+        })
+    }
+
+    /// Bound from heights at the corners, no higher at any of them.
+    fn upper(&self, heights: [f64; 4]) -> f64 {
+        let top = heights.into_iter().fold(f64::NEG_INFINITY, f64::max) + self.slack;
+        let bound = top * self.second;
+        if bound <= self.most { bound } else { bound.max(top * self.first) }
+    }
+
+    /// The bound with one motion more, alone and in the mean with those before.
+    fn with(&mut self, cell: &Cell<'_>, motion: u32) -> f64 {
+        let other: [f64; 4] = std::array::from_fn(|c| {
+            // From here on no mean with a motion tried before is lower than the best.
+            let lowest = self.tried.iter().map(|(_, h)| h[c]).fold(f64::INFINITY, f64::min);
+            let useful = if lowest < self.best { 2.0 * self.best - lowest } else { f64::INFINITY };
+            cell.height(motion, self.wide[c], self.normal, useful).unwrap_or(f64::INFINITY)
+        });
+        self.tried.push((motion, other));
+        for (one, heights) in &self.tried {
+            let bound = self.upper(std::array::from_fn(|c| 0.5 * (heights[c] + other[c])));
+            if bound < self.best {
+                (self.best, self.pair) = (bound, [*one, motion]);
+            }
+        }
+        self.best
+    }
+
+    /// Motions for a part of the patch: those of the bound, and the two that leave least at each corner.
+    fn likely(&self) -> Vec<u32> {
+        let mut motions = self.pair.to_vec();
+        for c in 0..4 {
+            let mut lowest = [(f64::INFINITY, None); 2];
+            for (motion, heights) in &self.tried {
+                let this = (heights[c], Some(*motion));
+                if this.0 < lowest[0].0 {
+                    lowest = [this, lowest[0]];
+                } else if this.0 < lowest[1].0 {
+                    lowest[1] = this;
+                }
+            }
+            motions.extend(lowest.into_iter().filter_map(|l| l.1));
+        }
+        let mut once = Vec::with_capacity(motions.len());
+        for motion in motions {
+            if !once.contains(&motion) {
+                once.push(motion);
+            }
+        }
+        once
+    }
+}
+
+impl Cell<'_> {
+    /// Bound on the heights over the cell, divided so often, and the cell's radius, mm; a bound that is not above
+    /// `enough` need not be sharper.
+    fn bound(&self, enough: f64, divisions: u32) -> (f64, f64) {
+        self.bound_of(&self.patch, None, enough, divisions)
+    }
+
+    /// The same over a patch, from `motions` or, without, from all around.
+    fn bound_of(&self, patch: &Patch, motions: Option<&[u32]>, enough: f64, divisions: u32) -> (f64, f64) {
+        let mut level = match Level::new(self, patch) {
+            Ok(level) => level,
+            Err(radius) => return (enough, radius),
         };
-        let at = |motion: u32| wide.map(|p| self.height(motion, p, normal));
-        let top = |h: [f64; 4]| h.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mine = at(self.own);
-        let mut best = upper(top(mine));
-        if best <= seen {
-            return (best, radius);
+        let radius = level.radius;
+        if self.try_all(&mut level, motions, enough) || divisions == 0 {
+            return (level.best, radius);
         }
-        let mut all = vec![mine];
-        // The lowest bound of one motion more, alone and in the mean with those before.
-        let mut best_of = |motion: u32, mut best: f64| {
-            let other = at(motion);
-            best = best.min(upper(top(other)));
-            for one in &all {
-                best = best.min(upper(top(std::array::from_fn(|c| 0.5 * (one[c] + other[c])))));
-            }
-            all.push(other);
-            best
-        };
-        for motion in self.beside.iter().filter(|m| **m != self.own) {
-            best = best_of(*motion, best);
-            if best <= seen {
-                return (best, radius);
-            }
-        }
-        let around = near
-            .get_or_insert_with(|| self.around(points, jet.point, normal, best.min(self.world.job.stock_mm)));
-        for motion in around.iter().filter(|m| **m != self.own && !self.beside.contains(m)) {
-            best = best_of(*motion, best);
-            if best <= seen {
-                return (best, radius);
-            }
-        }
-        if divisions == 0 {
-            return (best, radius);
-        }
+        let (likely, middle) = (level.likely(), patch.middle());
+        let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
         let mut divided = 0.0f64;
         for (u, v) in [
             ([u0, middle.u], [v0, middle.v]),
@@ -216,10 +304,31 @@ impl Cell<'_> {
         ] {
             let part = Patch { u, v, ..*patch };
             if self.on_face(&part) {
-                divided = divided.max(self.bound(&part, near, divisions - 1).0);
+                divided = divided.max(self.bound_of(&part, Some(&likely), enough, divisions - 1).0);
             }
         }
-        (best.min(divided), radius)
+        (level.best.min(divided), radius)
+    }
+
+    /// Whether the motions, tried one after the other, bring the bound down to `enough`.
+    fn try_all(&self, level: &mut Level, motions: Option<&[u32]>, enough: f64) -> bool {
+        if let Some(motions) = motions {
+            return motions.iter().any(|m| level.with(self, *m) <= enough);
+        }
+        if level.with(self, self.own) <= enough {
+            return true;
+        }
+        let other = |m: &&u32| **m != self.own;
+        if self.beside.iter().filter(other).any(|m| level.with(self, *m) <= enough) {
+            return true;
+        }
+        let height = level.best.min(self.world.job.stock_mm);
+        let around = self.around(level.points, level.middle, level.normal, height);
+        around
+            .iter()
+            .filter(other)
+            .filter(|m| !self.beside.contains(m))
+            .any(|m| level.with(self, *m) <= enough)
     }
 
     /// The motions of the cutter that leave least above the middle of a cell, of those that come near what is up to
@@ -238,8 +347,8 @@ impl Cell<'_> {
         });
         found.sort_unstable();
         found.dedup();
-        let mut ranked: Vec<(f64, u32)> =
-            found.into_iter().map(|m| (self.height(m, middle, normal), m)).collect();
+        let above = |m: u32| self.height(m, middle, normal, f64::INFINITY).unwrap_or(f64::INFINITY);
+        let mut ranked: Vec<(f64, u32)> = found.into_iter().map(|m| (above(m), m)).collect();
         ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         ranked.truncate(MOST_MOTIONS);
         ranked.into_iter().map(|r| r.1).collect()
@@ -254,13 +363,13 @@ impl Cell<'_> {
         (0..(RASTER + 1) * (RASTER + 1)).any(|k| self.surface.contains(place(k)))
     }
 
-    /// What one motion leaves above a point along a direction; infinite where it misses.
-    fn height(&self, motion: u32, origin: Point3, direction: Unit3) -> f64 {
+    /// What one motion leaves above a point along a direction; none where that is not below `useful`.
+    fn height(&self, motion: u32, origin: Point3, direction: Unit3, useful: f64) -> Option<f64> {
         let World { job, body, .. } = self.world;
         let swept = &job.motions[motion as usize];
         let piece = Piece { motion, range: [0.0, 1.0] };
         let line = Line { origin, direction };
-        let passage = Passage { body: *body, swept, piece, line, instant: INSTANT };
-        passage.height(f64::INFINITY, job.depth_mm).unwrap_or(f64::INFINITY)
+        let passage = Passage { body: *body, swept, piece, line, instant: INSTANT, met: MET };
+        passage.height(useful, job.depth_mm)
     }
 }

@@ -59,7 +59,7 @@ mod verdict;
 pub use boundary::{sample_boundary, sample_triangles};
 pub use cut::cut;
 pub use density::{Density, Hidden};
-pub use hidden::{DIVISIONS, hidden};
+pub use hidden::{DIVISIONS, Wanted, hidden};
 pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
 pub use sampling::{Patch, Sampling, SamplingError, sample_surface};
 pub use verdict::{Bin, JudgeError, Kind, Limits, Verdict, Worst, judge};

@@ -41,6 +41,12 @@ pub struct Patch {
     pub convex_per_mm: f64,
 }
 
+impl Patch {
+    pub(super) fn middle(&self) -> Uv {
+        uv(0.5 * (self.u[0] + self.u[1]), 0.5 * (self.v[0] + self.v[1]))
+    }
+}
+
 /// A sampling that cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SamplingError {

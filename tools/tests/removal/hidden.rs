@@ -4,7 +4,7 @@ use crate::common::{ball, sample, toroidal, upright};
 use osculate_geom::analytic::{Cylinder, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::removal::{
-    Cut, Job, Patch, Sampling, Swept, cut, hidden, sample_boundary, sample_surface,
+    Cut, Job, Patch, Sampling, Swept, Wanted, cut, hidden, sample_boundary, sample_surface,
 };
 use osculate_tools::{Cutter, Pose};
 
@@ -19,8 +19,17 @@ fn look(surface: &dyn Surface, sampling: &Sampling, cutter: &Cutter, motions: &[
     let cuts: Vec<Cut> = cut(&job, &|_| ()).expect("a good job");
     let patches: Vec<Option<Patch>> = sampling.patches.iter().copied().map(Some).collect();
     let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
-    let more = hidden(&[surface], &job, (&patches, &cuts), 0.4, cutter.radius_mm()).expect("a good job");
-    [seen, seen + more.scallop_mm]
+    let bound = |enough_mm: f64| {
+        let wanted = Wanted { uncut_mm: 0.4, enough_mm, tool_radius_mm: cutter.radius_mm() };
+        seen + hidden(&[surface], &job, (&patches, &cuts), wanted).expect("a good job").scallop_mm
+    };
+    let sharpest = bound(0.0);
+    // A bound that need not be sharper is one still, and no higher than it needs to be.
+    for enough in [seen, 1.1 * sharpest, 2.0 * sharpest] {
+        let loose = bound(enough);
+        assert!(loose >= sharpest - 1e-12 && loose <= sharpest.max(enough) + 1e-12, "{loose} for {enough}");
+    }
+    [seen, sharpest]
 }
 
 fn raster(step: f64, count: u32, place: impl Fn(f64, f64) -> Pose) -> Vec<Swept> {
