@@ -4,18 +4,19 @@ use crate::failure::Failure;
 use crate::job::{AutoOr, Job};
 use crate::part::{self, JobFaces, LoadedFace};
 use osculate_geom::{Box3, Unit3, Vec3};
-use osculate_productivity::plan::{DropTask, Named, Passes, drop_cutter};
+use osculate_productivity::plan::{DropTask, Named, Passes, drop_cutter, gradient_3c};
 
-/// The key of job files.
-pub const KIND: &str = "isoplanar_3c";
+/// The keys of job files.
+pub const KINDS: [&str; 2] = ["isoplanar_3c", "gradient_3c"];
 
 /// Passes over all faces of the job, with its check faces kept clear.
 pub fn passes(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> Result<Passes, Failure> {
     let table = &job.strategy;
+    let kind = &table.kind;
     if matches!(table.lead_deg, AutoOr::Given(l) if l != 0.0) || table.tilt_deg != 0.0 {
         return Err(Failure::file(
             &job.path,
-            format!("[strategy] {KIND} keeps the tool axis on `axis`: leave out lead_deg and tilt_deg"),
+            format!("[strategy] {kind} keeps the tool axis on `axis`: leave out lead_deg and tilt_deg"),
         ));
     }
     let axis = job.contour_axis()?;
@@ -32,7 +33,8 @@ pub fn passes(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> R
         tolerance: job.tolerance()?,
         progress,
     };
-    drop_cutter(&task).map_err(|e| Failure::file(&job.path, e))
+    let plan = if kind == "gradient_3c" { gradient_3c } else { drop_cutter };
+    plan(&task).map_err(|e| Failure::file(&job.path, e))
 }
 
 fn names(faces: &[LoadedFace]) -> Vec<Named<'_>> {

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::output;
 use crate::part::JobFaces;
+use crate::verify;
 use osculate_geom::{Point3, Unit3, Vec3, uv};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::{self, Sample, Swept};
@@ -45,15 +46,7 @@ pub fn write(
         }
         triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + first)));
     }
-    let stock_mm = (20.0 * tolerance.scallop_mm).max(0.5).min(0.5 * cutter.radius_mm());
-    let work = removal::Job {
-        cutter: &cutter,
-        holder: holder.as_ref(),
-        motions,
-        samples: &samples,
-        stock_mm,
-        depth_mm: cutter.radius_mm(),
-    };
+    let work = verify::to_cut((&cutter, holder.as_ref()), motions, &samples, tolerance.scallop_mm);
     let cuts = removal::cut(&work, &|_| {}).map_err(Failure::job)?;
     let mut out = format!(
         "ply\nformat binary_little_endian 1.0\ncomment osculate: surface as cut, mm\nelement vertex {}\n\

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
 use osculate_geom::{Diagnostic, Surface};
+use osculate_tools::Cutter;
 use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Patch, Sample, Swept, Verdict};
 use serde::Serialize;
 
@@ -113,6 +114,18 @@ pub struct Verified {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+/// What is to be cut: stock far above any scallop, and gouges as deep as the tool's radius told.
+pub fn to_cut<'a>(
+    (cutter, holder): (&'a Cutter, Option<&'a Cutter>),
+    motions: &'a [Swept],
+    samples: &'a [Sample],
+    scallop_mm: f64,
+) -> removal::Job<'a> {
+    let radius = cutter.radius_mm();
+    let stock_mm = (20.0 * scallop_mm).max(0.5).min(0.5 * radius);
+    removal::Job { cutter, holder, motions, samples, stock_mm, depth_mm: radius }
+}
+
 /// Runs the material removal of `motions` against the faces of the job.
 pub fn run(
     job: &Job,
@@ -185,15 +198,7 @@ pub fn run(
     samples.extend(crate::stock_keys::fixtures(job, all.len() as u32)?);
     patches.resize(samples.len(), None);
     let density = density.ok_or_else(|| Failure::job("there is no face to verify"))?;
-    let stock_mm = (20.0 * tolerance.scallop_mm).max(0.5).min(0.5 * cutter.radius_mm());
-    let work = removal::Job {
-        cutter: &cutter,
-        holder: holder.as_ref(),
-        motions,
-        samples: &samples,
-        stock_mm,
-        depth_mm: cutter.radius_mm(),
-    };
+    let work = to_cut((&cutter, holder.as_ref()), motions, &samples, tolerance.scallop_mm);
     let cuts = removal::cut(&work, progress).map_err(Failure::job)?;
     // The tool's effective radius across the feed, from the strip that it leaves.
     let effective = strip * strip / (8.0 * tolerance.scallop_mm);

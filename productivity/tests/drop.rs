@@ -1,13 +1,14 @@
 //! Dropped cutters in parallel planes: what is left is measured with the swept cutter, spacing against closed forms.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/dropped.rs"]
+mod dropped;
+
+use dropped::{TOLERANCE, dropped, holds, left};
 use osculate_geom::analytic::{Paraboloid, Placed, Placement, Plane, Sphere};
 use osculate_geom::{Domain, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
-use osculate_productivity::plan::{DropTask, Named, Passes, PlanError, Tolerance, drop_cutter};
-use osculate_tools::removal::{Job, Sample, Swept, cut, sample_surface};
+use osculate_productivity::plan::{Passes, PlanError, drop_cutter};
 use osculate_tools::{Cutter, CutterSpec};
-
-const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
 
 fn ball() -> Cutter {
     Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 40.0 }).unwrap()
@@ -22,46 +23,8 @@ fn square(side: f64) -> Domain {
     Domain { u: Interval::new(0.0, side), v: Interval::new(0.0, side) }
 }
 
-/// Least and greatest height left on the faces by the passes alone.
-fn left(faces: &[&dyn Surface], cutter: &Cutter, passes: &Passes) -> [f64; 2] {
-    // Twice as dense as what the planner measures at.
-    let samples: Vec<Sample> =
-        faces.iter().flat_map(|f| sample_surface(*f, 0, 0.1, 100_000).unwrap().samples).collect();
-    let motions: Vec<Swept> = passes
-        .passes
-        .iter()
-        .flat_map(|p| p.points.windows(2))
-        .map(|w| Swept { from: w[0].pose, to: w[1].pose, rapid: false, block: 0 })
-        .collect();
-    let job =
-        Job { cutter, holder: None, motions: &motions, samples: &samples, stock_mm: 0.1, depth_mm: 0.1 };
-    let cuts = cut(&job, &|_| ()).unwrap();
-    cuts.iter().fold([0.0, 0.0], |[lo, hi]: [f64; 2], c| [lo.min(c.standoff_mm), hi.max(c.standoff_mm)])
-}
-
 fn plan(faces: &[&dyn Surface], check: &[&dyn Surface], cutter: &Cutter) -> Result<Passes, PlanError> {
-    let named = |all: &[&'static str], s: &[&dyn Surface]| -> Vec<(usize, &'static str)> {
-        (0..s.len()).map(|k| (k, all[k])).collect()
-    };
-    let faces: Vec<Named<'_>> =
-        named(&["F1", "F2"], faces).into_iter().map(|(k, face)| Named { face, surface: faces[k] }).collect();
-    let check: Vec<Named<'_>> =
-        named(&["C1", "C2"], check).into_iter().map(|(k, face)| Named { face, surface: check[k] }).collect();
-    drop_cutter(&DropTask {
-        faces: &faces,
-        check: &check,
-        cutter,
-        axis: Vec3::z_axis(),
-        feed: Vec3::x(),
-        tolerance: TOLERANCE,
-        progress: &|_| {},
-    })
-}
-
-fn holds(faces: &[&dyn Surface], cutter: &Cutter, passes: &Passes) {
-    let [cut, rest] = left(faces, cutter, passes);
-    assert!(rest <= TOLERANCE.scallop_mm, "left {rest}");
-    assert!(cut >= -TOLERANCE.gouge_mm, "cut {cut}");
+    dropped(drop_cutter, faces, check, cutter)
 }
 
 #[test]

@@ -1,9 +1,13 @@
 //! What isoparametric plans leave on a part, judged by closed forms rather than by the planner's own reach.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/joined.rs"]
+mod joined;
+
+use joined::joined;
 use osculate_geom::analytic::{Paraboloid, Torus};
-use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};
-use osculate_productivity::plan::{Along, Links, Task, Tolerance, isoparametric, link};
+use osculate_geom::{Axis, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};
+use osculate_productivity::plan::{Along, Task, Tolerance, isoparametric};
 use osculate_tools::cl::{ClMove, Motion};
 use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean, Pose, strip};
 
@@ -67,22 +71,7 @@ fn centres(moves: &[ClMove], radius: f64) -> Vec<Point3> {
 fn plan(surface: &dyn Surface, cutter: &Cutter, lean: Lean, tolerance: Tolerance) -> Vec<ClMove> {
     let task = Task { surface, face: "F1", cutter, lean, tolerance, progress: &|_| {} };
     let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap();
-    let d = surface.domain();
-    let mut obstacles = Box3::empty();
-    for i in 0..=20 {
-        for j in 0..=20 {
-            obstacles.add(&surface.point(d.at(f64::from(i) / 20.0, f64::from(j) / 20.0)));
-        }
-    }
-    let links = Links {
-        obstacles,
-        clearance_mm: 5.0,
-        approach_mm: 2.0,
-        cutter_radius_mm: cutter.radius_mm(),
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 500.0,
-    };
-    link(&passes.passes, &links).path.moves
+    joined(surface, &passes.passes, cutter).moves
 }
 
 #[test]

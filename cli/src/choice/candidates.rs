@@ -16,8 +16,8 @@ const LEADS_DEG: [f64; 14] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.
 const GRID: usize = 8;
 
 pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
-    if job.strategy.kind == drop::KIND {
-        let text = format!("[strategy] {} takes one [tool], not [[tools]]", drop::KIND);
+    if drop::KINDS.contains(&job.strategy.kind.as_str()) {
+        let text = format!("[strategy] {} takes one [tool], not [[tools]]", job.strategy.kind);
         return Err(Failure::file(&job.path, text));
     }
     let strategies =

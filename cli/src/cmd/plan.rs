@@ -236,10 +236,10 @@ fn planned(
     out: &Path,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
-    if job.strategy.kind == drop::KIND {
+    if drop::KINDS.contains(&job.strategy.kind.as_str()) {
         let passes = drop::passes(job, faces, progress)?;
         let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
-        let (strategy, extras) = (drop::KIND.to_owned(), Extras::default());
+        let (strategy, extras) = (job.strategy.kind.clone(), Extras::default());
         return Ok(Planned { passes, linked, strategy, lean: Lean::default(), extras, with_strips: true });
     }
     let strategy = &crate::strategy::of_job(job)?;

@@ -1,7 +1,11 @@
 //! What passes leave on a face, by material removal along its normals, and how well they use the tolerance.
 
-use osculate_geom::{Axis, Box3, Surface, Unit3, Uv};
-use osculate_productivity::plan::{Links, Pass, Tolerance, link};
+#[path = "joined.rs"]
+mod joined;
+
+use joined::joined;
+use osculate_geom::{Axis, Surface, Unit3, Uv};
+use osculate_productivity::plan::{Pass, Tolerance};
 use osculate_tools::Cutter;
 use osculate_tools::removal::{Job, Limits, Sample, Swept, Verdict, cut, judge, sample_surface};
 
@@ -11,22 +15,7 @@ const ON_ROW: usize = 4000;
 
 /// The linked path of passes over a face, as motions.
 pub fn motions(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> Vec<Swept> {
-    let d = surface.domain();
-    let mut obstacles = Box3::empty();
-    for i in 0..=20 {
-        for j in 0..=20 {
-            obstacles.add(&surface.point(d.at(f64::from(i) / 20.0, f64::from(j) / 20.0)));
-        }
-    }
-    let links = Links {
-        obstacles,
-        clearance_mm: 5.0,
-        approach_mm: 2.0,
-        cutter_radius_mm: cutter.radius_mm(),
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 500.0,
-    };
-    Swept::along(&link(passes, &links).path)
+    Swept::along(&joined(surface, passes, cutter))
 }
 
 /// The verdict of material removal on samples `spacing_mm` apart.

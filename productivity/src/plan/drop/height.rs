@@ -5,6 +5,7 @@
 //! Samples of the faces find the neighbourhoods of the maximum; there F is climbed with exact derivatives, so that the
 //! answer is that of the surface. What lies lower than the samples and narrower than their spacing is not seen.
 
+use super::circle::{Circle, highest};
 use super::frame::Frame;
 use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
 use osculate_tools::{Cutter, Line, Pose};
@@ -289,6 +290,14 @@ impl<'a> Drops<'a> {
             if won < enough {
                 break;
             }
+        }
+        // A sharp edge stops the climb where the face leaves the disc: on, along the edge.
+        let circle = Circle { centre: c, radius_mm: radius };
+        if self.cutter.corner_mm() == 0.0
+            && let Some((on, tip)) = highest(surface, &self.frame, &circle, at)
+            && tip > f
+        {
+            return rest(tip, on);
         }
         rest(f, at)
     }

@@ -6,10 +6,16 @@
 //! another. What the passes leave is then measured with the swept cutter, and where it is too much the places concerned are
 //! asked again with a shorter reach.
 
+mod circle;
+mod course;
 mod frame;
+mod gradient;
 mod height;
+mod laid;
 mod trace;
 mod wants;
+
+pub use gradient::gradient_3c;
 
 use super::{CcPoint, MAX_PASSES, Pass, Passes, PlanError, Tolerance};
 use frame::Frame;
@@ -50,10 +56,6 @@ pub struct DropTask<'a> {
 
 /// Seeds of drops stand this part of the tool's radius apart.
 const SEEDS: f64 = 0.1;
-/// Places that say where passes go stand this part of a strip on level ground apart.
-const PLACES: f64 = 0.5;
-/// Places at which what is left is measured.
-const JUDGED: f64 = 0.2;
 /// Most seeds over all faces.
 const MOST_SEEDS: usize = 1_000_000;
 /// Most places, and most places to measure, over all faces.
@@ -71,9 +73,30 @@ const RIGHT_OVER: f64 = 0.05;
 /// Shares of the area below which a loss is not worth a word.
 const WORTH_A_WORD: f64 = 1e-3;
 
+/// How passes run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Lines {
+    /// In the frame's parallel planes.
+    Planes,
+    /// Up and down the slope.
+    Gradient,
+}
+
+impl Lines {
+    /// Places that say where passes go, and those at which what is left is measured, stand these parts of a strip on level
+    /// ground apart. Lines that come together leave peaks more pointed than planes do.
+    const fn apart(self) -> [f64; 2] {
+        match self {
+            Self::Planes => [0.5, 0.2],
+            Self::Gradient => [0.25, 0.12],
+        }
+    }
+}
+
 /// What is known before passes are laid out.
 struct Ground<'a> {
     task: &'a DropTask<'a>,
+    lines: Lines,
     frame: Frame,
     drops: Drops<'a>,
     /// Samples of the faces to machine that say where passes must go, and their distance, mm.
@@ -84,14 +107,35 @@ struct Ground<'a> {
 }
 
 impl Ground<'_> {
+    /// What a sample wants of passes that leave `height_mm`, samples standing `spacing_mm` apart.
+    fn want(&self, s: &Sample, [height_mm, spacing_mm]: [f64; 2]) -> Result<Want, Lost> {
+        let task = self.task;
+        let asked = |frame: &Frame| {
+            let surface = task.faces[s.face as usize].surface;
+            want(surface, task.cutter, frame, s, [height_mm, spacing_mm])
+        };
+        match self.lines {
+            Lines::Planes => asked(&self.frame),
+            Lines::Gradient => {
+                // Seen in a frame whose first direction goes down the slope.
+                let frame = Frame::new(task.axis, &s.normal);
+                let w = asked(&frame)?;
+                let [x, y, _] = self.frame.of(&frame.point([w.at[0], w.at[1], 0.0]));
+                Ok(Want { at: [x, y], ..w })
+            }
+        }
+    }
+
     /// Distance of two passes that leave the tolerance around a contact between them, mm; NaN where the leading order
     /// has none.
     fn width_mm(&self, rest: &Rest, normal: Unit3) -> f64 {
         let task = self.task;
-        let Some(face) = task.faces.get(rest.face as usize) else { return f64::NAN };
+        if rest.face as usize >= task.faces.len() {
+            return f64::NAN;
+        }
         let (uv, point) = (rest.uv, rest.point);
         let sample = Sample { point, normal, face: rest.face, uv, area_mm2: 0.0, check_only: false };
-        let wanted = want(face.surface, task.cutter, &self.frame, &sample, [task.tolerance.scallop_mm, 0.0]);
+        let wanted = self.want(&sample, [task.tolerance.scallop_mm, 0.0]);
         wanted.map_or(f64::NAN, |w| 2.0 * w.reach)
     }
 }
@@ -105,7 +149,7 @@ impl Ground<'_> {
 pub fn drop_cutter(task: &DropTask<'_>) -> Result<Passes, PlanError> {
     super::check_tolerance(&task.tolerance)?;
     let surfaces: Vec<&dyn Surface> = task.faces.iter().chain(task.check).map(|n| n.surface).collect();
-    let ground = ground(task, &surfaces)?;
+    let ground = ground(task, &surfaces, Lines::Planes)?;
     (task.progress)(0.2);
     let (mut wants, mut lost) = asked(&ground);
     let hidden = hide(&ground, &mut wants);
@@ -130,7 +174,12 @@ pub fn drop_cutter(task: &DropTask<'_>) -> Result<Passes, PlanError> {
         }
         passes = trace::passes(&ground, &wants, &levels);
         (task.progress)(0.4 + 0.6 * (round + 1) as f64 / ROUNDS as f64);
-        let unmet = measure(&ground, &mut wants, &passes, &levels)?;
+        let off = |w: &Want| {
+            let k = levels.partition_point(|z| *z < w.at[1]);
+            let near = [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|k| levels.get(k));
+            near.map(|z| (z - w.at[1]).abs()).fold(f64::INFINITY, f64::min)
+        };
+        let unmet = measure(&ground, &mut wants, &passes, off)?;
         left = unmet.area_mm2;
         if unmet.mended == 0 {
             break;
@@ -153,8 +202,12 @@ fn nothing(task: &DropTask<'_>, why: &str) -> PlanError {
 fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'static str)]) -> Passes {
     let task = ground.task;
     let mut out = Passes { passes, diagnostics: Vec::new() };
-    let name = if task.faces.len() == 1 { task.faces[0].face } else { "isoplanar" };
-    let text = format!("{} three-axis isoplanar passes, {:.0} mm", out.passes.len(), out.length_mm());
+    let name = if task.faces.len() == 1 { task.faces[0].face } else { "all faces" };
+    let lines = match ground.lines {
+        Lines::Planes => "isoplanar",
+        Lines::Gradient => "gradient",
+    };
+    let text = format!("{} three-axis {lines} passes, {:.0} mm", out.passes.len(), out.length_mm());
     out.diagnostics.push(Diagnostic::note(name, text));
     let area: f64 = ground.places.iter().map(|s| s.area_mm2).sum();
     for (gone, what) in lost {
@@ -169,7 +222,11 @@ fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'static str)]) ->
 }
 
 /// Samples the faces: seeds for drops on all of them, places on those to be machined.
-fn ground<'a>(task: &'a DropTask<'a>, surfaces: &'a [&'a dyn Surface]) -> Result<Ground<'a>, PlanError> {
+fn ground<'a>(
+    task: &'a DropTask<'a>,
+    surfaces: &'a [&'a dyn Surface],
+    lines: Lines,
+) -> Result<Ground<'a>, PlanError> {
     let frame = Frame::new(task.axis, &task.feed);
     let radius = task.cutter.radius_mm();
     let t = &task.tolerance;
@@ -210,9 +267,10 @@ fn ground<'a>(task: &'a DropTask<'a>, surfaces: &'a [&'a dyn Surface]) -> Result
         }
         Ok((samples, spacing))
     };
-    let (places, spacing) = over(PLACES)?;
-    let (judged, _) = over(JUDGED)?;
-    Ok(Ground { task, frame, drops, places, spacing, judged })
+    let [places, judged] = lines.apart();
+    let (places, spacing) = over(places)?;
+    let (judged, _) = over(judged)?;
+    Ok(Ground { task, lines, frame, drops, places, spacing, judged })
 }
 
 /// Seeds on the rim of a face, at the ends of its stretches of inside on lines `spacing_mm` apart.
@@ -265,22 +323,25 @@ fn asked(ground: &Ground<'_>) -> (Vec<Want>, Vec<(f64, &'static str)>) {
     let height = design_mm(&task.tolerance);
     let all: Vec<Result<Want, Lost>> = (0..ground.places.len())
         .into_par_iter()
-        .map(|k| {
-            let s = &ground.places[k];
-            want(task.faces[s.face as usize].surface, task.cutter, &ground.frame, s, [height, ground.spacing])
-        })
+        .map(|k| ground.want(&ground.places[k], [height, ground.spacing]))
         .collect();
     let mut wants = Vec::with_capacity(all.len());
-    let mut areas = [0.0; 3];
+    let mut areas = [0.0; 4];
     for (s, w) in ground.places.iter().zip(all) {
         match w {
             Ok(w) => wants.push(w),
             Err(Lost::Undercut) => areas[0] += s.area_mm2,
-            Err(Lost::TooHollow) => areas[1] += s.area_mm2,
-            Err(Lost::NoTangent) => areas[2] += s.area_mm2,
+            Err(Lost::TightContour) => areas[1] += s.area_mm2,
+            Err(Lost::TooHollow) => areas[2] += s.area_mm2,
+            Err(Lost::NoTangent) => areas[3] += s.area_mm2,
         }
     }
-    let words = ["faces away from the tool axis", "is too hollow for the tool", "has no tangent plane"];
+    let words = [
+        "faces away from the tool axis",
+        "is too hollow for the tool: its contour lines bend tighter than the cutter",
+        "is too hollow for the tool",
+        "has no tangent plane",
+    ];
     (wants, areas.into_iter().zip(words).collect())
 }
 
@@ -344,12 +405,13 @@ struct Unmet {
     area_mm2: f64,
 }
 
-/// Measures what the passes leave; a place that keeps too much becomes a want of its own with a shorter reach.
+/// Measures what the passes leave; a place that keeps too much becomes a want of its own with a shorter reach. `off` tells
+/// how far a place is off the nearest pass, mm.
 fn measure(
     ground: &Ground<'_>,
     wants: &mut Vec<Want>,
     passes: &[Pass],
-    levels: &[f64],
+    off: impl Fn(&Want) -> f64,
 ) -> Result<Unmet, PlanError> {
     let task = ground.task;
     let motions: Vec<Swept> = passes
@@ -372,20 +434,12 @@ fn measure(
         if c.standoff_mm <= 0.5 * (1.0 + DESIGN) * limit {
             continue;
         }
-        let surface = task.faces[s.face as usize].surface;
-        let design = [design_mm(&task.tolerance), 0.0];
         // What cannot be cut from above was told of before.
-        let Ok(mut w) = want(surface, task.cutter, &ground.frame, s, design) else { continue };
+        let Ok(mut w) = ground.want(s, [design_mm(&task.tolerance), 0.0]) else { continue };
         if ground.drops.coarse(w.at) > w.tip + limit {
             continue;
         }
-        let k = levels.partition_point(|z| *z < w.at[1]);
-        let off = [k.checked_sub(1), Some(k)]
-            .into_iter()
-            .flatten()
-            .filter_map(|k| levels.get(k))
-            .map(|z| (z - w.at[1]).abs())
-            .fold(f64::INFINITY, f64::min);
+        let off = off(&w);
         // A pass right over the place left it: another one will not help.
         if off <= RIGHT_OVER * w.reach {
             unmet.area_mm2 += s.area_mm2;

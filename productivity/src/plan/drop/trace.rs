@@ -1,6 +1,7 @@
 //! Passes along levels: where the tool must go on each, and the path there at the chord tolerance.
 
 use super::super::cover::union;
+use super::course::Course;
 use super::height::Rest;
 use super::wants::Want;
 use super::{CcPoint, Ground, Pass};
@@ -52,46 +53,61 @@ fn level_passes(ground: &Ground<'_>, wants: &[Want], level: f64) -> Vec<Pass> {
     // A gap shorter than the tool is not worth lifting for.
     union(stretches, ground.task.cutter.radius_mm())
         .into_iter()
-        .flat_map(|range| stretch(ground, range, level))
+        .filter_map(|[from, to]| Course::through([[from, level], [to, level]]))
+        .flat_map(|course| along(ground, &course))
         .collect()
 }
 
-/// A resting place on a level.
+/// A resting place on a course.
 #[derive(Clone, Copy)]
 struct Stop {
+    /// Length along the course, mm.
     x: f64,
     rest: Rest,
 }
 
-fn stretch(ground: &Ground<'_>, [from, to]: [f64; 2], level: f64) -> Vec<Pass> {
-    let at = |x: f64| ground.drops.rest([x, level]).map(|rest| Stop { x, rest });
-    let radius = ground.task.cutter.radius_mm();
-    let steps = ((to - from) / (STEP * radius)).ceil().max(2.0);
+/// Lengths at which a course is first looked at: its nodes, and steps between them.
+fn looks(course: &Course, step: f64) -> Vec<f64> {
+    let mut out = vec![0.0];
+    for w in course.lengths().windows(2) {
+        // A course of one piece is looked at in its middle, too.
+        let least = if course.nodes().len() == 2 { 2.0 } else { 1.0 };
+        let steps = ((w[1] - w[0]) / step).ceil().max(least);
+        out.extend((1..=steps as usize).map(|k| w[0] + (w[1] - w[0]) * k as f64 / steps));
+    }
+    out
+}
+
+/// The passes along a course: the tool dropped onto the faces, parted where nothing is below it.
+pub(super) fn along(ground: &Ground<'_>, course: &Course) -> Vec<Pass> {
+    let at = |x: f64| ground.drops.rest(course.at(x)).map(|rest| Stop { x, rest });
     let mut runs: Vec<Vec<Stop>> = vec![Vec::new()];
-    let mut last = from;
+    let mut last = 0.0;
     // Bounded by the extent of the faces over the tool's radius.
-    for k in 0..=steps as usize {
-        let x = from + (to - from) * k as f64 / steps;
+    for (k, x) in looks(course, STEP * ground.task.cutter.radius_mm()).into_iter().enumerate() {
         let here = at(x);
         let Some(run) = runs.last_mut() else { continue };
         match (here, run.last().copied()) {
-            (Some(b), Some(a)) => halve(ground, level, a, b, run),
+            (Some(b), Some(a)) => halve(ground, course, a, b, run),
             (Some(b), None) if k == 0 => run.push(b),
             (Some(b), None) => {
                 let a = brink(&at, b, last);
                 run.push(a);
-                halve(ground, level, a, b, run);
+                halve(ground, course, a, b, run);
             }
             (None, Some(a)) => {
                 let b = brink(&at, a, x);
-                halve(ground, level, a, b, run);
+                halve(ground, course, a, b, run);
                 runs.push(Vec::new());
             }
             (None, None) => {}
         }
         last = x;
     }
-    runs.into_iter().filter(|r| r.len() >= 2).map(|r| pass(ground, &thin(ground, &r), level)).collect()
+    runs.into_iter()
+        .filter(|r| r.len() >= 2)
+        .map(|r| pass(ground, &thin(ground, course, &r), course))
+        .collect()
 }
 
 /// The last stop from a resting place towards a place where nothing is below the tool.
@@ -107,7 +123,7 @@ fn brink(at: &dyn Fn(f64) -> Option<Stop>, mut rests: Stop, mut misses: f64) -> 
 }
 
 /// Appends `b`, and what is needed between the last stop and it; nothing where it is the last stop.
-fn halve(ground: &Ground<'_>, level: f64, a: Stop, b: Stop, run: &mut Vec<Stop>) {
+fn halve(ground: &Ground<'_>, course: &Course, a: Stop, b: Stop, run: &mut Vec<Stop>) {
     let chord = ground.task.tolerance.chord_mm;
     let mut stack = if b.x > a.x { vec![b] } else { Vec::new() };
     let mut last = a;
@@ -115,7 +131,7 @@ fn halve(ground: &Ground<'_>, level: f64, a: Stop, b: Stop, run: &mut Vec<Stop>)
     while let Some(next) = stack.pop() {
         let x = 0.5 * (last.x + next.x);
         let short = next.x - last.x <= SHORTEST * ground.task.cutter.radius_mm();
-        let mid = if short { None } else { ground.drops.rest([x, level]) };
+        let mid = if short { None } else { ground.drops.rest(course.at(x)) };
         match mid {
             Some(rest) if (rest.tip - 0.5 * (last.rest.tip + next.rest.tip)).abs() > 0.5 * chord => {
                 stack.push(next);
@@ -136,7 +152,7 @@ fn halve(ground: &Ground<'_>, level: f64, a: Stop, b: Stop, run: &mut Vec<Stop>)
 }
 
 /// Leaves out stops that the chord over them passes within the tolerance.
-fn thin(ground: &Ground<'_>, run: &[Stop]) -> Vec<Stop> {
+fn thin(ground: &Ground<'_>, course: &Course, run: &[Stop]) -> Vec<Stop> {
     let chord = 0.5 * ground.task.tolerance.chord_mm;
     let mut out = vec![run[0]];
     let mut at = 0;
@@ -144,10 +160,11 @@ fn thin(ground: &Ground<'_>, run: &[Stop]) -> Vec<Stop> {
         let mut next = at + 1;
         while next + 1 < run.len() && next - at < 16 && {
             let (a, b) = (&run[at], &run[next + 1]);
-            run[at + 1..=next].iter().all(|s| {
-                let f = (s.x - a.x) / (b.x - a.x);
-                (s.rest.tip - (a.rest.tip + (b.rest.tip - a.rest.tip) * f)).abs() <= chord
-            })
+            course.stray(a.x, b.x) <= chord
+                && run[at + 1..=next].iter().all(|s| {
+                    let f = (s.x - a.x) / (b.x - a.x);
+                    (s.rest.tip - (a.rest.tip + (b.rest.tip - a.rest.tip) * f)).abs() <= chord
+                })
         } {
             next += 1;
         }
@@ -157,17 +174,18 @@ fn thin(ground: &Ground<'_>, run: &[Stop]) -> Vec<Stop> {
     out
 }
 
-fn pass(ground: &Ground<'_>, stops: &[Stop], level: f64) -> Pass {
+fn pass(ground: &Ground<'_>, stops: &[Stop], course: &Course) -> Pass {
     let axis = ground.frame.axis;
     let points = stops
         .iter()
         .map(|s| {
             let normal = ground.drops.normal(&s.rest).unwrap_or(axis);
+            let [x, y] = course.at(s.x);
             CcPoint {
                 uv: s.rest.uv,
                 point: s.rest.point,
                 normal,
-                pose: Pose { tip: ground.frame.point([s.x, level, s.rest.tip]), axis },
+                pose: Pose { tip: ground.frame.point([x, y, s.rest.tip]), axis },
                 width_mm: ground.width_mm(&s.rest, normal),
             }
         })

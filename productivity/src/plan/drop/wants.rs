@@ -14,7 +14,7 @@ use osculate_tools::removal::Sample;
 const STEEPEST: f64 = 0.02;
 
 /// A flat bottom over a slope rises by this part of the height at most, from rim to rim, for the ground to count as level.
-const LEVEL: f64 = 0.1;
+pub(super) const LEVEL: f64 = 0.1;
 
 /// What a sample wants.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,9 @@ pub(super) struct Want {
 pub(super) enum Lost {
     /// It faces away from the axis, or sideways.
     Undercut,
-    /// The tool does not fit into its hollow.
+    /// Its contour line is hollow and bends tighter than the cutter's circle there: undercut on three axes [M86].
+    TightContour,
+    /// The tool does not fit into its hollow in another direction.
     TooHollow,
     /// It has no tangent plane.
     NoTangent,
@@ -94,6 +96,9 @@ pub(super) fn want(
     };
     let q = [part(0, 0) + meridian, part(0, 1), part(1, 1) + parallel];
     let det = q[0] * q[2] - q[1] * q[1];
+    if sine > 0.0 && q[2] <= 0.0 {
+        return Err(Lost::TightContour);
+    }
     if !(q[0] > 0.0 && det > 0.0) {
         return Err(Lost::TooHollow);
     }
