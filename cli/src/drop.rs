@@ -11,6 +11,22 @@ pub const KINDS: [&str; 2] = ["isoplanar_3c", "gradient_3c"];
 
 /// Passes over all faces of the job, with its check faces kept clear.
 pub fn passes(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> Result<Passes, Failure> {
+    let (axis, feed) = directions(job, faces)?;
+    let task = DropTask {
+        faces: &names(&faces.faces),
+        check: &names(&faces.check),
+        cutter: &job.cutter()?,
+        axis,
+        feed,
+        tolerance: job.tolerance()?,
+        progress,
+    };
+    let plan = if job.strategy.kind == "gradient_3c" { gradient_3c } else { drop_cutter };
+    plan(&task).map_err(|e| Failure::file(&job.path, e))
+}
+
+/// The tool axis, and the way of the passes.
+pub fn directions(job: &Job, faces: &JobFaces) -> Result<(Unit3, Vec3), Failure> {
     let table = &job.strategy;
     let kind = &table.kind;
     if matches!(table.lead_deg, AutoOr::Given(l) if l != 0.0) || table.tilt_deg != 0.0 {
@@ -24,20 +40,11 @@ pub fn passes(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> R
         Some(d) => given(job, d, &axis)?,
         None => longest(&faces.faces, &axis),
     };
-    let task = DropTask {
-        faces: &names(&faces.faces),
-        check: &names(&faces.check),
-        cutter: &job.cutter()?,
-        axis,
-        feed,
-        tolerance: job.tolerance()?,
-        progress,
-    };
-    let plan = if kind == "gradient_3c" { gradient_3c } else { drop_cutter };
-    plan(&task).map_err(|e| Failure::file(&job.path, e))
+    Ok((axis, feed))
 }
 
-fn names(faces: &[LoadedFace]) -> Vec<Named<'_>> {
+/// Faces with their names.
+pub fn names(faces: &[LoadedFace]) -> Vec<Named<'_>> {
     faces.iter().map(|f| Named { face: &f.id, surface: &*f.surface }).collect()
 }
 

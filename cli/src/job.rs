@@ -196,6 +196,14 @@ pub struct StrategyTable {
     pub feed_direction: Option<[f64; 3]>,
     /// Normal of the planes of isoplanar passes.
     pub normal: Option<[f64; 3]>,
+    /// Of a roughing: deepest cut along the axis.
+    pub stepdown_mm: Option<f64>,
+    /// Of a roughing: distance of rows.
+    pub stepover_mm: Option<f64>,
+    /// Of a roughing: what it leaves on the faces; nothing where not given.
+    pub allowance_mm: Option<f64>,
+    /// Of a roughing: steepest way down into material.
+    pub ramp_deg: Option<f64>,
 }
 
 fn auto() -> String {
@@ -212,6 +220,10 @@ impl Default for StrategyTable {
             axis: None,
             feed_direction: None,
             normal: None,
+            stepdown_mm: None,
+            stepover_mm: None,
+            allowance_mm: None,
+            ramp_deg: None,
         }
     }
 }

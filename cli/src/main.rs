@@ -26,6 +26,7 @@ mod progress;
 mod render;
 mod report;
 mod report_fill;
+mod rough;
 mod stock_keys;
 mod strategy;
 mod verify;

@@ -7,6 +7,7 @@ use crate::part::JobFaces;
 use crate::passes;
 use crate::progress::Stage;
 use crate::report_fill::Extras;
+use crate::rough;
 use crate::verify::{self, Verified};
 use osculate_geom::Diagnostic;
 use osculate_productivity::plan::{Linked, Passes};
@@ -99,7 +100,10 @@ impl Posted {
     ) -> Result<Verified, Failure> {
         let stage = Stage::begin("verify");
         let strip = planned.with_strips.then(|| narrow_strip(&planned.passes)).flatten();
-        let verified = verify::run(job, faces, &self.read.motions, "nc", strip, &|f| stage.at(f))?;
+        let mut verified = verify::run(job, faces, &self.read.motions, "nc", strip, &|f| stage.at(f))?;
+        if rough::is(job) {
+            rough::carve(job, faces, &self.read.motions, &mut verified)?;
+        }
         wall_s.verify += stage.end();
         Ok(verified)
     }

@@ -164,6 +164,17 @@ fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
     })
 }
 
+/// The box around the raw material of a job, where it has one.
+pub fn bounds(job: &Job, faces: &JobFaces) -> Result<Option<Box3>, Failure> {
+    let Some(table) = &job.stock else { return Ok(None) };
+    let solid = match (&table.box_mm, &table.file) {
+        (Some(b), _) => Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) },
+        (None, Some(file)) => Box3::around(mesh(job, file)?.iter().flatten()),
+        (None, None) => around(faces),
+    };
+    Ok(Some(solid.grown(table.allowance_mm.unwrap_or(0.0))))
+}
+
 /// Moves the tool through the raw material of a job, where it has one.
 pub fn run(
     job: &Job,

@@ -23,8 +23,8 @@ pub fn of_job(job: &Job) -> Result<Strategy, Failure> {
                 &job.path,
                 format!(
                     "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\", \"isoplanar\", \
-                     \"isoscallop\", \"streamline\", \"curvature_5c\", \"contour_2cl\", \"gradient_3c\" \
-                     or \"isoplanar_3c\""
+                     \"isoscallop\", \"streamline\", \"curvature_5c\", \"contour_2cl\", \"gradient_3c\", \
+                     \"isoplanar_3c\" or \"z_level\""
                 ),
             ));
         }

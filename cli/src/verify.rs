@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
+use crate::rough;
 use osculate_geom::{Diagnostic, Surface};
 use osculate_tools::Cutter;
 use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Patch, Sample, Swept, Verdict};
@@ -157,6 +158,14 @@ pub fn run(
     };
     let all: Vec<_> =
         faces.faces.iter().map(|f| (f, false)).chain(faces.check.iter().map(|f| (f, true))).collect();
+    // A roughing is measured against its allowance.
+    let offsets = rough::measured(job, faces)?;
+    let surface = |k: usize| -> &dyn Surface {
+        match offsets.get(k) {
+            Some(o) => o,
+            None => &*all[k].0.surface,
+        }
+    };
     let area: f64 = faces.faces.iter().map(crate::part::area).sum();
     let check_area: f64 = faces.check.iter().map(crate::part::area).sum();
     let mut diagnostics = Vec::new();
@@ -175,7 +184,7 @@ pub fn run(
     let mut density: Option<Density> = None;
     for (k, (face, check_only)) in all.iter().enumerate() {
         let step = if *check_only { CHECK_COARSER * spacing } else { spacing };
-        let found = removal::sample_surface(&*face.surface, k as u32, step, max)
+        let found = removal::sample_surface(surface(k), k as u32, step, max)
             .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
         if found.lost_area_mm2 > 0.0 {
             diagnostics.push(Diagnostic::warning(
@@ -190,7 +199,7 @@ pub fn run(
         patches.extend(found.patches.into_iter().map(Some));
         if !check_only && face.surface.is_trimmed() {
             for outline in face.surface.loops() {
-                samples.extend(removal::sample_boundary(&*face.surface, &outline.points, k as u32, step));
+                samples.extend(removal::sample_boundary(surface(k), &outline.points, k as u32, step));
             }
         }
         patches.resize(samples.len(), None);
@@ -204,13 +213,19 @@ pub fn run(
     let effective = strip * strip / (8.0 * tolerance.scallop_mm);
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
     let mut verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
-    let surfaces: Vec<&dyn Surface> = all.iter().map(|(f, _)| &*f.surface as &dyn Surface).collect();
+    let surfaces: Vec<&dyn Surface> = (0..all.len()).map(surface).collect();
     let wanted = removal::Wanted {
         uncut_mm: limits.uncut_mm,
         enough_mm: limits.scallop_mm,
         tool_radius_mm: effective,
     };
     verdict.hidden = removal::hidden(&surfaces, &work, (&patches, &cuts), wanted).map_err(Failure::job)?;
+    if rough::is(job) {
+        // What a roughing leaves above its allowance is told, not judged: finishing takes it.
+        verdict.within = verdict.gouge_max_mm <= limits.gouge_mm
+            && verdict.rapid_max_mm <= limits.collision_mm
+            && verdict.holder_max_mm <= limits.collision_mm;
+    }
     let sharpest =
         patches.iter().flatten().map(|p| p.convex_per_mm.max(p.concave_per_mm)).fold(0.0, f64::max);
     // Worst first: by how much of its own limit a place takes.
@@ -247,7 +262,7 @@ pub fn run(
         hidden_gouge_mm: verdict.hidden.gouge_mm,
         smallest_radius_mm: (sharpest > 0.0).then(|| 1.0 / sharpest),
         certain: verdict.within
-            && verdict.scallop_max_mm + verdict.hidden.scallop_mm <= limits.scallop_mm
+            && (rough::is(job) || verdict.scallop_max_mm + verdict.hidden.scallop_mm <= limits.scallop_mm)
             && verdict.gouge_max_mm + verdict.hidden.gouge_mm <= limits.gouge_mm,
         scallop_max_mm: verdict.scallop_max_mm,
         scallop_p99_mm: verdict.scallop_p99_mm,

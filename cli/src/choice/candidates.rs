@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::job::{AutoOr, Job};
 use crate::part::{self, JobFaces};
 use crate::passes::BALL_LEAD_DEG;
+use crate::rough;
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
 use osculate_productivity::compare::Candidate;
 use osculate_productivity::plan::{Along, Strategy};
@@ -16,7 +17,7 @@ const LEADS_DEG: [f64; 14] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.
 const GRID: usize = 8;
 
 pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
-    if drop::KINDS.contains(&job.strategy.kind.as_str()) {
+    if drop::KINDS.contains(&job.strategy.kind.as_str()) || rough::is(job) {
         let text = format!("[strategy] {} takes one [tool], not [[tools]]", job.strategy.kind);
         return Err(Failure::file(&job.path, text));
     }

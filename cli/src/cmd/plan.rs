@@ -14,6 +14,7 @@ use crate::program::{Planned, Posted, WallS};
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::report_fill::{self, Extras, Story};
+use crate::rough;
 use crate::verify::{self, Verification, Verified};
 use osculate_geom::Diagnostic;
 use osculate_productivity::levels::{Totals, levels};
@@ -241,6 +242,9 @@ fn planned(
         let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
         let (strategy, extras) = (job.strategy.kind.clone(), Extras::default());
         return Ok(Planned { passes, linked, strategy, lean: Lean::default(), extras, with_strips: true });
+    }
+    if rough::is(job) {
+        return rough::planned(job, faces, progress);
     }
     let strategy = &crate::strategy::of_job(job)?;
     let (passes, lean) = match strategy.fixed_axis() {

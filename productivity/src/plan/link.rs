@@ -53,21 +53,28 @@ struct Builder<'a> {
     radius: f64,
 }
 
-impl Builder<'_> {
-    fn go(&mut self, pose: Pose, motion: Motion, pass: Option<u32>) {
-        if let Some(last) = self.out.path.moves.last() {
+impl Linked {
+    /// Adds a move, unless it leads nowhere.
+    pub(super) fn go(&mut self, pose: Pose, motion: Motion, pass: Option<u32>) {
+        if let Some(last) = self.path.moves.last() {
             let length = (pose.tip - last.pose.tip).norm();
             if length == 0.0 && pose.axis == last.pose.axis {
                 return;
             }
             if pass.is_some() {
-                self.out.cutting_length_mm += length;
+                self.cutting_length_mm += length;
             } else {
-                self.out.air_length_mm += length;
+                self.air_length_mm += length;
             }
         }
-        self.out.path.moves.push(ClMove { pose, motion });
-        self.out.pass_of_move.push(pass);
+        self.path.moves.push(ClMove { pose, motion });
+        self.pass_of_move.push(pass);
+    }
+}
+
+impl Builder<'_> {
+    fn go(&mut self, pose: Pose, motion: Motion, pass: Option<u32>) {
+        self.out.go(pose, motion, pass);
     }
 
     /// The pose on the axis of `pose` whose tip is on the safe plane, never below `pose` itself.

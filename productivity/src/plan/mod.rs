@@ -20,7 +20,7 @@ mod strategy;
 mod walk;
 
 pub use contour::contour_2cl;
-pub use drop::{DropTask, Named, drop_cutter, gradient_3c};
+pub use drop::{DropTask, Named, RoughTask, Roughing, Sizes, drop_cutter, gradient_3c, z_level};
 pub use isoparametric::isoparametric;
 pub use level::{curvature_5c, isoplanar, isoscallop, streamline};
 pub use link::{Linked, Links, link};

@@ -5,6 +5,8 @@ use super::wants::Want;
 
 /// The next course goes through a place that is nearly as far off the last ones as both reach together.
 const FRONTIER: f64 = 1.9;
+/// What lies between places is allowed for by this part of half their distance: lines that come together leave pointed peaks.
+const BETWEEN: f64 = 0.5;
 /// Bins along one side, at most.
 const MOST_BINS: usize = 2048;
 
@@ -24,6 +26,11 @@ pub(super) struct Laid<'a> {
 pub(super) struct Beside<'a> {
     pub want: &'a Want,
     pub along: f64,
+}
+
+/// How far a course may be off a place.
+fn reach(w: &Want) -> f64 {
+    (w.reach - BETWEEN * w.half).max(0.5 * w.reach)
 }
 
 impl<'a> Laid<'a> {
@@ -65,7 +72,7 @@ impl<'a> Laid<'a> {
         self.around(a, b, self.furthest).filter(|k| self.ratio[*k] > 1.0).filter_map(move |k| {
             let want = &self.wants[k];
             let (d, along) = from_piece(want.at, a, b);
-            (d <= want.reach && along > 0.0 && along < 1.0).then_some(Beside { want, along })
+            (d <= reach(want) && along > 0.0 && along < 1.0).then_some(Beside { want, along })
         })
     }
 
@@ -75,7 +82,7 @@ impl<'a> Laid<'a> {
             let near: Vec<usize> = self.around(w[0], w[1], FRONTIER * self.furthest).collect();
             for k in near {
                 let (d, _) = from_piece(self.wants[k].at, w[0], w[1]);
-                self.ratio[k] = self.ratio[k].min(d / self.wants[k].reach);
+                self.ratio[k] = self.ratio[k].min(d / reach(&self.wants[k]));
             }
         }
     }

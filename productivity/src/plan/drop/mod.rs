@@ -7,15 +7,18 @@
 //! asked again with a shorter reach.
 
 mod circle;
+mod clear;
 mod course;
 mod frame;
 mod gradient;
 mod height;
 mod laid;
+mod layers;
 mod trace;
 mod wants;
 
 pub use gradient::gradient_3c;
+pub use layers::{RoughTask, Roughing, Sizes, z_level};
 
 use super::{CcPoint, MAX_PASSES, Pass, Passes, PlanError, Tolerance};
 use frame::Frame;
@@ -57,9 +60,9 @@ pub struct DropTask<'a> {
 /// Seeds of drops stand this part of the tool's radius apart.
 const SEEDS: f64 = 0.1;
 /// Most seeds over all faces.
-const MOST_SEEDS: usize = 1_000_000;
-/// Most places, and most places to measure, over all faces.
-const MOST_PLACES: usize = 300_000;
+const MOST_SEEDS: f64 = 1e6;
+/// Most places, over all faces.
+const MOST_PLACES: f64 = 3e5;
 /// A face may have this many of either, however small it is.
 const FEWEST: usize = 200;
 /// Lines along each parameter on whose ends the rim of a face is seeded: fewest and most.
@@ -89,6 +92,22 @@ impl Lines {
         match self {
             Self::Planes => [0.5, 0.2],
             Self::Gradient => [0.25, 0.12],
+        }
+    }
+
+    /// The share of the scallop up to which a measured place counts as done.
+    const fn met(self) -> f64 {
+        match self {
+            Self::Planes => 0.5 * (1.0 + DESIGN),
+            Self::Gradient => 0.9,
+        }
+    }
+
+    /// Most places to measure, over all faces.
+    const fn most_judged(self) -> f64 {
+        match self {
+            Self::Planes => MOST_PLACES,
+            Self::Gradient => 3.0 * MOST_PLACES,
         }
     }
 }
@@ -221,31 +240,38 @@ fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'static str)]) ->
     out
 }
 
-/// Samples the faces: seeds for drops on all of them, places on those to be machined.
-fn ground<'a>(
-    task: &'a DropTask<'a>,
-    surfaces: &'a [&'a dyn Surface],
-    lines: Lines,
-) -> Result<Ground<'a>, PlanError> {
-    let frame = Frame::new(task.axis, &task.feed);
+/// Samples of one face `spacing_mm` apart: of a count over all faces its share by area.
+fn sampled(
+    (task, surfaces, areas): (&DropTask<'_>, &[&dyn Surface], &[f64]),
+    k: usize,
+    spacing_mm: f64,
+    [most, over]: [f64; 2],
+) -> Result<removal::Sampling, PlanError> {
+    let name = task.faces.iter().chain(task.check).nth(k).map_or("", |n| n.face);
+    let share = ((most * areas[k] / over) as usize).max(FEWEST);
+    // Face numbers are positions in the list, far below the limit of u32.
+    sample_surface(surfaces[k], k as u32, spacing_mm, share)
+        .map_err(|e| PlanError::Nothing { face: name.to_owned(), why: e.to_string() })
+}
+
+/// Areas that only share out counts: coarse values will do.
+fn areas(surfaces: &[&dyn Surface]) -> Vec<f64> {
+    surfaces.par_iter().map(|s| quadrature::area(*s, 1e-2).value).collect()
+}
+
+/// Seeds of drops, their distance, mm, and the least and greatest of their positions.
+type Seeds = (Vec<Seed>, f64, [[f64; 2]; 2]);
+
+/// Seeds on all faces and their rims.
+fn seeds(task: &DropTask<'_>, surfaces: &[&dyn Surface], frame: &Frame) -> Result<Seeds, PlanError> {
     let radius = task.cutter.radius_mm();
-    let t = &task.tolerance;
-    // Areas only share out the counts: a coarse value will do.
-    let areas: Vec<f64> = surfaces.par_iter().map(|s| quadrature::area(*s, 1e-2).value).collect();
-    let sampled = |k: usize, spacing: f64, most: usize, over: f64| {
-        let name = task.faces.iter().chain(task.check).nth(k).map_or("", |n| n.face);
-        let share = ((most as f64 * areas[k] / over) as usize).max(FEWEST);
-        // Face numbers are positions in the list, far below the limit of u32.
-        sample_surface(surfaces[k], k as u32, spacing, share)
-            .map_err(|e| PlanError::Nothing { face: name.to_owned(), why: e.to_string() })
-    };
-    let mut seeds: Vec<Seed> = Vec::new();
-    let mut spacing: f64 = 0.0;
+    let areas = areas(surfaces);
     let all: f64 = areas.iter().sum();
+    let (mut seeds, mut spacing): (Vec<Seed>, f64) = (Vec::new(), 0.0);
     // Between seeds on an edge the tool sinks by the sagitta of its radius.
-    let along_rim = (SEEDS * radius).min((2.0 * radius * t.gouge_mm).sqrt());
+    let along_rim = (SEEDS * radius).min((2.0 * radius * task.tolerance.gouge_mm).sqrt());
     for (k, surface) in surfaces.iter().enumerate() {
-        let sampling = sampled(k, SEEDS * radius, MOST_SEEDS, all)?;
+        let sampling = sampled((task, surfaces, &areas), k, SEEDS * radius, [MOST_SEEDS, all])?;
         spacing = spacing.max(sampling.density.spacing_mm);
         seeds.extend(sampling.samples.iter().map(|s| Seed {
             at: frame.of(&s.point),
@@ -253,23 +279,38 @@ fn ground<'a>(
             face: s.face,
             along: [0.0; 3],
         }));
-        rim(*surface, k as u32, (&frame, along_rim), &mut seeds);
+        rim(*surface, k as u32, (frame, along_rim), &mut seeds);
     }
+    let by =
+        |f: fn(f64, f64) -> f64, start: f64| [0, 1].map(|k| seeds.iter().map(|s| s.at[k]).fold(start, f));
+    let extent = [by(f64::min, f64::INFINITY), by(f64::max, f64::NEG_INFINITY)];
+    Ok((seeds, spacing, extent))
+}
+
+/// Samples the faces: seeds for drops on all of them, places on those to be machined.
+fn ground<'a>(
+    task: &'a DropTask<'a>,
+    surfaces: &'a [&'a dyn Surface],
+    lines: Lines,
+) -> Result<Ground<'a>, PlanError> {
+    let frame = Frame::new(task.axis, &task.feed);
+    let (seeds, spacing, _) = seeds(task, surfaces, &frame)?;
     let drops = Drops::new(surfaces, task.cutter, frame, seeds, spacing);
-    let strip = 2.0 * (2.0 * t.scallop_mm * radius).sqrt();
+    let strip = 2.0 * (2.0 * task.tolerance.scallop_mm * task.cutter.radius_mm()).sqrt();
+    let areas = areas(surfaces);
     let machined: f64 = areas[..task.faces.len()].iter().sum();
-    let over = |part: f64| -> Result<(Vec<Sample>, f64), PlanError> {
+    let over = |part: f64, most: f64| -> Result<(Vec<Sample>, f64), PlanError> {
         let (mut samples, mut spacing): (Vec<Sample>, f64) = (Vec::new(), 0.0);
         for k in 0..task.faces.len() {
-            let sampling = sampled(k, part * strip, MOST_PLACES, machined)?;
+            let sampling = sampled((task, surfaces, &areas), k, part * strip, [most, machined])?;
             spacing = spacing.max(sampling.density.spacing_mm);
             samples.extend(sampling.samples);
         }
         Ok((samples, spacing))
     };
     let [places, judged] = lines.apart();
-    let (places, spacing) = over(places)?;
-    let (judged, _) = over(judged)?;
+    let (places, spacing) = over(places, MOST_PLACES)?;
+    let (judged, _) = over(judged, lines.most_judged())?;
     Ok(Ground { task, lines, frame, drops, places, spacing, judged })
 }
 
@@ -431,7 +472,7 @@ fn measure(
     let cuts = removal::cut(&job, &|_| ()).map_err(|e| nothing(task, &e.to_string()))?;
     let (mut unmet, mut more) = (Unmet { mended: 0, area_mm2: 0.0 }, Vec::new());
     for (s, c) in ground.judged.iter().zip(&cuts) {
-        if c.standoff_mm <= 0.5 * (1.0 + DESIGN) * limit {
+        if c.standoff_mm <= ground.lines.met() * limit {
             continue;
         }
         // What cannot be cut from above was told of before.
