@@ -8,7 +8,7 @@
 use super::{ball, pose, run, sample, through, toroidal};
 use osculate_geom::analytic::{Cylinder, Sphere, Torus};
 use osculate_geom::{Axis, Flipped, Interval, Point3, Surface, Vec3, uv};
-use osculate_tools::removal::{Job, Swept, cut, hidden, sample_surface};
+use osculate_tools::removal::{Job, Swept, Wanted, cut, hidden, sample_surface};
 use osculate_tools::{Contact, Cutter, FeedLine, Lean, Pose};
 
 /// The tolerance that deviations are compared with, mm.
@@ -237,7 +237,8 @@ pub fn spacing() -> bool {
         let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
         let patches: Vec<Option<osculate_tools::removal::Patch>> =
             sampling.patches.iter().copied().map(Some).collect();
-        let more = hidden(&[&surface], &job, (&patches, &cuts), 0.4, tool).expect("a good job").scallop_mm;
+        let wanted = Wanted { uncut_mm: 0.4, enough_mm: 0.0, tool_radius_mm: tool };
+        let more = hidden(&[&surface], &job, (&patches, &cuts), wanted).expect("a good job").scallop_mm;
         let bound = seen + more;
         let over = bound - truth;
         let ratio = before.map_or(String::new(), |b| format!("{:.2}", b / over));
