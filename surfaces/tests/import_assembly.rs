@@ -265,3 +265,34 @@ fn senses_say_which_part_of_a_torus_is_meant() {
         );
     }
 }
+
+#[test]
+fn rectangles_of_swept_surfaces_are_measured_in_the_parameters_of_the_file() {
+    // A line (3, 0, 2 v) turned over 2 rad; a circle of 2 from 0.5 to 2 rad, and once over its seam, drawn along 4 z.
+    let cases = [
+        (
+            "#700=CARTESIAN_POINT('',(3.,0.,0.));#701=VECTOR('',#4,2.);#702=LINE('',#700,#701);\
+             #703=AXIS1_PLACEMENT('',#6,#4);#704=SURFACE_OF_REVOLUTION('',#702,#703);",
+            "0.5,2.5,0.,2.",
+            3.0 * 2.0 * 4.0,
+        ),
+        (
+            "#700=CIRCLE('',#7,2.);#701=VECTOR('',#4,4.);#704=SURFACE_OF_LINEAR_EXTRUSION('',#700,#701);",
+            "0.5,2.,0.,1.5",
+            2.0 * 1.5 * 6.0,
+        ),
+        (
+            "#700=CIRCLE('',#7,2.);#701=VECTOR('',#4,4.);#704=SURFACE_OF_LINEAR_EXTRUSION('',#700,#701);",
+            "5.5,.5,-1.,.5",
+            2.0 * (std::f64::consts::TAU - 5.0) * 6.0,
+        ),
+    ];
+    for (surface, values, want) in cases {
+        let part = read(&format!(
+            "{surface}#705=RECTANGULAR_TRIMMED_SURFACE('',#704,{values},.T.,.T.);\
+             #706=GEOMETRIC_SET('',(#705));#707=SHAPE_REPRESENTATION('',(#706),#3);"
+        ));
+        assert_eq!(part.faces.len(), 1, "{}", said(&part));
+        part21::assert_area(&part.faces[0], want);
+    }
+}

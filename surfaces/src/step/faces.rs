@@ -7,6 +7,7 @@
 use super::colour::colours;
 use super::geometry::{Geometry, Unread};
 use super::graph::{Args, Graph, Record, arg};
+use super::rectangle::rectangle;
 use super::structure::is_face;
 use super::units::Contexts;
 use super::unused;
@@ -14,7 +15,7 @@ use super::walk::{Occurrence, occurrences};
 use crate::part::{Face, FaceKind, Format, Leftovers, MAX_COPIES, Part, PlaceError, too_many_copies};
 use crate::trim::boundary::{Boundary, Built, build};
 use crate::trim::curve::{Curve, Line, Piece};
-use osculate_geom::{Box3, Diagnostic, Interval, Point3, Side, Surface};
+use osculate_geom::{Box3, Diagnostic, Point3, Side};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -211,15 +212,18 @@ fn made(occurrence: &Occurrence, name: String, kind: FaceKind, built: Built) -> 
 fn free_surface(geometry: &Geometry<'_>, occurrence: &Occurrence) -> Result<Made, FaceError> {
     let id = occurrence.face;
     let record = geometry.graph.get(id).ok_or(Unread::Missing { id })?;
+    let mut reach = Vec::new();
     let loops = if let Some(args) = record.part("CURVE_BOUNDED_SURFACE") {
         let curves = arg(&args, 2).list().references();
         curves.map(|c| boundary_curve(geometry, c)).collect::<Result<Vec<_>, _>>()?
     } else if let Some(args) = record.part("RECTANGULAR_TRIMMED_SURFACE") {
-        vec![rectangle(geometry, id, &args)?]
+        let rectangle = rectangle(geometry, id, &args)?;
+        reach = rectangle.reach;
+        vec![rectangle.sides]
     } else {
         Vec::new()
     };
-    let carried = geometry.surface(id, &[], 0)?;
+    let carried = geometry.surface(id, &reach, 0)?;
     // Boundary curves have the surface on their left, seen against its normal (ISO 10303-42, curve_bounded_surface).
     let built = build(carried.surface, &loops, Side::Along, true)?;
     let mut made = made(occurrence, String::new(), carried.kind, built);
@@ -257,33 +261,6 @@ fn boundary_curve(geometry: &Geometry<'_>, id: u64) -> Result<Vec<Boundary>, Unr
         });
     }
     Ok(pieces)
-}
-
-/// The sides of a RECTANGULAR_TRIMMED_SURFACE.
-fn rectangle(geometry: &Geometry<'_>, id: u64, args: &Args<'_>) -> Result<Vec<Boundary>, Unread> {
-    let surface = geometry.surface(geometry.to(id, args, 1)?, &[], 0)?.surface;
-    let scale = surface.parameter_units(geometry.units.length_mm, geometry.units.angle_rad);
-    let mut at = [0.0; 4];
-    for (k, t) in at.iter_mut().enumerate() {
-        *t = geometry.number(id, args, 2 + k)? * scale[k / 2];
-    }
-    let domain = surface.domain();
-    // The senses say on which way a closed direction is passed from the first value to the second (ISO 10303-42,
-    // rectangular_trimmed_surface); elsewhere only one way leads there.
-    let range = |k: usize, interval: Interval| {
-        let [first, second] = [at[2 * k], at[2 * k + 1]];
-        let forward = arg(args, 6 + k).flag().unwrap_or(true);
-        if !interval.periodic {
-            return [first.min(second), first.max(second)];
-        }
-        let [lo, hi] = if forward { [first, second] } else { [second, first] };
-        [lo, if hi <= lo { hi + interval.length() } else { hi }]
-    };
-    let ([u0, u1], [v0, v1]) = (range(0, domain.u), range(1, domain.v));
-    let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)].map(|(u, v)| Point3::new(u, v, 0.0));
-    let side = |k: usize| Line::segment(corners[k], corners[(k + 1) % 4]);
-    let piece = |k| Boundary::Parameter { piece: Piece { curve: Arc::new(side(k)), ends: [0.0, 1.0] } };
-    Ok((0..4).map(piece).collect())
 }
 
 /// An edge in the sense of its loop.

@@ -13,6 +13,7 @@ mod graph;
 mod lexer;
 mod parse;
 mod record;
+mod rectangle;
 mod splines;
 mod structure;
 mod surfaces;

@@ -101,7 +101,7 @@ impl Geometry<'_> {
     }
 
     /// A curve to sweep, as a spline that holds at least the part in use.
-    fn generatrix(&self, id: u64, reach: &[Point3], depth: usize) -> Result<Spline, Unread> {
+    pub(super) fn generatrix(&self, id: u64, reach: &[Point3], depth: usize) -> Result<Spline, Unread> {
         let record = self.record(id)?;
         if depth >= MAX_CHAIN {
             return Err(Unread::Malformed { id, what: "curves refer to each other in a circle".into() });

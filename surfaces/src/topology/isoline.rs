@@ -1,5 +1,6 @@
 //! Lines of one constant parameter in closed form, for faces whose edges are their rectangle's sides.
 
+use super::way::{HAIR, at_knot};
 use crate::trim::analytic::{Analytic, Shape};
 use crate::trim::carrier::FaceSurface;
 use crate::trim::curve::{Curve, Ellipse, Line, Piece};
@@ -28,14 +29,15 @@ pub(super) fn between(carrier: &FaceSurface, a: Uv, b: Uv) -> Option<Piece> {
             let fixed = a.get(axis.other());
             let across = d.get(axis.other());
             let (lo, hi) = (a.get(axis).min(b.get(axis)), a.get(axis).max(b.get(axis)));
-            let hair = 1e-12 * d.get(axis).length();
+            let hair = HAIR * d.get(axis).length();
             if lo < d.get(axis).lo - hair || hi > d.get(axis).hi + hair {
                 return None;
             }
             let at_end = fixed >= across.at(0.5);
             let strip =
                 if at_end { Interval::new(across.lo, fixed) } else { Interval::new(fixed, across.hi) };
-            let part = Interval::new(lo.max(d.get(axis).lo), hi.min(d.get(axis).hi));
+            let knots = n.knots(axis).as_slice();
+            let part = Interval::new(at_knot(knots, lo, hair), at_knot(knots, hi, hair));
             let domain = match axis {
                 Axis::U => Domain { u: part, v: strip },
                 Axis::V => Domain { u: strip, v: part },
@@ -82,10 +84,13 @@ fn on_analytic(s: &Analytic, axis: Axis, a: Uv, b: Uv) -> Option<Piece> {
     near.then(|| Piece { curve: Arc::new(circle), ends: [lo, hi] })
 }
 
-/// Whether a polyline of parameters is one straight line along a parameter; its ends if so.
-pub(super) fn ends_if_straight(points: &[Uv]) -> Option<[Uv; 2]> {
+/// Whether a polyline of parameters is one straight line along a parameter, but for `hair` in the other one; its ends if so.
+pub(super) fn ends_if_straight(points: &[Uv], hair: [f64; 2]) -> Option<[Uv; 2]> {
     let (first, last) = (*points.first()?, *points.last()?);
-    let along_u = points.iter().all(|p| p.v == first.v);
-    let along_v = points.iter().all(|p| p.u == first.u);
-    (along_u != along_v).then(|| [uv(first.u, first.v), uv(last.u, last.v)])
+    let along_u = points.iter().all(|p| (p.v - first.v).abs() <= hair[1]);
+    let along_v = points.iter().all(|p| (p.u - first.u).abs() <= hair[0]);
+    (along_u != along_v).then(|| {
+        let end = if along_u { uv(last.u, first.v) } else { uv(first.u, last.v) };
+        [first, end]
+    })
 }

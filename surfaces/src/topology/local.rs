@@ -53,8 +53,10 @@ impl LocalEdge {
 /// The edges of a face.
 pub(crate) fn edges(face: &Face, chart: &Chart) -> Vec<LocalEdge> {
     let wrapped: Arc<dyn Surface> = Arc::new(Wrapped::new(face, chart));
+    // Files write parameters with ten digits or more.
+    let hair = [0, 1].map(|k| ON_SIDE * chart.side(k).length());
     let line = |points: &[Uv]| {
-        let straight = isoline::ends_if_straight(points);
+        let straight = isoline::ends_if_straight(points, hair);
         match straight.and_then(|[a, b]| isoline::between(&face.carrier, a, b)) {
             Some(piece) => Course::Space(piece),
             None => Course::OnSurface { surface: wrapped.clone(), points: points.to_vec() },

@@ -29,7 +29,11 @@ pub(crate) fn outward(face: &Face) -> Side {
 /// The loops of a face with the face on their left seen from outside. A loop whose every edge has the face on both sides
 /// keeps the sense of the file.
 pub(crate) fn loops(face: &Face, of: &FaceEdges) -> Vec<Vec<Step>> {
-    let mut out = natural_loops(face, of);
+    turned(face, natural_loops(face, of))
+}
+
+/// Natural loops with the face on their left seen from outside.
+pub(crate) fn turned(face: &Face, mut out: Vec<Vec<Step>>) -> Vec<Vec<Step>> {
     if outward(face) == Side::Against {
         out.iter_mut().for_each(reverse);
     }

@@ -12,13 +12,15 @@ mod isoline;
 mod local;
 mod loops;
 mod matching;
+mod pcurve;
 mod way;
 
 pub(crate) use bodies::bodies;
 pub(crate) use chart::{Chart, Wrapped};
 pub(crate) use course::{Course, Follower, Spacing, on_polyline};
 pub(crate) use local::LocalEdge;
-pub(crate) use loops::{Step, loops, natural_loops, outward};
+pub(crate) use loops::{Step, loops, natural_loops, outward, turned};
+pub(crate) use pcurve::{Ground, Track, pcurves};
 pub(crate) use way::{Along, Way, as_spline, way};
 
 use crate::part::Face;

@@ -2,10 +2,12 @@
 //! has one there, else a cubic spline through dense points.
 
 use super::course::{Course, Spacing};
+use super::pcurve::Track;
 use crate::nurbs_curve::NurbsCurve3;
 use crate::trim::curve::{Curve, Ellipse, Form, Line, OpenConic, OpenKind, Piece};
 use crate::trim::spline::Spline;
 use osculate_geom::{Interval, Point3, Vec3};
+use std::f64::consts::TAU;
 
 /// What an edge runs along.
 #[derive(Clone, Debug)]
@@ -42,7 +44,7 @@ pub(crate) fn way(course: &Course, length_mm: f64) -> Way {
         Course::Space(piece) => of_piece(piece),
         Course::OnSurface { .. } => None,
     };
-    exact.unwrap_or_else(|| fitted(course, length_mm))
+    exact.unwrap_or_else(|| fitted(course, length_mm)).settled()
 }
 
 fn of_piece(piece: &Piece) -> Option<Way> {
@@ -67,7 +69,9 @@ fn of_piece(piece: &Piece) -> Option<Way> {
             if lo < d.lo - 1e-12 * d.length() || hi > d.hi + 1e-12 * d.length() {
                 return None;
             }
-            let part = s.curve().restricted(Interval::new(lo.max(d.lo), hi.min(d.hi))).ok()?;
+            let knots = s.curve().knots().as_slice();
+            let [lo, hi] = [lo.max(d.lo), hi.min(d.hi)].map(|t| at_knot(knots, t, HAIR * (hi - lo)));
+            let part = s.curve().restricted(Interval::new(lo, hi)).ok()?;
             let d = part.domain();
             let ends = if a <= b { [d.lo, d.hi] } else { [d.hi, d.lo] };
             return Some(Way { along: Along::Spline(part), ends });
@@ -76,13 +80,25 @@ fn of_piece(piece: &Piece) -> Option<Way> {
     Some(Way { along, ends: [a, b] })
 }
 
+/// Spans shorter than this part of a curve's interval are rounding: other kernels divide by them.
+pub(super) const HAIR: f64 = 1e-10;
+
+/// The nearest knot within `hair`, else the parameter itself: a curve cut just beside a knot would have a span of rounding.
+pub(super) fn at_knot(knots: &[f64], t: f64, hair: f64) -> f64 {
+    let nearest = knots.iter().copied().min_by(|a, b| (a - t).abs().total_cmp(&(b - t).abs()));
+    nearest.filter(|k| (k - t).abs() <= hair).unwrap_or(t)
+}
+
 /// A cubic spline with continuous tangents through dense points of a course; corners stay corners.
 fn fitted(course: &Course, length_mm: f64) -> Way {
     let spacing = Spacing { chord_mm: FIT_CHORD * length_mm, length_mm: 0.05 * length_mm };
     let mut points: Vec<Point3> = course.samples(spacing).into_iter().map(|s| s.1).collect();
-    points.dedup();
+    points.dedup_by(|next, kept| (*next - *kept).norm() <= HAIR * length_mm);
+    let end = course.point(1.0);
     if points.len() < 2 {
-        points = vec![course.point(0.0), course.point(1.0)];
+        points = vec![course.point(0.0), end];
+    } else if let Some(last) = points.last_mut() {
+        *last = end;
     }
     let n = points.len();
     let mut t = vec![0.0];
@@ -131,6 +147,71 @@ fn fitted(course: &Course, length_mm: f64) -> Way {
 }
 
 impl Way {
+    /// With the parameters that other kernels take: lengths along a line, angles of an ellipse from the first turn on.
+    fn settled(mut self) -> Self {
+        match &mut self.along {
+            Along::Line(l) => {
+                let length = l.direction.norm();
+                if length > 0.0 && length.is_finite() {
+                    l.direction /= length;
+                    l.range = l.range.map(|t| t * length);
+                    self.ends = self.ends.map(|t| t * length);
+                }
+            }
+            Along::Ellipse(_) => {
+                let turns = (self.ends[0].min(self.ends[1]) / TAU).floor() * TAU;
+                self.ends = self.ends.map(|t| t - turns);
+            }
+            Along::Open(_) | Along::Polyline(_) | Along::Spline(_) => {}
+        }
+        self
+    }
+
+    /// The way with its own parameter.
+    pub(crate) fn track(&self) -> Track<'_> {
+        let [a, b] = self.ends;
+        let (lo, hi) = (a.min(b), a.max(b));
+        let mut breaks = vec![lo];
+        match &self.along {
+            Along::Polyline(points) => breaks.extend((1..points.len() - 1).map(|k| k as f64)),
+            Along::Spline(s) => {
+                breaks.extend(s.knots().as_slice().iter().copied().filter(|t| *t > lo && *t < hi));
+                breaks.dedup();
+            }
+            Along::Line(_) | Along::Ellipse(_) | Along::Open(_) => {}
+        }
+        breaks.push(hi);
+        Track { jet: Box::new(|t| self.jet(t)), breaks, forward: self.forward() }
+    }
+
+    /// Point and derivative; at a corner those behind it.
+    fn jet(&self, t: f64) -> (Point3, Vec3) {
+        match &self.along {
+            Along::Line(l) => (l.point(t), l.direction),
+            Along::Ellipse(e) => {
+                let (s, c) = t.sin_cos();
+                let [a, b] = e.semi_axes;
+                (e.point(t), e.frame.y.into_inner() * (b * c) - e.frame.x.into_inner() * (a * s))
+            }
+            Along::Open(o) => {
+                let (x, y) = match o.kind {
+                    OpenKind::Parabola { focal_mm } => (2.0 * focal_mm * t, 2.0 * focal_mm),
+                    OpenKind::Hyperbola { semi_axes_mm: [a, b] } => (a * t.sinh(), b * t.cosh()),
+                };
+                (o.point(t), o.frame.x.into_inner() * x + o.frame.y.into_inner() * y)
+            }
+            Along::Polyline(points) => {
+                let k = (t.max(0.0) as usize).min(points.len() - 2);
+                let d = points[k + 1] - points[k];
+                (points[k] + d * (t - k as f64), d)
+            }
+            Along::Spline(s) => {
+                let jet = s.jet(t);
+                (jet.point, jet.first)
+            }
+        }
+    }
+
     /// Whether the edge runs along its curve's own sense.
     pub(crate) fn forward(&self) -> bool {
         self.ends[0] <= self.ends[1]

@@ -10,7 +10,7 @@ pub(crate) mod chain;
 pub(crate) mod compound;
 pub(crate) mod curve;
 pub(crate) mod edge;
-mod foot;
+pub(crate) mod foot;
 mod outline;
 pub(crate) mod pull;
 pub(crate) mod region;

@@ -4,8 +4,9 @@
 //! as STEP and as IGES and read by OpenCASCADE together with the original: the faces must be as many, valid, and have
 //! the original's areas to 1e-6 and ours to 1e-5 (`equal`), or ours alone (the original has parameter curves that say something
 //! else than its space curves), or differ from ours by no more than the tolerances leave open that OpenCASCADE itself gives
-//! the edges, each times its length: our exports have no parameter curves, and where edges lie off their surface it makes
-//! its own.
+//! the edges, each times its length: where edges lie off their surface, it may take other feet. A face whose area by
+//! OpenCASCADE's own rule is not ours is integrated once more by Gauss panels between the knots, along OpenCASCADE's own parameter
+//! curves; the line says how many.
 
 use crate::cmd::{Failure, cargo, output, root, run as start};
 use std::path::{Path, PathBuf};

@@ -6,6 +6,8 @@ use super::{IgesOptions, IgesWriteError};
 pub(super) const INDEPENDENT: &str = "00000000";
 /// Status of an entity that is part of another one.
 pub(super) const DEPENDENT: &str = "00010000";
+/// Status of a curve in the parameters of a surface.
+pub(super) const PARAMETRIC: &str = "00010500";
 
 /// A parameter.
 #[derive(Clone, Debug)]

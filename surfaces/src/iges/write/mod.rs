@@ -10,9 +10,11 @@
 mod cards;
 mod splines;
 
-use crate::nurbs_curve::NurbsCurve3;
+use crate::nurbs_curve::{NurbsCurve2, NurbsCurve3};
 use crate::part::Face;
-use crate::topology::{Step, Topology, as_spline, bodies, natural_loops, outward};
+use crate::topology::{
+    Edge, Ground, Step, Topology, Track, as_spline, bodies, natural_loops, outward, pcurves,
+};
 use cards::{Cards, Value};
 use osculate_geom::{Axis, Side};
 
@@ -67,11 +69,12 @@ pub fn write(faces: &[Face], options: &IgesOptions) -> Result<String, IgesWriteE
     }
     let topology = Topology::new(faces, None);
     let mut out = Cards::new();
-    let lists = edge_list(&mut out, &topology)?;
+    let curves = edge_curves(&topology)?;
+    let lists = edge_list(&mut out, &topology, &curves);
     let mut of_face: Vec<Option<usize>> = Vec::with_capacity(faces.len());
     for (face, of) in faces.iter().zip(&topology.faces) {
-        let spline =
-            splines::surface(face).ok_or_else(|| IgesWriteError::Surface { face: face.id.clone() })?;
+        let (spline, covered) =
+            splines::surface(face, of).ok_or_else(|| IgesWriteError::Surface { face: face.id.clone() })?;
         let walks = natural_loops(face, of);
         if walks.is_empty() {
             let whole = if outward(face) == Side::Against { spline.reversed(Axis::U) } else { spline };
@@ -81,9 +84,11 @@ pub fn write(faces: &[Face], options: &IgesOptions) -> Result<String, IgesWriteE
             continue;
         }
         let surface = surface(&mut out, &spline, cards::DEPENDENT);
+        let ground = Ground::spline(&spline, covered, face, &of.chart);
+        let parameters = pcurves(&ground, of, &walks, &|edge| track(&curves[edge]));
         let mut values = vec![Value::Pointer(surface), Value::Integer(walks.len()), Value::Integer(0)];
-        for walk in &walks {
-            values.push(Value::Pointer(edge_loop(&mut out, walk, lists)));
+        for (walk, parameters) in walks.iter().zip(&parameters) {
+            values.push(Value::Pointer(edge_loop(&mut out, walk, parameters, lists)));
         }
         let entity = out.add(510, 1, cards::DEPENDENT, values);
         out.name(entity, &face.name);
@@ -117,38 +122,86 @@ struct Lists {
     edges: usize,
 }
 
-fn edge_list(out: &mut Cards, topology: &Topology) -> Result<Lists, IgesWriteError> {
+/// The edges' curves as splines along the edges.
+fn edge_curves(topology: &Topology) -> Result<Vec<NurbsCurve3>, IgesWriteError> {
+    let of = |(number, e): (usize, &Edge)| {
+        as_spline(&e.course, e.length_mm).ok_or(IgesWriteError::Curve { edge: number + 1 })
+    };
+    topology.edges.iter().enumerate().map(of).collect()
+}
+
+fn track(c: &NurbsCurve3) -> Track<'_> {
+    let d = c.domain();
+    let mut breaks: Vec<f64> =
+        c.knots().as_slice().iter().copied().filter(|t| *t >= d.lo && *t <= d.hi).collect();
+    breaks.dedup();
+    let jet = |t: f64| {
+        let jet = c.jet(t);
+        (jet.point, jet.first)
+    };
+    Track { jet: Box::new(jet), breaks, forward: true }
+}
+
+fn edge_list(out: &mut Cards, topology: &Topology, curves: &[NurbsCurve3]) -> Lists {
     if topology.edges.is_empty() {
         // No loop will ask for the list.
-        return Ok(Lists { edges: 0 });
+        return Lists { edges: 0 };
     }
     let mut values = vec![Value::Integer(topology.vertices.len())];
     values.extend(topology.vertices.iter().flat_map(|p| [p.x, p.y, p.z]).map(Value::Real));
     let vertices = out.add(502, 1, cards::DEPENDENT, values);
     let mut values = vec![Value::Integer(topology.edges.len())];
-    for (number, e) in topology.edges.iter().enumerate() {
-        let curve = as_spline(&e.course, e.length_mm).ok_or(IgesWriteError::Curve { edge: number + 1 })?;
-        values.push(Value::Pointer(self::curve(out, &curve)));
+    for (e, curve) in topology.edges.iter().zip(curves) {
+        values.push(Value::Pointer(self::curve(out, curve)));
         for v in e.vertices {
             values.push(Value::Pointer(vertices));
             values.push(Value::Integer(v + 1));
         }
     }
-    Ok(Lists { edges: out.add(504, 1, cards::DEPENDENT, values) })
+    Lists { edges: out.add(504, 1, cards::DEPENDENT, values) }
 }
 
-fn edge_loop(out: &mut Cards, walk: &[Step], lists: Lists) -> usize {
+fn edge_loop(out: &mut Cards, walk: &[Step], parameters: &[Option<NurbsCurve2>], lists: Lists) -> usize {
     let mut values = vec![Value::Integer(walk.len())];
-    for s in walk {
+    for (s, parameters) in walk.iter().zip(parameters) {
         values.extend([
             Value::Integer(0),
             Value::Pointer(lists.edges),
             Value::Integer(s.edge + 1),
             Value::Integer(usize::from(s.forward)),
-            Value::Integer(0),
+            Value::Integer(usize::from(parameters.is_some())),
         ]);
+        if let Some(c) = parameters {
+            let [a, b] = [c.poles()[0], c.poles()[c.poles().len() - 1]];
+            let along_a_parameter = c.degree() == 1 && (a.x == b.x || a.y == b.y);
+            values.push(Value::Integer(usize::from(along_a_parameter)));
+            // Parameter curves run along the loop, whatever the edge does.
+            values.push(Value::Pointer(parameter_curve(
+                out,
+                &if s.forward { c.clone() } else { c.reversed() },
+            )));
+        }
     }
     out.add(508, 1, cards::DEPENDENT, values)
+}
+
+/// Entity 126 in the parameters of a surface, along the edge.
+fn parameter_curve(out: &mut Cards, c: &NurbsCurve2) -> usize {
+    let (poles, d) = (c.poles(), c.domain());
+    let closed = poles[0] == poles[poles.len() - 1];
+    let mut values = vec![
+        Value::Integer(poles.len() - 1),
+        Value::Integer(c.degree()),
+        Value::Integer(1),
+        Value::Integer(usize::from(closed)),
+        Value::Integer(1),
+        Value::Integer(0),
+    ];
+    values.extend(c.knots().as_slice().iter().copied().map(Value::Real));
+    values.extend(poles.iter().map(|_| Value::Real(1.0)));
+    values.extend(poles.iter().flat_map(|p| [p.x, p.y, 0.0]).map(Value::Real));
+    values.extend([d.lo, d.hi, 0.0, 0.0, 1.0].map(Value::Real));
+    out.add(126, 0, cards::PARAMETRIC, values)
 }
 
 /// Entity 126.

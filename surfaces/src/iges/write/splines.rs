@@ -2,25 +2,52 @@
 
 use crate::nurbs::{Net, NurbsSurface};
 use crate::part::Face;
+use crate::topology::{FaceEdges, LocalEdge};
 use crate::trim::analytic::{Analytic, Shape};
 use crate::trim::carrier::FaceSurface;
 use crate::trim::spline::Spline;
 use crate::trim::sweep::revolve;
-use osculate_geom::{Point3, Surface, uv};
+use osculate_geom::{Domain, Interval, Point3, Surface, Uv, uv};
 use std::f64::consts::TAU;
 
-/// The carrier of a face as a spline over the face's rectangle, natural normals alike.
-pub(super) fn surface(face: &Face) -> Option<NurbsSurface> {
+/// The carrier of a face as a spline, natural normals alike, and the rectangle that it covers in the face's parameters:
+/// the face's own, or where that closes one that begins at a vertex, for other kernels cut such surfaces there.
+pub(super) fn surface(face: &Face, of: &FaceEdges) -> Option<(NurbsSurface, Domain)> {
     match &face.carrier {
-        FaceSurface::Nurbs(n) => Some((**n).clone()),
-        FaceSurface::Analytic(a) => analytic(a, face),
+        FaceSurface::Nurbs(n) => Some(((**n).clone(), face.domain())),
+        FaceSurface::Analytic(a) => {
+            let domain = rectangle(face, of);
+            Some((analytic(a, domain)?, domain))
+        }
         // No spline is exactly an offset of one.
         FaceSurface::Offset(_) => None,
     }
 }
 
-fn analytic(a: &Analytic, face: &Face) -> Option<NurbsSurface> {
-    let d = face.domain();
+/// The face's rectangle; where it closes, from a seam or else from a vertex of the face on.
+fn rectangle(face: &Face, of: &FaceEdges) -> Domain {
+    let mut domain = face.domain();
+    for (k, closes) in of.chart.closes.into_iter().enumerate() {
+        let value = |p: Uv| if k == 0 { p.u } else { p.v };
+        let runs = |e: &LocalEdge| e.points.first().copied().zip(e.points.last().copied());
+        let mm = |a: Uv, b: Uv, k: usize| of.chart.speed[k] * if k == 0 { a.u - b.u } else { a.v - b.v };
+        let seam = of.local.iter().zip(&of.uses).find(|(e, used)| {
+            let uses = of.uses.iter().filter(|other| other.edge.is_some() && other.edge == used.edge).count();
+            uses == 2 && runs(e).is_some_and(|(a, b)| mm(a, b, k).abs() < mm(a, b, 1 - k).abs())
+        });
+        let Some((start, _)) = seam.map(|s| s.0).or(of.local.first()).and_then(runs) else { continue };
+        if closes {
+            let i = of.chart.side(k);
+            let turns = ((value(start) - i.lo) / i.length()).floor() * i.length();
+            let lo = value(start) - turns;
+            let moved = Interval::new(lo, lo + i.length());
+            *(if k == 0 { &mut domain.u } else { &mut domain.v }) = moved;
+        }
+    }
+    domain
+}
+
+fn analytic(a: &Analytic, d: Domain) -> Option<NurbsSurface> {
     let frame = a.placement();
     let local = |x: f64, z: f64| frame.point(&Point3::new(x, 0.0, z));
     let generatrix = match a.shape() {

@@ -10,10 +10,10 @@ use crate::trim::curve::OpenKind;
 pub(super) fn curve(out: &mut Records, way: &Way) -> usize {
     match &way.along {
         Along::Line(l) => {
-            let length = l.direction.norm();
             let origin = out.point(&l.origin);
-            let direction = out.direction(&(l.direction / length));
-            let vector = out.add(format!("VECTOR('',#{direction},{})", real(length)));
+            let direction = out.direction(&l.direction);
+            // The parameter is the length, as for other kernels.
+            let vector = out.add(format!("VECTOR('',#{direction},1.)"));
             out.add(format!("LINE('',#{origin},#{vector})"))
         }
         Along::Ellipse(e) => {

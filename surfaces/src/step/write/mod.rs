@@ -7,12 +7,13 @@
 //! Source: ISO 10303-21 (form), ISO 10303-42 (geometry and topology), ISO 10303-214 (product structure).
 
 mod curves;
+mod pcurves;
 mod records;
 mod shells;
 mod surfaces;
 
 use crate::part::Face;
-use crate::topology::{Along, Step, Topology, loops, outward, way};
+use crate::topology::{Along, FaceEdges, Step, Topology, Way, natural_loops, outward, turned, way};
 use osculate_geom::{Point3, Side};
 use records::{Records, text};
 
@@ -66,38 +67,39 @@ pub fn write(faces: &[Face], options: &StepOptions) -> Result<String, StepWriteE
             out.add(format!("VERTEX_POINT('',#{point})"))
         })
         .collect();
+    let ways: Vec<Way> = topology.edges.iter().map(|e| way(&e.course, e.length_mm)).collect();
+    let surfaces: Vec<usize> = faces.iter().map(|f| surfaces::surface(&mut out, f)).collect();
+    let walks: Vec<Vec<Vec<Step>>> =
+        faces.iter().zip(&topology.faces).map(|(face, of)| natural_loops(face, of)).collect();
+    let curves = pcurves::curves(
+        &mut out,
+        &Shape { faces, topology: &topology, ways: &ways, walks: &walks },
+        &surfaces,
+    );
     let edges: Vec<usize> = topology
         .edges
         .iter()
-        .map(|e| {
-            let way = way(&e.course, e.length_mm);
-            let curve = curves::curve(&mut out, &way);
+        .enumerate()
+        .map(|(k, e)| {
             let [a, b] = e.vertices.map(|k| vertices[k]);
-            let sense = flag(way.forward());
+            let (curve, sense) = (curves[k], flag(ways[k].forward()));
             out.add(format!("EDGE_CURVE('',#{a},#{b},#{curve},{sense})"))
         })
         .collect();
     let mut written = Vec::with_capacity(faces.len());
-    for (face, of) in faces.iter().zip(&topology.faces) {
+    for (number, (face, of)) in faces.iter().zip(&topology.faces).enumerate() {
         let mut bounds = Vec::new();
-        let walks = loops(face, of);
+        let walks = turned(face, walks[number].clone());
         let bare = walks.is_empty();
         for walk in walks {
             let bound = edge_loop(&mut out, &walk, &edges);
             bounds.push(out.add(format!("FACE_BOUND('',#{bound},.T.)")));
         }
         if bare {
-            // A whole sphere or torus: a loop of one point stands for no boundary.
-            if of.chart.closes == [false, false] {
-                return Err(StepWriteError::NoBoundary { face: face.id.clone() });
-            }
-            let at = osculate_geom::Surface::point(&*face.surface, of.chart.domain.at(0.0, 0.0));
-            let point = out.point(&at);
-            let vertex = out.add(format!("VERTEX_POINT('',#{point})"));
-            let bound = out.add(format!("VERTEX_LOOP('',#{vertex})"));
+            let bound = vertex_loop(&mut out, face, of)?;
             bounds.push(out.add(format!("FACE_BOUND('',#{bound},.T.)")));
         }
-        let surface = surfaces::surface(&mut out, face);
+        let surface = surfaces[number];
         let same = flag(outward(face) == Side::Along);
         let bounds = list(&bounds);
         written.push(out.add(format!("ADVANCED_FACE({},{bounds},#{surface},{same})", text(&face.name))));
@@ -106,6 +108,25 @@ pub fn write(faces: &[Face], options: &StepOptions) -> Result<String, StepWriteE
     let accuracy_mm = accuracy(&topology).max(ACCURACY * topology.size_mm);
     shells::product(&mut out, options, &items, accuracy_mm);
     Ok(out.file(options))
+}
+
+/// What is written: faces, their edges' ways, and their loops with the face on the left seen against `S_u x S_v`.
+struct Shape<'a> {
+    faces: &'a [Face],
+    topology: &'a Topology,
+    ways: &'a [Way],
+    walks: &'a [Vec<Vec<Step>>],
+}
+
+/// A whole sphere or torus: a loop of one point stands for no boundary.
+fn vertex_loop(out: &mut Records, face: &Face, of: &FaceEdges) -> Result<usize, StepWriteError> {
+    if of.chart.closes == [false, false] {
+        return Err(StepWriteError::NoBoundary { face: face.id.clone() });
+    }
+    let at = osculate_geom::Surface::point(&*face.surface, of.chart.domain.at(0.0, 0.0));
+    let point = out.point(&at);
+    let vertex = out.add(format!("VERTEX_POINT('',#{point})"));
+    Ok(out.add(format!("VERTEX_LOOP('',#{vertex})")))
 }
 
 fn edge_loop(out: &mut Records, walk: &[Step], edges: &[usize]) -> usize {
