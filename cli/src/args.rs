@@ -13,6 +13,9 @@ pub struct Cli {
     /// One JSON object on stdout and nothing else there.
     #[arg(long, global = true)]
     pub json: bool,
+    /// A line on stderr for every stage and per cent of it, for other programs: `progress: verify 42 %`.
+    #[arg(long, global = true)]
+    pub progress: bool,
 }
 
 /// The verbs.

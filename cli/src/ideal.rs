@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
 /// Places over all faces at which the best posture is searched.
-const PLACES: usize = 24;
+const PLACES: usize = 16;
 
 /// The bound.
 #[derive(Debug, Clone, Serialize)]

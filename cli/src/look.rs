@@ -80,6 +80,7 @@ impl Look {
         let bad = found.into_iter().enumerate().find(|(_, (_, is, limit))| is > limit);
         Ok(bad.map(|(k, (what, is, limit))| Objection {
             digs_in: k == 0,
+            left_mm: (k == 2).then_some(is),
             text: format!("{what} {is:.4} mm by a coarse look, {limit} mm is accepted"),
         }))
     }
@@ -89,6 +90,8 @@ impl Look {
 pub struct Objection {
     /// Whether the cutter goes too deep, which a smaller lead does not make better.
     pub digs_in: bool,
+    /// What it leaves, where nothing is wrong but that, mm.
+    pub left_mm: Option<f64>,
     /// In words.
     pub text: String,
 }

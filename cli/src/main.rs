@@ -69,6 +69,7 @@ fn run(cli: &Cli) -> Outcome {
 fn main() -> ExitCode {
     // Wrong usage ends here with clap's own message and exit code 2; --help and --version with 0.
     let cli = Cli::parse();
+    progress::lines(cli.progress);
     if let Err(why) = cancel::watch() {
         eprintln!("osculate: an interrupt will end this run without a word: {why}");
     }

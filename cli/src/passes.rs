@@ -9,7 +9,7 @@ use crate::output;
 use crate::part::{self, JobFaces};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_productivity::plan::{
-    Linked, Links, Passes, Strategy, Task, link, predicted_length_mm, run as plan_face,
+    Linked, Links, Passes, Strategy, Task, Tolerance, link, predicted_length_mm, run as plan_face,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::{Cutter, Lean};
@@ -85,6 +85,8 @@ pub struct Way<'a> {
     pub strategy: &'a Strategy,
     /// Lead and tilt.
     pub lean: Lean,
+    /// The share of the scallop tolerance that passes are laid out for.
+    pub share: f64,
     /// The folder of results, where there is one.
     pub out: Option<&'a Path>,
 }
@@ -96,7 +98,8 @@ pub fn each_face(
     way: &Way<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
-    let tolerance = job.tolerance()?;
+    let given = job.tolerance()?;
+    let tolerance = Tolerance { scallop_mm: way.share * given.scallop_mm, ..given };
     let cutter = &job.cutter()?;
     let n = faces.faces.len();
     let mut out = Passes::default();
@@ -141,7 +144,7 @@ pub fn with_best_lead(
     let mut refused: Option<Failure> = None;
     for deg in leads {
         let lean = job.lean(deg.to_radians())?;
-        match each_face(job, faces, &Way { strategy, lean, out: Some(out) }, progress) {
+        match each_face(job, faces, &Way { strategy, lean, share: 1.0, out: Some(out) }, progress) {
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
                 let gouge = Look::at(job, faces, &linked(job, faces, &p, cutter)?)?.gouge_mm;

@@ -71,6 +71,8 @@ pub struct Pages {
     pub html: String,
     /// `picture.svg`.
     pub svg: String,
+    /// `path.svg`.
+    pub path_svg: String,
 }
 
 /// Builds both pages.
@@ -79,7 +81,15 @@ pub fn pages(story: &Story<'_>, progress: &dyn Fn(f64)) -> Pages {
     progress(0.8);
     let html = report::html(&report);
     let svg = report::svg(&report, &View { tool_at: Some(0.5), ..View::default() });
-    Pages { html, svg }
+    let view = View {
+        direction: report::Direction { azimuth_deg: -52.0, elevation_deg: 58.0 },
+        part: report::PartColours::Plain,
+        path: report::PathColours::StripWidth,
+        tool_at: None,
+        ..View::default()
+    };
+    let path_svg = report::svg(&report, &view);
+    Pages { html, svg, path_svg }
 }
 
 fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
@@ -125,6 +135,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
             ("plan", s.wall_s.plan),
             ("post", s.wall_s.post),
             ("verify", s.wall_s.verify),
+            ("ideal", s.wall_s.ideal),
         ]
         .map(|(name, wall_s)| Stage { name: name.to_owned(), wall_s })
         .to_vec(),
@@ -298,6 +309,13 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
         columns: Vec::new(),
         rows: rows.into_iter().map(|(k, v)| vec![k.to_owned(), v]).collect(),
     };
+    let ideal = s.ideal.as_ref().map_or_else(Vec::new, |i| {
+        vec![
+            ("ideal time, estimated", format!("{:.2} +- {:.2} min", i.ideal.time_min, i.ideal.error_min)),
+            ("efficiency", format!("{:.0} %", i.efficiency_percent)),
+            ("the estimate took", format!("{:.1} s at {} places", s.wall_s.ideal, i.ideal.places)),
+        ]
+    });
     let mut out = vec![
         pairs(
             "Plan",
@@ -325,7 +343,10 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
                     ),
                 ),
                 ("global", format!("{} mm2/min", number(s.productivity_mm2_min.global, 4))),
-            ],
+            ]
+            .into_iter()
+            .chain(ideal)
+            .collect(),
         ),
         pairs(
             "Verification",
@@ -343,6 +364,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
                 ("scallop max", format!("{:.5} mm", v.scallop_max_mm)),
                 ("scallop p99", format!("{:.5} mm", v.scallop_p99_mm)),
                 ("scallop median", format!("{:.5} mm", v.scallop_median_mm)),
+                ("median of its crests", format!("{:.5} mm", v.crest_median_mm)),
                 ("gouge max", format!("{:.5} mm", v.gouge_max_mm)),
                 ("uncut area", format!("{:.3} mm2", v.uncut_area_mm2)),
             ],

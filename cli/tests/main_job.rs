@@ -29,6 +29,7 @@ fn a_plan_is_written_posted_verified_and_reported() {
         names.sort();
         let mut want = vec![
             "path.cl".to_owned(),
+            "path.svg".into(),
             "picture.svg".into(),
             format!("program.{extension}"),
             "report.html".into(),

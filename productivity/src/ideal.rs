@@ -7,7 +7,8 @@
 //! leads up to [`MOST_LEAD_RAD`] and the tilts of the [`Search`].
 //!
 //! *Error.* The integral is a sum over places. They are cut in two halves, chequered, whose answers differ by twice
-//! [`Ideal::error_min`]. The search at a place is a heuristic, and tools that a coarse look finds far behind another are not
+//! [`Ideal::error_min`]. Parts of many faces are sampled: places then lie evenly by area over the faces in their order, some
+//! faces get none, and the halves are every other place. The search at a place is a heuristic, and tools that a coarse look finds far behind another are not
 //! searched; what is missed so makes the bound too long by as much. Halves that a symmetry of the face maps onto each other
 //! differ too little: the error is an indication, no guarantee.
 
@@ -26,6 +27,10 @@ pub const MOST_LEAD_RAD: f64 = 1.0;
 const BALL_LEAD_RAD: f64 = 0.25;
 /// Places a side of a face at least.
 const LEAST_SIDE: usize = 2;
+/// Steps of the sequence that fills a square evenly: powers of the root of x^3 = x + 1.
+const FILL: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+/// Places of it that are tried to find one inside the trims.
+const MOST_TRIES: usize = 60;
 /// Passages of teeth a minute at which their marks need no share of the tolerance.
 const FAST_RPM: f64 = 1e9;
 
@@ -98,10 +103,38 @@ pub(crate) fn places(patch: &Patch<'_>, count: usize) -> Vec<Place> {
     out
 }
 
-/// The places of all faces, each face's count by its area.
+/// The places of all faces, each face's count by its area; of many faces only some have places.
 pub(crate) fn shared_places(faces: &[Patch<'_>], count: usize) -> Vec<Vec<Place>> {
     let area: f64 = faces.iter().map(|f| f.area_mm2).sum();
+    if faces.len() * LEAST_SIDE * LEAST_SIDE > count {
+        return sampled_places(faces, count, area);
+    }
     faces.iter().map(|f| places(f, (count as f64 * f.area_mm2 / area).round() as usize)).collect()
+}
+
+/// `count` places evenly by area over the faces in their order, each standing for as much area as any other; within a face
+/// they follow a sequence that fills its parameter rectangle evenly.
+fn sampled_places(faces: &[Patch<'_>], count: usize, area_mm2: f64) -> Vec<Vec<Place>> {
+    let mut out: Vec<Vec<Place>> = faces.iter().map(|_| Vec::new()).collect();
+    let share = area_mm2 / count as f64;
+    let (mut face, mut before) = (0, 0.0);
+    for k in 0..count {
+        let at_mm2 = (k as f64 + 0.5) * share;
+        while face + 1 < faces.len() && before + faces[face].area_mm2 <= at_mm2 {
+            before += faces[face].area_mm2;
+            face += 1;
+        }
+        let (surface, domain) = (faces[face].surface, faces[face].surface.domain());
+        let tries = (0..MOST_TRIES).map(|m| {
+            let part = |step: f64| (0.5 + step * (k + m * count) as f64).fract();
+            domain.at(part(FILL[0]), part(FILL[1]))
+        });
+        let mut inside = tries.filter(|at| surface.contains(*at) && surface.jet2(*at).forms().is_ok());
+        if let Some(at) = inside.next() {
+            out[face].push(Place { at, area_mm2: share, cell: [k, 0] });
+        }
+    }
+    out
 }
 
 /// How the bound is searched.
@@ -145,23 +178,29 @@ pub fn ideal(
         unreached_mm2: 0.0,
         best_mm2: vec![0.0; tools.len()],
     };
-    for (face, patch) in faces.iter().enumerate() {
-        // Area and time of the black and of the white cells.
-        let mut half = [[0.0; 2]; 2];
-        for ((_, p), best) in places.iter().zip(&best).filter(|(p, _)| p.0 == face) {
-            let h = &mut half[(p.cell[0] + p.cell[1]) % 2];
-            h[0] += p.area_mm2;
-            match best {
-                Some((tool, rate)) => {
-                    h[1] += p.area_mm2 / rate;
-                    out.best_mm2[*tool] += p.area_mm2;
-                }
-                None => out.unreached_mm2 += p.area_mm2,
+    // Area and time of the black and of the white cells of every face.
+    let mut halves = vec![[[0.0; 2]; 2]; faces.len()];
+    for ((face, p), best) in places.iter().zip(&best) {
+        let h = &mut halves[*face][(p.cell[0] + p.cell[1]) % 2];
+        h[0] += p.area_mm2;
+        match best {
+            Some((tool, rate)) => {
+                h[1] += p.area_mm2 / rate;
+                out.best_mm2[*tool] += p.area_mm2;
             }
+            None => out.unreached_mm2 += p.area_mm2,
         }
-        out.time_min += half[0][1] + half[1][1];
+    }
+    out.time_min = halves.iter().flatten().map(|h| h[1]).sum();
+    if halves.iter().flatten().any(|h| h[0] == 0.0) {
+        // Sampled faces: every other place of all of them.
+        let sum = |half: usize, k: usize| halves.iter().map(|h| h[half][k]).sum::<f64>();
+        halves = vec![[0, 1].map(|half| [0, 1].map(|k| sum(half, k)))];
+    }
+    for half in &halves {
+        let area: f64 = half.iter().map(|h| h[0]).sum();
         if half.iter().all(|h| h[0] > 0.0) {
-            let [a, b] = half.map(|h| h[1] / h[0] * patch.area_mm2);
+            let [a, b] = half.map(|h| h[1] / h[0] * area);
             out.error_min += 0.5 * (a - b).abs();
         }
     }
@@ -268,6 +307,33 @@ mod tests {
         let tools = [tools[0], Feeding { feed_mm_min: 1000.0, ..tools[1] }];
         let found = ideal(&[Patch { surface: &sphere, area_mm2 }], &tools, &TOLERANCE, SEARCH).unwrap();
         assert!(found.best_mm2[1] == 0.0, "{found:?}");
+    }
+
+    /// Balls on spheres of two sizes, more of them than there are places: the sum is over area, not over faces.
+    #[test]
+    fn many_faces_are_sampled_by_area() {
+        let radii: Vec<f64> = (0..40).map(|k| 8.0 + f64::from(k % 5)).collect();
+        let spheres: Vec<Sphere> = radii.iter().map(|r| Sphere::new(*r).unwrap()).collect();
+        let faces: Vec<Patch<'_>> = spheres
+            .iter()
+            .zip(&radii)
+            .map(|(s, r)| Patch { surface: s, area_mm2: 4.0 * PI * r * r })
+            .collect();
+        let cutter = ball(6.0);
+        let tools = [Feeding { cutter: &cutter, feed_mm_min: 1500.0 }];
+        let found = ideal(&faces, &tools, &TOLERANCE, SEARCH).unwrap();
+        let expected: f64 = radii
+            .iter()
+            .zip(&faces)
+            .map(|(r, f)| {
+                let scallop_mm = TOLERANCE.scallop_mm;
+                let section = Section { part_per_mm: 1.0 / r, tool_per_mm: 1.0 / 3.0, scallop_mm };
+                f.area_mm2 / (1500.0 * width_37(section).unwrap())
+            })
+            .sum();
+        assert_eq!(found.places, SEARCH.places);
+        assert!((found.time_min / expected - 1.0).abs() < 0.02, "{found:?} {expected}");
+        assert!((found.time_min - expected).abs() < 3.0 * found.error_min + 2e-4 * expected, "{found:?}");
     }
 
     #[test]

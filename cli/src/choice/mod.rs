@@ -3,7 +3,8 @@
 //! Candidates wait in the order of the least time known of them: by strips at places, then by the planned length, then by the
 //! posted program. The first is taken a level further, or out when it fails there, until the first one is posted. What screening
 //! leaves out is optimistic as a rule (overlaps, links), so that little is missed. Of the leads of one tool and strategy only
-//! the best is open at a time. The work is bounded by counts, not by time: the same job gives the same choice everywhere.
+//! the best is open at a time, and each plan of them that fails puts the next one back in the order. A plan that leaves a
+//! little too much is laid out once more for less. Where none holds, tools and strategies that failed least are tried further. The work is bounded by counts, not by time: the same job gives the same choice everywhere.
 
 mod candidates;
 mod settle;
@@ -14,7 +15,7 @@ pub use table::{Row, page_table, text_table};
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::look::Look;
+use crate::look::{Look, Objection};
 use crate::part::{self, JobFaces};
 use crate::passes::{self, Way};
 use crate::program::{Planned, Posted, WallS};
@@ -24,8 +25,16 @@ use osculate_productivity::compare::{Around, Candidate, Screened, Setting, Tool,
 use osculate_productivity::ideal::Patch;
 use std::path::Path;
 
-/// Candidates that are planned at most.
+/// Candidates that are planned at most, and while none is known to hold.
 const MOST_PLANS: usize = 16;
+const MOST_IN_NEED: usize = 40;
+/// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
+const SET_BACK: f64 = 0.3;
+/// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.
+const LITTLE_TOO_MUCH: f64 = 1.8;
+const LESS: f64 = 0.97;
+/// Leads below this many times one at which the tool dug in are left out.
+const STEEPER: f64 = 1.3;
 
 /// How far a candidate has come.
 enum State {
@@ -58,6 +67,10 @@ struct Entry {
     state: State,
     figures: Option<Figures>,
     verified: Option<table::Measured>,
+    /// The share of the scallop that it is laid out for.
+    share: f64,
+    /// Whether it was planned, or would have been.
+    tried: bool,
 }
 
 /// A plan that promises the least time of all.
@@ -116,7 +129,7 @@ impl<'a> Choice<'a> {
             .zip(screened)
             .map(|(candidate, screened)| {
                 let state = screened.out.as_ref().map_or(State::Open, |r| State::Out(r.to_string()));
-                Entry { candidate, screened, state, figures: None, verified: None }
+                Entry { candidate, screened, state, figures: None, verified: None, share: 1.0, tried: false }
             })
             .collect();
         let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
@@ -145,6 +158,13 @@ impl<'a> Choice<'a> {
         }
     }
 
+    /// Plans of the tool and strategy of an entry that failed.
+    fn failures(&self, entry: &Entry) -> usize {
+        let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
+        let failed = |e: &&Entry| matches!(e.state, State::Out(_)) && e.tried;
+        self.entries.iter().filter(failed).filter(|e| group(e) == group(entry)).count()
+    }
+
     /// The candidate to go on with: the first of those that are, within tool and strategy, the best not out.
     fn first(&self) -> Option<usize> {
         let waiting = |e: &Entry| matches!(e.state, State::Open | State::Planned(_) | State::Posted(_));
@@ -164,10 +184,20 @@ impl<'a> Choice<'a> {
                 None => open.push(k),
             }
         }
-        let may_plan = self.plans < MOST_PLANS;
-        open.retain(|k| may_plan || self.entries[*k].figures.is_some());
-        let least = |k: &usize| Self::least_min(&self.entries[*k]);
-        open.into_iter().min_by(|a, b| least(a).total_cmp(&least(b)))
+        let holds = self.entries.iter().any(|e| e.verified.is_some_and(|v| v.within_tolerance));
+        let more = self.plans < MOST_PLANS;
+        let in_need = !more && !holds && self.plans < MOST_IN_NEED;
+        open.retain(|k| more || in_need || self.entries[*k].figures.is_some());
+        let order = |k: &usize| {
+            let e = &self.entries[*k];
+            let failed = if e.figures.is_some() { 0 } else { self.failures(e) };
+            let put_back = Self::least_min(e) * (1.0 + SET_BACK * failed as f64);
+            (if in_need { failed } else { 0 }, put_back)
+        };
+        open.into_iter().min_by(|a, b| {
+            let (a, b) = (order(a), order(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
     }
 
     /// The next contender for verification; None where no candidate is left.
@@ -178,13 +208,14 @@ impl<'a> Choice<'a> {
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Option<Contender>, Failure> {
         while let Some(k) = self.first() {
-            progress(self.plans as f64 / MOST_PLANS as f64);
+            progress((self.plans as f64 / MOST_PLANS as f64).min(1.0));
             let state = std::mem::replace(&mut self.entries[k].state, State::Taken);
             let job = &self.jobs[self.entries[k].candidate.tool];
             self.entries[k].state = match state {
                 State::Open => {
-                    self.plans += 1;
-                    self.planned(k)?
+                    self.entries[k].tried = true;
+                    // One that fails is a loser with a reason.
+                    self.planned(k).unwrap_or_else(|e| State::Out(e.message().to_owned()))
                 }
                 State::Planned(planned) => match Posted::of(job, self.faces, &planned, wall_s, out) {
                     Ok(posted) => {
@@ -207,9 +238,10 @@ impl<'a> Choice<'a> {
 
     /// Plans a candidate and looks at what it leaves.
     fn planned(&mut self, k: usize) -> Result<State, Failure> {
-        let Candidate { tool, strategy, lean } = self.entries[k].candidate;
+        self.plans += 1;
+        let Entry { candidate: Candidate { tool, strategy, lean }, share, .. } = self.entries[k];
         let job = &self.jobs[tool];
-        let way = Way { strategy: &strategy, lean, out: None };
+        let way = Way { strategy: &strategy, lean, share, out: None };
         let passes = match passes::each_face(job, self.faces, &way, &|_| {}) {
             Ok(p) => p,
             Err(e) => {
@@ -227,13 +259,27 @@ impl<'a> Choice<'a> {
             posted_min: None,
         });
         if let Some(objection) = Look::at(job, self.faces, &linked)?.objection(job)? {
+            let limit_mm = job.tolerance()?.scallop_mm;
             if objection.digs_in {
                 self.no_smaller_lead(k);
+            }
+            if objection.left_mm.is_some_and(|left| self.for_less(k, left, limit_mm)) {
+                return self.planned(k);
             }
             return Ok(State::Out(objection.text));
         }
         let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
         Ok(State::Planned(Box::new(Planned { passes, linked, strategy, lean, extras, with_strips: true })))
+    }
+
+    /// Has a candidate that leaves a little more than the limit laid out for less, once; whether it is.
+    fn for_less(&mut self, k: usize, left_mm: f64, limit_mm: f64) -> bool {
+        let again =
+            self.entries[k].share == 1.0 && left_mm > limit_mm && left_mm <= LITTLE_TOO_MUCH * limit_mm;
+        if again {
+            self.entries[k].share = LESS * limit_mm / left_mm;
+        }
+        again
     }
 
     /// Leaves out the smaller leads of a candidate that digs in: the heel comes down with the lead.
@@ -243,19 +289,29 @@ impl<'a> Choice<'a> {
         for e in &mut self.entries {
             let c = &e.candidate;
             let same = (c.tool, c.strategy, c.lean.tilt_rad) == (tool, strategy, lean.tilt_rad);
-            if same && c.lean.lead_rad < lean.lead_rad && matches!(e.state, State::Open) {
+            let near = c.lean.lead_rad < STEEPER * lean.lead_rad;
+            if same && near && matches!(e.state, State::Open) {
                 let why = format!("a lead of {:.0} deg does not fit already", lean.lead_rad.to_degrees());
                 e.state = State::Out(why);
             }
         }
     }
 
+    /// Records that a contender could not be verified.
+    pub fn lost(&mut self, contender: &Contender, why: &Failure) {
+        self.entries[contender.entry].state = State::Out(why.message().to_owned());
+    }
+
     /// Records what verification said of a contender; `why` it is out where it does not hold.
-    pub fn record(&mut self, contender: &Contender, measured: table::Measured, why: Option<String>) {
-        let entry = &mut self.entries[contender.entry];
-        entry.verified = Some(measured);
-        if let Some(why) = why {
-            entry.state = State::Out(why);
+    pub fn record(&mut self, contender: &Contender, measured: table::Measured, why: Option<Objection>) {
+        let k = contender.entry;
+        self.entries[k].verified = Some(measured);
+        let Some(Objection { text, left_mm, .. }) = why else { return };
+        self.entries[k].state = State::Out(text);
+        let limit_mm = contender.job.tolerance.scallop_mm;
+        if left_mm.is_some_and(|left| self.for_less(k, left, limit_mm)) {
+            self.entries[k].state = State::Open;
+            self.entries[k].figures = None;
         }
     }
 

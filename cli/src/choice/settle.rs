@@ -4,6 +4,7 @@ use super::table::Measured;
 use super::{Choice, Contender, text_table};
 use crate::failure::Failure;
 use crate::job::Job;
+use crate::look::Objection;
 use crate::part;
 use crate::program::{Planned, Posted, WallS};
 use crate::verify::{Verification, Verified};
@@ -12,7 +13,7 @@ use osculate_tools::removal::Limits;
 use std::path::Path;
 
 /// Contenders that are verified at most.
-const MOST_VERIFIED: usize = 5;
+const MOST_VERIFIED: usize = 7;
 
 /// The plan that is chosen.
 pub struct Settled {
@@ -41,8 +42,14 @@ pub fn settle(
     let (mut holding, mut verified) = (0, 0);
     while verified < MOST_VERIFIED && holding < enough {
         let Some(contender) = choice.next(out, wall_s, progress)? else { break };
-        let found = contender.posted.verify(&contender.job, choice.faces, &contender.planned, wall_s)?;
         verified += 1;
+        let found = match contender.posted.verify(&contender.job, choice.faces, &contender.planned, wall_s) {
+            Ok(found) => found,
+            Err(why) => {
+                choice.lost(&contender, &why);
+                continue;
+            }
+        };
         let why = objection(&contender.job, &found.summary)?;
         holding += usize::from(why.is_none());
         let measured = measured(choice, &contender, &found.summary)?;
@@ -70,7 +77,7 @@ fn off_by(job: &Job, v: &Verification) -> Result<f64, Failure> {
 }
 
 /// Why a verification does not hold.
-fn objection(job: &Job, v: &Verification) -> Result<Option<String>, Failure> {
+fn objection(job: &Job, v: &Verification) -> Result<Option<Objection>, Failure> {
     if v.within_tolerance {
         return Ok(None);
     }
@@ -83,11 +90,14 @@ fn objection(job: &Job, v: &Verification) -> Result<Option<String>, Failure> {
         ("uncut area", v.uncut_area_mm2, 0.0, "mm2"),
         ("scallop", v.scallop_max_mm, t.scallop_mm, "mm"),
     ];
-    let bad = figures.into_iter().find(|(_, is, limit, _)| is > limit);
-    Ok(Some(bad.map_or_else(
-        || "verification does not hold".to_owned(),
-        |(what, is, limit, unit)| format!("verified: {what} {is:.4} {unit}, {limit} {unit} is accepted"),
-    )))
+    let bad = figures.into_iter().enumerate().find(|(_, (_, is, limit, _))| is > limit);
+    let (k, text) = bad.map_or_else(
+        || (0, "verification does not hold".to_owned()),
+        |(k, (what, is, limit, unit))| {
+            (k, format!("verified: {what} {is:.4} {unit}, {limit} {unit} is accepted"))
+        },
+    );
+    Ok(Some(Objection { digs_in: k == 0, left_mm: (k == 4).then_some(v.scallop_max_mm), text }))
 }
 
 fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Result<Measured, Failure> {

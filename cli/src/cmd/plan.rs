@@ -219,6 +219,7 @@ fn write(whole: Whole<'_>, mut wall_s: WallS, out: &Path) -> Result<(Summary, St
     output::write(&out.join(format!("program.{}", control.extension)), program.text.as_bytes())?;
     output::write(&out.join("report.html"), pages.html.as_bytes())?;
     output::write(&out.join("picture.svg"), pages.svg.as_bytes())?;
+    output::write(&out.join("path.svg"), pages.path_svg.as_bytes())?;
     summary.wall_s.report = stage.end();
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
     output::write(&out.join("summary.json"), text.as_bytes())?;
@@ -249,7 +250,7 @@ fn planned(
     let strategy = &crate::strategy::of_job(job)?;
     let (passes, lean) = match strategy.fixed_axis() {
         Some(_) => {
-            let way = Way { strategy, lean: Lean::default(), out: Some(out) };
+            let way = Way { strategy, lean: Lean::default(), share: 1.0, out: Some(out) };
             (passes::each_face(job, faces, &way, progress)?, Lean::default())
         }
         None => passes::with_best_lead(job, faces, strategy, out, progress)?,
@@ -289,6 +290,7 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
     row("scallop max", format!("{:.5}", f.scallop_max_mm), "mm");
     row("scallop p99", format!("{:.5}", f.scallop_p99_mm), "mm");
     row("scallop median", format!("{:.5}", f.scallop_median_mm), "mm");
+    row("median of its crests", format!("{:.5}", f.crest_median_mm), "mm");
     row("gouge max", format!("{:.5}", f.gouge_max_mm), "mm");
     row("uncut area", format!("{:.3}", f.uncut_area_mm2), "mm2");
     text.push_str(&t.render());
@@ -320,7 +322,7 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
         text.push_str(&format!("\n{}", render::findings(diagnostics)));
     }
     text.push_str(&format!(
-        "\n  {0}/path.cl, {0}/program.{1}, {0}/report.html, {0}/picture.svg, {0}/summary.json\n\n",
+        "\n  {0}/path.cl, {0}/program.{1}, {0}/report.html, {0}/picture.svg, {0}/path.svg, {0}/summary.json\n\n",
         out.display(),
         control.extension
     ));

@@ -21,6 +21,8 @@ use rayon::prelude::*;
 
 /// Rows to each side of a pass in which the stretches that it must run over are looked for.
 const COVER_ROWS: i32 = 10;
+/// How far on a pass may lie is asked at every so many columns first.
+const ASKED_STRIDE: usize = 12;
 /// Strip width and undercut are computed at every so many columns of a pass.
 const WIDTH_STRIDE: usize = 4;
 
@@ -139,13 +141,7 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
         }
         let reversed = !closed && levels.len() % 2 == 1;
         let cover = Cover { seat: &seat, task, along, reversed, hi, guess };
-        let next = columns
-            .par_iter()
-            .filter_map(|c| c.frontier.map(|f| cover.furthest_pass(c, f)))
-            .collect::<Result<Vec<f64>, LineError>>()
-            .map_err(|e| task.contact(e.into()))?
-            .into_iter()
-            .fold(hi, f64::min);
+        let next = cover.next(&columns).map_err(|e| task.contact(e.into()))?;
         let reached = columns
             .par_iter()
             .map(|c| match c.frontier {
@@ -213,18 +209,38 @@ impl Cover<'_> {
         Ok(reach.map_or(task.cutter.radius_mm(), |r| r.at_mm - h))
     }
 
+    /// A walk over half a strip.
     const fn walk(&self, from: f64) -> Walk {
-        Walk { from, to: self.hi, guess: self.guess, tolerance: 1e-4 * self.guess }
+        Walk { from, to: self.hi, guess: 0.5 * self.guess, tolerance: 1e-4 * self.guess }
+    }
+
+    /// How far on the next pass may lie, so that it covers the frontiers of all columns. A few columns say how far about;
+    /// of the others only those that such a pass would not cover are asked more.
+    fn next(&self, columns: &[Column]) -> Result<f64, LineError> {
+        let open: Vec<(&Column, f64)> = columns.iter().filter_map(|c| c.frontier.map(|f| (c, f))).collect();
+        let about = open
+            .par_iter()
+            .step_by(ASKED_STRIDE)
+            .map(|(c, f)| self.furthest_pass(c, *f))
+            .collect::<Result<Vec<f64>, LineError>>()?
+            .into_iter()
+            .fold(self.hi, f64::min);
+        let nearer = |(c, f): &(&Column, f64)| -> Result<f64, LineError> {
+            let covered = *f >= about || self.excess(c, *f, about)? <= 0.0;
+            if covered { Ok(about) } else { self.furthest_pass(c, *f) }
+        };
+        let all = open.par_iter().map(nearer).collect::<Result<Vec<f64>, LineError>>()?;
+        Ok(all.into_iter().fold(about, f64::min))
     }
 
     /// How far on a pass may lie that still covers the frontier of a column.
     fn furthest_pass(&self, column: &Column, frontier: f64) -> Result<f64, LineError> {
-        self.walk(frontier).last_below(|pass| self.excess(column, frontier, pass))
+        self.walk(frontier).last_below_near(|pass| self.excess(column, frontier, pass))
     }
 
     /// How far the strip of a pass reaches at a column.
     fn reached(&self, column: &Column, pass: f64) -> Result<f64, LineError> {
-        self.walk(pass).last_below(|point| self.excess(column, point, pass))
+        self.walk(pass).last_below_near(|point| self.excess(column, point, pass))
     }
 }
 

@@ -43,6 +43,7 @@
 mod body;
 mod boundary;
 mod cluster;
+mod crest;
 mod cut;
 mod deepest;
 mod density;
@@ -57,6 +58,7 @@ mod tree;
 mod verdict;
 
 pub use boundary::{sample_boundary, sample_triangles};
+pub use crest::crests;
 pub use cut::cut;
 pub use density::{Density, Hidden};
 pub use hidden::{DIVISIONS, Wanted, hidden};

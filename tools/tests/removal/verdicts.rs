@@ -3,7 +3,7 @@
 use crate::common::sample;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use osculate_tools::removal::{
-    Body, By, Cut, Density, JudgeError, Kind, Limits, Sample, Swept, Touch, Verdict, judge,
+    Body, By, Cut, Density, JudgeError, Kind, Limits, Sample, Swept, Touch, Verdict, crests, judge,
 };
 
 const DENSITY: Density = Density { spacing_mm: 0.1, convex_per_mm: 0.0 };
@@ -39,6 +39,32 @@ fn quantiles_go_by_area() {
     // One sample above the tolerance is enough.
     cuts[5] = cut_to(0.0101);
     assert!(!judged(&samples, &cuts).within);
+}
+
+/// Parabolic strips of three widths side by side: most of the area stands at a quarter, the ridges at the full height.
+#[test]
+fn crests_are_the_ridges_whatever_the_width_of_strips() {
+    const HIGH: f64 = 0.008;
+    let mut samples = Vec::new();
+    let mut cuts = Vec::new();
+    for (k, width) in [1.0, 1.7, 3.1].into_iter().enumerate() {
+        for i in 0..300 {
+            for j in 0..60 {
+                let [x, y] = [0.1 * f64::from(i), 0.1 * f64::from(j)];
+                samples.push(sample([x, y + 100.0 * k as f64, 0.0], [0.0, 0.0, 1.0]));
+                let off = 2.0 * ((x / width).fract() - 0.5);
+                cuts.push(cut_to(HIGH * off * off));
+            }
+        }
+    }
+    let found = crests(&samples, &cuts, 0.3, 0.05);
+    // A ridge is seen from half a sample away at worst: 0.05 of half a width of 0.5.
+    assert!(found <= HIGH && found > 0.8 * HIGH, "{found}");
+    assert!(judged(&samples, &cuts).median_mm < 0.3 * HIGH);
+    // What was never touched is no crest, nor are check faces.
+    cuts.iter_mut().for_each(|c| c.by = None);
+    assert_eq!(crests(&samples, &cuts, 0.3, 0.05), 0.0);
+    assert_eq!(crests(&samples, &cuts, f64::NAN, 0.05), 0.0);
 }
 
 #[test]

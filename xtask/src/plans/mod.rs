@@ -1,7 +1,8 @@
 //! `cargo xtask plans --data FOLDER`: docs/plans.md, what `auto` makes of real faces and of the four surfaces of M86.
 //!
-//! Every face is planned three times with the same tolerances and feeds: by `auto` over a list of tools, by plain isoparametric
-//! lines with the first tool, and in parallel planes with the ball. Jobs and results stay below `target/plans`.
+//! Every face is planned with the same tolerances, feeds and machine: by `auto` over a list of tools, by plain isoparametric
+//! lines with the first tool and with the one that `auto` chose, with that tool and lead by constant scallop and streamlines,
+//! and in parallel planes with the ball. Jobs and results stay below `target/plans`.
 
 mod dense;
 
@@ -23,34 +24,39 @@ enum Source {
 struct Case {
     name: &'static str,
     source: Source,
-    tools: [&'static str; 3],
+    tools: [&'static str; 4],
     scallop_mm: f64,
     /// Tool axis on three axes, about the mean normal.
     axis: [f64; 3],
 }
 
-const LARGE: [&str; 3] = [
+const LARGE: [&str; 4] = [
     "kind = \"toroidal\", diameter_mm = 16, corner_radius_mm = 2, length_mm = 80",
+    "kind = \"toroidal\", diameter_mm = 25, corner_radius_mm = 3, length_mm = 80",
     "kind = \"flat\", diameter_mm = 12, length_mm = 80",
     "kind = \"ball\", diameter_mm = 10, length_mm = 80",
 ];
-const SMALL: [&str; 3] = [
+const SMALL: [&str; 4] = [
     "kind = \"toroidal\", diameter_mm = 6, corner_radius_mm = 1, length_mm = 50",
+    "kind = \"toroidal\", diameter_mm = 10, corner_radius_mm = 1, length_mm = 50",
     "kind = \"flat\", diameter_mm = 4, length_mm = 50",
     "kind = \"ball\", diameter_mm = 6, length_mm = 50",
 ];
-const MINI: [&str; 3] = [
+const MINI: [&str; 4] = [
     "kind = \"toroidal\", diameter_mm = 3, corner_radius_mm = 0.5, length_mm = 30",
+    "kind = \"toroidal\", diameter_mm = 6, corner_radius_mm = 1, length_mm = 30",
     "kind = \"flat\", diameter_mm = 2, length_mm = 30",
     "kind = \"ball\", diameter_mm = 2, length_mm = 30",
 ];
-const TINY: [&str; 3] = [
+const TINY: [&str; 4] = [
     "kind = \"toroidal\", diameter_mm = 0.6, corner_radius_mm = 0.1, length_mm = 6",
+    "kind = \"toroidal\", diameter_mm = 1, corner_radius_mm = 0.1, length_mm = 6",
     "kind = \"flat\", diameter_mm = 0.4, length_mm = 6",
     "kind = \"ball\", diameter_mm = 0.4, length_mm = 6",
 ];
-const HUGE: [&str; 3] = [
+const HUGE: [&str; 4] = [
     "kind = \"toroidal\", diameter_mm = 40, corner_radius_mm = 6, length_mm = 150",
+    "kind = \"toroidal\", diameter_mm = 63, corner_radius_mm = 6, length_mm = 150",
     "kind = \"flat\", diameter_mm = 32, length_mm = 150",
     "kind = \"ball\", diameter_mm = 20, length_mm = 150",
 ];
@@ -83,7 +89,7 @@ const CASES: [Case; 12] = [
     m86("m86-4"),
     blade("compressor blade, suction side", "F1", [-0.45, -0.59, -0.67]),
     blade("compressor blade, pressure side", "F2", [-0.44, -0.59, -0.67]),
-    file("impeller blade", "iges/pyiges_impeller.igs", "F118", [-0.12, 0.75, 0.65]),
+    file("impeller blade", "iges/pyiges_impeller.igs", "F118", [0.16, -0.72, -0.68]),
     file("impeller hub", "iges/pyiges_impeller.igs", "F33", [0.0, 0.06, -1.0]),
     file("propeller", "step/autogiro_propeller.step", "F7", [-0.03, 0.9, 0.43]),
     Case {
@@ -102,11 +108,33 @@ const CASES: [Case; 12] = [
 /// Points of a face for the second opinion, about.
 const POINTS: f64 = 40_000.0;
 
-/// The three plans of a face.
-const KINDS: [&str; 3] = ["auto", "isoparametric", "ball, 3 axes"];
+/// The plans of a face.
+const KINDS: [&str; 6] =
+    ["auto", "isoparametric", "isoparametric, tool of auto", "isoscallop", "streamline", BALL];
+const BALL: &str = "ball, 3 axes";
+
+/// What `auto` chose, as keys of a job.
+struct Chosen {
+    tool: String,
+    lead_deg: f64,
+}
+
+impl Chosen {
+    /// From a summary; None where the choice keeps its axis.
+    fn of(summary: &Value) -> Option<Self> {
+        let table: Vec<String> = summary["tool"]
+            .as_object()?
+            .iter()
+            .filter(|(_, v)| v.is_string() || v.is_number())
+            .map(|(k, v)| format!("{k} = {v}"))
+            .collect();
+        let lead_deg = summary["lead_deg"].as_f64().filter(|lead| *lead > 0.0)?;
+        Some(Self { tool: table.join(", "), lead_deg })
+    }
+}
 
 /// The job of a case.
-fn job(case: &Case, kind: &str, data: &str) -> String {
+fn job(case: &Case, kind: &str, data: &str, chosen: Option<&Chosen>) -> String {
     let part = match case.source {
         Source::BuiltIn(name) => format!("builtin = {{ kind = \"{name}\" }}"),
         Source::File { path, face, keys } => {
@@ -114,17 +142,20 @@ fn job(case: &Case, kind: &str, data: &str) -> String {
         }
     };
     let h = case.scallop_mm;
-    let planes = format!("kind = \"isoplanar_3c\"\naxis = {:?}", case.axis);
-    let (tools, strategy): (Vec<&str>, &str) = match kind {
-        "auto" => (case.tools.to_vec(), "kind = \"auto\""),
-        "isoparametric" => (case.tools[..1].to_vec(), "kind = \"isoparametric\""),
-        _ => (case.tools[2..].to_vec(), &planes),
+    let (tools, strategy): (Vec<&str>, String) = match (kind, chosen) {
+        ("auto", _) => (case.tools.to_vec(), "kind = \"auto\"".to_owned()),
+        (BALL, _) => (case.tools[3..].to_vec(), format!("kind = \"isoplanar_3c\"\naxis = {:?}", case.axis)),
+        ("isoscallop" | "streamline", Some(c)) => {
+            (vec![&c.tool], format!("kind = \"{kind}\"\nlead_deg = {}", c.lead_deg))
+        }
+        ("isoparametric, tool of auto", Some(c)) => (vec![&c.tool], "kind = \"isoparametric\"".to_owned()),
+        _ => (case.tools[..1].to_vec(), "kind = \"isoparametric\"".to_owned()),
     };
     let tools: String = tools.iter().map(|t| format!("  {{ {t} }},\n")).collect();
     format!(
         "format = 1\ntools = [\n{tools}]\n[part]\n{part}\n[tolerance]\nscallop_mm = {h}\ngouge_mm = {}\nchord_mm = {}\n\
          [strategy]\n{strategy}\n[cutting]\nspindle_rpm = 12000\nfeed_mm_min = 2000\n[machine]\nname = \"trunnion-ac\"\n\
-         dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[verification]\nmax_samples = 300000\n",
+         dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[verification]\nmax_samples = 200000\n",
         0.5 * h,
         0.2 * h
     )
@@ -168,37 +199,52 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     };
     let mut page = String::from(HEAD);
     for case in CASES.iter().filter(|c| c.name.contains(only)) {
-        let place = root.join("target/plans").join(case.name.replace([' ', ','], "-"));
-        let mut times = Vec::new();
-        let mut cloud = None;
-        for kind in KINDS {
-            let folder = place.join(kind.replace([' ', ','], "-"));
-            let file = folder.join("job.toml");
-            write(&file, &job(case, kind, &data.to_string_lossy()))?;
-            let summary = plan(&program, &file, &folder);
-            if cloud.is_none()
-                && let Some(area) = summary.as_ref().ok().and_then(|s| s["area_mm2"].as_f64())
-            {
-                cloud = Some(points(&program, case, &data, &place, area)?);
-            }
-            let second = summary.as_ref().ok().zip(cloud.as_ref()).and_then(|(s, c)| look(s, c, &folder));
-            let line = row(case.name, kind, &summary, second);
-            print!("{line}");
-            page.push_str(&line);
-            times.push(summary.ok().and_then(|s| s["cutting_time_min"].as_f64()));
-        }
-        if let [Some(auto), iso, planes] = times[..] {
-            let share = |t: Option<f64>| t.map_or("-".to_owned(), |t| format!("{:.2}", auto / t));
-            let line = format!(
-                "| | *cutting time of auto over that of the two* | | | | {}, {} | | | | | |\n",
-                share(iso),
-                share(planes)
-            );
-            print!("{line}");
-            page.push_str(&line);
-        }
+        page.push_str(&one(case, &program, &data, &root)?);
     }
-    if only.is_empty() { write(&root.join("docs/plans.md"), &page) } else { Ok(()) }
+    if only.is_empty() { write(&root.join("docs/plans.md"), &(page + FIGURES)) } else { Ok(()) }
+}
+
+/// The rows of a case.
+fn one(case: &Case, program: &Path, data: &Path, root: &Path) -> Result<String, Failure> {
+    let place = root.join("target/plans").join(case.name.replace([' ', ','], "-"));
+    let mut rows = String::new();
+    let mut say = |line: String| {
+        print!("{line}");
+        rows.push_str(&line);
+    };
+    let (mut times, mut cloud, mut chosen) = (Vec::new(), None, None);
+    for kind in KINDS {
+        let folder = place.join(kind.replace([' ', ','], "-"));
+        let file = folder.join("job.toml");
+        write(&file, &job(case, kind, &data.to_string_lossy(), chosen.as_ref()))?;
+        let summary = plan(program, &file, &folder);
+        if kind == "auto" {
+            chosen = summary.as_ref().ok().and_then(Chosen::of);
+        }
+        if cloud.is_none()
+            && let Some(area) = summary.as_ref().ok().and_then(|s| s["area_mm2"].as_f64())
+        {
+            cloud = Some(points(program, case, data, &place, area)?);
+        }
+        if kind == "isoscallop" && matches!(case.name, "m86-3" | "m86-4") && summary.is_ok() {
+            let to = root.join("docs/figures").join(format!("plan-{}.svg", case.name));
+            std::fs::copy(folder.join("path.svg"), &to).map_err(|why| Failure::Write { path: to, why })?;
+        }
+        let second = summary.as_ref().ok().zip(cloud.as_ref()).and_then(|(s, c)| look(s, c, &folder));
+        say(row(case.name, kind, &summary, second));
+        times.push(summary.ok().and_then(|s| s["cutting_time_min"].as_f64()));
+    }
+    let share = |k: usize| {
+        let both = times[0].zip(times[k]);
+        both.map_or("-".to_owned(), |(a, b)| format!("{:.2}", a / b))
+    };
+    say(format!(
+        "| | *cutting time of auto over that of isoparametric, of isoparametric with its tool, of the ball* | | | | {}, {}, {} | | | | | | | |\n",
+        share(1),
+        share(2),
+        share(5)
+    ));
+    Ok(rows)
 }
 
 /// Points of the face for the second opinion.
@@ -260,12 +306,16 @@ fn look(summary: &Value, cloud: &Cloud, folder: &Path) -> Option<f64> {
     Some(dense::deepest_mm(&cl, &cutter, cloud, step_mm).0)
 }
 
-const HEAD: &str = "# Plans of real faces\n\nMade by `cargo xtask plans --data FOLDER`: every face planned by `auto` over three tools, by isoparametric lines with \
-the first of them, and in parallel planes with the ball on three axes, at the same tolerances (gouge half the scallop, chord a fifth) and 2000 mm/min. Scallop and gouge are measured from \
-the NC text. *Ideal* is the least time of any plan with those tools, *efficiency* that time over the cutting time; `auto` chooses by time within tolerance. The *second opinion* is how deep the cutter goes into some 40,000 points of the face at poses a fiftieth of its diameter apart, by formulas that share \
-no code with the verification.\n\n\
-| face | plan | tool, lead | passes | length mm | cutting min | ideal min | efficiency % | scallop / gouge mm | second opinion mm | within |\n\
-|---|---|---|---|---|---|---|---|---|---|---|\n";
+const HEAD: &str = "# Plans of real faces\n\nMade by `cargo xtask plans --data FOLDER`: every face planned by `auto` over four tools, by isoparametric lines with \
+the first of them and with the one that `auto` chose (each with the best of six leads), with that tool and lead by constant scallop and by streamlines, and in parallel planes with the ball on three axes; at the same \
+tolerances (gouge half the scallop, chord a fifth), feed (2000 mm/min) and machine. Scallop and gouge are measured from \
+the NC text. *Use* is the median height of the crests between passes over the tolerance. *Ideal* is an estimate of the least time of any plan with the tools of the job, *efficiency* that time over the cutting time; `auto` chooses by time within tolerance. The *second opinion* is how deep the cutter goes into some 40,000 points of the face at poses a fiftieth of its diameter apart, by formulas that share \
+no code with the verification. *Wall* is the whole run of the program; the times of a row depend on the machine.\n\n\
+| face | plan | tool, lead | passes | length mm | cutting min | ideal min | efficiency % | scallop / gouge mm | use | second opinion mm | within | wall s |\n\
+|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+
+const FIGURES: &str = "\n## Around umbilics\n\nThe passes of constant scallop on the surfaces of M86 that have umbilics, coloured by the width of their strips \
+(`path.svg` of the plan).\n\n![m86-3](figures/plan-m86-3.svg)\n\n![m86-4](figures/plan-m86-4.svg)\n";
 
 /// Runs the program and reads its summary; what it says where there is none.
 fn plan(program: &Path, job: &Path, out: &Path) -> Result<Value, String> {
@@ -284,14 +334,14 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         Ok(s) => s,
         Err(why) => {
             let why = why.rsplit("job.toml: ").next().unwrap_or(why);
-            return format!("| {name} | {kind} | not possible: {why} | | | | | | | | |\n");
+            return format!("| {name} | {kind} | not possible: {why} | | | | | | | | | | |\n");
         }
     };
     let text = |k: &str| s[k].as_str().unwrap_or("-").to_owned();
     let n = |v: &Value, digits: usize| v.as_f64().map_or("-".to_owned(), |x| format!("{x:.digits$}"));
     let v = &s["verification"];
     format!(
-        "| {name} | {kind}: {} | {}, {} deg | {} | {} | {} | {} | {} | {} / {} | {} | {} |\n",
+        "| {name} | {kind}: {} | {}, {} deg | {} | {} | {} | {} | {} | {} / {} | {} | {} | {} | {:.0} |\n",
         text("strategy"),
         text("tool_words"),
         n(&s["lead_deg"], 0),
@@ -302,8 +352,10 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         n(&s["efficiency_percent"], 0),
         n(&v["scallop_max_mm"], 4),
         n(&v["gouge_max_mm"], 4),
+        n(&v["scallop_use"], 2),
         second.map_or("-".to_owned(), |d| format!("{d:.4}")),
-        if v["within_tolerance"] == true { "yes" } else { "**no**" }
+        if v["within_tolerance"] == true { "yes" } else { "**no**" },
+        s["wall_s"].as_object().map_or(0.0, |w| w.values().filter_map(Value::as_f64).sum())
     )
 }
 
