@@ -41,6 +41,8 @@ usage: cargo xtask COMMAND
   papers d98    docs/papers/d98.md: the values, errata and figures of D98, ours beside theirs
   plans --data FOLDER [--only TEXT] [--program FILE]
                 docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
+  plans --speed [--program FILE]
+                seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -65,7 +67,11 @@ fn main() -> ExitCode {
         ["papers", "d98"] => d98(),
         ["plans", rest @ ..] => match plans::Options::of(rest) {
             Some(options) => plans::run(&options),
-            None => return wrong_usage("plans takes --data FOLDER, --only TEXT and --program FILE"),
+            None => {
+                return wrong_usage(
+                    "plans takes --data FOLDER, --only TEXT and --program FILE, or --speed and --program FILE",
+                );
+            }
         },
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),

@@ -27,7 +27,7 @@ use std::path::Path;
 
 /// Candidates that are planned at most, and while none is known to hold.
 const MOST_PLANS: usize = 16;
-const MOST_IN_NEED: usize = 40;
+const MOST_IN_NEED: usize = 28;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
 /// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.

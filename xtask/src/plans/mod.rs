@@ -5,6 +5,7 @@
 //! and in parallel planes with the ball. Jobs and results stay below `target/plans`.
 
 mod dense;
+mod speed;
 
 use crate::cmd::{Failure, cargo, root};
 use dense::{Cloud, Cutter};
@@ -90,7 +91,7 @@ const CASES: [Case; 12] = [
     blade("compressor blade, suction side", "F1", [-0.45, -0.59, -0.67]),
     blade("compressor blade, pressure side", "F2", [-0.44, -0.59, -0.67]),
     file("impeller blade", "iges/pyiges_impeller.igs", "F118", [0.16, -0.72, -0.68]),
-    file("impeller hub", "iges/pyiges_impeller.igs", "F33", [0.0, 0.06, -1.0]),
+    file("impeller hub", "iges/pyiges_impeller.igs", "F33", [0.0, -0.06, 1.0]),
     file("propeller", "step/autogiro_propeller.step", "F7", [-0.03, 0.9, 0.43]),
     Case {
         tools: HUGE,
@@ -98,9 +99,9 @@ const CASES: [Case; 12] = [
         ..file("hull", "step/dealii_wigley_hull.step", "F1", [0.0, 0.97, -0.24])
     },
     Case {
-        tools: LARGE,
-        scallop_mm: 0.02,
-        ..file("manifold", "step/kcl_exhaust-manifold.step", "F1", [-1.0, 0.0, 0.0])
+        tools: TINY,
+        scallop_mm: 0.001,
+        ..file("connecting rod", "step/occt_linkrods.step", "F24", [0.09, -1.0, 0.0])
     },
     Case { name: "teapot patch", source: TEAPOT, tools: TINY, scallop_mm: 0.001, axis: [-0.67, 0.67, -0.34] },
 ];
@@ -155,7 +156,7 @@ fn job(case: &Case, kind: &str, data: &str, chosen: Option<&Chosen>) -> String {
     format!(
         "format = 1\ntools = [\n{tools}]\n[part]\n{part}\n[tolerance]\nscallop_mm = {h}\ngouge_mm = {}\nchord_mm = {}\n\
          [strategy]\n{strategy}\n[cutting]\nspindle_rpm = 12000\nfeed_mm_min = 2000\n[machine]\nname = \"trunnion-ac\"\n\
-         dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[verification]\nmax_samples = 200000\n",
+         dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[verification]\nmax_samples = 120000\n",
         0.5 * h,
         0.2 * h
     )
@@ -167,12 +168,22 @@ pub struct Options<'a> {
     data: Option<&'a str>,
     only: &'a str,
     program: Option<&'a str>,
+    speed: bool,
 }
 
 impl<'a> Options<'a> {
-    /// Pairs of option and value; None where one is unknown or the folder of data is missing.
+    /// Pairs of option and value, `--speed` first where it is meant; None where one is unknown or the folder of data is
+    /// missing where it is needed.
     pub fn of(words: &[&'a str]) -> Option<Self> {
         let mut out = Self::default();
+        if let ["--speed", rest @ ..] = words {
+            let program = match rest {
+                [] => None,
+                ["--program", p] => Some(*p),
+                _ => return None,
+            };
+            return Some(Self { program, speed: true, ..out });
+        }
         for pair in words.chunks(2) {
             match *pair {
                 ["--data", v] => out.data = Some(v),
@@ -197,6 +208,9 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
             root.join("target/release/osculate")
         }
     };
+    if options.speed {
+        return speed::run(&program, &root);
+    }
     let mut page = String::from(HEAD);
     for case in CASES.iter().filter(|c| c.name.contains(only)) {
         page.push_str(&one(case, &program, &data, &root)?);

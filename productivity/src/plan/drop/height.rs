@@ -68,6 +68,8 @@ pub(super) struct Drops<'a> {
     seeds: Vec<Seed>,
     /// Seeds of bin k are `seeds[first[k]..first[k + 1]]`.
     first: Vec<u32>,
+    /// Highest place of the seeds of each bin, and how far pieces of rims that begin in it reach.
+    top: Vec<[f64; 2]>,
     lo: [f64; 2],
     cell: f64,
     n: [usize; 2],
@@ -118,6 +120,12 @@ impl<'a> Drops<'a> {
         for k in 1..first.len() {
             first[k] += first[k - 1];
         }
+        let mut top = vec![[f64::NEG_INFINITY, 0.0]; n[0] * n[1]];
+        for s in &seeds {
+            let [high, long] = &mut top[bin(s)];
+            *high = high.max(s.at[2]).max(s.at[2] + s.along[2]);
+            *long = long.max(s.along[0].hypot(s.along[1]));
+        }
         let mut next = first.clone();
         let mut order = vec![0_u32; seeds.len()];
         for (k, s) in (0_u32..).zip(&seeds) {
@@ -130,7 +138,7 @@ impl<'a> Drops<'a> {
         let lower = (0..=TABLE)
             .map(|k| lower_side(cutter, radius * k as f64 / TABLE as f64, 0.0).map_or(f64::INFINITY, |l| l.0))
             .collect();
-        Self { surfaces, cutter, frame, seeds, first, lo, cell, n, lower, spacing: spacing_mm }
+        Self { surfaces, cutter, frame, seeds, first, top, lo, cell, n, lower, spacing: spacing_mm }
     }
 
     /// Bins along one side that a disc around `x` touches.
@@ -162,17 +170,46 @@ impl<'a> Drops<'a> {
     /// The highest that any seed holds the tip over `c`: a height below the true one by what lies between seeds.
     pub(super) fn coarse(&self, c: [f64; 2]) -> f64 {
         let mut best = f64::NEG_INFINITY;
-        self.each(c, |s| best = best.max(self.held(s, c)));
+        // What stands below the axis is as a rule near the highest, and most other bins are then seen to be lower.
+        if let [Some(i), Some(j)] = [0, 1].map(|k| self.own_bin(k, c[k])) {
+            self.of_row(j, i..i + 1).iter().for_each(|s| best = best.max(self.held(s, c)));
+        }
+        self.each(c, &mut best, |s, best| *best = best.max(self.held(s, c)));
         best
     }
 
-    fn each(&self, c: [f64; 2], mut f: impl FnMut(&Seed)) {
+    fn own_bin(&self, side: usize, x: f64) -> Option<usize> {
+        let k = ((x - self.lo[side]) / self.cell).floor();
+        // A number of bins fits.
+        (k >= 0.0 && k < self.n[side] as f64).then_some(k as usize)
+    }
+
+    /// The seeds of neighbouring bins of a row.
+    fn of_row(&self, j: usize, across: std::ops::Range<usize>) -> &[Seed] {
+        let row = j * self.n[0];
+        &self.seeds[self.first[row + across.start] as usize..self.first[row + across.end] as usize]
+    }
+
+    /// No seed of the bin holds the tip over `c` higher than this.
+    fn at_most(&self, [i, j]: [usize; 2], c: [f64; 2]) -> f64 {
+        let off = |k: usize, bin: usize| {
+            let from = self.lo[k] + bin as f64 * self.cell;
+            (from - c[k]).max(c[k] - from - self.cell).max(0.0)
+        };
+        let [high, long] = self.top[j * self.n[0] + i];
+        let near = (off(0, i).hypot(off(1, j)) - long).max(0.0);
+        let q = (near / self.cutter.radius_mm() * TABLE as f64) as usize;
+        high - self.lower.get(q).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// Every seed that may hold the tip over `c` higher than `floor`, which may rise on the way.
+    fn each(&self, c: [f64; 2], floor: &mut f64, mut f: impl FnMut(&Seed, &mut f64)) {
         let across = self.bins(0, c[0]);
         for j in self.bins(1, c[1]) {
-            let row = j * self.n[0];
-            let (a, b) = (self.first[row + across.start], self.first[row + across.end]);
-            for s in &self.seeds[a as usize..b as usize] {
-                f(s);
+            for i in across.clone() {
+                if self.at_most([i, j], c) >= *floor {
+                    self.of_row(j, i..i + 1).iter().for_each(|s| f(s, floor));
+                }
             }
         }
     }
@@ -186,9 +223,9 @@ impl<'a> Drops<'a> {
         // Places that may still win once climbed: within what a seed can be off by half its spacing up a slope of one.
         let slack = self.spacing;
         let mut near: Vec<(f64, Seed)> = Vec::new();
-        self.each(c, |s| {
+        self.each(c, &mut (best - slack), |s, least| {
             let h = self.held(s, c);
-            if h >= best - slack {
+            if h >= *least {
                 near.push((h, *s));
             }
         });

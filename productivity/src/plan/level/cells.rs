@@ -368,7 +368,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The cells next to one, across seams too.
-    fn neighbours(&self, k: usize) -> impl Iterator<Item = usize> {
+    pub fn neighbours(&self, k: usize) -> impl Iterator<Item = usize> {
         let n = self.count;
         let (i, j) = (k / n[1], k % n[1]);
         let closes = self.face.rectangle.closes;
@@ -388,7 +388,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Fills cells without a value from their neighbours, ring by ring.
-    fn spread(&self, mut values: Vec<f64>) -> Vec<f64> {
+    pub fn spread(&self, mut values: Vec<f64>) -> Vec<f64> {
         let mut open: Vec<usize> = (0..values.len()).filter(|k| values[*k].is_nan()).collect();
         for _ in 0..self.count[0] + self.count[1] {
             let filled: Vec<(usize, f64)> = open

@@ -7,12 +7,13 @@
 //! umbilics, where a wish turns through half a turn, leave no hole. What cannot be both even and as wished is decided by the
 //! length of path: several starts and trusts are tried and the shortest is kept.
 
+use super::field::Face;
 use super::fit::{Place, Problem};
 use super::spline::Spline;
 use crate::closed_form::{Section, width_37};
 use crate::plan::line::Rectangle;
 use crate::plan::{PlanError, Task};
-use osculate_geom::{Axis, Darboux, Forms, Jet2, Relative, Vec3};
+use osculate_geom::{Axis, Darboux, Forms, Jet2, Relative, Uv, Vec3};
 use rayon::prelude::*;
 
 /// Spans of the spline along the longer side of a face, and fewest along any.
@@ -63,8 +64,17 @@ pub(super) fn width_mm(task: &Task<'_>, jet: &Jet2, forms: &Forms, c: [f64; 2]) 
 impl Place {
     /// Width of the strip whose direction across is `c` in the tangent frame.
     pub fn width_mm(&self, task: &Task<'_>, c: [f64; 2]) -> f64 {
-        width_mm(task, &self.jet, &self.forms, c)
+        self.factor * width_mm(task, &self.jet, &self.forms, c)
     }
+}
+
+/// Width by the closed form of the strip along the level line at a place of a field; None where the field has no slope.
+pub(super) fn closed_width_mm(task: &Task<'_>, face: &Face<'_>, at: Uv) -> Option<f64> {
+    let (_, jet, phi) = face.at(at)?;
+    let (uphill, _) = Face::ascent(&jet, &phi).ok()?;
+    let (left, forms) = (jet.tangent(uphill), jet.forms().ok()?);
+    let c = unit([0, 1].map(|k| left.dot(&forms.frame[k])))?;
+    Some(width_mm(task, &jet, &forms, c))
 }
 
 fn unit(x: [f64; 2]) -> Option<[f64; 2]> {
@@ -140,17 +150,23 @@ fn judged(task: &Task<'_>, problem: &Problem, gradients: &[[f64; 2]]) -> (f64, f
     (narrow.map_or(f64::INFINITY, |s| flux / s.0), (square / area).sqrt())
 }
 
-/// The field of the shortest path that starts along a parameter, among the trusts given.
+/// Wishes of places, and trusts to try them with.
+pub(super) type Wishes<'a> = (&'a dyn Fn(&[Place]) -> Vec<Wish>, &'a [f64]);
+
+/// The field of the shortest path that starts along a parameter, among the trusts given; strips are `factor` times as wide as
+/// their closed form.
 pub(super) fn even(
     task: &Task<'_>,
     grows: Axis,
-    wish: &dyn Fn(&[Place]) -> Vec<Wish>,
-    trusts: &[f64],
+    (wish, trusts): Wishes<'_>,
+    factor: &dyn Fn(Uv) -> f64,
 ) -> Result<Even, PlanError> {
     let nothing = |why: &str| PlanError::Nothing { face: task.face.to_owned(), why: why.to_owned() };
     let rectangle = Rectangle::of(task.surface);
-    let problem = Problem::new(task, &rectangle, spans(task, &rectangle), trusts.iter().all(|t| *t > 0.0))
-        .map_err(|_| nothing("no field can be laid over it: it has no area"))?;
+    let mut problem =
+        Problem::new(task, &rectangle, spans(task, &rectangle), trusts.iter().all(|t| *t > 0.0))
+            .map_err(|_| nothing("no field can be laid over it: it has no area"))?;
+    problem.places.iter_mut().for_each(|p| p.factor = factor(p.jet.uv));
     let wishes = wish(&problem.places);
     trusts
         .iter()

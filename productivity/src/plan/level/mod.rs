@@ -6,6 +6,7 @@
 
 mod band;
 mod cells;
+mod correct;
 mod even;
 mod extended;
 mod field;
@@ -19,11 +20,11 @@ use super::line::Rectangle;
 use super::seat::Seat;
 use super::{Passes, PlanError, Task, Tolerance};
 use cells::Cells;
-use even::{Wish, even};
+use even::{Even, Wish, even};
 use extended::Extended;
 use field::{Face, Height, ScalarField};
 use fit::Place;
-use osculate_geom::{Axis, Diagnostic, Unit3};
+use osculate_geom::{Axis, Diagnostic, Unit3, Uv};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -31,27 +32,39 @@ use std::f64::consts::PI;
 const RUN_OUT: f64 = 1.0;
 
 /// Most of the scallop that the chords of the path may take.
-const CHORD: f64 = 0.08;
+const CHORD: f64 = 0.03;
 
 /// The face continued over its border, for a field that does not close across the seam of the axis `cut`.
 fn continued<'a>(task: &Task<'a>, cut: Option<Axis>) -> Extended<'a> {
     Extended::new(task.surface, RUN_OUT * even::widest_mm(task), cut, Seat::any(task).rough())
 }
 
-/// Passes along the level lines of a field over the continued face.
+/// The task on the continued face, with chords that leave the scallop to the passes: points cost less than passes.
+fn continued_task<'a>(task: &Task<'a>, face: &'a Extended<'_>) -> Task<'a> {
+    let chord_mm = task.tolerance.chord_mm.min(CHORD * task.tolerance.scallop_mm);
+    Task { surface: face, tolerance: Tolerance { chord_mm, ..task.tolerance }, ..*task }
+}
+
+/// A field over a face.
+fn over<'a>(task: &Task<'a>, field: &'a dyn ScalarField) -> Face<'a> {
+    Face { surface: task.surface, rectangle: Rectangle::of(task.surface), field }
+}
+
+/// Passes along the level lines of a field over the continued face; its cells where they are known already.
 fn level_passes(
     task: &Task<'_>,
     face: &Extended<'_>,
     field: &dyn ScalarField,
     name: &str,
+    known: Option<Cells<'_>>,
 ) -> Result<Passes, PlanError> {
-    // On hollow lines chords take from the scallop: points cost less than passes.
-    let chord_mm = task.tolerance.chord_mm.min(CHORD * task.tolerance.scallop_mm);
-    let task = &Task { surface: face, tolerance: Tolerance { chord_mm, ..task.tolerance }, ..*task };
+    let task = &continued_task(task, face);
     (task.progress)(0.2);
     let seat = Seat::any(task);
-    let over = Face { surface: task.surface, rectangle: Rectangle::of(task.surface), field };
-    let cells = Cells::new(&seat, over)?;
+    let cells = match known {
+        Some(cells) => cells,
+        None => Cells::new(&seat, over(task, field))?,
+    };
     (task.progress)(0.4);
     let levels = cells.levels(&seat)?;
     (task.progress)(0.5);
@@ -80,7 +93,7 @@ fn level_passes(
 /// [`PlanError`]; where the face lies level in the planes, [`PlanError::Contact`]: it has no lines there.
 pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
     task.check()?;
-    level_passes(task, &continued(task, None), &Height(normal), "isoplanar")
+    level_passes(task, &continued(task, None), &Height(normal), "isoplanar", None)
 }
 
 /// Passes along the level lines of the even field with the shorter predicted path of those that start along u and along v.
@@ -92,10 +105,10 @@ fn even_passes(
 ) -> Result<Passes, PlanError> {
     let along = |grows: Axis| {
         let face = continued(task, Some(grows));
-        let even = even(&Task { surface: &face, ..*task }, grows, wish, trusts)?;
-        Ok((face, even))
+        let even = even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &|_| 1.0)?;
+        Ok((face, even, grows))
     };
-    let (face, even) = match (along(Axis::U), along(Axis::V)) {
+    let (face, mut even, grows) = match (along(Axis::U), along(Axis::V)) {
         (Ok(u), Ok(v)) => {
             if v.1.length_mm < u.1.length_mm {
                 v
@@ -106,7 +119,32 @@ fn even_passes(
         (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
         (Err(e), Err(_)) => return Err(e),
     };
-    let mut out = level_passes(task, &face, &even.field, name)?;
+    // The field was made with closed forms of the width: where exact strips say something else it is made again.
+    let better = {
+        let fine = &continued_task(task, &face);
+        let seat = Seat::any(fine);
+        let cells = Cells::new(&seat, over(fine, &even.field))?;
+        match cells.correction(&seat).filter(|_| !seat.rough()) {
+            None => {
+                return finished(
+                    level_passes(task, &face, &even.field, name, Some(cells))?,
+                    task,
+                    name,
+                    &even,
+                );
+            }
+            Some(factors) => {
+                let factor = |at: Uv| cells.locate(at).map_or(1.0, |(k, _)| factors[k]);
+                even::even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &factor)
+            }
+        }
+    };
+    even = better?;
+    finished(level_passes(task, &face, &even.field, name, None)?, task, name, &even)
+}
+
+/// Passes with a word about their field.
+fn finished(mut out: Passes, task: &Task<'_>, name: &str, even: &Even) -> Result<Passes, PlanError> {
     out.diagnostics.push(Diagnostic::note(
         task.face,
         format!(
