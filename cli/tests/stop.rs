@@ -129,7 +129,7 @@ fn stopped_at(
 #[test]
 fn a_job_cut_at_half_leaves_no_half_file() {
     let scratch = Scratch::new();
-    let text = long_job().replace("scallop_mm = 0.001", "scallop_mm = 0.0003");
+    let text = long_job().replace("scallop_mm = 0.001", "scallop_mm = 0.0005");
     let (code, message, left) = stopped_at(&scratch, &text, ("plan", 50.0));
     assert_eq!(code, Some(1), "{message}");
     let (name, percent) = stage(&message);
@@ -137,7 +137,8 @@ fn a_job_cut_at_half_leaves_no_half_file() {
     assert!(message.contains("nothing was written") && left.is_empty(), "{message} {left:?}");
 
     let scratch = Scratch::new();
-    let (code, message, left) = stopped_at(&scratch, &long_job(), ("verify", 50.0));
+    let text = long_job().replace("spacing_mm = 0.005", "spacing_mm = 0.015");
+    let (code, message, left) = stopped_at(&scratch, &text, ("verify", 50.0));
     assert_eq!(code, Some(1), "{message}");
     let (name, percent) = stage(&message);
     assert!(name == "verify" && (50.0..=100.0).contains(&percent), "{message}");
