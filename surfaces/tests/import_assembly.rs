@@ -296,3 +296,22 @@ fn rectangles_of_swept_surfaces_are_measured_in_the_parameters_of_the_file() {
         part21::assert_area(&part.faces[0], want);
     }
 }
+
+#[test]
+fn parameter_curves_of_surfaces_of_revolution_are_measured_in_the_parameters_of_the_file() {
+    // A circle of 1 around (3, 0, 0) in the plane y = 0, turned about z: a torus, from 0.5 to 2.5 rad around, 0 to 1 along.
+    let part = read(
+        "#700=CARTESIAN_POINT('',(3.,0.,0.));#701=DIRECTION('',(0.,-1.,0.));#702=AXIS2_PLACEMENT_3D('',#700,#701,#5);\
+         #703=CIRCLE('',#702,1.);#704=AXIS1_PLACEMENT('',#6,#4);#705=SURFACE_OF_REVOLUTION('',#703,#704);\
+         #710=CARTESIAN_POINT('',(0.5,0.));#711=CARTESIAN_POINT('',(2.5,0.));#712=CARTESIAN_POINT('',(2.5,1.));\
+         #713=CARTESIAN_POINT('',(0.5,1.));#714=POLYLINE('',(#710,#711,#712,#713,#710));\
+         #715=(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()REPRESENTATION_CONTEXT('',''));\
+         #716=DEFINITIONAL_REPRESENTATION('',(#714),#715);#717=PCURVE('',#705,#716);\
+         #718=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#717);#719=OUTER_BOUNDARY_CURVE('',(#718),.F.);\
+         #720=CURVE_BOUNDED_SURFACE('',#705,(#719),.F.);#721=GEOMETRIC_SET('',(#720));\
+         #722=SHAPE_REPRESENTATION('',(#721),#3);",
+    );
+    assert_eq!(part.faces.len(), 1, "{}", said(&part));
+    // The integral of 3 + cos v.
+    part21::assert_area(&part.faces[0], 2.0 * (3.0 + 1.0_f64.sin()));
+}

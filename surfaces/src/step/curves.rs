@@ -2,6 +2,7 @@
 
 use super::geometry::{Geometry, MAX_CHAIN, MAX_NESTED, Unread};
 use super::graph::{Args, Record, arg};
+use super::rectangle::Measured;
 use super::units::Units;
 use crate::trim::carrier::FaceSurface;
 use crate::trim::compound::{Compound, Lifted, OffsetCurve};
@@ -125,13 +126,14 @@ impl Geometry<'_> {
             definition.part("DEFINITIONAL_REPRESENTATION").or_else(|| definition.part("REPRESENTATION"));
         let curve = held.and_then(|d| arg(&d, 1).list().references().next());
         let curve = curve.ok_or_else(|| Unread::Malformed { id, what: "a PCURVE without curve".into() })?;
-        let surface = self.surface(self.to(id, &args, 1)?, &[], depth + 1)?.surface;
+        let basis = self.to(id, &args, 1)?;
+        let surface = self.surface(basis, &[], depth + 1)?.surface;
         // Parameters are plain numbers; those that are lengths or angles follow the context's units.
         let plain = Units { length_mm: 1.0, angle_rad: self.units.angle_rad, uncertainty_mm: None };
         let inner = Self { graph: self.graph, units: plain, nested: self.nested.clone() };
         let flat = inner.curve(curve, depth + 1);
         self.nested.set(inner.nested.get());
-        let flat = flat?;
+        let flat = Measured::on(self, basis, flat?)?;
         let scale = surface.parameter_units(self.units.length_mm, self.units.angle_rad);
         let linear = nalgebra::Matrix3::from_diagonal(&Vec3::new(scale[0], scale[1], 1.0));
         let motion = Motion { linear, shift: Vec3::zeros() };

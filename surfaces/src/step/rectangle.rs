@@ -1,4 +1,4 @@
-//! Rectangles of parameters: RECTANGULAR_TRIMMED_SURFACE standing by itself.
+//! Parameters of a file on swept surfaces: of RECTANGULAR_TRIMMED_SURFACE standing by itself, and of parameter curves.
 //!
 //! The file's parameters are those of ISO 10303-42. Swept surfaces become splines with other ones: a spline's arc
 //! is measured in quarters, `s / (1 - s) = sin(t / 2) / sin((pi / 2 - t) / 2)` within each, a line in parts of what of it is
@@ -7,7 +7,7 @@
 use super::geometry::{Geometry, Unread};
 use super::graph::{Args, arg};
 use crate::trim::boundary::Boundary;
-use crate::trim::curve::{Line, Piece};
+use crate::trim::curve::{Curve, Line, Piece};
 use osculate_geom::{Interval, Point3, Surface};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
@@ -41,6 +41,15 @@ impl Map {
         }
     }
 
+    /// The parameter of the file.
+    fn undo(self, t: f64) -> f64 {
+        match self {
+            Self::Scale(unit) => t / unit,
+            Self::Turn(unit) => angle_rad(t) / unit,
+            Self::Line { unit_mm, far_mm } => (2.0 * t - 1.0) * far_mm / unit_mm,
+        }
+    }
+
     /// The period of the file's parameter.
     fn turn(self) -> Option<f64> {
         match self {
@@ -56,6 +65,53 @@ fn quarters(angle_rad: f64) -> f64 {
     let t = angle_rad - whole * FRAC_PI_2;
     let (a, b) = ((0.5 * t).sin(), (0.5 * (FRAC_PI_2 - t)).sin());
     whole + a / (a + b)
+}
+
+/// The angle at a parameter of the full circle as a spline, rad.
+fn angle_rad(quarters: f64) -> f64 {
+    let whole = quarters.floor();
+    let s = quarters - whole;
+    let (sin, cos) = (0.5 * FRAC_PI_2).sin_cos();
+    whole * FRAC_PI_2 + 2.0 * (s * sin).atan2(1.0 - s + s * cos)
+}
+
+/// A curve of parameters of the file in those of a swept surface's spline.
+pub(super) struct Measured {
+    curve: Arc<dyn Curve>,
+    maps: [Map; 2],
+}
+
+impl Measured {
+    /// The curve on a surface of the file; itself where that is no swept one.
+    pub(super) fn on(
+        geometry: &Geometry<'_>,
+        surface: u64,
+        curve: Arc<dyn Curve>,
+    ) -> Result<Arc<dyn Curve>, Unread> {
+        Ok(match swept(geometry, surface, [0.0; 4])? {
+            Some((maps, _)) => Arc::new(Self { curve, maps }),
+            None => curve,
+        })
+    }
+}
+
+impl Curve for Measured {
+    fn point(&self, t: f64) -> Point3 {
+        let p = self.curve.point(t);
+        Point3::new(self.maps[0].apply(p.x), self.maps[1].apply(p.y), p.z)
+    }
+    fn range(&self) -> [f64; 2] {
+        self.curve.range()
+    }
+    fn period(&self) -> Option<f64> {
+        self.curve.period()
+    }
+    fn locate(&self, p: &Point3) -> f64 {
+        self.curve.locate(&Point3::new(self.maps[0].undo(p.x), self.maps[1].undo(p.y), p.z))
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.breaks()
+    }
 }
 
 /// The rectangle of a RECTANGULAR_TRIMMED_SURFACE.
@@ -154,7 +210,6 @@ fn along(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trim::curve::Curve;
     use crate::trim::spline::Spline;
     use osculate_geom::Vec3;
 
@@ -164,6 +219,7 @@ mod tests {
         for k in 0..=40 {
             let angle = TAU * f64::from(k) / 40.0;
             let p = circle.point(quarters(angle));
+            assert!((angle_rad(quarters(angle)) - angle).abs() < 1e-14, "{angle}");
             // Rounding of a unit circle.
             assert!((p - Point3::new(angle.cos(), angle.sin(), 0.0)).norm() < 1e-14, "{angle}");
         }

@@ -365,7 +365,7 @@ fn set(at: &mut Uv, k: usize, value: f64) {
     }
 }
 
-/// The spline through nodes; `None` where it leaves the rectangle of a surface that ends there.
+/// The spline through nodes; `None` where it crosses the seam of a surface that has values only within its rectangle.
 fn spline(ground: &Ground<'_>, nodes: &[Node]) -> Option<NurbsCurve2> {
     let accuracy_mm = ACCURACY * ground.chart.size_mm;
     let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
@@ -401,7 +401,9 @@ fn spline(ground: &Ground<'_>, nodes: &[Node]) -> Option<NurbsCurve2> {
         for p in &mut poles {
             for (k, x) in p.iter_mut().enumerate() {
                 let i = ground.side(k);
-                if *x < i.lo - ON_SIDE * i.length() || *x > i.hi + ON_SIDE * i.length() {
+                let hair = ON_SIDE * i.length();
+                // Where it does not close, the feet have stopped at the side, and a cubic may only swing over.
+                if ground.period[k].is_some() && (*x < i.lo - hair || *x > i.hi + hair) {
                     return None;
                 }
                 *x = x.clamp(i.lo, i.hi);

@@ -16,12 +16,23 @@ pub(super) fn surface(face: &Face, of: &FaceEdges) -> Option<(NurbsSurface, Doma
     match &face.carrier {
         FaceSurface::Nurbs(n) => Some(((**n).clone(), face.domain())),
         FaceSurface::Analytic(a) => {
-            let domain = rectangle(face, of);
+            let domain = match a.shape() {
+                Shape::Plane if face.trimmed() => beyond(face.domain()),
+                _ => rectangle(face, of),
+            };
             Some((analytic(a, domain)?, domain))
         }
         // No spline is exactly an offset of one.
         FaceSurface::Offset(_) => None,
     }
+}
+
+/// A rectangle somewhat larger: an edge that touches its side would have feet beyond it.
+fn beyond(d: Domain) -> Domain {
+    /// Of a side, to both ends.
+    const MARGIN: f64 = 0.01;
+    let wider = |i: Interval| Interval::new(i.at(-MARGIN), i.at(1.0 + MARGIN));
+    Domain { u: wider(d.u), v: wider(d.v) }
 }
 
 /// The face's rectangle; where it closes, from a seam or else from a vertex of the face on.
