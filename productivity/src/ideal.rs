@@ -31,8 +31,6 @@ const LEAST_SIDE: usize = 2;
 const FILL: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 /// Places of it that are tried to find one inside the trims.
 const MOST_TRIES: usize = 60;
-/// Passages of teeth a minute at which their marks need no share of the tolerance.
-const FAST_RPM: f64 = 1e9;
 
 /// Directions and leads of the coarse look, and how far behind the best of it a tool may be, as a factor, to be searched.
 const LOOK_DIRECTIONS: usize = 12;
@@ -209,12 +207,6 @@ pub fn ideal(
 
 fn limits(tool: &Feeding<'_>, tolerance: &Tolerance, tilt: Range) -> Limits {
     let ball = tool.cutter.is_ball();
-    let caps = Caps {
-        spindle_rpm: FAST_RPM,
-        teeth: 1,
-        feed_mm_min: tool.feed_mm_min,
-        feed_per_tooth_mm: f64::INFINITY,
-    };
     Limits {
         scallop_mm: tolerance.scallop_mm,
         gouge_mm: tolerance.gouge_mm,
@@ -225,7 +217,7 @@ fn limits(tool: &Feeding<'_>, tolerance: &Tolerance, tilt: Range) -> Limits {
         },
         tilt: if ball { Range::only(0.0) } else { tilt },
         axis: None,
-        caps,
+        caps: Caps::of_feed(tool.feed_mm_min),
     }
 }
 

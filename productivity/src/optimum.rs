@@ -10,6 +10,7 @@
 //! settles the best few by coordinate searches. It is a heuristic with a measured miss, not a proof.
 
 mod search;
+mod settle;
 
 use crate::closed_form::{Section, width_37};
 use crate::rate::{Caps, CapsError, Rate, Share};

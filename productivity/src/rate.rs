@@ -55,6 +55,14 @@ pub struct Rate {
 }
 
 impl Caps {
+    /// A feed alone: teeth so many that their marks need no share of the tolerance.
+    #[must_use]
+    pub const fn of_feed(feed_mm_min: f64) -> Self {
+        /// Passages of teeth a minute.
+        const FAST_RPM: f64 = 1e9;
+        Self { spindle_rpm: FAST_RPM, teeth: 1, feed_mm_min, feed_per_tooth_mm: f64::INFINITY }
+    }
+
     /// The caps when they are usable.
     ///
     /// # Errors

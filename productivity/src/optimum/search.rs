@@ -10,10 +10,9 @@ use osculate_tools::strip::{Chart, ChartError, StripError, Within};
 use osculate_tools::{Cutter, Lean};
 use std::cmp::Ordering;
 use std::f64::consts::{PI, TAU};
-use std::ops::Range;
 
 /// Directions, leads and tilts of the grid that is ranked.
-const GRID: [usize; 3] = [24, 7, 5];
+pub(super) const GRID: [usize; 3] = [24, 7, 5];
 /// Directions measured at the least lead: rays of the chart, between which it need not interpolate.
 const DIRECTIONS: usize = 36;
 /// Postures of the grid above the least lead that are measured, how many of all enter the rounds of settling, and how many
@@ -21,23 +20,14 @@ const DIRECTIONS: usize = 36;
 const MEASURED: usize = 12;
 const ENTERED: usize = 6;
 const SETTLED: usize = 3;
-/// A neighbour this much lower lies beyond a jump: the strip has met a wave of the part.
-const JUMP: f64 = 0.88;
-const JUMPS: u32 = 2;
-/// Leads tried above an impossible one in the first look, and in each round of settling.
+/// Leads tried above an impossible one in the first look.
 const CLIMBS: u32 = 5;
-const BRINK: u32 = 7;
-/// Rounds of coordinate searches; steps shrink in each.
+/// Rounds of coordinate searches.
 const ROUNDS: i32 = 3;
-const SHRINK: f64 = 0.35;
 /// Error of a chart that is as good as exact, of the tolerance; and what is level with the best exact one on a fine and on a
 /// coarse chart.
 const FINE: f64 = 4e-3;
 const LEVEL: [f64; 2] = [0.995, 0.9];
-/// Error of a chart, of the tolerance, above which its best is settled on exact strips.
-const ROUGH: f64 = 4e-2;
-/// Steps of the last, exact round, of a step of the grid.
-const POLISH: f64 = 0.1;
 /// Radius of the chart, in the cutter's radius: strips are hardly ever wider.
 const REACH: f64 = 1.2;
 /// Misfit of the chart that is accepted, of the tolerance.
@@ -63,7 +53,7 @@ pub(super) struct Search<'a> {
     pub last: Option<StripError>,
 }
 
-type Found = (Posture, Measured);
+pub(super) type Found = (Posture, Measured);
 
 impl<'a> Search<'a> {
     pub(super) fn new(
@@ -114,7 +104,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn measure(&mut self, p: Posture) -> Option<Measured> {
+    pub(super) fn measure(&mut self, p: Posture) -> Option<Measured> {
         if !self.allowed(&p) {
             return None;
         }
@@ -191,8 +181,13 @@ impl<'a> Search<'a> {
         // At the least lead the strip is usually widest and the leading order fails: all of it is measured.
         let mut found = Vec::with_capacity(4 * DIRECTIONS);
         let mut promises: Vec<(Found, f64)> = Vec::with_capacity(4 * DIRECTIONS);
+        // A chart that misses waves of the part says little of them.
+        let coarse = self.chart.error_mm() > FINE * self.limits.scallop_mm;
         for p in self.least_lead() {
-            match self.measure(p) {
+            self.exactly = coarse;
+            let measured = self.measure(p);
+            self.exactly = false;
+            match measured {
                 Some(m) => {
                     found.push((p, m));
                     promises.push(((p, m), self.promise * m.rate.area_mm2_min));
@@ -201,7 +196,7 @@ impl<'a> Search<'a> {
                 None => found.extend(self.brink_above(p, CLIMBS)),
             }
         }
-        let coarse = self.chart.error_mm() > FINE * self.limits.scallop_mm;
+        let surest = found.iter().copied().filter(|_| coarse).min_by(better_first);
         let mut ranked = self.grid();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut tried: Vec<Posture> = Vec::with_capacity(6 * MEASURED);
@@ -231,6 +226,7 @@ impl<'a> Search<'a> {
             // Settling on a coarse chart may have led over a brink that lies elsewhere.
             settled.extend(entered);
         }
+        settled.extend(surest);
         settled.sort_by(better_first);
         // On the chart two may be level that are not, and some better than they are: the best are measured exactly until none
         // of the others can be better. Where the chart is coarse the best is settled once more.
@@ -269,7 +265,7 @@ impl<'a> Search<'a> {
     }
 
     /// The least lead above an impossible posture that leaves a strip: widest where two contacts just hold.
-    fn brink_above(&mut self, from: Posture, climbs: u32) -> Option<Found> {
+    pub(super) fn brink_above(&mut self, from: Posture, climbs: u32) -> Option<Found> {
         let lead = self.limits.lead;
         let at_lead = |lead_rad: f64| Posture { lean: Lean { lead_rad, ..from.lean }, ..from };
         let (mut low, mut high) = (from.lean.lead_rad, None);
@@ -354,95 +350,6 @@ impl<'a> Search<'a> {
             }
         }
         out
-    }
-
-    /// Coordinate searches with shrinking steps, a parabola through three values in each.
-    fn settle(&mut self, from: Found, rounds: Range<i32>) -> Found {
-        let mut best = from;
-        let limits = self.limits;
-        for round in rounds {
-            let shrink = SHRINK.powi(round);
-            let step = [
-                0.5 * TAU / GRID[0] as f64,
-                limits.lead.width() / (GRID[1] - 1) as f64,
-                0.5 * limits.tilt.width() / (GRID[2] - 1) as f64,
-            ]
-            .map(|s| s * shrink);
-            for (k, s) in step.iter().enumerate() {
-                if *s > 0.0 {
-                    best = self.along(best, k, *s);
-                }
-            }
-            // Turning the feed under a tool that keeps its heading: the valley of the strip's width.
-            if limits.tilt.width() > 0.0 {
-                best = self.along(best, 3, step[0]);
-            }
-        }
-        best
-    }
-
-    /// Last rounds, exact: the second of settling, and one with small steps.
-    fn refine(&mut self, from: Found) -> Found {
-        let limits = self.limits;
-        let widths = [TAU / GRID[0] as f64, limits.lead.width() / GRID[1] as f64, limits.tilt.width()];
-        let mut best =
-            if self.chart.error_mm() > ROUGH * limits.scallop_mm { self.settle(from, 1..2) } else { from };
-        for (k, w) in widths.into_iter().enumerate().filter(|(_, w)| *w > 0.0) {
-            best = self.along(best, k, POLISH * w);
-        }
-        best
-    }
-
-    fn moved(&self, p: &Posture, coordinate: usize, by: f64) -> Posture {
-        let mut q = *p;
-        match coordinate {
-            0 => q.direction_rad += by,
-            1 => q.lean.lead_rad = self.limits.lead.clamp(p.lean.lead_rad + by),
-            2 => q.lean.tilt_rad = self.limits.tilt.clamp(p.lean.tilt_rad + by),
-            _ => {
-                q.lean.tilt_rad = self.limits.tilt.clamp(p.lean.tilt_rad - by);
-                q.direction_rad += p.lean.tilt_rad - q.lean.tilt_rad;
-            }
-        }
-        q
-    }
-
-    fn along(&mut self, from: Found, coordinate: usize, step: f64) -> Found {
-        let value = |f: Option<Measured>| f.map_or(0.0, |m| m.rate.area_mm2_min);
-        let better = |a: Found, p: Posture, m: Option<Measured>| match m {
-            Some(m) if m.rate.area_mm2_min > a.1.rate.area_mm2_min => (p, m),
-            _ => a,
-        };
-        let (pa, pb) = (self.moved(&from.0, coordinate, -step), self.moved(&from.0, coordinate, step));
-        let (a, b) = (self.measure(pa), self.measure(pb));
-        let mut best = better(better(from, pa, a), pb, b);
-        if coordinate == 1 && a.is_none() {
-            let brink = self.brink_above(pa, BRINK);
-            best = brink.map_or(best, |(p, m)| better(best, p, Some(m)));
-        }
-        let (fa, f0, fb) = (value(a), from.1.rate.area_mm2_min, value(b));
-        // The best lies at a jump's brink where the slope leads there.
-        for (sign, beyond, other) in [(1.0, fb, fa), (-1.0, fa, fb)] {
-            if beyond >= JUMP * f0 || other >= f0 {
-                continue;
-            }
-            let (mut near, mut far) = (0.0, step);
-            for _ in 0..JUMPS {
-                let by = 0.5 * (near + far);
-                let p = self.moved(&from.0, coordinate, sign * by);
-                let m = self.measure(p);
-                best = better(best, p, m);
-                if value(m) < JUMP * f0 { far = by } else { near = by }
-            }
-        }
-        let bend = fa - 2.0 * f0 + fb;
-        let to = if bend < 0.0 { 0.5 * step * (fa - fb) / bend } else { 0.0 };
-        if to != 0.0 && to.abs() < 2.0 * step {
-            let p = self.moved(&from.0, coordinate, to);
-            let m = self.measure(p);
-            best = better(best, p, m);
-        }
-        best
     }
 
     pub fn binding(&self, p: &Posture, m: &Measured) -> Binding {
