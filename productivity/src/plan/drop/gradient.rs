@@ -22,10 +22,12 @@ use osculate_geom::{Diagnostic, Point3, Surface};
 use rayon::prelude::*;
 
 /// Steps of a line, of the tool's radius, and how short they become where it bends.
-const STEP: f64 = 0.1;
+const STEP: f64 = 0.2;
 const SHORTEST: f64 = 0.01;
 /// The turn over half a step above which it is halved, cosine.
 const BEND: f64 = 0.995;
+/// A contact nearer to the axis than this part of the flat bottom's radius says nothing about the slope.
+const INSIDE: f64 = 0.9;
 /// Directions of contact and of the face's normal that agree this well, cosine, belong to a smooth contact.
 const SMOOTH: f64 = 0.98;
 /// A line goes on over places that others have taken in for so many radii of the tool.
@@ -157,7 +159,7 @@ fn way(ground: &Ground<'_>, c: [f64; 2], before: [f64; 2]) -> Option<[f64; 2]> {
     let n = ground.drops.normal(&rest).map_or([0.0; 3], |n| ground.frame.along(&n));
     let sine = n[0].hypot(n[1]);
     let level = 2.0 * cutter.core_mm() * sine <= LEVEL * design_mm(&ground.task.tolerance);
-    let inside = (at[0] - c[0]).hypot(at[1] - c[1]) < (1.0 - STEP) * cutter.core_mm();
+    let inside = (at[0] - c[0]).hypot(at[1] - c[1]) < INSIDE * cutter.core_mm();
     let (Some(up), false) = (up, level || inside) else { return Some(before) };
     // The face's normal tells the same more exactly, but not where the tool rests on an edge.
     let up = unit([-n[0], -n[1]]).filter(|d| dot(*d, up) > SMOOTH).unwrap_or(up);
