@@ -130,9 +130,39 @@ pub struct LinesArgs {
     /// Where the viewer stands: azimuth from +x towards +y and elevation, degrees; chosen by the face where not given.
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = pair, allow_hyphen_values = true)]
     pub view_deg: Option<[f64; 2]>,
+    /// Best postures of a tool over the face.
+    #[command(flatten)]
+    pub postures: PostureArgs,
     /// Folder for the figures and lines.json.
     #[arg(long)]
     pub out: PathBuf,
+}
+
+/// What the postures of `lines` take.
+#[derive(Debug, Args)]
+pub struct PostureArgs {
+    /// Show the best posture of this tool all over the face: a list of its keys, as in a job's [tool], e.g.
+    /// 'kind = "toroidal", diameter_mm = 12, corner_radius_mm = 2, length_mm = 60'.
+    #[arg(long, value_name = "KEYS")]
+    pub tool: Option<String>,
+    /// Postures: material that may be left, mm.
+    #[arg(long, default_value_t = 0.01)]
+    pub scallop_mm: f64,
+    /// Postures: undercut that may stay, mm.
+    #[arg(long, default_value_t = 0.005)]
+    pub gouge_mm: f64,
+    /// Postures: feed of the contact, mm/min.
+    #[arg(long, default_value_t = 1000.0)]
+    pub feed_mm_min: f64,
+    /// Postures: least and greatest lead, degrees.
+    #[arg(long, value_name = "LEAST,MOST", default_value = "3,40", value_parser = pair, allow_hyphen_values = true)]
+    pub lead_deg: [f64; 2],
+    /// Postures: least and greatest tilt, degrees.
+    #[arg(long, value_name = "LEAST,MOST", default_value = "0,0", value_parser = pair, allow_hyphen_values = true)]
+    pub tilt_deg: [f64; 2],
+    /// Postures: nodes along u and along v.
+    #[arg(long, default_value_t = 20)]
+    pub nodes: usize,
 }
 
 /// What `export` takes.

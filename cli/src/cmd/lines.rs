@@ -1,20 +1,27 @@
 //! `lines`: the characteristic lines of a face as figures and JSON.
 
-use crate::args::LinesArgs;
+use crate::args::{LinesArgs, PostureArgs};
 use crate::failure::{Done, Failure, Outcome};
+use crate::figure::postures::Postures;
 use crate::figure::{self, Panel, Study, Wanted, json, sheet};
 use crate::render::{self, number};
 use crate::report::project::Direction;
 use crate::{output, part};
 use osculate_geom::{Unit3, Vec3};
+use osculate_productivity::optimum::{Limits, Range};
+use osculate_productivity::rate::Caps;
 use osculate_surfaces::lines::{CriticalKind, UmbilicKind};
+use osculate_tools::{Cutter, CutterSpec};
 
 /// Most levels that a figure can tell apart.
 const MOST_LEVELS: usize = 200;
+/// Most nodes of postures along a parameter.
+const MOST_NODES: usize = 200;
 
 /// Runs the verb.
 pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     let wanted = wanted(args)?;
+    let tool = args.postures.tool.as_deref().map(|keys| limits(keys, &args.postures)).transpose()?;
     let loaded = part::whole(part::load(&args.part)?)?;
     let face = loaded.one(args.face.as_deref())?;
     let study = Study::of(&face.surface, face.nurbs(), &wanted)
@@ -30,6 +37,12 @@ pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     let mut files = vec![("figures.svg".to_owned(), figure::page(&study, &scene, &name))];
     for panel in Panel::ALL.into_iter().filter(|p| p.applies(&study)) {
         files.push((format!("{}.svg", panel.file()), figure::single(&study, &scene, panel, &name)));
+    }
+    if let Some((cutter, limits)) = &tool {
+        let postures = Postures::of(&face.surface, cutter, limits, args.postures.nodes)
+            .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
+        files.push(("h-postures.svg".to_owned(), postures.page(&study, &scene, &name)));
+        answer.postures = Some(postures.arrays());
     }
     answer.files = files.iter().map(|(f, _)| f.clone()).chain(["lines.json".to_owned()]).collect();
     for (file, text) in &files {
@@ -59,6 +72,48 @@ fn wanted(args: &LinesArgs) -> Result<Wanted, Failure> {
         return Err(Failure::Usage(format!("--levels {} must be 1 to {MOST_LEVELS}", args.levels)));
     }
     Ok(Wanted { axis, spacing_mm: args.spacing_mm, levels: args.levels })
+}
+
+/// The tool of the postures with what they must keep to.
+fn limits(keys: &str, args: &PostureArgs) -> Result<(Cutter, Limits), Failure> {
+    #[derive(serde::Deserialize)]
+    struct Keys {
+        tool: CutterSpec,
+    }
+    let usage = |e: String| Failure::Usage(format!("--tool '{keys}': {e}"));
+    let Keys { tool: spec } = toml::from_str(&format!("tool = {{ {keys} }}"))
+        .map_err(|e: toml::de::Error| usage(e.message().to_owned()))?;
+    let cutter = Cutter::try_from(spec).map_err(|e| usage(e.to_string()))?;
+    if args.nodes == 0 || args.nodes > MOST_NODES {
+        return Err(Failure::Usage(format!("--nodes {} must be 1 to {MOST_NODES}", args.nodes)));
+    }
+    let range = |name: &str, [least, most]: [f64; 2]| {
+        if least <= most && least > -90.0 && most < 90.0 {
+            Ok(Range { least_rad: least.to_radians(), most_rad: most.to_radians() })
+        } else {
+            Err(Failure::Usage(format!(
+                "{name} {least},{most} must be two angles within 90 degrees, the lesser first"
+            )))
+        }
+    };
+    for (name, x) in [
+        ("--scallop-mm", args.scallop_mm),
+        ("--gouge-mm", args.gouge_mm),
+        ("--feed-mm-min", args.feed_mm_min),
+    ] {
+        if !(x > 0.0 && x.is_finite()) {
+            return Err(Failure::Usage(format!("{name} {x} must be positive and finite")));
+        }
+    }
+    let limits = Limits {
+        scallop_mm: args.scallop_mm,
+        gouge_mm: args.gouge_mm,
+        lead: range("--lead-deg", args.lead_deg)?,
+        tilt: range("--tilt-deg", args.tilt_deg)?,
+        axis: None,
+        caps: Caps::of_feed(args.feed_mm_min),
+    };
+    Ok((cutter, limits))
 }
 
 fn describe(study: &Study, name: &str, files: &[String], args: &LinesArgs) -> String {

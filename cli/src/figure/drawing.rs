@@ -209,6 +209,16 @@ impl Drawing {
         );
     }
 
+    /// SVG in whole pixels at an offset, such as a colour bar.
+    pub fn fragment(&mut self, svg: &str, [x, y]: Place, size: f64) {
+        let _ = writeln!(
+            self.body,
+            "<g transform=\"translate({} {}) scale(10)\" font-size=\"{size}\" color=\"#222\" fill=\"#222\">{svg}</g>",
+            tenths(x),
+            tenths(y)
+        );
+    }
+
     /// The whole file.
     pub fn finish(&self, width: f64, height: f64, title: &str) -> String {
         format!(

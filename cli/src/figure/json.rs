@@ -25,6 +25,9 @@ pub struct Answer {
     ridges: Vec<RidgeLine>,
     parabolic_lines: Vec<Line>,
     asymptotic_lines: Vec<Line>,
+    /// The best postures of a tool, where one is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub postures: Option<super::postures::Arrays>,
     /// The files written.
     pub files: Vec<String>,
 }
@@ -155,6 +158,7 @@ pub fn answer(study: &Study, face: &str) -> Answer {
             .collect(),
         parabolic_lines: study.parabolic.lines.iter().map(|c| line(&c.line)).collect(),
         asymptotic_lines: study.asymptotic.iter().flatten().map(line).collect(),
+        postures: None,
         files: Vec::new(),
     }
 }

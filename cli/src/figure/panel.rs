@@ -170,7 +170,8 @@ fn points(line: &SurfacePolyline) -> impl Iterator<Item = Point3> + '_ {
     line.points.iter().map(|p| p.point).chain(again)
 }
 
-fn seen(scene: &Scene, lines: &[Vec<Point3>]) -> Vec<Vec<Place>> {
+/// The pieces of lines on the face that are seen.
+pub fn seen(scene: &Scene, lines: &[Vec<Point3>]) -> Vec<Vec<Place>> {
     lines.iter().flat_map(|l| scene.visible(l.iter().copied())).collect()
 }
 
@@ -427,7 +428,7 @@ fn critical_marks(
 }
 
 /// The axes and the scale, in the lower corners.
-fn ornaments(d: &mut Drawing, study: &Study, scene: &Scene) {
+pub fn ornaments(d: &mut Drawing, study: &Study, scene: &Scene) {
     let at = [34.0, FRAME[1] + FRAME[3] - 4.0];
     let o = scene.place(&Point3::origin());
     for (axis, name) in [(Vec3::x(), "x"), (Vec3::y(), "y"), (Vec3::z(), "z")] {
