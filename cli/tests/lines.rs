@@ -42,6 +42,31 @@ fn figures_and_json_of_a_gallery_surface() {
     }
 }
 
+/// A ball leaves the same strip anywhere on a plane: 2 sqrt(2 R h - h^2).
+#[test]
+fn postures_of_a_ball_on_a_plane() {
+    let scratch = Scratch::new();
+    let out = scratch.path("plane");
+    let out = out.to_str().unwrap();
+    let plane = "kind = \"plane\", u_range = [0, 20], v_range = [0, 30]";
+    let ball = "kind = \"ball\", diameter_mm = 12, length_mm = 60";
+    let asked = ["--tool", ball, "--scallop-mm", "0.02", "--feed-mm-min", "500", "--nodes", "3", "--json"];
+    let answer = osculate(&[&["lines", "--builtin", plane, "--out", out][..], &asked[..]].concat()).json();
+    let all = &answer["postures"];
+    assert_eq!(all["count"], serde_json::json!([3, 3]));
+    let width = 2.0 * (2.0 * 6.0 * 0.02 - 0.02f64 * 0.02).sqrt();
+    for (key, want) in [("width_mm", width), ("area_mm2_min", 500.0 * width)] {
+        let values = all[key].as_array().unwrap();
+        assert_eq!(values.len(), 9);
+        for v in values {
+            let got = v.as_f64().unwrap();
+            assert!((got - want).abs() < 1e-6 * want, "{key}: {got} for {want}");
+        }
+    }
+    let picture = std::fs::read_to_string(scratch.path("plane").join("h-postures.svg")).unwrap();
+    assert!(picture.starts_with("<svg ") && picture.contains("strip width, with the direction of feed"));
+}
+
 #[test]
 fn the_gallery_is_listed() {
     let all = osculate(&["gallery", "--json"]).json();
@@ -62,6 +87,7 @@ fn mistakes_are_refused() {
         (["--axis", "0,0,0"], 2, "--axis"),
         (["--spacing-mm", "0"], 2, "--spacing-mm"),
         (["--levels", "0"], 2, "--levels"),
+        (["--tool", "kind = \"ball\""], 2, "--tool"),
         (["--face", "F9"], 1, "F9"),
     ] {
         let args = ["lines", "--builtin", "kind = \"m86-1\"", "--out", out, extra[0], extra[1]];
