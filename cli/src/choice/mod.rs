@@ -4,7 +4,9 @@
 //! posted program. The first is taken a level further, or out when it fails there, until the first one is posted. What screening
 //! leaves out is optimistic as a rule (overlaps, links), so that little is missed. Of the leads of one tool and strategy only
 //! the best is open at a time, and each plan of them that fails puts the next one back in the order. A plan that leaves a
-//! little too much is laid out once more for less. Where none holds, tools and strategies that failed least are tried further. The work is bounded by counts, not by time: the same job gives the same choice everywhere.
+//! little too much is laid out once more for less. Where none holds, tools and strategies that failed least are tried further;
+//! around one that holds, leads beside its own and other strategies with its tool are planned for less time. The work is
+//! bounded by counts, not by time: the same job gives the same choice everywhere.
 
 mod candidates;
 mod settle;
@@ -28,6 +30,9 @@ use std::path::Path;
 /// Candidates that are planned at most, and while none is known to hold.
 const MOST_PLANS: usize = 16;
 const MOST_IN_NEED: usize = 28;
+/// Plans around one that holds: with leads beside its own, and with other strategies.
+const MOST_BESIDE: usize = 3;
+const MOST_OTHERS: usize = 3;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
 /// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.
@@ -85,6 +90,16 @@ pub struct Contender {
     pub posted: Posted,
 }
 
+/// The plan that holds and is to be undercut.
+#[derive(Clone, Copy)]
+struct Holder {
+    entry: usize,
+    /// Its time, min.
+    time_min: f64,
+    /// Plans that were made before.
+    plans: usize,
+}
+
 /// The candidates of a job.
 pub struct Choice<'a> {
     faces: &'a JobFaces,
@@ -94,6 +109,7 @@ pub struct Choice<'a> {
     plans: usize,
     /// For each tool the greatest lead at which it dug in, whatever the strategy, rad.
     dug_in_rad: Vec<f64>,
+    holder: Option<Holder>,
 }
 
 /// Areas of the faces to machine, with the faces.
@@ -133,7 +149,7 @@ impl<'a> Choice<'a> {
             })
             .collect();
         let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
-        let choice = Self { faces, jobs, entries, plans: 0, dug_in_rad };
+        let choice = Self { faces, jobs, entries, plans: 0, dug_in_rad, holder: None };
         choice.any_left(job)?;
         Ok(choice)
     }
@@ -167,7 +183,10 @@ impl<'a> Choice<'a> {
 
     /// The candidate to go on with: the first of those that are, within tool and strategy, the best not out.
     fn first(&self) -> Option<usize> {
-        let waiting = |e: &Entry| matches!(e.state, State::Open | State::Planned(_) | State::Posted(_));
+        if let Some(holder) = &self.holder {
+            return self.first_around(holder);
+        }
+        let waiting = Self::waiting;
         let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
         let mut open: Vec<usize> = Vec::new();
         for (k, e) in self.entries.iter().enumerate().filter(|(_, e)| waiting(e)) {
@@ -198,6 +217,43 @@ impl<'a> Choice<'a> {
             let (a, b) = (order(a), order(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         })
+    }
+
+    const fn waiting(entry: &Entry) -> bool {
+        matches!(entry.state, State::Open | State::Planned(_) | State::Posted(_))
+    }
+
+    /// The candidate to go on with that may take less time than one that holds: of its tool and strategy the nearest leads,
+    /// then other strategies, each with its nearest lead and the quickest first.
+    fn first_around(&self, holder: &Holder) -> Option<usize> {
+        let held = self.entries[holder.entry].candidate;
+        let made = self.plans - holder.plans;
+        let order = |e: &Entry| {
+            let c = &e.candidate;
+            let beside = c.strategy == held.strategy;
+            let most = if beside { MOST_BESIDE } else { MOST_BESIDE + MOST_OTHERS };
+            let open = Self::waiting(e) && (e.figures.is_some() || made < most);
+            let wanted = c.tool == held.tool && Self::least_min(e) < holder.time_min;
+            let away =
+                (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs();
+            (open && wanted).then_some((e.figures.is_none(), !beside, away, Self::least_min(e)))
+        };
+        let ranked = self.entries.iter().enumerate().filter_map(|(k, e)| order(e).map(|o| (o, k)));
+        ranked
+            .min_by(|(a, _), (b, _)| {
+                let nearest = (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2));
+                nearest.then(a.3.total_cmp(&b.3))
+            })
+            .map(|(_, k)| k)
+    }
+
+    /// From here on only what may take less time than this contender, which holds, is looked at.
+    pub fn undercut(&mut self, contender: &Contender) {
+        let time_min = contender.posted.time_min();
+        let plans = self.holder.map_or(self.plans, |h| h.plans);
+        if self.holder.is_none_or(|h| time_min < h.time_min) {
+            self.holder = Some(Holder { entry: contender.entry, time_min, plans });
+        }
     }
 
     /// The next contender for verification; None where no candidate is left.

@@ -27,7 +27,8 @@ pub struct Settled {
     pub verified: Verified,
 }
 
-/// Verifies contenders until `enough` hold; the fastest of these is chosen, or where none holds the one that is least off.
+/// Verifies contenders until `enough` hold, and then those around the first that may take less time; the fastest that holds is
+/// chosen, or where none does the one that is least off.
 ///
 /// # Errors
 /// Where no candidate comes as far as verification, with every reason in one table.
@@ -40,7 +41,7 @@ pub fn settle(
 ) -> Result<Settled, Failure> {
     let mut best: Option<(f64, Settled)> = None;
     let (mut holding, mut verified) = (0, 0);
-    while verified < MOST_VERIFIED && holding < enough {
+    while verified < MOST_VERIFIED {
         let Some(contender) = choice.next(out, wall_s, progress)? else { break };
         verified += 1;
         let found = match contender.posted.verify(&contender.job, choice.faces, &contender.planned, wall_s) {
@@ -54,8 +55,12 @@ pub fn settle(
         holding += usize::from(why.is_none());
         let measured = measured(choice, &contender, &found.summary)?;
         choice.record(&contender, measured, why);
+        if holding >= enough && found.summary.within_tolerance {
+            choice.undercut(&contender);
+        }
         let off = off_by(&contender.job, &found.summary)?;
-        if best.as_ref().is_none_or(|b| off < b.0) {
+        let rank = (off, contender.posted.time_min());
+        if best.as_ref().is_none_or(|b| rank < (b.0, b.1.posted.time_min())) {
             let Contender { job, planned, posted, .. } = contender;
             best = Some((off, Settled { job, planned, posted, verified: found }));
         }
