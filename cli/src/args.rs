@@ -141,7 +141,7 @@ pub struct LinesArgs {
 /// What the postures of `lines` take.
 #[derive(Debug, Args)]
 pub struct PostureArgs {
-    /// Show the best posture of this tool all over the face: a list of its keys, as in a job's [tool], e.g.
+    /// Show the best posture of this tool all over the face: a list of its keys, as under `[tool]` of a job:
     /// 'kind = "toroidal", diameter_mm = 12, corner_radius_mm = 2, length_mm = 60'.
     #[arg(long, value_name = "KEYS")]
     pub tool: Option<String>,

@@ -90,7 +90,12 @@ fn of_entry(choice: &Choice<'_>, entry: &Entry, leads: usize) -> Row {
         State::Taken if entry.verified.is_some_and(|v| v.within_tolerance) => (Outcome::Holds, String::new()),
         State::Open => {
             let promise = Choice::least_min(entry);
-            (Outcome::NotPlanned, format!("not planned: strips alone take {promise:.2} min"))
+            let failed = match choice.failures(entry) {
+                0 => String::new(),
+                1 => "another plan of it failed; ".to_owned(),
+                n => format!("{n} other plans of it failed; "),
+            };
+            (Outcome::NotPlanned, format!("not planned: {failed}strips alone take {promise:.2} min"))
         }
         _ => (Outcome::Slower, format!("takes {:.2} min at least", Choice::least_min(entry))),
     };
