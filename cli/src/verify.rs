@@ -16,10 +16,6 @@ const CHECK_COARSER: f64 = 4.0;
 /// Samples across the narrowest usual strip.
 const SAMPLES_ACROSS: f64 = 10.0;
 
-/// A crest is higher than everything within this share of a strip, and within so many samples.
-const CREST: f64 = 0.25;
-const CREST_SAMPLES: f64 = 2.0;
-
 /// The `verification` object of `summary.json` and of `verify --json`.
 #[derive(Debug, Serialize, Clone)]
 pub struct Verification {
@@ -43,8 +39,7 @@ pub struct Verification {
     pub scallop_p99_mm: f64,
     /// Median over the area.
     pub scallop_median_mm: f64,
-    /// Median height of the crests between passes: of the places that nothing stands higher than next to them. Zero where
-    /// samples are too far apart to tell.
+    /// Median height of the crests between passes, on lines across the feed. Zero where none is found.
     pub crest_median_mm: f64,
     /// That over the scallop tolerance.
     pub scallop_use: f64,
@@ -222,13 +217,9 @@ pub fn run(
     let effective = strip * strip / (8.0 * tolerance.scallop_mm);
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
     let mut verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
-    let around_mm = (CREST * strip).max(CREST_SAMPLES * density.spacing_mm);
-    let crest_median_mm = if around_mm > 0.5 * strip {
-        0.0
-    } else {
-        removal::crests(&samples, &cuts, around_mm, limits.uncut_mm)
-    };
     let surfaces: Vec<&dyn Surface> = (0..all.len()).map(surface).collect();
+    let crest_median_mm =
+        removal::crests(&surfaces, &work, &cuts, strip, limits.uncut_mm).map_err(Failure::job)?;
     let wanted = removal::Wanted {
         uncut_mm: limits.uncut_mm,
         enough_mm: limits.scallop_mm,

@@ -1,9 +1,12 @@
 //! From standoffs to verdicts.
 
-use crate::common::sample;
+use crate::common::{ball, sample, through, upright};
+use osculate_geom::analytic::Plane;
+use osculate_geom::{Domain, Interval};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use osculate_tools::removal::{
-    Body, By, Cut, Density, JudgeError, Kind, Limits, Sample, Swept, Touch, Verdict, crests, judge,
+    Body, By, Cut, Density, Job, JudgeError, Kind, Limits, Sample, Swept, Touch, Verdict, crests, cut, judge,
+    sample_surface,
 };
 
 const DENSITY: Density = Density { spacing_mm: 0.1, convex_per_mm: 0.0 };
@@ -41,30 +44,49 @@ fn quantiles_go_by_area() {
     assert!(!judged(&samples, &cuts).within);
 }
 
-/// Parabolic strips of three widths side by side: most of the area stands at a quarter, the ridges at the full height.
+/// Passes of a ball on a plane: two of them meet at `R - sqrt(R^2 - (w/2)^2)` above it, whatever the spacing of the samples.
 #[test]
-fn crests_are_the_ridges_whatever_the_width_of_strips() {
-    const HIGH: f64 = 0.008;
-    let mut samples = Vec::new();
-    let mut cuts = Vec::new();
-    for (k, width) in [1.0, 1.7, 3.1].into_iter().enumerate() {
-        for i in 0..300 {
-            for j in 0..60 {
-                let [x, y] = [0.1 * f64::from(i), 0.1 * f64::from(j)];
-                samples.push(sample([x, y + 100.0 * k as f64, 0.0], [0.0, 0.0, 1.0]));
-                let off = 2.0 * ((x / width).fract() - 0.5);
-                cuts.push(cut_to(HIGH * off * off));
-            }
+fn crests_are_the_ridges_between_passes() {
+    let cutter = ball(10.0);
+    let square = Interval::new(0.0, 20.0);
+    let plane = Plane::new(Domain { u: square, v: square });
+    let high = |width: f64| 5.0 - (25.0 - 0.25 * width * width).sqrt();
+    // To and fro, two narrow strips to three wide ones.
+    let (mut poses, mut y) = (Vec::new(), 0.3);
+    for k in 0.. {
+        let [a, b] = if k % 2 == 0 { [-5.0, 25.0] } else { [25.0, -5.0] };
+        poses.extend([upright(a, y, 0.0), upright(b, y, 0.0)]);
+        y += if k % 5 < 2 { 0.4 } else { 0.7 };
+        if y > 20.0 {
+            break;
         }
     }
-    let found = crests(&samples, &cuts, 0.3, 0.05);
-    // A ridge is seen from half a sample away at worst: 0.05 of half a width of 0.5.
-    assert!(found <= HIGH && found > 0.8 * HIGH, "{found}");
-    assert!(judged(&samples, &cuts).median_mm < 0.3 * HIGH);
-    // What was never touched is no crest, nor are check faces.
-    cuts.iter_mut().for_each(|c| c.by = None);
-    assert_eq!(crests(&samples, &cuts, 0.3, 0.05), 0.0);
-    assert_eq!(crests(&samples, &cuts, f64::NAN, 0.05), 0.0);
+    let motions = through(&poses);
+    for spacing in [0.25, 1.3] {
+        let found = sample_surface(&plane, 0, spacing, 10_000).unwrap();
+        let job = |samples| Job {
+            cutter: &cutter,
+            holder: None,
+            motions: &motions,
+            samples,
+            stock_mm: 1.0,
+            depth_mm: 2.0,
+        };
+        let (samples, with) = (&found.samples, job(&found.samples));
+        let cuts = cut(&with, &|_| ()).unwrap();
+        // Rays are a thirtieth of a strip apart; what parabolas leave of a circle's fourth order lies far below.
+        let median = crests(&[&plane], &with, &cuts, 0.6, 0.05).unwrap();
+        assert!((median - high(0.7)).abs() < 1e-6, "{median} want {}", high(0.7));
+        assert_eq!(crests(&[&plane], &with, &cuts, f64::NAN, 0.05).unwrap(), 0.0);
+        // Check faces have none, nor what was never touched, nor one pass alone.
+        let check: Vec<Sample> = samples.iter().map(|s| Sample { check_only: true, ..*s }).collect();
+        assert_eq!(crests(&[&plane], &job(&check), &cuts, 0.6, 0.05).unwrap(), 0.0);
+        let bare: Vec<Cut> = cuts.iter().map(|c| Cut { by: None, ..*c }).collect();
+        assert_eq!(crests(&[&plane], &with, &bare, 0.6, 0.05).unwrap(), 0.0);
+        let one = Job { motions: &motions[..1], ..with };
+        let cuts = cut(&one, &|_| ()).unwrap();
+        assert_eq!(crests(&[&plane], &one, &cuts, 0.6, 0.05).unwrap(), 0.0);
+    }
 }
 
 #[test]
@@ -159,7 +181,7 @@ fn nonsense_is_refused() {
 
 #[test]
 fn a_path_becomes_motions() {
-    let at = |x: f64| crate::common::upright(x, 0.0, 0.0);
+    let at = |x: f64| upright(x, 0.0, 0.0);
     let go = |x: f64, motion: Motion| ClMove { pose: at(x), motion };
     let path = ClPath {
         moves: vec![go(0.0, Motion::Rapid), go(1.0, Motion::Feed(100.0)), go(2.0, Motion::Rapid)],
