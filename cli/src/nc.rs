@@ -178,7 +178,7 @@ pub fn setup(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<
                 notes.push(Diagnostic::note(
                     "setup",
                     format!(
-                        "the part is turned so that its faces look up: rotate_deg = [{:.3}, {:.3}, {:.3}]",
+                        "the part is turned so that the tool's axes look up: rotate_deg = [{:.3}, {:.3}, {:.3}]",
                         x.to_degrees(),
                         y.to_degrees(),
                         z.to_degrees()

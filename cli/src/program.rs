@@ -9,7 +9,7 @@ use crate::progress::Stage;
 use crate::report_fill::Extras;
 use crate::rough;
 use crate::verify::{self, Verified};
-use osculate_geom::Diagnostic;
+use osculate_geom::{Diagnostic, Unit3};
 use osculate_productivity::plan::{Linked, Passes};
 use osculate_tools::Lean;
 use serde::Serialize;
@@ -67,7 +67,7 @@ impl Posted {
     ) -> Result<Self, Failure> {
         let (control, control_notes) = nc::control(job)?;
         let stage = Stage::begin("post");
-        let (setup, setup_notes) = nc::setup(job, faces, &planned.extras.axes)?;
+        let (setup, setup_notes) = nc::setup(job, faces, &axes_of(planned))?;
         let cl = passes::cl_path(job, &planned.linked)?;
         let title = passes::title(job);
         let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
@@ -107,6 +107,26 @@ impl Posted {
         wall_s.verify += stage.end();
         Ok(verified)
     }
+}
+
+/// Tool axes that are looked at for a setup.
+const AXES: usize = 4000;
+
+/// Axes of the tool along the path, for a setup in which they look up.
+fn axes_of(planned: &Planned<'_>) -> Vec<Unit3> {
+    if !planned.extras.axes.is_empty() {
+        return planned.extras.axes.clone();
+    }
+    let linked = &planned.linked;
+    let cutting: Vec<Unit3> = linked
+        .path
+        .moves
+        .iter()
+        .zip(&linked.pass_of_move)
+        .filter(|(_, pass)| pass.is_some())
+        .map(|(m, _)| m.pose.axis)
+        .collect();
+    cutting.iter().step_by(cutting.len().div_ceil(AXES).max(1)).copied().collect()
 }
 
 /// The strip that samples must resolve: the width that nine tenths of the path exceed.

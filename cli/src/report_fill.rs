@@ -361,6 +361,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
                         number(v.hidden_gouge_mm, 2)
                     ),
                 ),
+                ("within tolerance there too", if v.certain { "yes" } else { "not shown" }.to_owned()),
                 ("scallop max", format!("{:.5} mm", v.scallop_max_mm)),
                 ("scallop p99", format!("{:.5} mm", v.scallop_p99_mm)),
                 ("scallop median", format!("{:.5} mm", v.scallop_median_mm)),

@@ -22,8 +22,8 @@ pub struct Suggestion {
 /// The setup for faces with these outward normals (a sample of them) and points.
 ///
 /// The part stays as its file has it where no normal is further than about 100 degrees from +z or where the normals
-/// look to all sides; else it is turned so that the axis direction nearest to the mean normal points up, or the mean
-/// normal itself where that leaves a normal lower.
+/// look to all sides; else it is turned so that the axis direction nearest to the mean normal points up, or where that
+/// leaves a normal lower, the mean normal or the axis of the narrowest cone around all normals, whichever leaves them higher.
 #[must_use]
 pub fn suggest(normals: &[Unit3], points: &[Point3], gauge_length_mm: f64) -> Suggestion {
     let rotation = turn(normals);
@@ -42,6 +42,21 @@ pub fn suggest(normals: &[Unit3], points: &[Point3], gauge_length_mm: f64) -> Su
     Suggestion { setup: Setup { part_zero, gauge_length_mm }, turned: is_turned }
 }
 
+/// Steps towards the axis of the narrowest cone; what is left of the way falls with their number.
+const CONE_STEPS: u32 = 400;
+
+/// The axis of about the narrowest cone around directions that lie within a half space, from a first guess: the middle of
+/// the smallest ball around their ends, by ever shorter steps towards the furthest.
+fn cone_axis(normals: &[Unit3], first: Vec3) -> Vec3 {
+    let mut middle = first;
+    for k in 1..=CONE_STEPS {
+        let away = |n: &&Unit3| (n.into_inner() - middle).norm_squared();
+        let Some(far) = normals.iter().max_by(|a, b| away(a).total_cmp(&away(b))) else { break };
+        middle += (far.into_inner() - middle) / f64::from(k + 1);
+    }
+    middle.try_normalize(1e-6).unwrap_or(first)
+}
+
 fn turn(normals: &[Unit3]) -> UnitQuaternion<f64> {
     let lowest = |up: &Vec3| normals.iter().map(|n| n.angle(up)).fold(0.0, f64::max);
     let mean: Vec3 = normals.iter().map(|n| n.into_inner()).sum::<Vec3>() / normals.len().max(1) as f64;
@@ -52,7 +67,14 @@ fn turn(normals: &[Unit3]) -> UnitQuaternion<f64> {
     let main = mean.iamax();
     let mut axis = Vec3::zeros();
     axis[main] = mean[main].signum();
-    let up = if lowest(&axis) <= STANDS { axis } else { mean.normalize() };
+    let (mean, cone) = (mean.normalize(), cone_axis(normals, mean.normalize()));
+    let up = if lowest(&axis) <= STANDS {
+        axis
+    } else if lowest(&cone) < lowest(&mean) {
+        cone
+    } else {
+        mean
+    };
     if lowest(&up) >= stands {
         return UnitQuaternion::identity();
     }
@@ -84,6 +106,14 @@ mod tests {
             let low = points.iter().map(|p| (s.setup.part_zero * p).z).fold(f64::INFINITY, f64::min);
             assert!(low.abs() < 1e-12);
         }
+        // Many look one way, one far aside: what is up is between the two, not the mean.
+        let mut skew = vec![unit(0.0, 0.0, -1.0); 40];
+        skew.push(unit(1.0, 0.0, 0.5));
+        let s = suggest(&skew, &points, 50.0);
+        let height = |n: &Unit3| (s.setup.part_zero.rotation * n.into_inner()).z;
+        let (least, half) =
+            (skew.iter().map(height).fold(1.0, f64::min), (0.5 * skew[0].angle(&skew[40])).cos());
+        assert!(s.turned && (least - half).abs() < 0.01, "{least} {half}");
         // All around a post: as it stands.
         let around: Vec<Unit3> = (0..12)
             .map(|k| {

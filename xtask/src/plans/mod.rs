@@ -196,7 +196,7 @@ impl<'a> Options<'a> {
     }
 }
 
-/// Plans every case whose name has the text in it and writes the page where that is all of them.
+/// Plans every case whose name has the text in it, and writes the page after each.
 pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let root = root()?;
     let (data, only) = (options.data.unwrap_or("."), options.only);
@@ -211,11 +211,56 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     if options.speed {
         return speed::run(&program, &root);
     }
-    let mut page = String::from(HEAD);
+    let to = root.join("docs/plans.md");
+    let mut made: Vec<&str> = Vec::new();
     for case in CASES.iter().filter(|c| c.name.contains(only)) {
-        page.push_str(&one(case, &program, &data, &root)?);
+        let rows = one(case, &program, &data, &root)?;
+        made.push(case.name);
+        // After each case, as all of them take long: what was made so far stays.
+        let before = std::fs::read_to_string(&to).unwrap_or_default();
+        write(&to, &page(&before, case.name, &rows, &made))?;
     }
-    if only.is_empty() { write(&root.join("docs/plans.md"), &(page + FIGURES)) } else { Ok(()) }
+    Ok(())
+}
+
+/// The page with new rows of a case; rows of other cases stay, and those that this run has not made are named.
+fn page(before: &str, name: &str, rows: &str, made: &[&str]) -> String {
+    let (mut table, mut kept, mut missing) = (String::new(), Vec::new(), Vec::new());
+    for case in &CASES {
+        let old = rows_of(before, case.name);
+        if case.name == name {
+            table.push_str(rows);
+        } else if old.is_empty() {
+            missing.push(case.name);
+        } else {
+            table.push_str(&old);
+            if !made.contains(&case.name) {
+                kept.push(case.name);
+            }
+        }
+    }
+    let list = |what: &str, names: &[&str]| match names {
+        [] => String::new(),
+        names => format!("\n{what}: {}.\n", names.join("; ")),
+    };
+    let notes = list("Rows of an earlier run", &kept) + &list("Not in the table yet", &missing);
+    format!("{HEAD}{table}{notes}{FIGURES}")
+}
+
+/// The rows of a case on a page, with their line of shares.
+fn rows_of(page: &str, name: &str) -> String {
+    let start = format!("| {name} | ");
+    let mut out = String::new();
+    let mut inside = false;
+    for line in page.lines() {
+        // The line of shares belongs to the rows above it.
+        inside = line.starts_with(&start) || (inside && line.starts_with("| | "));
+        if inside {
+            out.push_str(line);
+            out.push('\n');
+        }
+    }
+    out
 }
 
 /// The rows of a case.
@@ -376,4 +421,22 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
 fn write(to: &Path, text: &str) -> Result<(), Failure> {
     let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
     made.and_then(|()| std::fs::write(to, text)).map_err(|why| Failure::Write { path: to.to_path_buf(), why })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_other_cases_stay_on_the_page() {
+        let rows = |of: &str, time: &str| format!("| {of} | auto | {time} |\n| | *share* | 1.00 |\n");
+        let first = page("", "m86-2", &rows("m86-2", "1"), &["m86-2"]);
+        let second = page(&first, "m86-1", &rows("m86-1", "2"), &["m86-1"]);
+        assert_eq!(rows_of(&second, "m86-1"), rows("m86-1", "2"));
+        assert_eq!(rows_of(&second, "m86-2"), rows("m86-2", "1"));
+        assert!(second.contains("Rows of an earlier run: m86-2.") && second.contains("impeller hub"));
+        let third = page(&second, "m86-2", &rows("m86-2", "3"), &["m86-1", "m86-2"]);
+        assert!(third.contains("| m86-2 | auto | 3 |") && !third.contains("| m86-2 | auto | 1 |"));
+        assert!(!third.contains("earlier run"));
+    }
 }
