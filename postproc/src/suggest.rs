@@ -3,12 +3,10 @@
 
 use crate::setup::Setup;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
-use osculate_geom::{Box3, Point3, Unit3, Vec3};
+use osculate_geom::{Box3, Point3, Unit3, Vec3, any_perpendicular};
 
 /// Up to this angle from the spindle faces are left as they stand, rad: with usual leads tables still reach them.
 const STANDS: f64 = 1.75;
-/// A mean normal shorter than this points nowhere: the faces look to all sides.
-const ALL_ROUND: f64 = 0.2;
 
 /// A suggested setup.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,9 +19,10 @@ pub struct Suggestion {
 
 /// The setup for faces with these outward normals (a sample of them) and points.
 ///
-/// The part stays as its file has it where no normal is further than about 100 degrees from +z or where the normals
-/// look to all sides; else it is turned so that the axis direction nearest to the mean normal points up, or where that
-/// leaves a normal lower, the mean normal or the axis of the narrowest cone around all normals, whichever leaves them higher.
+/// The part stays as its file has it where no normal is further than about 100 degrees from +z, or 112 where they look to
+/// all sides; else it is turned so that the axis direction nearest to the mean normal points up, or the mean normal itself,
+/// where that leaves none further, or else the direction that is nearest to all of them. Where nothing is better than how
+/// it stands, it stays.
 #[must_use]
 pub fn suggest(normals: &[Unit3], points: &[Point3], gauge_length_mm: f64) -> Suggestion {
     let rotation = turn(normals);
@@ -42,38 +41,77 @@ pub fn suggest(normals: &[Unit3], points: &[Point3], gauge_length_mm: f64) -> Su
     Suggestion { setup: Setup { part_zero, gauge_length_mm }, turned: is_turned }
 }
 
-/// Steps towards the axis of the narrowest cone; what is left of the way falls with their number.
-const CONE_STEPS: u32 = 400;
+/// A mean normal shorter than this points nowhere: the faces look to all sides, and then up to this angle tables reach them, rad.
+const ALL_ROUND: f64 = 0.2;
+const REACHES: f64 = 1.95;
 
-/// The axis of about the narrowest cone around directions that lie within a half space, from a first guess: the middle of
-/// the smallest ball around their ends, by ever shorter steps towards the furthest.
-fn cone_axis(normals: &[Unit3], first: Vec3) -> Vec3 {
-    let mut middle = first;
-    for k in 1..=CONE_STEPS {
-        let away = |n: &&Unit3| (n.into_inner() - middle).norm_squared();
-        let Some(far) = normals.iter().max_by(|a, b| away(a).total_cmp(&away(b))) else { break };
-        middle += (far.into_inner() - middle) / f64::from(k + 1);
+/// Directions all over the sphere that are tried, and how often the search around the best of them narrows.
+const DIRECTIONS: u32 = 400;
+const NARROWINGS: u32 = 40;
+
+/// About the direction from which the furthest of some others is least far, even where they go more than half around: along
+/// the pole of a belt of normals, as blades stand.
+fn nearest_to_all(normals: &[Unit3]) -> Vec3 {
+    // How far down the lowest one is, seen along a direction.
+    let least = |up: &Vec3| normals.iter().map(|n| n.dot(up)).fold(f64::INFINITY, f64::min);
+    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let spread = (0..DIRECTIONS).map(|k| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(DIRECTIONS);
+        let (s, c) = (golden * f64::from(k)).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new(r * c, r * s, z)
+    });
+    let mut best = (f64::NEG_INFINITY, Vec3::z());
+    for up in spread {
+        let value = least(&up);
+        if value > best.0 {
+            best = (value, up);
+        }
     }
-    middle.try_normalize(1e-6).unwrap_or(first)
+    let mut step = 0.1;
+    for _ in 0..NARROWINGS {
+        let up = Unit3::new_normalize(best.1);
+        let (e, f) = any_frame(&up);
+        let around = (0..8).map(|k| {
+            let (s, c) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+            (best.1 + (e * c + f * s) * step).normalize()
+        });
+        let (value, next) = around
+            .map(|d| (least(&d), d))
+            .fold((f64::NEG_INFINITY, best.1), |a, b| if b.0 > a.0 { b } else { a });
+        if value > best.0 {
+            best = (value, next);
+        } else {
+            step *= 0.5;
+        }
+    }
+    best.1
+}
+
+/// Two directions across one.
+fn any_frame(up: &Unit3) -> (Vec3, Vec3) {
+    let e = any_perpendicular(up).into_inner();
+    (e, up.cross(&e))
 }
 
 fn turn(normals: &[Unit3]) -> UnitQuaternion<f64> {
     let lowest = |up: &Vec3| normals.iter().map(|n| n.angle(up)).fold(0.0, f64::max);
     let mean: Vec3 = normals.iter().map(|n| n.into_inner()).sum::<Vec3>() / normals.len().max(1) as f64;
     let stands = lowest(&Vec3::z());
-    if stands <= STANDS || mean.norm() < ALL_ROUND {
+    let all_round = mean.norm() < ALL_ROUND;
+    if stands <= if all_round { REACHES } else { STANDS } {
         return UnitQuaternion::identity();
     }
     let main = mean.iamax();
     let mut axis = Vec3::zeros();
     axis[main] = mean[main].signum();
-    let (mean, cone) = (mean.normalize(), cone_axis(normals, mean.normalize()));
+    let mean = mean.try_normalize(ALL_ROUND).unwrap_or(axis);
     let up = if lowest(&axis) <= STANDS {
         axis
-    } else if lowest(&cone) < lowest(&mean) {
-        cone
-    } else {
+    } else if lowest(&mean) <= STANDS {
         mean
+    } else {
+        nearest_to_all(normals)
     };
     if lowest(&up) >= stands {
         return UnitQuaternion::identity();
@@ -106,14 +144,17 @@ mod tests {
             let low = points.iter().map(|p| (s.setup.part_zero * p).z).fold(f64::INFINITY, f64::min);
             assert!(low.abs() < 1e-12);
         }
-        // Many look one way, one far aside: what is up is between the two, not the mean.
-        let mut skew = vec![unit(0.0, 0.0, -1.0); 40];
-        skew.push(unit(1.0, 0.0, 0.5));
-        let s = suggest(&skew, &points, 50.0);
+        // Three quarters around, as the normals of a blade that lies on its side: it stands up.
+        let lies: Vec<Unit3> = (0..=90)
+            .map(|k| {
+                let (s, c) = (f64::from(3 * k - 45).to_radians()).sin_cos();
+                unit(0.1, c, -s)
+            })
+            .collect();
+        let s = suggest(&lies, &points, 50.0);
         let height = |n: &Unit3| (s.setup.part_zero.rotation * n.into_inner()).z;
-        let (least, half) =
-            (skew.iter().map(height).fold(1.0, f64::min), (0.5 * skew[0].angle(&skew[40])).cos());
-        assert!(s.turned && (least - half).abs() < 0.01, "{least} {half}");
+        let least = lies.iter().map(height).fold(1.0, f64::min);
+        assert!(s.turned && least > -0.01, "{least}");
         // All around a post: as it stands.
         let around: Vec<Unit3> = (0..12)
             .map(|k| {
