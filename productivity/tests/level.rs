@@ -92,7 +92,11 @@ fn parallel_planes_on_round_faces() {
     Job::new(ball(8.0), 0.1).holds("sphere", &cap, &isoplanar([0.0, 0.0, 1.0]));
     let groove = Flipped(patch(Torus::new(200.0, 60.0).unwrap(), [0.0, 0.1], [2.9, 3.3]));
     let spec = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 2.0, length_mm: 60.0 };
-    Job::new(Cutter::try_from(spec).unwrap(), 0.25).holds("groove", &groove, &isoplanar([0.0, 0.1, 1.0]));
+    let wide = Job::new(Cutter::try_from(spec).unwrap(), 0.25);
+    wide.holds("groove", &groove, &isoplanar([0.0, 0.1, 1.0]));
+    // Level along its lowest line: one level has a pass on either side of it.
+    let valley = Flipped(patch(Torus::new(200.0, 60.0).unwrap(), [0.0, 0.06], [4.5, 5.0]));
+    wide.holds("valley", &valley, &isoplanar([0.0, 0.0, 1.0]));
 }
 
 #[test]

@@ -23,8 +23,8 @@ use rayon::prelude::*;
 const COVER_ROWS: i32 = 10;
 /// How far on a pass may lie is asked at every so many columns first.
 const ASKED_STRIDE: usize = 12;
-/// Strip width and undercut are computed at every so many columns of a pass.
-const WIDTH_STRIDE: usize = 4;
+/// Strip width is computed at every so many columns of a pass.
+const WIDTH_STRIDE: usize = 8;
 
 /// One pass to be: the fixed parameter, its direction, and what is known along it.
 struct Level {
@@ -55,20 +55,17 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     task.check()?;
     let layout = match along {
         Along::Fixed(axis) => lay_out(task, axis)?,
-        Along::Auto => {
-            let (u, v) = (lay_out(task, Axis::U), lay_out(task, Axis::V));
-            match (u, v) {
-                (Ok(u), Ok(v)) => {
-                    if v.length_mm < u.length_mm {
-                        v
-                    } else {
-                        u
-                    }
+        Along::Auto => match rayon::join(|| lay_out(task, Axis::U), || lay_out(task, Axis::V)) {
+            (Ok(u), Ok(v)) => {
+                if v.length_mm < u.length_mm {
+                    v
+                } else {
+                    u
                 }
-                (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
-                (Err(e), Err(_)) => return Err(e),
             }
-        }
+            (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
+            (Err(e), Err(_)) => return Err(e),
+        },
     };
     let done = std::sync::atomic::AtomicUsize::new(0);
     let total = layout.levels.len();

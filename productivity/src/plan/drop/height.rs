@@ -190,14 +190,16 @@ impl<'a> Drops<'a> {
         &self.seeds[self.first[row + across.start] as usize..self.first[row + across.end] as usize]
     }
 
-    /// No seed of the bin holds the tip over `c` higher than this.
-    fn at_most(&self, [i, j]: [usize; 2], c: [f64; 2]) -> f64 {
-        let off = |k: usize, bin: usize| {
-            let from = self.lo[k] + bin as f64 * self.cell;
-            (from - c[k]).max(c[k] - from - self.cell).max(0.0)
-        };
-        let [high, long] = self.top[j * self.n[0] + i];
-        let near = (off(0, i).hypot(off(1, j)) - long).max(0.0);
+    /// How far a bin lies beside `x`.
+    fn beside(&self, side: usize, bin: usize, x: f64) -> f64 {
+        let from = self.lo[side] + bin as f64 * self.cell;
+        (from - x).max(x - from - self.cell).max(0.0)
+    }
+
+    /// No seed of a bin so far away holds the tip higher than this.
+    fn at_most(&self, bin: usize, [dx, dy]: [f64; 2]) -> f64 {
+        let [high, long] = self.top[bin];
+        let near = ((dx * dx + dy * dy).sqrt() - long).max(0.0);
         let q = (near / self.cutter.radius_mm() * TABLE as f64) as usize;
         high - self.lower.get(q).copied().unwrap_or(f64::INFINITY)
     }
@@ -206,8 +208,9 @@ impl<'a> Drops<'a> {
     fn each(&self, c: [f64; 2], floor: &mut f64, mut f: impl FnMut(&Seed, &mut f64)) {
         let across = self.bins(0, c[0]);
         for j in self.bins(1, c[1]) {
+            let dy = self.beside(1, j, c[1]);
             for i in across.clone() {
-                if self.at_most([i, j], c) >= *floor {
+                if self.at_most(j * self.n[0] + i, [self.beside(0, i, c[0]), dy]) >= *floor {
                     self.of_row(j, i..i + 1).iter().for_each(|s| f(s, floor));
                 }
             }

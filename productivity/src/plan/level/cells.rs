@@ -6,11 +6,12 @@
 //! `f + up`: the least of these over the cells is taken. No order of the passes along the face is needed, so that level
 //! lines may close, part and join.
 
+use super::even::closed_width_mm;
 use super::field::Face;
 use super::reach::reach;
 use crate::plan::line::Rectangle;
 use crate::plan::seat::Seat;
-use crate::plan::{MAX_PASSES, PlanError};
+use crate::plan::{MAX_PASSES, PlanError, Task};
 use osculate_geom::line::LineError;
 use osculate_geom::{Axis, Surface, Uv, uv};
 use rayon::prelude::*;
@@ -60,6 +61,11 @@ pub(super) struct Cell {
 impl Cell {
     pub fn inside(&self) -> bool {
         self.low <= self.high
+    }
+
+    /// Whether the field has an extreme of the face here.
+    pub fn at_extreme(&self) -> bool {
+        self.floor == self.low || self.peak == self.high
     }
 }
 
@@ -303,26 +309,36 @@ impl<'a> Cells<'a> {
             }
         }
         for k in 0..self.cells.len() {
-            self.bound_extreme(k);
+            self.bound_extreme(task, k);
         }
         Ok(())
     }
 
     /// Where the field has an extreme its slope fades, and reaches from the middle of the cell say nothing: the pass next to it
     /// must lie within half a strip of the extreme itself.
-    fn bound_extreme(&mut self, k: usize) {
+    fn bound_extreme(&mut self, task: &Task<'_>, k: usize) {
         let c = self.cells[k];
-        // Where the slope fades the widths of the cells around are the sound ones.
-        let width = self
-            .neighbours(k)
-            .map(|m| &self.cells[m])
-            .filter(|c| c.inside())
-            .map(|c| (c.up + c.down) / c.slope_per_mm)
-            .fold(f64::INFINITY, f64::min);
-        let half = CLOSE * 0.5 * width.min((c.up + c.down) / c.slope_per_mm);
+        if !c.inside() || !c.at_extreme() {
+            return;
+        }
+        // Where the slope fades reaches over it are no widths: the closed form bounds those of the cells around.
+        let width = |m: usize| {
+            let c = &self.cells[m];
+            let at = place(
+                &self.face,
+                self.count,
+                (m / self.count[1]) as f64 + 0.5,
+                (m % self.count[1]) as f64 + 0.5,
+            );
+            let closed = closed_width_mm(task, &self.face, at).unwrap_or(f64::INFINITY);
+            closed.min((c.up + c.down) / c.slope_per_mm)
+        };
+        let around = self.neighbours(k).filter(|m| self.cells[*m].inside());
+        let width = around.map(width).fold(width(k), f64::min);
+        let half = CLOSE * 0.5 * width;
         let (i, j) = ((k / self.count[1]) as f64, (k % self.count[1]) as f64);
         for (sign, extreme) in [(1.0, c.floor == c.low), (-1.0, c.peak == c.high)] {
-            if !c.inside() || !extreme {
+            if !extreme {
                 continue;
             }
             let value = |at: Uv| self.face.at(at).map(|(_, jet, phi)| (sign * phi.value, at, jet));

@@ -8,7 +8,7 @@ use super::cells::{Cells, place};
 use super::even::closed_width_mm;
 use crate::plan::seat::Seat;
 
-/// Root mean square of the quotient about its mean below which a field is even enough.
+/// Root mean square of the spacing that passes may have, about its mean, below which a field is even enough.
 const EVEN: f64 = 0.015;
 /// The quotient is taken between these.
 const BETWEEN: [f64; 2] = [0.5, 2.0];
@@ -16,7 +16,8 @@ const BETWEEN: [f64; 2] = [0.5, 2.0];
 const ROUNDS: u32 = 2;
 
 impl Cells<'_> {
-    /// For each cell the exact width of strips over the closed form, smoothed; None where that is the same all over the face.
+    /// For each cell the exact width of strips over the closed form, smoothed; None where passes have the same spacing in the
+    /// field all over the face already.
     pub fn correction(&self, seat: &Seat<'_>) -> Option<Vec<f64>> {
         let (task, n) = (seat.task(), self.count);
         let raw = (0..self.cells.len())
@@ -40,10 +41,10 @@ impl Cells<'_> {
             };
             factors = (0..factors.len()).map(mean).collect();
         }
-        let inside = || factors.iter().zip(&self.cells).filter(|(_, c)| c.inside()).map(|(f, _)| *f);
-        let count = inside().count() as f64;
-        let mean = inside().sum::<f64>() / count;
-        let square = inside().map(|f| (f / mean - 1.0).powi(2)).sum::<f64>() / count;
+        let spacing = || self.cells.iter().filter(|c| c.full && !c.at_extreme()).map(|c| c.up + c.down);
+        let count = spacing().count() as f64;
+        let mean = spacing().sum::<f64>() / count;
+        let square = spacing().map(|s| (s / mean - 1.0).powi(2)).sum::<f64>() / count;
         (square.sqrt() > EVEN).then_some(factors)
     }
 }

@@ -11,6 +11,7 @@ mod even;
 mod extended;
 mod field;
 mod fit;
+mod meet;
 mod passes;
 mod reach;
 mod spline;
@@ -33,6 +34,9 @@ const RUN_OUT: f64 = 1.0;
 
 /// Most of the scallop that the chords of the path may take.
 const CHORD: f64 = 0.03;
+
+/// How often a field is made again with widths that exact strips corrected.
+const CORRECTIONS: u32 = 2;
 
 /// The face continued over its border, for a field that does not close across the seam of the axis `cut`.
 fn continued<'a>(task: &Task<'a>, cut: Option<Axis>) -> Extended<'a> {
@@ -61,12 +65,12 @@ fn level_passes(
     let task = &continued_task(task, face);
     (task.progress)(0.2);
     let seat = Seat::any(task);
-    let cells = match known {
+    let mut cells = match known {
         Some(cells) => cells,
         None => Cells::new(&seat, over(task, field))?,
     };
     (task.progress)(0.4);
-    let levels = cells.levels(&seat)?;
+    let levels = cells.met_levels(&seat)?;
     (task.progress)(0.5);
     let mut passes = passes::passes(&seat, &cells, &levels)?;
     if passes.is_empty() {
@@ -100,7 +104,7 @@ pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
 fn even_passes(
     task: &Task<'_>,
     name: &str,
-    wish: &dyn Fn(&[Place]) -> Vec<Wish>,
+    wish: &(dyn Fn(&[Place]) -> Vec<Wish> + Sync),
     trusts: &[f64],
 ) -> Result<Passes, PlanError> {
     let along = |grows: Axis| {
@@ -108,7 +112,7 @@ fn even_passes(
         let even = even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &|_| 1.0)?;
         Ok((face, even, grows))
     };
-    let (face, mut even, grows) = match (along(Axis::U), along(Axis::V)) {
+    let (face, mut even, grows) = match rayon::join(|| along(Axis::U), || along(Axis::V)) {
         (Ok(u), Ok(v)) => {
             if v.1.length_mm < u.1.length_mm {
                 v
@@ -120,26 +124,24 @@ fn even_passes(
         (Err(e), Err(_)) => return Err(e),
     };
     // The field was made with closed forms of the width: where exact strips say something else it is made again.
-    let better = {
+    for _ in 0..CORRECTIONS {
         let fine = &continued_task(task, &face);
         let seat = Seat::any(fine);
-        let cells = Cells::new(&seat, over(fine, &even.field))?;
-        match cells.correction(&seat).filter(|_| !seat.rough()) {
-            None => {
+        let better = {
+            let cells = Cells::new(&seat, over(fine, &even.field))?;
+            let Some(factors) = cells.correction(&seat).filter(|_| !seat.rough()) else {
                 return finished(
                     level_passes(task, &face, &even.field, name, Some(cells))?,
                     task,
                     name,
                     &even,
                 );
-            }
-            Some(factors) => {
-                let factor = |at: Uv| cells.locate(at).map_or(1.0, |(k, _)| factors[k]);
-                even::even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &factor)
-            }
-        }
-    };
-    even = better?;
+            };
+            let factor = |at: Uv| cells.locate(at).map_or(1.0, |(k, _)| factors[k]);
+            even::even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &factor)?
+        };
+        even = better;
+    }
     finished(level_passes(task, &face, &even.field, name, None)?, task, name, &even)
 }
 

@@ -8,7 +8,7 @@ use crate::plan::Task;
 use crate::plan::seat::{Averaged, Seat};
 use crate::plan::walk::Walk;
 use osculate_geom::line::{LineError, SurfaceLine};
-use osculate_geom::{Relative, Uv};
+use osculate_geom::{Darboux, Relative, Uv};
 use osculate_tools::ContactMotion;
 use osculate_tools::strip::standoff;
 
@@ -71,22 +71,61 @@ pub(super) fn reach(seat: &Seat<'_>, face: Face<'_>, at: Uv) -> Result<Reach, Li
     let (frame, ..) = face.frame(at, false)?;
     let forms = jet.forms()?;
     let q = Relative::new(&forms, &task.lean.tool_curvature(task.cutter, &frame)).along(&frame.left);
-    let left_mm =
-        if seat.rough() { seat.left_over(&Near::below(face, at, phi.value, false)?, 0.0)? } else { 0.0 };
-    let height_mm = task.design_scallop_mm(frame.turn.dot(&frame.left), left_mm);
+    let height_mm = height_mm(seat, face, at, phi.value, &frame)?;
     let radius = task.cutter.radius_mm();
     let half = (2.0 * height_mm / q.max(1e-9)).sqrt().min(WIDEST * radius);
-    // A tool without side is the same both ways.
-    let ways: &[bool] = if task.cutter.is_ball() { &[false] } else { &[false, true] };
     let least = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => Some(f64::min(a, b)),
         (a, b) => a.or(b),
     };
     let mut out = Reach { up: None, down: None, slope_per_mm: slope };
-    for reversed in ways {
+    for reversed in ways(task) {
         let asked = Asked { task, seat, face, at, value: phi.value, height_mm, reversed: *reversed };
         out.up = least(out.up, asked.reach(1.0, half * slope));
         out.down = least(out.down, asked.reach(-1.0, half * slope));
     }
     Ok(out)
+}
+
+/// Standoffs tell how far passes reach where they are at least so high, of the design height.
+const LOW: f64 = 0.4;
+
+/// Reaches of the passes on two levels at the ridge between them that lies steepest up or down from a place, up and down from
+/// the ridge; `share` of the way between the levels lies below it. None where one of the passes is not there, or they meet so
+/// low that the ridge does not tell.
+pub(super) fn met(
+    seat: &Seat<'_>,
+    face: Face<'_>,
+    from: Uv,
+    [below, above]: [f64; 2],
+    share: f64,
+) -> Option<[f64; 2]> {
+    let task = seat.task();
+    let (_, jet, phi) = face.at(from)?;
+    let (uphill, _) = Face::ascent(&jet, &phi).ok()?;
+    let value = below + (above - below) * share;
+    let at = face.settle(from, uphill, value).ok()?;
+    let (frame, ..) = face.frame(at, false).ok()?;
+    let height_mm = height_mm(seat, face, at, value, &frame).ok()?;
+    let reach = |by: f64| {
+        let mut left = 0.0_f64;
+        for reversed in ways(task) {
+            let asked = Asked { task, seat, face, at, value, height_mm, reversed: *reversed };
+            left = left.max(asked.excess(by).ok()? + height_mm);
+        }
+        (left >= LOW * height_mm).then(|| by.abs() * (height_mm / left).sqrt())
+    };
+    Some([reach(above - value)?, reach(below - value)?])
+}
+
+/// The height that passes are laid out for at a place of a level line.
+fn height_mm(seat: &Seat<'_>, face: Face<'_>, at: Uv, level: f64, frame: &Darboux) -> Result<f64, LineError> {
+    let left_mm =
+        if seat.rough() { seat.left_over(&Near::below(face, at, level, false)?, 0.0)? } else { 0.0 };
+    Ok(seat.task().design_scallop_mm(frame.turn.dot(&frame.left), left_mm))
+}
+
+/// Feeds that are asked: a tool without side is the same both ways.
+fn ways(task: &Task<'_>) -> &'static [bool] {
+    if task.cutter.is_ball() { &[false] } else { &[false, true] }
 }
