@@ -27,6 +27,8 @@ const PER_SPAN: f64 = 4.0;
 const FEWEST: f64 = 3.0;
 /// Most points of a look to one side.
 const MOST: f64 = 32.0;
+/// What a pass leaves on its own line counts as nothing up to this part of the scallop.
+const NOTHING_LEFT: f64 = 1e-4;
 /// Raising moves the place of rest, slowly where that is on a steep part of the tool; rounds end early once settled.
 const ROUNDS: usize = 10;
 
@@ -226,7 +228,11 @@ impl<'a> Seat<'a> {
         let (here, speed) = line.frame(t)?;
         let i = line.range();
         let step = AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12);
-        let mut least = f64::INFINITY;
+        // As a rule the tool rests on its contact, and there is nothing to look for around it.
+        let mut least = self.task.cutter.distance(&self.at(line, t)?.0, &here.point);
+        if least <= NOTHING_LEFT * self.task.tolerance.scallop_mm {
+            return Ok(least.max(0.0));
+        }
         for k in -4..=4 {
             let s = t + 0.5 * step * f64::from(k);
             if i.contains(s) {
