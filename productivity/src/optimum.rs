@@ -175,7 +175,8 @@ pub struct Posture {
     pub lean: Lean,
 }
 
-/// The exact productivity of one posture within the limits; the lift makes the undercut acceptable.
+/// The exact productivity of one posture within the limits; the lift makes the undercut acceptable. A contact from which the
+/// tool would have to be lifted by more than the tolerance is none.
 ///
 /// # Errors
 /// [`StripError`] where the posture leaves no strip within the tolerance.
@@ -192,7 +193,8 @@ pub fn measure(
     measure_contact(&contact, share, limits, 0.0)
 }
 
-/// As [`measure`], to [`COMPARED`], with the planar closed form of the tooth mark: what the search compares.
+/// As [`measure`], to [`COMPARED`], with the planar closed form of the tooth mark: what the search compares where the part has no
+/// waves.
 fn compare(
     surface: &dyn Surface,
     at: Uv,
@@ -207,12 +209,15 @@ fn compare(
     }
     let (cap, _) = limits.caps.greatest_per_tooth();
     let part_per_mm = contact.forms.normal_curvature(&contact.frame.tangent);
-    let planar = |_: &Contact<'_>, scallop_mm: f64| {
-        let section = Section { part_per_mm, tool_per_mm: along - part_per_mm, scallop_mm };
-        Ok(width_37(section).unwrap_or_else(|_| 2.0 * (2.0 * scallop_mm / along).sqrt()))
-    };
+    let planar = |_: &Contact<'_>, scallop_mm: f64| Ok(planar_mark_mm(part_per_mm, along, scallop_mm));
     let share = share_of(&contact, cap, limits.scallop_mm, planar)?;
     measure_contact(&contact, share, limits, COMPARED)
+}
+
+/// The closed form of the tooth mark, by its leading order where there is none.
+fn planar_mark_mm(part_per_mm: f64, along_per_mm: f64, scallop_mm: f64) -> f64 {
+    let section = Section { part_per_mm, tool_per_mm: along_per_mm - part_per_mm, scallop_mm };
+    width_37(section).unwrap_or_else(|_| 2.0 * (2.0 * scallop_mm / along_per_mm).sqrt())
 }
 
 fn measure_contact(
@@ -235,6 +240,10 @@ fn measure_contact(
                 break;
             }
         }
+    }
+    // The tool at another instant may come over a contact from which it is lifted away: that is none.
+    if lift_mm > h {
+        return Err(StripError::AboveTolerance { standoff_mm: lift_mm, scallop_mm: h });
     }
     let rate = limits.caps.rate(strip.width_mm, mark_mm);
     Ok(Measured { lift_mm, undercut_mm: strip.undercut_mm, share, rate })

@@ -7,6 +7,8 @@ use osculate_productivity::optimum::{
     self, AxisCone, Binding, Limits, OptimumError, Posture, Range, measure,
 };
 use osculate_productivity::rate::{Caps, FeedLimit};
+use osculate_surfaces::{Part, read};
+use osculate_tools::strip::StripError;
 use osculate_tools::{Cutter, CutterSpec, Lean};
 use std::f64::consts::{PI, TAU};
 
@@ -63,6 +65,57 @@ fn never_beaten_by_a_scan() {
         assert!(best.rate.area_mm2_min >= 0.995 * scanned, "{best:?} against {scanned}");
         assert!(best.undercut_mm <= limits.gouge_mm * 1.01, "{best:?}");
     }
+}
+
+/// Face, cutter and limits of a blade through measured points: waves end strips, so that the best posture lies in a basin some
+/// degrees wide, or at a brink.
+fn blade() -> (Part, Cutter, Limits) {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/eee-hpt-rotor2/blade.igs");
+    let spec = CutterSpec::Toroidal { diameter_mm: 3.0, corner_radius_mm: 0.5, length_mm: 40.0 };
+    let limits = Limits {
+        lead: Range { least_rad: 3f64.to_radians(), most_rad: 40f64.to_radians() },
+        tilt: Range { least_rad: -0.4, most_rad: 0.4 },
+        caps: Caps { spindle_rpm: 12_000.0, feed_mm_min: 3000.0, ..CAPS },
+        ..limits()
+    };
+    (read(&std::fs::read(file).unwrap()).unwrap(), Cutter::try_from(spec).unwrap(), limits)
+}
+
+/// Directions of 15 degrees and tilts at the least lead, where the best of the whole scan lies at these places.
+#[test]
+fn never_beaten_by_a_scan_over_waves() {
+    let (part, cutter, limits) = blade();
+    let face = part.face("F1").unwrap();
+    for at in [
+        uv(28.243_138_334_146_7, 1.105_641_597_182_416),
+        uv(31.244_301_423_901_08, 2.159_850_096_579_854),
+        uv(30.179_124_004_958_506, 1.403_018_463_916_972_5),
+        uv(29.832_341_904_196_404, 1.250_746_594_123_868_7),
+    ] {
+        let mut scanned = 0.0f64;
+        for k in 0..72 {
+            let lean = Lean { lead_rad: limits.lead.least_rad, tilt_rad: 0.4 * f64::from(k / 24 - 1) };
+            let posture = Posture { direction_rad: TAU * f64::from(k % 24) / 24.0, lean };
+            let found = measure(face, at, &cutter, posture, &limits);
+            scanned = scanned.max(found.map_or(0.0, |m| m.rate.area_mm2_min));
+        }
+        let best = optimum::at(face, at, std::slice::from_ref(&cutter), &limits).unwrap();
+        assert!(best.rate.area_mm2_min >= 0.995 * scanned, "{best:?} against {scanned}");
+    }
+}
+
+/// A tool lifted by more than the tolerance leaves no strip, though at another instant it comes over the contact.
+#[test]
+fn lifted_by_more_than_the_tolerance_there_is_no_strip() {
+    let (part, cutter, limits) = blade();
+    let face = part.face("F1").unwrap();
+    let at = uv(30.314_411_821_918_142, 1.067_870_231_013_088_8);
+    let lean = Lean { lead_rad: 0.159_988_514_766_146_9, tilt_rad: 0.4 };
+    let posture = Posture { direction_rad: 5.759_586_531_581_287, lean };
+    let refused = measure(face, at, &cutter, posture, &limits);
+    assert!(matches!(refused, Err(StripError::AboveTolerance { .. })), "{refused:?}");
+    let best = optimum::at(face, at, std::slice::from_ref(&cutter), &limits).unwrap();
+    assert!(best.lift_mm <= best.share.across_mm(), "{best:?}");
 }
 
 /// On a hollow place the tool rests on two contacts: the strip is many times a ball's, and the dip is what binds.

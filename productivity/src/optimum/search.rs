@@ -1,10 +1,14 @@
 //! The search for the best posture: a ranked grid, the brink of two contacts, coordinate searches.
 //!
 //! Postures are compared on a [`Chart`] of the place, which costs some microseconds each; where a strip reaches beyond the chart the exact
-//! strip is taken. What is found is measured exactly, so that the chart's error costs quality but never truth.
+//! strip is taken. The best are measured exactly, until none of the others can be better, so that the chart's error costs quality
+//! but never truth.
+//!
+//! Over waves of the part a strip ends at a crest that it meets in one direction and passes in the next: there are as many
+//! basins as waves within the strip, and directions are looked at twice as closely.
 
-use super::{Binding, Limits, Measured, Posture, compare, measure, share_by};
-use crate::closed_form::{Section, leading_order_swept, width_37};
+use super::{Binding, Limits, Measured, Posture, compare, measure, planar_mark_mm, share_by};
+use crate::closed_form::leading_order_swept;
 use osculate_geom::{Degenerate, Relative, Surface, SymEigen, Uv, Vec3};
 use osculate_tools::strip::{Chart, ChartError, StripError, Within};
 use osculate_tools::{Cutter, Lean};
@@ -13,8 +17,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Directions, leads and tilts of the grid that is ranked.
 pub(super) const GRID: [usize; 3] = [24, 7, 5];
-/// Directions measured at the least lead: rays of the chart, between which it need not interpolate.
-const DIRECTIONS: usize = 36;
+/// Directions measured at the least lead, and over waves.
+const DIRECTIONS: [usize; 2] = [36, 72];
 /// Postures of the grid above the least lead that are measured, how many of all enter the rounds of settling, and how many
 /// come through the first.
 const MEASURED: usize = 12;
@@ -24,14 +28,16 @@ const SETTLED: usize = 3;
 const CLIMBS: u32 = 5;
 /// Rounds of coordinate searches.
 const ROUNDS: i32 = 3;
-/// Error of a chart that is as good as exact, of the tolerance; and what is level with the best exact one on a fine and on a
-/// coarse chart.
-const FINE: f64 = 4e-3;
-const LEVEL: [f64; 2] = [0.995, 0.9];
+/// How much less than the best exact one is level with it on a chart without error. An exact strip that is narrower by a factor has
+/// met what the chart did not show, and is settled once more.
+const LEVEL: f64 = 1e-3;
+const SHORT: f64 = 0.98;
+/// Most postures measured exactly at the end.
+const ANSWERS: usize = 8;
 /// Radius of the chart, in the cutter's radius: strips are hardly ever wider.
 const REACH: f64 = 1.2;
 /// Misfit of the chart that is accepted, of the tolerance.
-const MISFIT: f64 = 0.05;
+const MISFIT: f64 = 0.01;
 /// Postures that the chart's error may have cut short, which are measured exactly; and by how much they must promise to be better.
 const PROMISING: usize = 4;
 const PROMISE: f64 = 1.02;
@@ -115,7 +121,8 @@ impl<'a> Search<'a> {
         let measured = match on_chart {
             Err(ChartError::Beyond { .. }) => {
                 self.exact += 1;
-                compare(self.surface, self.at, self.cutter, p, self.limits)
+                let exactly = if self.chart.is_wavy() { measure } else { compare };
+                exactly(self.surface, self.at, self.cutter, p, self.limits)
             }
             Err(ChartError::Above { standoff_mm }) => {
                 Err(StripError::AboveTolerance { standoff_mm, scallop_mm: self.limits.scallop_mm })
@@ -141,13 +148,12 @@ impl<'a> Search<'a> {
         let (cap, _) = limits.caps.greatest_per_tooth();
         let tangent = self.tangent(p.direction_rad);
         let along = self.chart.relative(cutter, p.direction_rad, p.lean).along(&tangent);
-        let planar = along > 0.0 && along.is_finite();
+        // Waves bend the part within a mark.
+        let planar = along > 0.0 && along.is_finite() && !self.chart.is_wavy();
         let part_per_mm = self.chart.forms.normal_curvature(&tangent);
         let (share, mark) = share_by(along, cap, limits.scallop_mm, |height_mm| {
             if planar {
-                let section =
-                    Section { part_per_mm, tool_per_mm: along - part_per_mm, scallop_mm: height_mm };
-                Ok(width_37(section).unwrap_or_else(|_| 2.0 * (2.0 * height_mm / along).sqrt()))
+                Ok(planar_mark_mm(part_per_mm, along, height_mm))
             } else {
                 self.chart.mark_mm(cutter, p.direction_rad, p.lean, height_mm)
             }
@@ -179,15 +185,11 @@ impl<'a> Search<'a> {
 
     pub fn run(&mut self) -> Option<Found> {
         // At the least lead the strip is usually widest and the leading order fails: all of it is measured.
-        let mut found = Vec::with_capacity(4 * DIRECTIONS);
-        let mut promises: Vec<(Found, f64)> = Vec::with_capacity(4 * DIRECTIONS);
-        // A chart that misses waves of the part says little of them.
-        let coarse = self.chart.error_mm() > FINE * self.limits.scallop_mm;
-        for p in self.least_lead() {
-            self.exactly = coarse;
-            let measured = self.measure(p);
-            self.exactly = false;
-            match measured {
+        let postures = self.least_lead();
+        let mut found = Vec::with_capacity(postures.len() + MEASURED);
+        let mut promises: Vec<(Found, f64)> = Vec::with_capacity(postures.len());
+        for p in postures {
+            match self.measure(p) {
                 Some(m) => {
                     found.push((p, m));
                     promises.push(((p, m), self.promise * m.rate.area_mm2_min));
@@ -196,7 +198,6 @@ impl<'a> Search<'a> {
                 None => found.extend(self.brink_above(p, CLIMBS)),
             }
         }
-        let surest = found.iter().copied().filter(|_| coarse).min_by(better_first);
         let mut ranked = self.grid();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut tried: Vec<Posture> = Vec::with_capacity(6 * MEASURED);
@@ -220,32 +221,37 @@ impl<'a> Search<'a> {
         self.keep_promises(promises, &mut found);
         let entered = distinct(found, ENTERED);
         let first: Vec<Found> = entered.iter().map(|f| self.settle(*f, 0..1)).collect();
-        let kept = distinct(first, if coarse { ENTERED } else { SETTLED });
+        let kept = distinct(first, SETTLED);
         let mut settled: Vec<Found> = kept.into_iter().map(|f| self.settle(f, 1..ROUNDS)).collect();
-        if coarse {
-            // Settling on a coarse chart may have led over a brink that lies elsewhere.
-            settled.extend(entered);
-        }
-        settled.extend(surest);
-        settled.sort_by(better_first);
-        // On the chart two may be level that are not, and some better than they are: the best are measured exactly until none
-        // of the others can be better. Where the chart is coarse the best is settled once more.
-        let level = LEVEL[usize::from(coarse)];
+        // Settling may have led over a brink that lies elsewhere.
+        settled.extend(entered);
+        let (p, m) = self.best_exactly(settled)?;
+        // The search compares planar tooth marks; the answer has the exact one.
+        Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).unwrap_or(m)))
+    }
+
+    /// The best of what was found on the chart, measured exactly until none of the others can be better.
+    fn best_exactly(&mut self, mut found: Vec<Found>) -> Option<Found> {
+        // The width's relative error is half the heights' over the tolerance.
+        let level = 1.0 - LEVEL - self.chart.error_mm() / self.limits.scallop_mm;
+        let mut best: Option<(Found, f64)> = None;
         self.exactly = true;
-        let mut best: Option<Found> = None;
-        for (p, on_chart) in settled {
-            if best.is_some_and(|b| on_chart.rate.area_mm2_min < level * b.1.rate.area_mm2_min) {
+        found.sort_by(better_first);
+        found.dedup_by(|a, b| same(&a.0, &b.0));
+        for (p, on_chart) in found.into_iter().take(ANSWERS) {
+            let promised = on_chart.rate.area_mm2_min;
+            if best.is_some_and(|(b, _)| promised < level * b.1.rate.area_mm2_min) {
                 break;
             }
             if let Some(m) = self.measure(p)
-                && best.is_none_or(|b| m.rate.area_mm2_min > b.1.rate.area_mm2_min)
+                && best.is_none_or(|(b, _)| m.rate.area_mm2_min > b.1.rate.area_mm2_min)
             {
-                best = Some((p, m));
+                best = Some(((p, m), promised));
             }
         }
-        let (p, m) = if coarse { self.refine(best?) } else { best? };
-        // The search compares planar tooth marks; the answer has the exact one.
-        Some((p, measure(self.surface, self.at, self.cutter, p, self.limits).unwrap_or(m)))
+        let (found, promised) = best?;
+        let short = found.1.rate.area_mm2_min < SHORT * promised;
+        Some(if short { self.refine(found) } else { found })
     }
 
     /// Measures exactly what may be better than all that was found but for the chart's error.
@@ -295,9 +301,10 @@ impl<'a> Search<'a> {
         } else {
             vec![tilt.least_rad]
         };
-        (0..DIRECTIONS)
+        let directions = DIRECTIONS[usize::from(self.chart.is_wavy())];
+        (0..directions)
             .flat_map(|k| {
-                let direction_rad = TAU * k as f64 / DIRECTIONS as f64;
+                let direction_rad = TAU * k as f64 / directions as f64;
                 let lead_rad = self.limits.lead.least_rad;
                 tilts
                     .iter()
@@ -393,6 +400,14 @@ fn distinct(mut found: Vec<Found>, most: usize) -> Vec<Found> {
 
 fn posture_lead(p: &Posture) -> f64 {
     p.lean.lead_rad
+}
+
+/// Whether two postures differ by less than their strips do.
+fn same(a: &Posture, b: &Posture) -> bool {
+    let turn = (a.direction_rad - b.direction_rad).rem_euclid(TAU);
+    turn.min(TAU - turn) < 0.02
+        && (a.lean.lead_rad - b.lean.lead_rad).abs() < 5e-3
+        && (a.lean.tilt_rad - b.lean.tilt_rad).abs() < 0.02
 }
 
 /// Whether two postures share a neighbourhood of the grid.

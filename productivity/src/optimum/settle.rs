@@ -12,9 +12,7 @@ const JUMPS: u32 = 2;
 const BRINK: u32 = 7;
 /// Steps shrink in each round.
 const SHRINK: f64 = 0.35;
-/// Error of a chart, of the tolerance, above which its best is settled on exact strips.
-const ROUGH: f64 = 4e-2;
-/// Steps of the last, exact round, of a step of the grid.
+/// Steps of a last, exact round, of a step of the grid.
 const POLISH: f64 = 0.1;
 
 impl Search<'_> {
@@ -43,12 +41,11 @@ impl Search<'_> {
         best
     }
 
-    /// Last rounds, exact: the second of settling, and one with small steps.
+    /// A round with small steps.
     pub(super) fn refine(&mut self, from: Found) -> Found {
         let limits = self.limits;
         let widths = [TAU / GRID[0] as f64, limits.lead.width() / GRID[1] as f64, limits.tilt.width()];
-        let mut best =
-            if self.chart.error_mm() > ROUGH * limits.scallop_mm { self.settle(from, 1..2) } else { from };
+        let mut best = from;
         for (k, w) in widths.into_iter().enumerate().filter(|(_, w)| *w > 0.0) {
             best = self.along(best, k, POLISH * w);
         }

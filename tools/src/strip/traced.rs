@@ -23,10 +23,10 @@ const OF_PITCH: f64 = 0.5;
 
 /// A state with the second derivative of its parameters, and whether no knot lies between it and the next.
 #[derive(Clone, Copy)]
-struct Kept {
-    state: GeodesicState,
-    second: Uv,
-    clear: bool,
+pub(super) struct Kept {
+    pub state: GeodesicState,
+    pub second: Uv,
+    pub clear: bool,
 }
 
 /// The geodesic, in arc length from the contact.
@@ -89,7 +89,7 @@ impl<'a> Traced<'a> {
 }
 
 /// The state at the share `x` of the way `step_mm` between two.
-fn between(a: &Kept, b: &Kept, step_mm: f64, x: f64) -> GeodesicState {
+pub(super) fn between(a: &Kept, b: &Kept, step_mm: f64, x: f64) -> GeodesicState {
     let one = |pa: f64, va: f64, wa: f64, pb: f64, vb: f64, wb: f64| {
         let (va, wa, vb, wb) =
             (va * step_mm, 0.5 * wa * step_mm * step_mm, vb * step_mm, wb * step_mm * step_mm);

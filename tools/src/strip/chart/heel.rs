@@ -4,7 +4,8 @@
 //! from the surface itself, a quarter of the cutter's radius apart, and kept for all leads and tilts of one direction;
 //! between them the place is interpolated by Hermite's cubics, normal and tangent by chords.
 
-use super::{Chart, Extended};
+use super::ray::Extended;
+use super::{Chart, KEPT_TRAILS};
 use crate::contact::Lean;
 use crate::cutter::{Cutter, Line};
 use crate::strip::passages::{APART, extent};
@@ -46,29 +47,27 @@ impl Chart<'_> {
     fn trail(&self, direction: [f64; 2], apart: f64, reach_mm: f64) -> Rc<Vec<Darboux>> {
         let count = ((reach_mm / apart).ceil() as usize).min(MOST);
         let mut kept = self.trails.borrow_mut();
-        let found = kept
-            .iter()
-            .position(|k| k.as_ref().is_some_and(|k| k.0 == direction && k.1 == apart && k.2 >= count));
+        let found = kept.iter().position(|k| k.0 == direction && k.1 == apart && k.2 >= count);
         if let Some(k) = found {
             kept[..=k].rotate_right(1);
         } else {
-            kept.rotate_right(1);
-            kept[0] = Some((direction, apart, count, Rc::new(self.traced(direction, apart, count))));
+            kept.truncate(KEPT_TRAILS - 1);
+            kept.insert(0, (direction, apart, count, Rc::new(self.frames_on(direction, apart, count))));
         }
-        kept[0].as_ref().map_or_else(|| Rc::new(Vec::new()), |k| Rc::clone(&k.3))
+        Rc::clone(&kept[0].3)
     }
 
-    fn traced(&self, [c, s]: [f64; 2], apart: f64, count: usize) -> Vec<Darboux> {
-        let extended = Extended(self.surface);
-        let [e1, e2] = [self.forms.frame[0].into_inner(), self.forms.frame[1].into_inner() * self.side];
+    fn frames_on(&self, direction: [f64; 2], apart: f64, count: usize) -> Vec<Darboux> {
+        let place = &self.place;
+        let extended = Extended::new(place.part.surface);
         let mut frames = Vec::with_capacity(count + 1);
-        let mut state = GeodesicState::start(self.surface, self.at, &(e1 * c + e2 * s));
+        let mut state = GeodesicState::start(place.part.surface, place.jet.uv, &place.direction(direction));
         for _ in 0..=count {
             let Ok(here) = state else { break };
             let jet = extended.jet2(here.at);
             let Ok(frame) = Darboux::new(&jet, &jet.tangent(here.rate), 0.0) else { break };
             // The feed ends with the surface; beyond a right angle the tool is on the part's other side.
-            if !self.domain.contains(here.at) || frame.normal.dot(&self.forms.normal) <= 0.0 {
+            if !place.domain.contains(here.at) || frame.normal.dot(&self.forms.normal) <= 0.0 {
                 break;
             }
             frames.push(frame);

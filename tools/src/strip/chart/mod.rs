@@ -1,42 +1,51 @@
 //! Strips of many postures at one place, quickly and nearly: the surface around it tabulated once.
 //!
-//! Feed line and cross line of a contact are geodesics through one point, whatever the feed. A [`Chart`] follows geodesics
-//! from there in equally spaced directions and keeps point, normal and their derivatives along the way at equal distances.
-//! Lines in directions between are interpolated over six neighbours, places between nodes by Hermite's cubics. A strip on a
-//! chart then costs no evaluation of the surface.
+//! Feed line and cross line of a contact are geodesics through one point, whatever the feed. A [`Chart`] keeps point, normal and
+//! their derivatives along them at equal distances; places between nodes are Hermite's cubics, so that a strip on a
+//! chart costs no evaluation of the surface. Where the surface is smooth enough a table of geodesics in equally spaced directions
+//! is made at once, and lines between are interpolated over six neighbours. Over waves, and where neighbours leave the
+//! surface's rectangle, each line is traced on the surface when it is first asked for.
 //!
-//! *Error.* [`Chart::error_mm`] is the larger of the deviation found midway between nodes of some rays, and of what rays
-//! deviate by from those interpolated from their other neighbours, an eighth of it: half the angle between
-//! them makes it less; the normal's counts times the chart's radius. Heights are off by about as much at most, the width by that over twice
-//! the tolerance, relative. Where it is too large, nodes and rays are doubled, rays twice. Outside the surface's rectangle the chart goes on
-//! by its Taylor polynomial; strips end at the rectangle. For a final figure take [`super::exact`].
+//! *Error.* [`Chart::error_mm`] is the larger of the deviation found midway between nodes of some lines, and of what lines of the
+//! table deviate by from those interpolated from their other neighbours, an eighth of it: half the angle between
+//! them makes it less; the normal's counts times the distance from the place. Heights are off by about as much at most, the width by
+//! that over twice the tolerance, relative. Where it is too large, nodes and lines are doubled, then lines traced, with more nodes.
+//! Nodes outside the surface's rectangle, on its Taylor polynomial, do not count; feed and strips end at the rectangle. For a final
+//! figure take [`super::exact`].
 
 mod heel;
 mod posture;
+mod ray;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 pub use posture::{ChartError, Nearly, Within};
 
 use crate::contact::Lean;
 use crate::cutter::{Cutter, Line};
-use osculate_geom::geodesic::GeodesicState;
-use osculate_geom::{
-    Darboux, Degenerate, Domain, Forms, Jet2, Point3, Relative, Surface, Taylor, Unit3, Uv, Vec3, uv,
-};
+use osculate_geom::{Darboux, Degenerate, Forms, Point3, Relative, Surface, Unit3, Uv, Vec3};
+use ray::{Node, Nodes, PARTS, Pace, Place, Ray, Way};
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-/// Directions, and nodes on each; how many there may be in a second and a third attempt.
+/// Directions of the table, and nodes on each way that leaves the place; as many again in the second attempt.
 const RAYS: usize = 36;
 const NODES: usize = 16;
-const MOST: [[usize; 2]; 2] = [[2 * RAYS, 2 * NODES], [4 * RAYS, 2 * NODES]];
-/// Every so manieth ray is looked at midway between nodes.
+/// Most nodes on a way that is traced by itself.
+const MOST_NODES: usize = 128;
+/// What a second attempt promises to make of errors between lines and along them.
+const PROMISED: [f64; 2] = [1.0 / 8.0, 1.0 / 16.0];
+/// Every so manieth way is looked at midway between nodes.
 const CHECKED: usize = 6;
-/// Point, normal, parameters and the derivatives of the first two along the ray.
-const PARTS: usize = 14;
-/// Rays that are kept: feed and both sides of several postures.
-const KEPT: usize = 8;
+/// Lines that are kept: those of 72 directions of feed, whose cross lines are among them.
+const KEPT: usize = 40;
+const KEPT_TRAILS: usize = 8;
+/// Cosine of the angle below which two directions are one: less than the width of an atom over a tool's radius.
+const SAME: f64 = 1.0 - 1e-14;
+/// Steps between two knots.
+const OF_PITCH: f64 = 0.5;
 /// Neighbours of a direction that are interpolated, and places before it.
 const NEIGHBOURS: usize = 6;
 const BEFORE: usize = 2;
@@ -44,58 +53,43 @@ const BEFORE: usize = 2;
 const FINER: f64 = 1.0 / 8.0;
 /// Most turn of the normal from node to node, rad, by the curvature at the place.
 const TURN: f64 = 0.25;
-/// Order of the continuation outside the rectangle.
-const BEYOND: usize = 4;
 
 /// A surface around a place.
 pub struct Chart<'a> {
     /// Forms of the surface at the place.
     pub forms: Forms,
-    surface: &'a dyn Surface,
-    /// Count of rays, and of nodes on each.
+    place: Place<'a>,
+    /// Count of rays of the table, none where lines are traced, and of nodes on each.
     size: [usize; 2],
     /// Largest curvature with which the part is hollow anywhere on the chart, 1/mm.
     hollow: f64,
     centre: Point3,
-    at: Uv,
-    domain: Domain,
     /// +1 where (S_u, S_v, n) is right-handed.
     side: f64,
     /// As far as it is tabulated, and as far as it is good.
     radius: f64,
     reach: f64,
-    /// Whether all of it lies in the surface's rectangle.
-    whole: bool,
     error: f64,
     /// By ray and node; the place itself, which all rays share, first.
-    table: Vec<[f64; PARTS]>,
-    /// The last rays made, and frames further along the feed.
-    rays: RefCell<[Option<KeptRay>; KEPT]>,
-    trails: RefCell<[Option<heel::KeptTrail>; KEPT]>,
+    table: Vec<Node>,
+    /// The last lines made, and frames further along the feed.
+    lines: RefCell<Vec<KeptLine>>,
+    trails: RefCell<Vec<heel::KeptTrail>>,
 }
 
-/// The surface, beyond its rectangle by Taylor polynomials at the nearest place of it.
-struct Extended<'a>(&'a dyn Surface);
+/// Errors by node, mm.
+struct Errors {
+    between: Vec<f64>,
+    along: Vec<f64>,
+}
 
-impl Surface for Extended<'_> {
-    fn domain(&self) -> Domain {
-        self.0.domain()
-    }
-    fn jet2(&self, at: Uv) -> Jet2 {
-        let domain = self.0.domain();
-        if domain.contains(at) {
-            return self.0.jet2(at);
-        }
-        self.0.taylor(domain.bring(at), BEYOND).jet2_at(at)
-    }
-    fn taylor(&self, at: Uv, order: usize) -> Taylor {
-        self.0.taylor(at, order)
-    }
+fn greatest(errors: &[f64]) -> f64 {
+    errors.iter().copied().fold(0.0, f64::max)
 }
 
 impl<'a> Chart<'a> {
-    /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm`; with more nodes and rays where that is
-    /// less, tabulated anew to 0.4 of the radius, three times at most, where it still is less than a third.
+    /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm`; made anew to 0.4 of the radius, three times
+    /// at most, where that is less than a third.
     ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane at the place.
@@ -105,25 +99,33 @@ impl<'a> Chart<'a> {
         radius_mm: f64,
         tolerance_mm: f64,
     ) -> Result<Self, Degenerate> {
-        let p = surface.jet2(at).forms()?.principal();
+        let place = Place::new(surface, at)?;
+        let p = place.forms.principal();
         let bend = p.k_max.abs().max(p.k_min.abs());
-        let mut radius = radius_mm.min(TURN * NODES as f64 / bend);
-        let mut size = [RAYS, NODES];
-        let (mut chart, mut finer) = Self::of_radius(surface, at, (radius, tolerance_mm), size)?;
-        for most in MOST {
-            let next = [0, 1].map(|k| if finer[k] { (2 * size[k]).min(most[k]) } else { size[k] });
-            if next == size {
-                break;
-            }
-            size = next;
-            (chart, finer) = Self::of_radius(surface, at, (radius, tolerance_mm), size)?;
+        let mut chart = Self {
+            forms: place.forms,
+            size: [0; 2],
+            hollow: (-p.k_min).max(0.0),
+            centre: place.jet.point,
+            side: place.jet.side.sign(),
+            radius: radius_mm.min(TURN * NODES as f64 / bend),
+            reach: 0.0,
+            error: 0.0,
+            table: Vec::new(),
+            lines: RefCell::new(Vec::with_capacity(KEPT)),
+            trails: RefCell::new(Vec::with_capacity(KEPT_TRAILS)),
+            place,
+        };
+        if chart.tabulate(tolerance_mm)? {
+            return Ok(chart);
         }
+        chart.by_lines(tolerance_mm)?;
         for _ in 0..3 {
-            if 3.0 * chart.reach >= radius {
+            if 3.0 * chart.reach >= chart.radius {
                 break;
             }
-            radius *= 0.4;
-            chart = Self::of_radius(surface, at, (radius, tolerance_mm), size)?.0;
+            chart.radius *= 0.4;
+            chart.by_lines(tolerance_mm)?;
         }
         Ok(chart)
     }
@@ -134,9 +136,11 @@ impl<'a> Chart<'a> {
         self.error
     }
 
-    /// Whether the usual size was too coarse.
-    const fn is_wavy(&self) -> bool {
-        self.size[0] > RAYS || self.size[1] > NODES
+    /// Whether the part is too wavy for a table of lines, so that a strip may end at one wave for one direction and not for its
+    /// neighbour.
+    #[must_use]
+    pub fn is_wavy(&self) -> bool {
+        self.size[0] == 0
     }
 
     /// How far the chart reaches, mm.
@@ -145,117 +149,139 @@ impl<'a> Chart<'a> {
         self.reach
     }
 
-    /// The chart of a size, and whether more rays and more nodes are wanted.
-    fn of_radius(
-        surface: &'a dyn Surface,
-        at: Uv,
-        (radius, tolerance_mm): (f64, f64),
-        [rays, nodes]: [usize; 2],
-    ) -> Result<(Self, [bool; 2]), Degenerate> {
-        let domain = surface.domain();
-        let extended = Extended(surface);
-        let jet = surface.jet2(at);
-        let forms = jet.forms()?;
-        let side = jet.side.sign();
-        let [e1, e2] = [forms.frame[0].into_inner(), forms.frame[1].into_inner() * side];
-        let step = radius / nodes as f64;
-        let mut table = vec![[0.0; PARTS]; rays * (nodes + 1)];
-        let mut halfway: Vec<(usize, usize, [f64; PARTS])> = Vec::with_capacity(rays / CHECKED * nodes);
-        let (mut whole, mut lost, mut hollow) = (true, false, 0.0f64);
+    /// Makes the table; false where it does not keep to the tolerance.
+    fn tabulate(&mut self, tolerance_mm: f64) -> Result<bool, Degenerate> {
+        let mut size = [RAYS, NODES];
+        for _ in 0..2 {
+            let Some(errors) = self.table_of(size)? else { return Ok(false) };
+            let worst = [greatest(&errors.between), greatest(&errors.along)];
+            if worst.iter().all(|e| *e <= tolerance_mm) {
+                (self.reach, self.error) = (self.radius, worst[0].max(worst[1]));
+                return Ok(true);
+            }
+            if (0..2).any(|k| worst[k] * PROMISED[k] > tolerance_mm) {
+                return Ok(false);
+            }
+            size = [0, 1].map(|k| if worst[k] > tolerance_mm { 2 * size[k] } else { size[k] });
+        }
+        Ok(false)
+    }
+
+    /// The table of a size with its errors; None where a line ends.
+    fn table_of(&mut self, [rays, nodes]: [usize; 2]) -> Result<Option<Errors>, Degenerate> {
+        self.size = [rays, nodes];
+        self.lines.get_mut().clear();
+        self.table.clear();
+        self.table.reserve(rays * (nodes + 1));
+        let mut midway = Vec::with_capacity(rays.div_ceil(CHECKED));
         for ray in 0..rays {
-            let (s, c) = (TAU * ray as f64 / rays as f64).sin_cos();
-            let mut state = GeodesicState::start(surface, at, &(e1 * c + e2 * s))?;
-            for node in 0..=nodes {
-                let jet_here = extended.jet2(state.at);
-                match parts(&jet, &jet_here, &forms, state) {
-                    Ok((values, k_min)) => {
-                        table[ray * (nodes + 1) + node] = values;
-                        hollow = hollow.max(-k_min);
-                    }
-                    Err(_) => lost = true,
-                }
-                whole &= domain.contains(state.at);
-                if node == nodes {
-                    break;
-                }
-                let next = if ray % CHECKED == 0 {
-                    state.step(&extended, 0.5 * step).and_then(|half| {
-                        let there = extended.jet2(half.at);
-                        halfway.push((ray, node, parts(&jet, &there, &forms, half)?.0));
-                        half.step(&extended, 0.5 * step)
-                    })
-                } else {
-                    state.step(&extended, step)
-                };
-                // A geodesic that meets a pole goes no further, and the error says so.
-                match next {
-                    Ok(next) => state = next,
-                    Err(_) => lost = true,
-                }
+            let midway_too = ray % CHECKED == 0;
+            let way = self.way(direction(ray, rays), 1, midway_too)?;
+            if way.nodes.len() <= nodes {
+                return Ok(None);
+            }
+            self.hollow = self.hollow.max(way.hollow_per_mm);
+            self.table.extend(way.nodes);
+            if midway_too {
+                midway.push(way.midway);
             }
         }
-        let mut chart = Self {
-            forms,
-            surface,
-            size: [rays, nodes],
-            hollow,
-            centre: jet.point,
-            at,
-            domain,
-            side,
-            radius,
-            reach: radius,
-            whole,
-            error: 0.0,
-            table,
-            rays: RefCell::new([const { None }; KEPT]),
-            trails: RefCell::new([const { None }; KEPT]),
-        };
-        let along = if lost { vec![f64::INFINITY; nodes] } else { chart.errors_along(&halfway) };
-        let between = chart.errors_between();
-        let finer = [&between, &along].map(|errors| errors.iter().any(|e| *e > tolerance_mm));
-        let error = |k: usize| along[k].max(between[k]);
-        let good = (0..nodes).find(|k| error(*k) > tolerance_mm).unwrap_or(nodes);
-        chart.reach = step * good as f64;
-        chart.error = (0..good).map(error).fold(0.0, f64::max);
-        Ok((chart, finer))
+        let mut along = vec![0.0f64; nodes];
+        for (k, midway) in midway.iter().enumerate() {
+            let ray = CHECKED * k;
+            let line = Ray { line: Rc::new(self.interpolated(direction(ray, rays))), backwards: false };
+            let own = &self.table[ray * (nodes + 1)..(ray + 1) * (nodes + 1)];
+            self.see_midway(&line, own, midway, &mut along);
+        }
+        Ok(Some(Errors { between: self.errors_between(), along }))
+    }
+
+    /// Traces lines from now on, with as many nodes as some of them need.
+    fn by_lines(&mut self, tolerance_mm: f64) -> Result<(), Degenerate> {
+        self.table = Vec::new();
+        let mut nodes = NODES;
+        loop {
+            self.size = [0, nodes];
+            self.lines.get_mut().clear();
+            let step = self.radius / nodes as f64;
+            let mut along = vec![0.0f64; nodes];
+            for line in 0..RAYS / (2 * CHECKED) {
+                let towards = direction(CHECKED * line, RAYS);
+                let pitch = self.place.pitch_mm(towards, self.radius);
+                let stride = self.stride(pitch);
+                let ahead = self.way(towards, stride, true)?;
+                let behind = self.way(towards.map(|x| -x), stride, true)?;
+                self.hollow = self.hollow.max(ahead.hollow_per_mm).max(behind.hollow_per_mm);
+                let made =
+                    Nodes::new(&self.place, [&behind.nodes, &ahead.nodes], (self.radius, nodes), pitch);
+                let made = Rc::new(made);
+                for (way, backwards) in [(&ahead, false), (&behind, true)] {
+                    let ray = Ray { line: Rc::clone(&made), backwards };
+                    self.see_midway(&ray, &way.nodes, &way.midway, &mut along);
+                    // A way that ends short limits the chart.
+                    along[way.nodes.len() - 1..].fill(f64::INFINITY);
+                }
+                self.lines.get_mut().push((towards, made));
+            }
+            let good = along.iter().position(|e| *e > tolerance_mm).unwrap_or(nodes);
+            self.reach = step * good as f64;
+            self.error = greatest(&along[..good]);
+            if good == nodes || nodes >= MOST_NODES {
+                return Ok(());
+            }
+            nodes *= 2;
+        }
+    }
+
+    /// Nodes to a step of the integration: as far as usual, but not over more than half the distance between knots.
+    fn stride(&self, pitch: f64) -> usize {
+        let nodes = self.size[1];
+        let of_pitch = OF_PITCH * pitch * nodes as f64 / self.radius;
+        (nodes / NODES).min(of_pitch.max(1.0) as usize)
+    }
+
+    fn way(&self, towards: [f64; 2], stride: usize, midway: bool) -> Result<Way, Degenerate> {
+        let count = self.size[1];
+        self.place.trace(towards, Pace { step_mm: self.radius / count as f64, count, stride, midway })
+    }
+
+    /// Notes what a line is off by midway between its nodes, inside the rectangle.
+    fn see_midway(&self, line: &Ray, nodes: &[Node], midway: &[Node], along: &mut [f64]) {
+        let count = self.size[1] as f64;
+        for (k, want) in midway.iter().enumerate() {
+            if self.place.holds(&nodes[k]) && self.place.holds(want) {
+                let got = line.values((k as f64 + 0.5) / count);
+                along[k] = along[k].max(Self::off(&got, want, self.radius * (k + 1) as f64 / count));
+            }
+        }
     }
 
     /// What the normal and the place are off by, `way` mm from the centre; infinite where that is no number.
-    fn off(got: &[f64; DERIVATIVES], want: &[f64; PARTS], way: f64) -> f64 {
+    fn off(got: &[f64; 6], want: &Node, way: f64) -> f64 {
         let off = |k: usize| (got[k] - want[k]).powi(2);
         let height = (off(0) + off(1) + off(2)).sqrt() + way * (off(3) + off(4) + off(5)).sqrt();
         if height.is_finite() { height } else { f64::INFINITY }
     }
 
-    /// Deviations midway between nodes, by node.
-    fn errors_along(&self, halfway: &[(usize, usize, [f64; PARTS])]) -> Vec<f64> {
-        let [rays, nodes] = self.size;
-        let mut errors = vec![0.0f64; nodes];
-        for (ray, node, want) in halfway {
-            let (s, c) = (TAU * *ray as f64 / rays as f64).sin_cos();
-            let got = self.ray_of([c, s]).values((*node as f64 + 0.5) / nodes as f64);
-            let way = self.radius * (node + 1) as f64 / nodes as f64;
-            errors[*node] = errors[*node].max(Self::off(&got, want, way));
-        }
-        errors
-    }
-
-    /// Deviations of every second ray from its interpolation between the others, by node, less what half their angle makes.
+    /// Deviations of every second ray from its interpolation between the others, by node, less what half their angle makes; inside
+    /// the rectangle.
     fn errors_between(&self) -> Vec<f64> {
         let [rays, nodes] = self.size;
         let weights = lagrange(0.5);
         let mut errors = vec![0.0f64; nodes];
         for ray in (0..rays).step_by(2) {
             for (node, error) in errors.iter_mut().enumerate() {
-                let mut got = [0.0; DERIVATIVES];
+                let want = &self.table[ray * (nodes + 1) + node + 1];
+                if !self.place.holds(want) {
+                    break;
+                }
+                let mut got = [0.0; 6];
                 for (k, weight) in weights.iter().enumerate() {
                     let other = (ray + rays + 2 * k - 2 * BEFORE - 1) % rays;
                     let from = &self.table[other * (nodes + 1) + node + 1];
                     got.iter_mut().zip(from).for_each(|(g, f)| *g += weight * f);
                 }
                 let way = self.radius * (node + 1) as f64 / nodes as f64;
-                let want = &self.table[ray * (nodes + 1) + node + 1];
                 *error = error.max(FINER * Self::off(&got, want, way));
             }
         }
@@ -279,49 +305,53 @@ impl<'a> Chart<'a> {
     }
 
     /// The line through the place in a direction, (cos, sin) of its angle from S_u towards S_v; the last ones are kept.
-    fn ray(&self, direction: [f64; 2]) -> Rc<Ray> {
-        let mut kept = self.rays.borrow_mut();
-        if let Some(k) = kept.iter().position(|r| r.as_ref().is_some_and(|r| r.0 == direction)) {
+    fn ray(&self, direction: [f64; 2]) -> Ray {
+        let mut kept = self.lines.borrow_mut();
+        let turn = |known: &[f64; 2]| known[0] * direction[0] + known[1] * direction[1];
+        if let Some(k) = kept.iter().position(|line| turn(&line.0).abs() > SAME) {
             kept[..=k].rotate_right(1);
         } else {
-            kept.rotate_right(1);
-            kept[0] = Some((direction, Rc::new(self.ray_of(direction))));
+            let made = if self.size[0] > 0 { self.interpolated(direction) } else { self.traced(direction) };
+            kept.truncate(KEPT - 1);
+            kept.insert(0, (direction, Rc::new(made)));
         }
-        kept[0].as_ref().map_or_else(|| Rc::new(self.ray_of(direction)), |r| Rc::clone(&r.1))
+        Ray { line: Rc::clone(&kept[0].1), backwards: turn(&kept[0].0) < 0.0 }
     }
 
-    fn ray_of(&self, [c, s]: [f64; 2]) -> Ray {
+    /// The line in a direction, traced on the surface.
+    fn traced(&self, direction: [f64; 2]) -> Nodes {
+        let pitch = self.place.pitch_mm(direction, self.radius);
+        let stride = self.stride(pitch);
+        // Without a way there is the place itself.
+        let only = || vec![[0.0; PARTS]];
+        let [behind, ahead] = [-1.0, 1.0].map(|sign| {
+            self.way(direction.map(|x| sign * x), stride, false).map_or_else(|_| only(), |w| w.nodes)
+        });
+        Nodes::new(&self.place, [&behind, &ahead], (self.radius, self.size[1]), pitch)
+    }
+
+    /// The line in a direction, between those of the table.
+    fn interpolated(&self, [c, s]: [f64; 2]) -> Nodes {
         let [rays, count] = self.size;
-        let mut nodes = vec![[0.0; PARTS]; 2 * count + 1];
-        for back in [true, false] {
-            let turn = if back { (-s).atan2(-c) } else { s.atan2(c) };
+        let way = |turn: f64| {
             let x = turn.rem_euclid(TAU) / TAU * rays as f64;
             let (low, share) = (x.floor(), x - x.floor());
-            let weights = lagrange(share);
-            for (k, weight) in weights.into_iter().enumerate() {
+            let mut nodes = vec![[0.0; PARTS]; count + 1];
+            for (k, weight) in lagrange(share).into_iter().enumerate() {
+                if weight == 0.0 {
+                    continue;
+                }
                 let ray = (low as usize + rays + k - BEFORE) % rays;
                 let from = &self.table[ray * (count + 1)..(ray + 1) * (count + 1)];
-                for (node, values) in from.iter().enumerate().skip(usize::from(back)) {
-                    let into = &mut nodes[if back { count - node } else { count + node }];
-                    for (i, v) in into.iter_mut().zip(values) {
-                        *i += weight * v;
-                    }
+                for (into, values) in nodes.iter_mut().zip(from) {
+                    into.iter_mut().zip(values).for_each(|(i, v)| *i += weight * v);
                 }
             }
-        }
-        for node in &mut nodes[..count] {
-            // Behind the place the way runs against the ray.
-            for v in &mut node[DERIVATIVES..] {
-                *v = -*v;
-            }
-        }
-        let step = self.radius / count as f64;
-        for node in &mut nodes {
-            for v in &mut node[DERIVATIVES..] {
-                *v *= step;
-            }
-        }
-        Ray { nodes }
+            nodes
+        };
+        let [behind, ahead] = [way((-s).atan2(-c)), way(s.atan2(c))];
+        // What a table can follow has no waves to be looked for.
+        Nodes::new(&self.place, [&behind, &ahead], (self.radius, count), f64::INFINITY)
     }
 
     fn line(&self, ray: &Ray, q: f64) -> Line {
@@ -329,38 +359,15 @@ impl<'a> Chart<'a> {
         let normal = self.forms.normal.into_inner() + Vec3::new(v[3], v[4], v[5]);
         Line { origin: self.centre + Vec3::new(v[0], v[1], v[2]), direction: Unit3::new_normalize(normal) }
     }
-
-    fn inside(&self, ray: &Ray, q: f64) -> bool {
-        self.whole || {
-            let v = ray.values(q / self.radius);
-            self.domain.contains(uv(self.at.u + v[6], self.at.v + v[7]))
-        }
-    }
 }
 
-/// A ray by its direction.
-type KeptRay = ([f64; 2], Rc<Ray>);
+/// A line by its direction.
+type KeptLine = ([f64; 2], Rc<Nodes>);
 
-/// Where the derivatives begin among the parts.
-const DERIVATIVES: usize = 8;
-
-/// The parts of a node, less those of the place, and the smaller principal curvature there.
-fn parts(
-    place: &Jet2,
-    here: &Jet2,
-    forms: &Forms,
-    state: GeodesicState,
-) -> Result<([f64; PARTS], f64), Degenerate> {
-    let own = here.forms()?;
-    let tangent = here.tangent(state.rate);
-    // Weingarten: the normal turns with the frame.
-    let frame = Darboux::with_forms(here, &own, &tangent, 0.0);
-    let n_rate = frame.turn.cross(&own.normal);
-    let (x, n) = (here.point - place.point, own.normal.into_inner() - forms.normal.into_inner());
-    let (u, v) = (state.at.u - place.uv.u, state.at.v - place.uv.v);
-    let d = frame.tangent;
-    let parts = [x.x, x.y, x.z, n.x, n.y, n.z, u, v, d.x, d.y, d.z, n_rate.x, n_rate.y, n_rate.z];
-    Ok((parts, own.principal().k_min))
+/// (cos, sin) of one of equally spaced directions.
+fn direction(k: usize, of: usize) -> [f64; 2] {
+    let (s, c) = (TAU * k as f64 / of as f64).sin_cos();
+    [c, s]
 }
 
 /// Weights of equally spaced neighbours for a place `share` behind the one with `BEFORE` others before it.
@@ -370,53 +377,4 @@ fn lagrange(share: f64) -> [f64; NEIGHBOURS] {
         let others = (0..NEIGHBOURS).filter(|j| *j != i);
         others.map(|j| (x - j as f64) / (i as f64 - j as f64)).product()
     })
-}
-
-/// A line through the chart's centre by nodes, the centre in the middle; derivatives are per step of nodes.
-struct Ray {
-    nodes: Vec<[f64; PARTS]>,
-}
-
-impl Ray {
-    /// The piece at `x` (length over the chart's radius) and the place in it from 0 to 1.
-    fn piece(&self, x: f64) -> (&[f64; PARTS], &[f64; PARTS], f64) {
-        let last = self.nodes.len() - 1;
-        let at = 0.5 * (x + 1.0) * last as f64;
-        let k = (at.floor().max(0.0) as usize).min(last - 1);
-        (&self.nodes[k], &self.nodes[k + 1], at - k as f64)
-    }
-
-    /// Point, normal and parameters, less those of the place; parameters by chords.
-    fn values(&self, x: f64) -> [f64; DERIVATIVES] {
-        let (a, b, t) = self.piece(x);
-        let (u, tt) = (1.0 - t, t * t);
-        let (h1, h2, h3) = (tt * (3.0 - 2.0 * t), t * u * u, -tt * u);
-        let mut out = [0.0; DERIVATIVES];
-        for k in 0..6 {
-            let (da, db) = (a[DERIVATIVES + k], b[DERIVATIVES + k]);
-            out[k] = a[k] + (b[k] - a[k]) * h1 + da * h2 + db * h3;
-        }
-        for k in 6..DERIVATIVES {
-            out[k] = a[k] + (b[k] - a[k]) * t;
-        }
-        out
-    }
-
-    /// Point and normal with two derivatives of the one and one of the other, per step of nodes.
-    fn moving(&self, x: f64) -> ([f64; 6], [f64; 6], [f64; 3]) {
-        let (a, b, t) = self.piece(x);
-        let (mut p, mut d, mut dd) = ([0.0; 6], [0.0; 6], [0.0; 3]);
-        for k in 0..6 {
-            let (da, db) = (a[DERIVATIVES + k], b[DERIVATIVES + k]);
-            let rise = b[k] - a[k];
-            // a + t (da + t (c2 + t c3)).
-            let (c2, c3) = (3.0 * rise - 2.0 * da - db, da + db - 2.0 * rise);
-            p[k] = a[k] + t * (da + t * (c2 + t * c3));
-            d[k] = da + t * (2.0 * c2 + 3.0 * t * c3);
-            if k < 3 {
-                dd[k] = 2.0 * c2 + 6.0 * t * c3;
-            }
-        }
-        (p, d, dd)
-    }
 }

@@ -1,13 +1,12 @@
 //! Strip and tooth mark of one posture on a chart.
 
-use super::Chart;
 use super::walk::{ChartMotion, Profile, Side};
+use super::{Chart, OF_PITCH};
 use crate::contact::{ContactError, Lean};
 use crate::cutter::{Cutter, Line};
 use crate::strip::local::Pace;
 use osculate_geom::roots::{End, bracketed};
-use std::cell::Cell;
-use std::rc::Rc;
+use std::cell::{Cell, OnceCell};
 
 /// What is asked of a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +52,12 @@ pub enum ChartError {
     Contact(#[from] ContactError),
 }
 
+/// Steps across the strip: of its leading-order half width, at most of the cutter's radius, and the least of these where knots
+/// are close.
+const STEP: f64 = 0.4;
+const MOST_STEP: f64 = 0.15;
+const LEAST_STEP: f64 = 0.125;
+
 impl Chart<'_> {
     /// How far along the feed the standing tool stays within `height_mm`: as [`mark`](crate::strip::mark()).
     ///
@@ -80,7 +85,7 @@ impl Chart<'_> {
             let mut step = 0.02 * radius.min(self.reach);
             let far = loop {
                 let next = near + step;
-                if next > self.reach {
+                if next > self.reach.min(ray.reach()[usize::from(sign > 0.0)]) {
                     return Err(ChartError::Beyond { radius_mm: self.reach });
                 }
                 if excess(sign * next) > 0.0 {
@@ -122,7 +127,11 @@ impl Chart<'_> {
         let inverse = a * a / q.min + if q.max.is_finite() { b * b / q.max } else { 0.0 };
         let radius = cutter.radius_mm();
         let half = (2.0 * within.scallop_mm * inverse).sqrt();
-        let step = if q.min > 0.0 { (0.4 * half).min(0.15 * radius) } else { 0.15 * radius };
+        // n x t in the chart's coordinates.
+        let left = self.ray([-s * self.side, c * self.side]);
+        let step = if q.min > 0.0 { (STEP * half).min(MOST_STEP * radius) } else { MOST_STEP * radius };
+        // Between knots there may be a wave.
+        let step = step.min((OF_PITCH * left.pitch_mm()).max(LEAST_STEP * step));
         let mut side = Side {
             motion: &motion,
             cutter,
@@ -131,10 +140,9 @@ impl Chart<'_> {
             step,
             fits: q.min > 0.0,
             everywhere: false,
+            nearby: OnceCell::new(),
         };
-        // n x t in the chart's coordinates.
-        let left = self.ray([-s * self.side, c * self.side]);
-        let new = || [1.0, -1.0].map(|sign| Profile::new(Rc::clone(&left), sign));
+        let new = || [1.0, -1.0].map(|sign| Profile::new(left.clone(), sign));
         let mut profiles = new();
         let dip = |line: &Line| self.dip_mm(cutter, angle_rad, lean, line);
         // Lifted by more than the tolerance it would stand above it.
@@ -146,7 +154,7 @@ impl Chart<'_> {
         for profile in &mut profiles {
             side.walk(profile)?;
         }
-        // A surface that a chart of the usual size cannot follow may have waves over which the tool comes twice.
+        // A surface that a table cannot follow may have waves over which the tool comes twice.
         if self.is_wavy() && profiles.iter().any(|p| side.comes_again(p)) {
             side.everywhere = true;
             profiles = new();

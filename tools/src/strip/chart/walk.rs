@@ -11,13 +11,12 @@ use crate::strip::passages::dip;
 use crate::sweep::{Moving, SweptMotion};
 use osculate_geom::roots::{End, bracketed};
 use osculate_geom::{Unit3, Vec3};
-use std::cell::Cell;
-use std::rc::Rc;
+use std::cell::{Cell, OnceCell};
 
 /// The contact motion along a line of the chart.
 pub(super) struct ChartMotion<'a> {
     pub chart: &'a Chart<'a>,
-    pub feed: Rc<Ray>,
+    pub feed: Ray,
     pub lean: Lean,
     pub arc: Arc,
     /// Set when an instant outside the chart was asked for.
@@ -27,7 +26,12 @@ pub(super) struct ChartMotion<'a> {
 impl SweptMotion for ChartMotion<'_> {
     fn at(&self, t: f64) -> Option<Moving> {
         let x = t / self.chart.radius;
-        if t.abs() > self.chart.reach {
+        let side = usize::from(t > 0.0);
+        // The feed ends with the surface, as that of an exact contact does.
+        if t.abs() > self.feed.inside()[side] {
+            return None;
+        }
+        if t.abs() > self.chart.reach.min(self.feed.reach()[side]) {
             self.beyond.set(true);
             return None;
         }
@@ -66,22 +70,40 @@ impl SweptMotion for ChartMotion<'_> {
 const SUSPECT: f64 = 0.5;
 /// Chords drawn before the edge of a strip is bracketed.
 const CHORDS: u32 = 3;
-/// Most places of a profile.
-const PLACES: usize = 40;
+/// Most places of a profile, and for how many there is room at once.
+const PLACES: usize = 120;
+const ROOM: usize = 24;
 
 /// Heights along one side, until they exceed the tolerance; the ray runs to the left, `sign` says to which side.
 pub(super) struct Profile {
-    ray: Rc<Ray>,
+    ray: Ray,
     sign: f64,
-    places: [(f64, f64, Near); PLACES],
-    count: usize,
+    places: Vec<Spot>,
     at_edge: bool,
 }
 
+/// A place of a profile.
+#[derive(Clone, Copy)]
+struct Spot {
+    q: f64,
+    height: f64,
+    near: Near,
+    /// The deepest instant.
+    t: f64,
+    /// How much higher the contact's own passage is than the lowest of the others, where these are asked for.
+    gap: f64,
+}
+
+impl Spot {
+    /// Whether another wave than at the place before is the deepest: its instant moves by no more than about the way across.
+    fn jumps(&self, before: &Self, least: f64) -> bool {
+        (self.t - before.t).abs() > (self.q - before.q).abs() + least
+    }
+}
+
 impl Profile {
-    pub(super) fn new(ray: Rc<Ray>, sign: f64) -> Self {
-        let places = [(0.0, 0.0, Near { t: 0.0, bend: None }); PLACES];
-        Self { ray, sign, places, count: 0, at_edge: false }
+    pub(super) fn new(ray: Ray, sign: f64) -> Self {
+        Self { ray, sign, places: Vec::with_capacity(ROOM), at_edge: false }
     }
 
     /// The normal of the part at the distance `q` from the contact.
@@ -91,11 +113,7 @@ impl Profile {
 
     /// The normal of the part at the last place.
     pub(super) fn end(&self, chart: &Chart<'_>) -> Line {
-        self.line(chart, self.seen().last().map_or(0.0, |p| p.0))
-    }
-
-    fn seen(&self) -> &[(f64, f64, Near)] {
-        &self.places[..self.count]
+        self.line(chart, self.places.last().map_or(0.0, |p| p.q))
     }
 }
 
@@ -107,142 +125,193 @@ pub(super) struct Side<'a> {
     pub step: f64,
     /// Whether Q is positive definite.
     pub fits: bool,
-    /// Whether every place takes the deepest of all passages within a radius of the contact.
+    /// Whether every place takes the deepest of all passages on the chart.
     pub everywhere: bool,
+    /// Poses of the tool along the feed, equally spaced, made when first asked for.
+    pub nearby: OnceCell<Vec<(f64, Option<Pose>)>>,
 }
 
-/// Instants, a twentieth of the tool's radius apart, that are looked at to each side of the contact.
-const NEARBY: i32 = 20;
+/// Distance between the instants that are looked at for other passages, in the tool's radius, and of that between knots.
+const APART: [f64; 2] = [0.03, 0.1];
+const OF_PITCH: f64 = 1.0 / 3.0;
+/// Other passages higher than this, of the tolerance, are of no interest.
+const MATTERS: f64 = 2.0;
+/// Places looked at between two at which different passages are the deepest, and how far these lie apart at least, in the tool's
+/// radius.
+const CROSSINGS: u32 = 3;
+const JUMP: f64 = 0.05;
 
 impl Side<'_> {
-    fn height(&self, profile: &Profile, q: f64, near: Near) -> (f64, Near) {
+    fn spot(&self, profile: &Profile, q: f64, near: Near) -> Spot {
         let line = profile.line(self.motion.chart, q);
         // A tool that does not pass over the place stands above it by more than any tolerance.
         let (own, near) = deepest(self.cutter, &line, self.motion, near, self.pace)
             .map_or((self.cutter.radius_mm(), near), |(reach, near)| (reach.at_mm, near));
-        (if self.everywhere { self.lowest(&line, None).min(own) } else { own }, near)
+        let (other, t) = if self.everywhere { self.lowest(&line, near.t) } else { (f64::INFINITY, near.t) };
+        Spot { q, height: own.min(other), near, t: if other < own { t } else { near.t }, gap: own - other }
     }
 
-    /// The lowest entry of the line within a radius of the contact, at instants away from `but`, by parabolas.
-    fn lowest(&self, line: &Line, but: Option<f64>) -> f64 {
-        let entry = |k: i32| {
-            let t = f64::from(k) * self.pace.step;
-            // Beyond the chart there is nothing to ask.
-            let pose = if t.abs() < self.motion.chart.reach { self.motion.at(t)?.pose } else { return None };
-            Some(self.cutter.entry(&pose, line)?.at_mm)
-        };
-        let mut lowest = f64::INFINITY;
-        let mut before = [f64::INFINITY; 2];
-        for k in -NEARBY..=NEARBY {
-            let now = entry(k).unwrap_or(f64::INFINITY);
+    /// Distance between the poses looked at, mm.
+    fn apart(&self) -> f64 {
+        let radius = self.cutter.radius_mm();
+        (OF_PITCH * self.motion.feed.pitch_mm()).clamp(APART[0] * radius, APART[1] * radius)
+    }
+
+    /// Poses as far as the chart and the surface's rectangle go.
+    fn poses(&self) -> &[(f64, Option<Pose>)] {
+        self.nearby.get_or_init(|| {
+            let apart = self.apart();
+            let reach = self.motion.chart.reach;
+            let [behind, ahead] = self.motion.feed.reach().map(|r| (r.min(reach) / apart) as i32);
+            let at = |k: i32| f64::from(k) * apart;
+            (-behind..=ahead).map(|k| (at(k), self.motion.at(at(k)).map(|m| m.pose))).collect()
+        })
+    }
+
+    /// The lowest entry of the line on the chart, at instants away from that of the contact's own passage, and its instant.
+    fn lowest(&self, line: &Line, own: f64) -> (f64, f64) {
+        let apart = self.apart();
+        let mut lowest = (f64::INFINITY, 0.0);
+        let mut before = [(0.0, f64::INFINITY); 2];
+        for (t, pose) in self.poses() {
+            let entry = pose.as_ref().and_then(|p| self.cutter.entry(p, line));
+            let now = (*t, entry.map_or(f64::INFINITY, |e| e.at_mm));
             let [a, b] = before;
-            let other =
-                but.is_none_or(|t| (f64::from(k - 1) * self.pace.step - t).abs() > 2.0 * self.pace.step);
-            if other && b < a && b <= now {
-                lowest = lowest.min(b - dip([a, b, now]));
+            if (b.0 - own).abs() > 2.0 * apart && b.1 < a.1 && b.1 <= now.1 {
+                let bottom = b.1 - dip([a.1, b.1, now.1]);
+                lowest = if bottom < lowest.0 { (bottom, b.0) } else { lowest };
             }
             before = [b, now];
         }
-        lowest
+        // Parabolas tell where; how deep only matters near the tolerance.
+        let (bottom, t) = lowest;
+        if bottom > MATTERS * self.h {
+            return lowest;
+        }
+        let pace = Pace { step: 0.5 * apart, ..self.pace };
+        deepest(self.cutter, line, self.motion, Near { t, bend: None }, pace)
+            .filter(|(reach, _)| (reach.t - t).abs() <= apart)
+            .map_or(lowest, |(reach, _)| (reach.at_mm, reach.t))
     }
 
-    /// Whether the tool at another instant than the profile's own comes down to the tolerance over its end.
+    /// Whether the tool at another instant than the profile's own comes down to the tolerance over the contact or over its end.
     pub(super) fn comes_again(&self, profile: &Profile) -> bool {
-        profile
-            .seen()
-            .last()
-            .is_some_and(|(_, _, near)| self.lowest(&profile.end(self.motion.chart), Some(near.t)) <= self.h)
+        let [Some(first), Some(last)] = [profile.places.first(), profile.places.last()] else { return false };
+        [first, last]
+            .into_iter()
+            .any(|p| self.lowest(&profile.line(self.motion.chart, p.q), p.near.t).0 <= self.h)
     }
 
     pub(super) fn walk(&self, profile: &mut Profile) -> Result<(), ChartError> {
         let chart = self.motion.chart;
         let (mut q, mut near, mut step) = (0.0, Near { t: 0.0, bend: None }, self.step);
-        while profile.count < PLACES {
+        let side = usize::from(profile.sign > 0.0);
+        let reach = chart.reach.min(profile.ray.reach()[side]);
+        let inside = profile.ray.inside()[side];
+        while profile.places.len() < PLACES {
             // A tool that fits touches where it is.
-            let touches = profile.count == 0 && self.fits;
-            let (f, found) = if touches { (0.0, near) } else { self.height(profile, q, near) };
+            let touches = profile.places.is_empty() && self.fits && !self.everywhere;
+            let spot = if touches {
+                Spot { q, height: 0.0, near, t: 0.0, gap: 0.0 }
+            } else {
+                self.spot(profile, q, near)
+            };
             if self.motion.beyond.get() {
                 return Err(ChartError::Beyond { radius_mm: chart.reach });
             }
-            near = found;
-            profile.places[profile.count] = (q, f, near);
-            profile.count += 1;
-            if profile.count == 1 && f > self.h {
-                return Err(ChartError::Above { standoff_mm: f });
+            near = spot.near;
+            profile.places.push(spot);
+            if profile.places.len() == 1 && spot.height > self.h {
+                return Err(ChartError::Above { standoff_mm: spot.height });
             }
-            if f > self.h || profile.at_edge {
+            if self.crossing(profile) || spot.height > self.h || profile.at_edge || self.crest(profile) {
                 return Ok(());
             }
-            if self.crest(profile) {
-                return Ok(());
-            }
-            if q + step > chart.reach {
-                return Err(ChartError::Beyond { radius_mm: chart.reach });
-            }
-            if !chart.inside(&profile.ray, profile.sign * (q + step)) {
-                // Bisection to a thousandth of the step.
-                let (mut lo, mut hi) = (0.0, step);
-                for _ in 0..10 {
-                    let m = 0.5 * (lo + hi);
-                    if chart.inside(&profile.ray, profile.sign * (q + m)) { lo = m } else { hi = m }
-                }
-                step = lo;
+            if q + step > inside && inside <= reach {
+                step = inside - q;
                 profile.at_edge = true;
+            } else if q + step > reach {
+                return Err(ChartError::Beyond { radius_mm: chart.reach });
             }
             q += step;
         }
         Err(ChartError::Beyond { radius_mm: chart.reach })
     }
 
+    /// Whether the profile exceeds the tolerance where it changes from one passage to another before the last place, which then
+    /// ends it there: a crest with an edge.
+    fn crossing(&self, profile: &mut Profile) -> bool {
+        let [before @ .., a, b] = &profile.places[..] else { return false };
+        let (mut a, mut b) = (*a, *b);
+        // Heights are nearly convex but where the passage changes: then they end below the line through the places before.
+        let ahead =
+            before.last().map_or(0.0, |p| a.height + (a.height - p.height) * (b.q - a.q) / (a.q - p.q));
+        let bends = ahead > self.h && b.height <= self.h;
+        if !self.motion.chart.is_wavy() || !(bends || b.jumps(&a, JUMP * self.cutter.radius_mm())) {
+            return false;
+        }
+        for _ in 0..CROSSINGS {
+            // Where both passages are as deep, by chords where both are known.
+            let share = a.gap / (a.gap - b.gap);
+            let share = if share > 0.05 && share < 0.95 { share } else { 0.5 };
+            let top = self.spot(profile, a.q + share * (b.q - a.q), a.near);
+            if top.height > self.h {
+                profile.places.pop();
+                profile.places.push(top);
+                return true;
+            }
+            *(if (top.t - a.t).abs() < (b.t - top.t).abs() { &mut a } else { &mut b }) = top;
+        }
+        false
+    }
+
     /// Whether the profile exceeds the tolerance at the crest of the parabola through its last three places, which then ends
     /// it.
     fn crest(&self, profile: &mut Profile) -> bool {
-        let [.., a, b, c] = profile.seen() else { return false };
-        let (bend, slope) = (0.5 * (a.1 + c.1) - b.1, 0.5 * (c.1 - a.1));
+        let [.., a, b, c] = profile.places[..] else { return false };
+        let (bend, slope) = (0.5 * (a.height + c.height) - b.height, 0.5 * (c.height - a.height));
         let at = -0.5 * slope / bend;
-        if !(bend < 0.0 && at.abs() < 1.0 && b.1 + 0.5 * slope * at > SUSPECT * self.h) {
+        if !(bend < 0.0 && at.abs() < 1.0 && b.height + 0.5 * slope * at > SUSPECT * self.h) {
             return false;
         }
-        let q = b.0 + at * self.step;
-        let (f, near) = self.height(profile, q, b.2);
-        if f > self.h {
+        let top = self.spot(profile, b.q + at * self.step, b.near);
+        if top.height > self.h {
             // In the order of their distance: the crest lies before the last place, or before the last but one.
-            profile.count -= if at < 0.0 { 2 } else { 1 };
-            profile.places[profile.count] = (q, f, near);
-            profile.count += 1;
+            profile.places.truncate(profile.places.len() - if at < 0.0 { 2 } else { 1 });
+            profile.places.push(top);
         }
-        f > self.h
+        top.height > self.h
     }
 
     /// Depth below the part: the lowest place, and the parabola through it and its neighbours.
     pub(super) fn undercut(&self, profile: &Profile) -> f64 {
-        let seen = profile.seen();
-        let Some((k, _)) = seen.iter().enumerate().min_by(|a, b| a.1.1.total_cmp(&b.1.1)) else { return 0.0 };
-        let mut lowest = seen[k].1;
+        let seen = &profile.places[..];
+        let least = seen.iter().enumerate().min_by(|a, b| a.1.height.total_cmp(&b.1.height));
+        let Some((k, _)) = least else { return 0.0 };
+        let mut lowest = seen[k].height;
         if k > 0 && k + 1 < seen.len() {
             let [mut a, mut b, mut c] = [seen[k - 1], seen[k], seen[k + 1]];
             for _ in 0..3 {
-                let (da, dc) = (b.0 - a.0, b.0 - c.0);
-                let (fa, fc) = (b.1 - a.1, b.1 - c.1);
+                let (da, dc) = (b.q - a.q, b.q - c.q);
+                let (fa, fc) = (b.height - a.height, b.height - c.height);
                 let bottom = da * fc - dc * fa;
                 if bottom == 0.0 {
                     break;
                 }
-                let x = b.0 - 0.5 * (da * da * fc - dc * dc * fa) / bottom;
-                if !(x > a.0 && x < c.0) || (x - b.0).abs() < 1e-3 * self.step {
+                let x = b.q - 0.5 * (da * da * fc - dc * dc * fa) / bottom;
+                if !(x > a.q && x < c.q) || (x - b.q).abs() < 1e-3 * self.step {
                     break;
                 }
-                let (f, near) = self.height(profile, x, b.2);
-                lowest = lowest.min(f);
-                let new = (x, f, near);
-                if f < b.1 {
-                    if x > b.0 {
+                let new = self.spot(profile, x, b.near);
+                lowest = lowest.min(new.height);
+                if new.height < b.height {
+                    if x > b.q {
                         a = b
                     } else {
                         c = b
                     }
                     b = new;
-                } else if x > b.0 {
+                } else if x > b.q {
                     c = new;
                 } else {
                     a = new;
@@ -254,19 +323,19 @@ impl Side<'_> {
 
     /// Where the profile first exceeds the height, and nearly where it first exceeds one that is higher by `more`.
     pub(super) fn edges(&self, profile: &Profile, height: f64, more: f64) -> Result<[f64; 2], ChartError> {
-        let seen = profile.seen();
-        let last = seen.last().map_or(0.0, |p| p.0);
-        let Some(k) = seen.iter().position(|p| p.1 > height) else { return Ok([last; 2]) };
+        let seen = &profile.places[..];
+        let last = seen.last().map_or(0.0, |p| p.q);
+        let Some(k) = seen.iter().position(|p| p.height > height) else { return Ok([last; 2]) };
         if k == 0 {
-            return Err(ChartError::Above { standoff_mm: seen[0].1 + self.h - height });
+            return Err(ChartError::Above { standoff_mm: seen[0].height + self.h - height });
         }
         let edge = self.edge(profile, k, height);
-        let higher = match seen.iter().position(|p| p.1 > height + more) {
+        let higher = match seen.iter().position(|p| p.height > height + more) {
             None => last,
             Some(j) => {
-                let from = if j == k { (edge, height) } else { (seen[j - 1].0, seen[j - 1].1) };
-                let share = (height + more - from.1) / (seen[j].1 - from.1);
-                from.0 + share.clamp(0.0, 1.0) * (seen[j].0 - from.0)
+                let from = if j == k { (edge, height) } else { (seen[j - 1].q, seen[j - 1].height) };
+                let share = (height + more - from.1) / (seen[j].height - from.1);
+                from.0 + share.clamp(0.0, 1.0) * (seen[j].q - from.0)
             }
         };
         Ok([edge, higher])
@@ -274,20 +343,21 @@ impl Side<'_> {
 
     /// Where the profile exceeds the height between the places before and at `k`, to a ten-thousandth of the way.
     fn edge(&self, profile: &Profile, k: usize, height: f64) -> f64 {
-        let (from, to) = (profile.seen()[k - 1], profile.seen()[k]);
+        let (from, to) = (profile.places[k - 1], profile.places[k]);
         // Profiles are nearly parabolas: their root is nearly straight, and chords find where it passes that of the height.
         let straight = |f: f64| f.abs().sqrt().copysign(f) - height.sqrt();
-        let (mut a, mut b) = (End { x: from.0, f: straight(from.1) }, End { x: to.0, f: straight(to.1) });
-        let tolerance = 1e-4 * to.0;
+        let (mut a, mut b) =
+            (End { x: from.q, f: straight(from.height) }, End { x: to.q, f: straight(to.height) });
+        let tolerance = 1e-4 * to.q;
         for _ in 0..CHORDS {
             let slope = (b.f - a.f) / (b.x - a.x);
             let x = a.x - a.f / slope;
-            let f = straight(self.height(profile, x, from.2).0);
+            let f = straight(self.spot(profile, x, from.near).height);
             if f.abs() <= tolerance * slope {
                 return (x - f / slope).clamp(a.x, b.x);
             }
             *(if f > 0.0 { &mut b } else { &mut a }) = End { x, f };
         }
-        bracketed(a, b, tolerance, |q| straight(self.height(profile, q, from.2).0)).map_or(a.x, |r| r.x)
+        bracketed(a, b, tolerance, |q| straight(self.spot(profile, q, from.near).height)).map_or(a.x, |r| r.x)
     }
 }
