@@ -193,21 +193,23 @@ pub fn measure(
     measure_contact(&contact, share, limits, 0.0)
 }
 
-/// As [`measure`], to [`COMPARED`], with the planar closed form of the tooth mark: what the search compares where the part has no
-/// waves.
+/// As [`measure`], to [`COMPARED`], with the planar closed form of the tooth mark where the part has no waves: what the search
+/// compares.
 fn compare(
     surface: &dyn Surface,
     at: Uv,
     cutter: &Cutter,
-    posture: Posture,
+    (posture, wavy): (Posture, bool),
     limits: &Limits,
 ) -> Result<Measured, StripError> {
     let contact = Contact::new(surface, at, cutter, FeedLine::Angle(posture.direction_rad), posture.lean)?;
     let along = contact.relative().along(&contact.frame.tangent);
-    if !(along > 0.0 && along.is_finite()) {
-        return measure(surface, at, cutter, posture, limits);
-    }
     let (cap, _) = limits.caps.greatest_per_tooth();
+    if wavy || !(along > 0.0 && along.is_finite()) {
+        let mark = |c: &Contact<'_>, h: f64| strip::mark(c, h).map(|m| m.length_mm());
+        let share = share_of(&contact, cap, limits.scallop_mm, mark)?;
+        return measure_contact(&contact, share, limits, COMPARED);
+    }
     let part_per_mm = contact.forms.normal_curvature(&contact.frame.tangent);
     let planar = |_: &Contact<'_>, scallop_mm: f64| Ok(planar_mark_mm(part_per_mm, along, scallop_mm));
     let share = share_of(&contact, cap, limits.scallop_mm, planar)?;

@@ -19,9 +19,9 @@ use std::f64::consts::{PI, TAU};
 pub(super) const GRID: [usize; 3] = [24, 7, 5];
 /// Directions measured at the least lead, and over waves.
 const DIRECTIONS: [usize; 2] = [36, 72];
-/// Postures of the grid above the least lead that are measured, how many of all enter the rounds of settling, and how many
-/// come through the first.
-const MEASURED: usize = 12;
+/// Postures of the grid above the least lead that are measured, of which the leading order says less over waves; how many of
+/// all enter the rounds of settling, and how many come through the first.
+const MEASURED: [usize; 2] = [12, 36];
 const ENTERED: usize = 6;
 const SETTLED: usize = 3;
 /// Leads tried above an impossible one in the first look.
@@ -121,8 +121,7 @@ impl<'a> Search<'a> {
         let measured = match on_chart {
             Err(ChartError::Beyond { .. }) => {
                 self.exact += 1;
-                let exactly = if self.chart.is_wavy() { measure } else { compare };
-                exactly(self.surface, self.at, self.cutter, p, self.limits)
+                compare(self.surface, self.at, self.cutter, (p, self.chart.is_wavy()), self.limits)
             }
             Err(ChartError::Above { standoff_mm }) => {
                 Err(StripError::AboveTolerance { standoff_mm, scallop_mm: self.limits.scallop_mm })
@@ -186,7 +185,8 @@ impl<'a> Search<'a> {
     pub fn run(&mut self) -> Option<Found> {
         // At the least lead the strip is usually widest and the leading order fails: all of it is measured.
         let postures = self.least_lead();
-        let mut found = Vec::with_capacity(postures.len() + MEASURED);
+        let measured = MEASURED[usize::from(self.chart.is_wavy())];
+        let mut found = Vec::with_capacity(postures.len() + measured);
         let mut promises: Vec<(Found, f64)> = Vec::with_capacity(postures.len());
         for p in postures {
             match self.measure(p) {
@@ -200,13 +200,13 @@ impl<'a> Search<'a> {
         }
         let mut ranked = self.grid();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut tried: Vec<Posture> = Vec::with_capacity(6 * MEASURED);
-        let enough = found.len() + MEASURED;
+        let mut tried: Vec<Posture> = Vec::with_capacity(6 * measured);
+        let enough = found.len() + measured;
         for (p, _) in ranked {
             if p.lean.lead_rad == self.limits.lead.least_rad {
                 continue;
             }
-            if found.len() >= enough || tried.len() >= 6 * MEASURED {
+            if found.len() >= enough || tried.len() >= 6 * measured {
                 break;
             }
             // Not two postures of one neighbourhood.

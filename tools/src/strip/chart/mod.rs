@@ -33,8 +33,13 @@ use std::rc::Rc;
 /// Directions of the table, and nodes on each way that leaves the place; as many again in the second attempt.
 const RAYS: usize = 36;
 const NODES: usize = 16;
-/// Most nodes on a way that is traced by itself.
-const MOST_NODES: usize = 128;
+/// Lines that are traced go further, as far as the tool's bottom may come over the strip again, with as many nodes.
+const FURTHER: usize = 2;
+/// Most nodes on a way that is traced.
+const MOST_NODES: usize = 128 * FURTHER;
+/// What a piece of most nodes may be off by, of the tolerance: where the part's curvature jumps at a knot, only the piece that has
+/// it is off.
+const AT_KNOTS: f64 = 8.0;
 /// What a second attempt promises to make of errors between lines and along them.
 const PROMISED: [f64; 2] = [1.0 / 8.0, 1.0 / 16.0];
 /// Every so manieth way is looked at midway between nodes.
@@ -88,8 +93,8 @@ fn greatest(errors: &[f64]) -> f64 {
 }
 
 impl<'a> Chart<'a> {
-    /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm`; made anew to 0.4 of the radius, three times
-    /// at most, where that is less than a third.
+    /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm` (some times as much where the part's curvature jumps);
+    /// of traced lines to twice the radius, made anew to 0.4 of it, three times at most, where less than a third is good.
     ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane at the place.
@@ -119,6 +124,7 @@ impl<'a> Chart<'a> {
         if chart.tabulate(tolerance_mm)? {
             return Ok(chart);
         }
+        chart.radius *= FURTHER as f64;
         chart.by_lines(tolerance_mm)?;
         for _ in 0..3 {
             if 3.0 * chart.reach >= chart.radius {
@@ -199,7 +205,7 @@ impl<'a> Chart<'a> {
     /// Traces lines from now on, with as many nodes as some of them need.
     fn by_lines(&mut self, tolerance_mm: f64) -> Result<(), Degenerate> {
         self.table = Vec::new();
-        let mut nodes = NODES;
+        let mut nodes = NODES * FURTHER;
         loop {
             self.size = [0, nodes];
             self.lines.get_mut().clear();
@@ -223,7 +229,8 @@ impl<'a> Chart<'a> {
                 }
                 self.lines.get_mut().push((towards, made));
             }
-            let good = along.iter().position(|e| *e > tolerance_mm).unwrap_or(nodes);
+            let most = if nodes < MOST_NODES { tolerance_mm } else { AT_KNOTS * tolerance_mm };
+            let good = along.iter().position(|e| *e > most).unwrap_or(nodes);
             self.reach = step * good as f64;
             self.error = greatest(&along[..good]);
             if good == nodes || nodes >= MOST_NODES {
@@ -237,7 +244,7 @@ impl<'a> Chart<'a> {
     fn stride(&self, pitch: f64) -> usize {
         let nodes = self.size[1];
         let of_pitch = OF_PITCH * pitch * nodes as f64 / self.radius;
-        (nodes / NODES).min(of_pitch.max(1.0) as usize)
+        (nodes / (NODES * FURTHER)).max(1).min(of_pitch.max(1.0) as usize)
     }
 
     fn way(&self, towards: [f64; 2], stride: usize, midway: bool) -> Result<Way, Degenerate> {

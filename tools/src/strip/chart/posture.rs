@@ -163,7 +163,8 @@ impl Chart<'_> {
             }
         }
         for profile in &profiles {
-            undercut = undercut.max(side.undercut(profile)).max(too_deep(dip(&profile.end(self)))?);
+            undercut =
+                undercut.max(too_deep(side.undercut(profile))?).max(too_deep(dip(&profile.end(self)))?);
         }
         let lift = (undercut - within.gouge_mm).max(0.0);
         let (mut width, mut most) = (0.0, 0.0);

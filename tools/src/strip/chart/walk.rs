@@ -25,16 +25,35 @@ pub(super) struct ChartMotion<'a> {
 
 impl SweptMotion for ChartMotion<'_> {
     fn at(&self, t: f64) -> Option<Moving> {
-        let x = t / self.chart.radius;
-        let side = usize::from(t > 0.0);
-        // The feed ends with the surface, as that of an exact contact does.
-        if t.abs() > self.feed.inside()[side] {
-            return None;
-        }
-        if t.abs() > self.chart.reach.min(self.feed.reach()[side]) {
+        if t.abs() > self.chart.reach && self.goes(t) {
             self.beyond.set(true);
             return None;
         }
+        self.moving(t)
+    }
+}
+
+impl ChartMotion<'_> {
+    /// Whether the feed has not ended with the surface, as that of an exact contact does.
+    fn goes(&self, t: f64) -> bool {
+        t.abs() <= self.feed.inside()[usize::from(t > 0.0)]
+    }
+
+    /// Whether the part has turned by less than a right angle from the place on.
+    fn faces(&self, t: f64) -> bool {
+        let v = self.feed.values(t / self.chart.radius);
+        1.0 + self.chart.forms.normal.dot(&Vec3::new(v[3], v[4], v[5])) > 0.0
+    }
+
+    /// The motion as far as its line goes, where the chart is no longer good too.
+    fn moving(&self, t: f64) -> Option<Moving> {
+        if !self.goes(t) {
+            return None;
+        }
+        if t.abs() > self.feed.reach()[usize::from(t > 0.0)] {
+            return None;
+        }
+        let x = t / self.chart.radius;
         let (p, d, dd) = self.feed.moving(x);
         let rate = self.chart.size[1] as f64 / self.chart.radius;
         let point = self.chart.centre + Vec3::new(p[0], p[1], p[2]);
@@ -63,6 +82,15 @@ impl SweptMotion for ChartMotion<'_> {
             tip_rate,
             turn: axis.cross(&axis_rate),
         })
+    }
+}
+
+/// The motion where the chart is no longer good too: other passages than the contact's own are looked at as far as there are lines.
+struct Far<'a>(&'a ChartMotion<'a>);
+
+impl SweptMotion for Far<'_> {
+    fn at(&self, t: f64) -> Option<Moving> {
+        self.0.moving(t)
     }
 }
 
@@ -132,10 +160,8 @@ pub(super) struct Side<'a> {
 }
 
 /// Distance between the instants that are looked at for other passages, in the tool's radius, and of that between knots.
-const APART: [f64; 2] = [0.03, 0.1];
+const APART: [f64; 2] = [0.02, 0.15];
 const OF_PITCH: f64 = 1.0 / 3.0;
-/// Other passages higher than this, of the tolerance, are of no interest.
-const MATTERS: f64 = 2.0;
 /// Places looked at between two at which different passages are the deepest, and how far these lie apart at least, in the tool's
 /// radius.
 const CROSSINGS: u32 = 3;
@@ -157,14 +183,17 @@ impl Side<'_> {
         (OF_PITCH * self.motion.feed.pitch_mm()).clamp(APART[0] * radius, APART[1] * radius)
     }
 
-    /// Poses as far as the chart and the surface's rectangle go.
+    /// Poses as far as the feed goes.
     fn poses(&self) -> &[(f64, Option<Pose>)] {
         self.nearby.get_or_init(|| {
             let apart = self.apart();
-            let reach = self.motion.chart.reach;
-            let [behind, ahead] = self.motion.feed.reach().map(|r| (r.min(reach) / apart) as i32);
+            let [behind, ahead] = self.motion.feed.reach().map(|r| (r / apart) as i32);
             let at = |k: i32| f64::from(k) * apart;
-            (-behind..=ahead).map(|k| (at(k), self.motion.at(at(k)).map(|m| m.pose))).collect()
+            // Beyond a right angle the tool is on the part's other side.
+            let faces = |k: &i32| self.motion.faces(at(*k));
+            let back = (1..=behind).map(|k| -k).take_while(faces).count() as i32;
+            let pose = |k: i32| (at(k), self.motion.moving(at(k)).map(|m| m.pose));
+            (-back..=0).chain((1..=ahead).take_while(faces)).map(pose).collect()
         })
     }
 
@@ -178,27 +207,37 @@ impl Side<'_> {
             let now = (*t, entry.map_or(f64::INFINITY, |e| e.at_mm));
             let [a, b] = before;
             if (b.0 - own).abs() > 2.0 * apart && b.1 < a.1 && b.1 <= now.1 {
-                let bottom = b.1 - dip([a.1, b.1, now.1]);
-                lowest = if bottom < lowest.0 { (bottom, b.0) } else { lowest };
+                let found = self.bottom(line, [a.1, b.1, now.1], b.0);
+                lowest = if found.0 < lowest.0 { found } else { lowest };
             }
             before = [b, now];
         }
-        // Parabolas tell where; how deep only matters near the tolerance.
-        let (bottom, t) = lowest;
-        if bottom > MATTERS * self.h {
-            return lowest;
-        }
-        let pace = Pace { step: 0.5 * apart, ..self.pace };
-        deepest(self.cutter, line, self.motion, Near { t, bend: None }, pace)
-            .filter(|(reach, _)| (reach.t - t).abs() <= apart)
-            .map_or(lowest, |(reach, _)| (reach.at_mm, reach.t))
+        lowest
     }
 
-    /// Whether the tool at another instant than the profile's own comes down to the tolerance over the contact or over its end.
+    /// What an entry falls to around an instant at which it is lower than at its neighbours, and when.
+    fn bottom(&self, line: &Line, heights: [f64; 3], t: f64) -> (f64, f64) {
+        let [a, b, c] = heights;
+        let fall = |x: f64| if x.is_finite() { x - b } else { 0.0 };
+        let by_parabola = (b - dip(heights), t);
+        // How deep only matters near the tolerance, to which it may go on to fall as it fell before.
+        if b - fall(a).max(fall(c)) > self.h {
+            return by_parabola;
+        }
+        let apart = self.apart();
+        let pace = Pace { step: 0.5 * apart, ..self.pace };
+        deepest(self.cutter, line, &Far(self.motion), Near { t, bend: None }, pace)
+            .filter(|(reach, _)| (reach.t - t).abs() <= apart)
+            .map_or(by_parabola, |(reach, _)| (reach.at_mm, reach.t))
+    }
+
+    /// Whether the tool at another instant than the profile's own comes down to the tolerance over its end, on the left
+    /// over the contact too.
     pub(super) fn comes_again(&self, profile: &Profile) -> bool {
-        let [Some(first), Some(last)] = [profile.places.first(), profile.places.last()] else { return false };
-        [first, last]
+        let first = profile.places.first().filter(|_| profile.sign > 0.0);
+        first
             .into_iter()
+            .chain(profile.places.last())
             .any(|p| self.lowest(&profile.line(self.motion.chart, p.q), p.near.t).0 <= self.h)
     }
 
