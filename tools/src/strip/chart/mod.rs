@@ -33,7 +33,7 @@ use std::rc::Rc;
 /// Directions of the table, and nodes on each way that leaves the place; as many again in the second attempt.
 const RAYS: usize = 36;
 const NODES: usize = 16;
-/// Lines that are traced go further, as far as the tool's bottom may come over the strip again, with as many nodes.
+/// Lines over waves go further, as far as the tool's bottom may come over the strip again, with as many nodes.
 const FURTHER: usize = 2;
 /// Most nodes on a way that is traced.
 const MOST_NODES: usize = 128 * FURTHER;
@@ -75,6 +75,8 @@ pub struct Chart<'a> {
     radius: f64,
     reach: f64,
     error: f64,
+    /// Whether the usual nodes cannot follow the part.
+    wavy: bool,
     /// By ray and node; the place itself, which all rays share, first.
     table: Vec<Node>,
     /// The last lines made, and frames further along the feed.
@@ -94,7 +96,7 @@ fn greatest(errors: &[f64]) -> f64 {
 
 impl<'a> Chart<'a> {
     /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm` (some times as much where the part's curvature jumps);
-    /// of traced lines to twice the radius, made anew to 0.4 of it, three times at most, where less than a third is good.
+    /// over waves to twice the radius, made anew to 0.4 of it, three times at most, where less than a third is good.
     ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane at the place.
@@ -116,6 +118,7 @@ impl<'a> Chart<'a> {
             radius: radius_mm.min(TURN * NODES as f64 / bend),
             reach: 0.0,
             error: 0.0,
+            wavy: false,
             table: Vec::new(),
             lines: RefCell::new(Vec::with_capacity(KEPT)),
             trails: RefCell::new(Vec::with_capacity(KEPT_TRAILS)),
@@ -124,14 +127,17 @@ impl<'a> Chart<'a> {
         if chart.tabulate(tolerance_mm)? {
             return Ok(chart);
         }
+        if chart.by_lines(tolerance_mm, [NODES, 2 * NODES])? {
+            return Ok(chart);
+        }
+        chart.wavy = true;
         chart.radius *= FURTHER as f64;
-        chart.by_lines(tolerance_mm)?;
-        for _ in 0..3 {
-            if 3.0 * chart.reach >= chart.radius {
+        for attempt in 0..4 {
+            chart.by_lines(tolerance_mm, [2 * NODES * FURTHER, MOST_NODES])?;
+            if attempt == 3 || 3.0 * chart.reach >= chart.radius {
                 break;
             }
             chart.radius *= 0.4;
-            chart.by_lines(tolerance_mm)?;
         }
         Ok(chart)
     }
@@ -142,11 +148,11 @@ impl<'a> Chart<'a> {
         self.error
     }
 
-    /// Whether the part is too wavy for a table of lines, so that a strip may end at one wave for one direction and not for its
-    /// neighbour.
+    /// Whether the part is too wavy for the usual nodes, so that a strip may end at one wave for one direction and not for its
+    /// neighbour, and the tool may come over it at several instants.
     #[must_use]
-    pub fn is_wavy(&self) -> bool {
-        self.size[0] == 0
+    pub const fn is_wavy(&self) -> bool {
+        self.wavy
     }
 
     /// How far the chart reaches, mm.
@@ -202,10 +208,14 @@ impl<'a> Chart<'a> {
         Ok(Some(Errors { between: self.errors_between(), along }))
     }
 
-    /// Traces lines from now on, with as many nodes as some of them need.
-    fn by_lines(&mut self, tolerance_mm: f64) -> Result<(), Degenerate> {
+    /// Traces lines from now on, with as many nodes of a range as some of them need; whether that is good all over.
+    fn by_lines(
+        &mut self,
+        tolerance_mm: f64,
+        [least, greatest_count]: [usize; 2],
+    ) -> Result<bool, Degenerate> {
         self.table = Vec::new();
-        let mut nodes = NODES * FURTHER;
+        let mut nodes = least;
         loop {
             self.size = [0, nodes];
             self.lines.get_mut().clear();
@@ -218,8 +228,8 @@ impl<'a> Chart<'a> {
                 let ahead = self.way(towards, stride, true)?;
                 let behind = self.way(towards.map(|x| -x), stride, true)?;
                 self.hollow = self.hollow.max(ahead.hollow_per_mm).max(behind.hollow_per_mm);
-                let made =
-                    Nodes::new(&self.place, [&behind.nodes, &ahead.nodes], (self.radius, nodes), pitch);
+                let ways = [&behind.nodes[..], &ahead.nodes[..]];
+                let made = Nodes::new(&self.place, ways, (self.radius, nodes), self.looked_at(pitch));
                 let made = Rc::new(made);
                 for (way, backwards) in [(&ahead, false), (&behind, true)] {
                     let ray = Ray { line: Rc::clone(&made), backwards };
@@ -233,8 +243,8 @@ impl<'a> Chart<'a> {
             let good = along.iter().position(|e| *e > most).unwrap_or(nodes);
             self.reach = step * good as f64;
             self.error = greatest(&along[..good]);
-            if good == nodes || nodes >= MOST_NODES {
-                return Ok(());
+            if good == nodes || nodes >= greatest_count {
+                return Ok(good == nodes);
             }
             nodes *= 2;
         }
@@ -244,7 +254,8 @@ impl<'a> Chart<'a> {
     fn stride(&self, pitch: f64) -> usize {
         let nodes = self.size[1];
         let of_pitch = OF_PITCH * pitch * nodes as f64 / self.radius;
-        (nodes / (NODES * FURTHER)).max(1).min(of_pitch.max(1.0) as usize)
+        let usual = if self.wavy { NODES * FURTHER } else { NODES };
+        (nodes / usual).min(of_pitch.max(1.0) as usize)
     }
 
     fn way(&self, towards: [f64; 2], stride: usize, midway: bool) -> Result<Way, Degenerate> {
@@ -334,7 +345,12 @@ impl<'a> Chart<'a> {
         let [behind, ahead] = [-1.0, 1.0].map(|sign| {
             self.way(direction.map(|x| sign * x), stride, false).map_or_else(|_| only(), |w| w.nodes)
         });
-        Nodes::new(&self.place, [&behind, &ahead], (self.radius, self.size[1]), pitch)
+        Nodes::new(&self.place, [&behind, &ahead], (self.radius, self.size[1]), self.looked_at(pitch))
+    }
+
+    /// The distance between knots, where there may be waves between them.
+    const fn looked_at(&self, pitch: f64) -> f64 {
+        if self.wavy { pitch } else { f64::INFINITY }
     }
 
     /// The line in a direction, between those of the table.
