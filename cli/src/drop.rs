@@ -1,7 +1,7 @@
 //! Three-axis passes by dropping the cutter: one plan over all faces of a job together.
 
 use crate::failure::Failure;
-use crate::job::{AutoOr, Job};
+use crate::job::{Job, LeadKey};
 use crate::part::{self, JobFaces, LoadedFace};
 use osculate_geom::{Box3, Unit3, Vec3};
 use osculate_productivity::plan::{DropTask, Named, Passes, drop_cutter, gradient_3c};
@@ -29,7 +29,10 @@ pub fn passes(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> R
 pub fn directions(job: &Job, faces: &JobFaces) -> Result<(Unit3, Vec3), Failure> {
     let table = &job.strategy;
     let kind = &table.kind;
-    if matches!(table.lead_deg, AutoOr::Given(l) if l != 0.0) || table.tilt_deg != 0.0 {
+    if table.lead_deg == LeadKey::Local
+        || matches!(table.lead_deg, LeadKey::Given(l) if l != 0.0)
+        || table.tilt_deg != 0.0
+    {
         return Err(Failure::file(
             &job.path,
             format!("[strategy] {kind} keeps the tool axis on `axis`: leave out lead_deg and tilt_deg"),

@@ -2,14 +2,16 @@
 
 use crate::cancel;
 use crate::failure::Failure;
-use crate::job::{AutoOr, Job};
+use crate::job::{Job, LeadKey};
 use crate::look::Look;
 use crate::nc;
 use crate::output;
 use crate::part::{self, JobFaces};
-use osculate_geom::{Box3, Diagnostic};
+use osculate_geom::{Box3, Diagnostic, Surface};
+use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
-    Linked, Links, Passes, Strategy, Task, Tolerance, link, predicted_length_mm, run as plan_face,
+    Leaning, Linked, Links, LocalLead, Passes, Strategy, Task, Tolerance, link, predicted_length_mm,
+    run as plan_face,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::{Cutter, Lean};
@@ -85,6 +87,8 @@ pub struct Way<'a> {
     pub strategy: &'a Strategy,
     /// Lead and tilt.
     pub lean: Lean,
+    /// Whether the lead is found place by place; that of `lean` is then the least.
+    pub local: bool,
     /// The share of the scallop tolerance that passes are laid out for.
     pub share: f64,
     /// The folder of results, where there is one.
@@ -101,12 +105,24 @@ pub fn each_face(
     let given = job.tolerance()?;
     let tolerance = Tolerance { scallop_mm: way.share * given.scallop_mm, ..given };
     let cutter = &job.cutter()?;
+    let holder = job.holder()?;
+    let all = faces.faces.iter().chain(&faces.check);
+    let around = way.local.then(|| Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str()))));
+    let local = LocalLead {
+        tilt_rad: way.lean.tilt_rad,
+        least_rad: way.lean.lead_rad,
+        most_rad: LocalLead::MOST_RAD,
+        rate_rad_per_mm: job.lead_rate_rad_per_mm()?,
+        holder: holder.as_ref(),
+        around: around.as_ref(),
+    };
+    let lean = if way.local { Leaning::Local(&local) } else { way.lean.into() };
     let n = faces.faces.len();
     let mut out = Passes::default();
     for (k, face) in faces.faces.iter().enumerate() {
         let here = move |f: f64| progress((k as f64 + f) / n as f64);
         let (surface, face) = (&*face.surface, face.id.as_str());
-        let task = Task { surface, face, cutter, lean: way.lean, tolerance, progress: &here };
+        let task = Task { surface, face, cutter, lean, tolerance, progress: &here };
         let p = plan_face(&task, way.strategy).map_err(|e| Failure::file(&job.path, e))?;
         out.passes.extend(p.passes);
         out.diagnostics.extend(p.diagnostics);
@@ -131,10 +147,15 @@ pub fn with_best_lead(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<(Passes, Lean), Failure> {
     let cutter = &job.cutter()?;
+    let way = |lean: Lean, local: bool| Way { strategy, lean, local, share: 1.0, out: Some(out) };
+    if job.strategy.lead_deg == LeadKey::Local {
+        let lean = job.lean(LocalLead::LEAST_RAD)?;
+        return Ok((each_face(job, faces, &way(lean, true), progress)?, lean));
+    }
     let mut leads: Vec<f64> = match job.strategy.lead_deg {
-        AutoOr::Given(deg) => vec![deg],
-        AutoOr::Auto if cutter.is_ball() => vec![BALL_LEAD_DEG],
-        AutoOr::Auto => LEADS_DEG.to_vec(),
+        LeadKey::Given(deg) => vec![deg],
+        _ if cutter.is_ball() => vec![BALL_LEAD_DEG],
+        _ => LEADS_DEG.to_vec(),
     };
     let choice = leads.len() > 1;
     if choice {
@@ -144,7 +165,7 @@ pub fn with_best_lead(
     let mut refused: Option<Failure> = None;
     for deg in leads {
         let lean = job.lean(deg.to_radians())?;
-        match each_face(job, faces, &Way { strategy, lean, share: 1.0, out: Some(out) }, progress) {
+        match each_face(job, faces, &way(lean, false), progress) {
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
                 let gouge = Look::at(job, faces, &linked(job, faces, &p, cutter)?)?.gouge_mm;
@@ -178,7 +199,7 @@ fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Result
     let tolerance = job.tolerance()?;
     let mut out = Vec::with_capacity(leads.len());
     for deg in leads {
-        let lean = job.lean(deg.to_radians())?;
+        let lean = job.lean(deg.to_radians())?.into();
         let length: f64 = faces
             .faces
             .iter()

@@ -34,8 +34,10 @@ pub struct Planned<'a> {
     pub linked: Linked,
     /// Its name.
     pub strategy: String,
-    /// Lead and tilt.
+    /// Lead and tilt; of a local lead the least that was allowed.
     pub lean: Lean,
+    /// Whether the lead was found place by place.
+    pub local: bool,
     /// What the report shows beside what every report shows.
     pub extras: Extras<'a>,
     /// Whether the points of passes know the width of their strips, for samples that resolve them.

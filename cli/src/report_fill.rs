@@ -321,7 +321,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             "Plan",
             vec![
                 ("strategy", s.strategy.clone()),
-                ("lead, tilt", format!("{}, {} deg", number(s.lead_deg, 4), number(s.tilt_deg, 4))),
+                ("lead, tilt", format!("{} deg", s.lean_words())),
                 ("passes", s.passes.to_string()),
                 ("CL points", s.points.to_string()),
                 ("cutting length", format!("{:.1} mm", s.cutting_length_mm)),

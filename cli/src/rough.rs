@@ -124,6 +124,7 @@ pub fn planned(
         linked: rough.linked,
         strategy: KIND.to_owned(),
         lean: Lean::default(),
+        local: false,
         extras: Extras::default(),
         with_strips: false,
     })

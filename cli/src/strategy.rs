@@ -1,7 +1,7 @@
 //! The strategy that a job's `[strategy]` table names.
 
 use crate::failure::Failure;
-use crate::job::{AutoOr, Job};
+use crate::job::{Job, LeadKey};
 use osculate_geom::{Axis, Unit3, Vec3};
 use osculate_productivity::plan::{Along, Strategy};
 
@@ -29,7 +29,9 @@ pub fn of_job(job: &Job) -> Result<Strategy, Failure> {
             ));
         }
     };
-    let leans = matches!(table.lead_deg, AutoOr::Given(l) if l != 0.0) || table.tilt_deg != 0.0;
+    let leans = table.lead_deg == LeadKey::Local
+        || matches!(table.lead_deg, LeadKey::Given(l) if l != 0.0)
+        || table.tilt_deg != 0.0;
     if strategy.fixed_axis().is_some() && leans {
         return Err(Failure::file(
             &job.path,

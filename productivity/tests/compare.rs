@@ -27,6 +27,7 @@ fn along(axis: Axis, lead_deg: f64) -> Candidate {
     Candidate {
         tool: 0,
         strategy: Strategy::Isoparametric { along: Along::Fixed(axis) },
+        local: false,
         lean: Lean { lead_rad: f64::to_radians(lead_deg), tilt_rad: 0.0 },
     }
 }

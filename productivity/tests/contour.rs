@@ -22,7 +22,7 @@ fn passes_on_a_sphere_are_parallels_spaced_by_the_strip() {
         surface: &surface,
         face: "F1",
         cutter: &cutter,
-        lean: Lean::default(),
+        lean: Lean::default().into(),
         tolerance: TOLERANCE,
         progress: &|_| {},
     };
@@ -65,7 +65,7 @@ fn other_cutters_and_faces_that_look_away_are_refused() {
         surface: &surface,
         face: "F1",
         cutter,
-        lean: Lean::default(),
+        lean: Lean::default().into(),
         tolerance: TOLERANCE,
         progress: &|_| {},
     };

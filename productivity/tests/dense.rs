@@ -121,7 +121,8 @@ fn holds(name: &str, surface: &dyn Surface, tool: &Tool, passes: &[Pass]) {
 fn plan(surface: &dyn Surface, tool: &Tool, lead_rad: f64, strategy: &Strategy) -> Vec<Pass> {
     let lean = Lean { lead_rad, tilt_rad: 0.0 };
     let cutter = &tool.cutter();
-    let task = Task { surface, face: "F1", cutter, lean, tolerance: TOLERANCE, progress: &|_| {} };
+    let task =
+        Task { surface, face: "F1", cutter, lean: lean.into(), tolerance: TOLERANCE, progress: &|_| {} };
     run(&task, strategy).unwrap().passes
 }
 

@@ -69,7 +69,7 @@ fn centres(moves: &[ClMove], radius: f64) -> Vec<Point3> {
 }
 
 fn plan(surface: &dyn Surface, cutter: &Cutter, lean: Lean, tolerance: Tolerance) -> Vec<ClMove> {
-    let task = Task { surface, face: "F1", cutter, lean, tolerance, progress: &|_| {} };
+    let task = Task { surface, face: "F1", cutter, lean: lean.into(), tolerance, progress: &|_| {} };
     let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap();
     joined(surface, &passes.passes, cutter).moves
 }
@@ -116,7 +116,14 @@ fn groove_passes_are_evenly_spaced_by_the_exact_strip() {
     let cutter = Cutter::try_from(spec).unwrap();
     let lean = Lean { lead_rad: 12f64.to_radians(), tilt_rad: 0.0 };
     let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
-    let task = Task { surface: &groove, face: "F1", cutter: &cutter, lean, tolerance, progress: &|_| {} };
+    let task = Task {
+        surface: &groove,
+        face: "F1",
+        cutter: &cutter,
+        lean: lean.into(),
+        tolerance,
+        progress: &|_| {},
+    };
     let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
     assert!(passes.len() > 10);
     // Two neighbouring passes leave the design height, 98 % of the tolerance, where their exact strips meet: the
@@ -147,7 +154,7 @@ fn a_tool_too_large_for_the_hollow_is_refused_with_the_largest_that_fits() {
         surface: &groove,
         face: "F7",
         cutter: &cutter,
-        lean: Lean::default(),
+        lean: Lean::default().into(),
         tolerance,
         progress: &|_| {},
     };

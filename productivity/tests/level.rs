@@ -34,7 +34,7 @@ impl Job {
     fn plan(&self, surface: &dyn Surface, strategy: &Strategy) -> Passes {
         let lean = Lean { lead_rad: self.lead_rad, tilt_rad: 0.0 };
         let (cutter, tolerance) = (&self.cutter, self.tolerance);
-        let task = Task { surface, face: "F1", cutter, lean, tolerance, progress: &|_| {} };
+        let task = Task { surface, face: "F1", cutter, lean: lean.into(), tolerance, progress: &|_| {} };
         run(&task, strategy).unwrap()
     }
 

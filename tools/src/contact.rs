@@ -120,6 +120,31 @@ impl Lean {
         Pose { tip, axis }
     }
 
+    /// The pose in a frame that moves by `speed` mm along its tangent while the lead grows by `lead_rate` rad, both per unit of
+    /// the motion's parameter; tilt and lift are held.
+    #[must_use]
+    pub fn moving(
+        self,
+        cutter: &Cutter,
+        frame: &Darboux,
+        lift_mm: f64,
+        (speed, lead_rate): (f64, f64),
+    ) -> Moving {
+        let pose = self.pose(cutter, frame, lift_mm);
+        // Lead and tilt held, the tool is rigid in the Darboux frame.
+        let turn = frame.turn * speed;
+        let tip_rate = frame.tangent.into_inner() * speed + turn.cross(&(pose.tip - frame.point));
+        if lead_rate == 0.0 {
+            return Moving { pose, tip_rate, turn };
+        }
+        // The axis turns about n x heading, and the tool with it about the centre of its corner's arc above the contact:
+        // that stays where it is.
+        let about = frame.normal.cross(&self.heading(frame)) * lead_rate;
+        let centre =
+            frame.point + frame.normal.into_inner() * (cutter.touching(self.lead_rad).radius_mm + lift_mm);
+        Moving { pose, tip_rate: tip_rate + about.cross(&(pose.tip - centre)), turn: turn + about }
+    }
+
     /// Principal curvatures of the tool at the contact.
     #[must_use]
     pub fn tool_curvature(self, cutter: &Cutter, frame: &Darboux) -> ToolCurvature {
@@ -149,11 +174,7 @@ pub struct ContactMotion<'a> {
 impl SweptMotion for ContactMotion<'_> {
     fn at(&self, t: f64) -> Option<Moving> {
         let (frame, speed) = self.line.frame(t).ok()?;
-        let pose = self.lean.pose(self.cutter, &frame, self.lift_mm);
-        // The tool is rigid in the Darboux frame.
-        let turn = frame.turn * speed;
-        let tip_rate = frame.tangent.into_inner() * speed + turn.cross(&(pose.tip - frame.point));
-        Some(Moving { pose, tip_rate, turn })
+        Some(self.lean.moving(self.cutter, &frame, self.lift_mm, (speed, 0.0)))
     }
 }
 

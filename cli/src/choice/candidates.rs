@@ -2,13 +2,13 @@
 
 use crate::drop;
 use crate::failure::Failure;
-use crate::job::{AutoOr, Job};
+use crate::job::{Job, LeadKey};
 use crate::part::{self, JobFaces};
 use crate::passes::BALL_LEAD_DEG;
 use crate::rough;
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
 use osculate_productivity::compare::Candidate;
-use osculate_productivity::plan::{Along, Strategy};
+use osculate_productivity::plan::{Along, LocalLead, Strategy};
 use osculate_tools::{Cutter, Lean};
 
 /// Leads tried, degrees: small ones for wide strips, great ones to keep heel and holder off.
@@ -35,8 +35,8 @@ pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<
             if !fits {
                 continue;
             }
-            for lean in leans(job, cutter, strategy)? {
-                out.push(Candidate { tool, strategy: *strategy, lean });
+            for (lean, local) in leans(job, cutter, strategy)? {
+                out.push(Candidate { tool, strategy: *strategy, lean, local });
             }
         }
     }
@@ -50,16 +50,22 @@ pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<
     Ok(out)
 }
 
-fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<Lean>, Failure> {
+/// Leads of a tool and strategy, and whether each is held or the least of one that is found place by place.
+fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<(Lean, bool)>, Failure> {
     if strategy.fixed_axis().is_some() {
-        return Ok(vec![Lean::default()]);
+        return Ok(vec![(Lean::default(), false)]);
     }
-    let leads = match job.strategy.lead_deg {
-        AutoOr::Given(deg) => vec![deg],
-        AutoOr::Auto if cutter.is_ball() => vec![BALL_LEAD_DEG],
-        AutoOr::Auto => LEADS_DEG.to_vec(),
+    let held = |leads: &[f64]| -> Result<Vec<(Lean, bool)>, Failure> {
+        leads.iter().map(|deg| Ok((job.lean(deg.to_radians())?, false))).collect()
     };
-    leads.into_iter().map(|deg| job.lean(deg.to_radians())).collect()
+    let local = || Ok((job.lean(LocalLead::LEAST_RAD)?, true));
+    match job.strategy.lead_deg {
+        LeadKey::Given(deg) => held(&[deg]),
+        // A ball is the same at any lead.
+        _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]),
+        LeadKey::Local => Ok(vec![local()?]),
+        LeadKey::Auto => Ok([vec![local()?], held(&LEADS_DEG)?].concat()),
+    }
 }
 
 /// Every strategy that can be chosen.

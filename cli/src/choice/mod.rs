@@ -193,7 +193,8 @@ impl<'a> Choice<'a> {
             // Once one lead is planned it stands for its group until it is out; then those above the leads at which the
             // tool dug in on other lines come first.
             let key = |e: &Entry| {
-                let doubtful = e.candidate.lean.lead_rad <= self.dug_in_rad[e.candidate.tool];
+                let doubtful =
+                    !e.candidate.local && e.candidate.lean.lead_rad <= self.dug_in_rad[e.candidate.tool];
                 (e.figures.is_none(), doubtful, Self::least_min(e))
             };
             let ahead = |o: usize| key(&self.entries[o]) <= key(e);
@@ -234,8 +235,12 @@ impl<'a> Choice<'a> {
             let most = if beside { MOST_BESIDE } else { MOST_BESIDE + MOST_OTHERS };
             let open = Self::waiting(e) && (e.figures.is_some() || made < most);
             let wanted = c.tool == held.tool && Self::least_min(e) < holder.time_min;
-            let away =
-                (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs();
+            // A local lead lies on both sides of any.
+            let away = if c.local {
+                0.0
+            } else {
+                (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs()
+            };
             (open && wanted).then_some((e.figures.is_none(), !beside, away, Self::least_min(e)))
         };
         let ranked = self.entries.iter().enumerate().filter_map(|(k, e)| order(e).map(|o| (o, k)));
@@ -295,9 +300,9 @@ impl<'a> Choice<'a> {
     /// Plans a candidate and looks at what it leaves.
     fn planned(&mut self, k: usize) -> Result<State, Failure> {
         self.plans += 1;
-        let Entry { candidate: Candidate { tool, strategy, lean }, share, .. } = self.entries[k];
+        let Entry { candidate: Candidate { tool, strategy, lean, local }, share, .. } = self.entries[k];
         let job = &self.jobs[tool];
-        let way = Way { strategy: &strategy, lean, share, out: None };
+        let way = Way { strategy: &strategy, lean, local, share, out: None };
         let passes = match passes::each_face(job, self.faces, &way, &|_| {}) {
             Ok(p) => p,
             Err(e) => {
@@ -325,7 +330,15 @@ impl<'a> Choice<'a> {
             return Ok(State::Out(objection.text));
         }
         let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
-        Ok(State::Planned(Box::new(Planned { passes, linked, strategy, lean, extras, with_strips: true })))
+        Ok(State::Planned(Box::new(Planned {
+            passes,
+            linked,
+            strategy,
+            lean,
+            local,
+            extras,
+            with_strips: true,
+        })))
     }
 
     /// Has a candidate that leaves a little more than the limit laid out for less, once; whether it is.
@@ -340,13 +353,16 @@ impl<'a> Choice<'a> {
 
     /// Leaves out the smaller leads of a candidate that digs in: the heel comes down with the lead.
     fn no_smaller_lead(&mut self, k: usize) {
-        let Candidate { tool, strategy, lean } = self.entries[k].candidate;
+        let Candidate { tool, strategy, lean, local } = self.entries[k].candidate;
+        if local {
+            return;
+        }
         self.dug_in_rad[tool] = self.dug_in_rad[tool].max(lean.lead_rad);
         for e in &mut self.entries {
             let c = &e.candidate;
             let same = (c.tool, c.strategy, c.lean.tilt_rad) == (tool, strategy, lean.tilt_rad);
             let near = c.lean.lead_rad < STEEPER * lean.lead_rad;
-            if same && near && matches!(e.state, State::Open) {
+            if same && near && !c.local && matches!(e.state, State::Open) {
                 let why = format!("a lead of {:.0} deg does not fit already", lean.lead_rad.to_degrees());
                 e.state = State::Out(why);
             }

@@ -52,8 +52,10 @@ pub struct Row {
     pub tool: String,
     /// Strategy with direction.
     pub strategy: String,
-    /// Lead.
+    /// Lead; of a local one the least allowed.
     pub lead_deg: f64,
+    /// Whether the lead was found place by place.
+    pub local_lead: bool,
     /// Tilt.
     pub tilt_deg: f64,
     /// Leads looked at.
@@ -103,6 +105,7 @@ fn of_entry(choice: &Choice<'_>, entry: &Entry, leads: usize) -> Row {
         tool: choice.jobs[c.tool].tool_words(),
         strategy: candidates::words(&c.strategy),
         lead_deg: c.lean.lead_rad.to_degrees(),
+        local_lead: c.local,
         tilt_deg: c.lean.tilt_rad.to_degrees(),
         leads,
         pointwise_min: finite(entry.screened.pointwise_min),
@@ -166,7 +169,7 @@ fn cells(row: &Row) -> [String; 9] {
     [
         row.tool.clone(),
         row.strategy.clone(),
-        format!("{:.0}", row.lead_deg),
+        if row.local_lead { "local".to_owned() } else { format!("{:.0}", row.lead_deg) },
         time(row.pointwise_min),
         time(row.layout_min),
         length.map_or_else(|| "-".to_owned(), |l| format!("{l:.0}")),

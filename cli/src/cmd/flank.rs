@@ -153,7 +153,8 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let axes = passes.passes.iter().flat_map(|p| &p.points).map(|p| p.pose.axis).collect();
     let extras = Extras { axes, maps: maps(&answers), tables: vec![page_table(&comparison)], diagnostics };
     let strategy = format!("flank, {}", table.method);
-    let planned = Planned { passes, linked, strategy, lean: Lean::default(), extras, with_strips: false };
+    let planned =
+        Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: false };
     let (summary, text, verified) = plan::execute(&job, &faces, &planned, wall_s, out)?;
     comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter)?, &verified));
     let text_json = serde_json::to_string_pretty(&comparison).map_err(Failure::job)? + "\n";

@@ -5,7 +5,7 @@ use crate::choice::{self, Choice, Row};
 use crate::drop;
 use crate::failure::{Done, Failure, Outcome};
 use crate::ideal::{self, IdealTime};
-use crate::job::Job;
+use crate::job::{Job, LeadKey};
 use crate::nc::Control;
 use crate::output;
 use crate::part::{self, JobFaces};
@@ -48,6 +48,9 @@ pub struct Summary {
     tool: serde_json::Value,
     pub tool_words: String,
     pub lead_deg: f64,
+    /// Least and greatest of a local lead; `lead_deg` is then their mean by length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lead_range_deg: Option<[f64; 2]>,
     pub tilt_deg: f64,
     pub machine: String,
     pub dialect: String,
@@ -68,6 +71,20 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compared: Vec<Row>,
     diagnostics: Vec<String>,
+}
+
+impl Summary {
+    /// Lead and tilt in words, degrees.
+    pub fn lean_words(&self) -> String {
+        let tilt = number(self.tilt_deg, 4);
+        match self.lead_range_deg {
+            Some([least, most]) => {
+                let [least, mean, most] = [least, self.lead_deg, most].map(|x| number(x, 3));
+                format!("{least} to {most} (mean {mean}), {tilt}")
+            }
+            None => format!("{}, {tilt}", number(self.lead_deg, 4)),
+        }
+    }
 }
 
 /// A plan with its program and what was measured, and what it was chosen from.
@@ -170,12 +187,14 @@ fn write(whole: Whole<'_>, mut wall_s: WallS, out: &Path) -> Result<(Summary, St
     let feed = job.feed_mm_min()?;
     let totals = Totals { area_mm2, time_min: read.time_min };
     let l = levels(&planned.passes.passes, feed, totals);
+    let found = if planned.local { planned.passes.inclination_rad() } else { None };
     let mut summary = Summary {
         format: 1,
         strategy: planned.strategy.clone(),
         tool: serde_json::to_value(job.cutter_spec()?).map_err(Failure::job)?,
         tool_words: job.tool_words(),
-        lead_deg: planned.lean.lead_rad.to_degrees(),
+        lead_deg: found.map_or(planned.lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
+        lead_range_deg: found.map(|[least, _, most]| [least, most].map(f64::to_degrees)),
         tilt_deg: planned.lean.tilt_rad.to_degrees(),
         machine: control.machine.name().to_owned(),
         dialect: control.dialect_name.clone(),
@@ -242,7 +261,8 @@ fn planned(
         let passes = drop::passes(job, faces, progress)?;
         let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
         let (strategy, extras) = (job.strategy.kind.clone(), Extras::default());
-        return Ok(Planned { passes, linked, strategy, lean: Lean::default(), extras, with_strips: true });
+        let lean = Lean::default();
+        return Ok(Planned { passes, linked, strategy, lean, local: false, extras, with_strips: true });
     }
     if rough::is(job) {
         return rough::planned(job, faces, progress);
@@ -250,14 +270,15 @@ fn planned(
     let strategy = &crate::strategy::of_job(job)?;
     let (passes, lean) = match strategy.fixed_axis() {
         Some(_) => {
-            let way = Way { strategy, lean: Lean::default(), share: 1.0, out: Some(out) };
+            let way = Way { strategy, lean: Lean::default(), local: false, share: 1.0, out: Some(out) };
             (passes::each_face(job, faces, &way, progress)?, Lean::default())
         }
         None => passes::with_best_lead(job, faces, strategy, out, progress)?,
     };
     let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
     let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
-    Ok(Planned { passes, linked, strategy, lean, extras, with_strips: true })
+    let local = job.strategy.lead_deg == LeadKey::Local;
+    Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
 }
 
 fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, control: &Control) -> String {
@@ -265,7 +286,7 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
     row("tool", s.tool_words.clone(), "");
     row("strategy", s.strategy.clone(), "");
-    row("lead, tilt", format!("{}, {}", number(s.lead_deg, 4), number(s.tilt_deg, 4)), "deg");
+    row("lead, tilt", s.lean_words(), "deg");
     row("passes", s.passes.to_string(), "");
     row("CL points", s.points.to_string(), "");
     row("cutting length", format!("{:.1}", s.cutting_length_mm), "mm");

@@ -1,7 +1,7 @@
 //! `strip`: the strip at one contact, exact and by every closed form that applies.
 
 use crate::failure::{Done, Failure, Outcome};
-use crate::job::{ContactTable, Job};
+use crate::job::{ContactTable, Job, LeadKey};
 use crate::part;
 use crate::render::{self, Table, number};
 use osculate_geom::{Axis, Surface, uv};
@@ -76,6 +76,10 @@ pub fn run(path: &Path, json: bool) -> Outcome {
     }
     if !table.lift_mm.is_finite() {
         return Err(Failure::file(path, "[contact] lift_mm must be a finite number"));
+    }
+    if job.strategy.lead_deg == LeadKey::Local {
+        let why = "[strategy] lead_deg = \"local\" is for paths: one contact needs a number";
+        return Err(Failure::file(&job.path, why));
     }
     let contact = Contact::new(&*face.surface, at, &cutter, feed, job.lean(0.0)?)
         .map_err(|e| Failure::file(path, e))?

@@ -49,6 +49,8 @@ pub struct Candidate {
     pub strategy: Strategy,
     /// Lead and tilt.
     pub lean: Lean,
+    /// Whether the lead is the least that fits at every place, from that of `lean` on.
+    pub local: bool,
 }
 
 /// What screening says of a candidate.

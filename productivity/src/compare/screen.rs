@@ -3,6 +3,7 @@
 use super::course::{Course, Level, courses, level};
 use super::{Candidate, Reason, Screened, Setting};
 use crate::ideal::{Place, shared_places};
+use crate::plan::LocalLead;
 use osculate_geom::{Axis, Forms, Jet2, Surface, Unit3};
 use osculate_tools::strip::{self, Chart, ChartError, StripError, Within};
 use osculate_tools::{Contact, Cutter, FeedLine, Pose};
@@ -87,7 +88,11 @@ fn look(setting: &Setting<'_>, spot: &Spot<'_>, candidates: &[Candidate]) -> Vec
         let all = courses(c, &spot.jet, &spot.forms);
         let mut best = if all.is_empty() { There::Away } else { There::NoStrip };
         for course in all {
-            let here = posture(setting, spot, chart, c, &course);
+            let here = if c.local {
+                least(setting, spot, chart, c, &course)
+            } else {
+                posture(setting, spot, chart, c, &course)
+            };
             best = match (best, here) {
                 (There::Strip { width_mm: a, .. }, There::Strip { width_mm: b, .. }) if b > a => here,
                 (There::Strip { .. }, _) => best,
@@ -97,6 +102,28 @@ fn look(setting: &Setting<'_>, spot: &Spot<'_>, candidates: &[Candidate]) -> Vec
         best
     };
     candidates.iter().map(one).collect()
+}
+
+/// Quotient of leads that are tried where the lead is the least that fits, and the greatest.
+const STEP: f64 = 1.5;
+
+/// The posture with the least lead that fits.
+fn least(
+    setting: &Setting<'_>,
+    spot: &Spot<'_>,
+    chart: &Chart,
+    candidate: &Candidate,
+    course: &Course,
+) -> There {
+    let mut lean = course.lean;
+    loop {
+        let here = posture(setting, spot, chart, candidate, &Course { lean, ..*course });
+        if matches!(here, There::Strip { .. }) || lean.lead_rad <= 0.0 || lean.lead_rad >= LocalLead::MOST_RAD
+        {
+            return here;
+        }
+        lean.lead_rad = (lean.lead_rad * STEP).min(LocalLead::MOST_RAD);
+    }
 }
 
 fn posture(

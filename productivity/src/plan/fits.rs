@@ -26,7 +26,7 @@ pub(super) fn fits(seat: &Seat<'_>, line: &dyn PassLine, parameters: &[f64]) -> 
             let (frame, _) = line.frame(*t).ok()?;
             // The fit depends on the direction of the feed alone, not on how the line bends.
             let feed = FeedLine::Angle(angle(task, at, &frame)?);
-            let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean).ok()?;
+            let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean.at(at)).ok()?;
             let refusal = contact.fits().err()?;
             let wide = seat.wide_lift(line, *t).ok()?;
             (task.surface.contains(at) && wide > task.tolerance.gouge_mm).then_some(refusal)

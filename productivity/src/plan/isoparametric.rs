@@ -9,14 +9,16 @@
 use super::columns::{Column, column_parameters, first_step, rough_columns, stretches};
 use super::cover::{across_range, union};
 use super::fits::fits;
+use super::lead::{LeadField, Leaning};
+use super::motion::PassMotion;
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
 use super::walk::Walk;
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Diagnostic, Interval, Uv};
+use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
-use osculate_tools::{Contact, ContactMotion, FeedLine};
+use osculate_tools::{Contact, FeedLine};
 use rayon::prelude::*;
 
 /// Rows to each side of a pass in which the stretches that it must run over are looked for.
@@ -53,19 +55,24 @@ struct Layout {
 /// deeper than `gouge_mm` beside its contact.
 pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
     task.check()?;
+    if let Leaning::Local(local) = task.lean {
+        let one = |axis: Axis| {
+            let seat = Seat::new(task, axis);
+            let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
+            let field = LeadField::find(task, local, (&feed, seat.rough()))?;
+            isoparametric(&Task { lean: Leaning::Field(&field), ..*task }, Along::Fixed(axis))
+        };
+        return match along {
+            Along::Fixed(axis) => one(axis),
+            Along::Auto => shorter(one(Axis::U), one(Axis::V), Passes::length_mm),
+        };
+    }
     let layout = match along {
         Along::Fixed(axis) => lay_out(task, axis)?,
-        Along::Auto => match rayon::join(|| lay_out(task, Axis::U), || lay_out(task, Axis::V)) {
-            (Ok(u), Ok(v)) => {
-                if v.length_mm < u.length_mm {
-                    v
-                } else {
-                    u
-                }
-            }
-            (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
-            (Err(e), Err(_)) => return Err(e),
-        },
+        Along::Auto => {
+            let (u, v) = rayon::join(|| lay_out(task, Axis::U), || lay_out(task, Axis::V));
+            shorter(u, v, |l| l.length_mm)?
+        }
     };
     let done = std::sync::atomic::AtomicUsize::new(0);
     let total = layout.levels.len();
@@ -98,6 +105,19 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
         format!("{} isoparametric passes along {axis}, {:.0} mm", out.passes.len(), out.length_mm()),
     ));
     Ok(out)
+}
+
+/// The shorter of two that there may be.
+fn shorter<T>(
+    u: Result<T, PlanError>,
+    v: Result<T, PlanError>,
+    length_mm: impl Fn(&T) -> f64,
+) -> Result<T, PlanError> {
+    match (u, v) {
+        (Ok(u), Ok(v)) => Ok(if length_mm(&v) < length_mm(&u) { v } else { u }),
+        (Ok(one), Err(_)) | (Err(_), Ok(one)) => Ok(one),
+        (Err(e), Err(_)) => Err(e),
+    }
 }
 
 fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
@@ -199,7 +219,7 @@ impl Cover<'_> {
         let h = task.design_scallop_mm(frame.turn.dot(&frame.left), column.left);
         let averaged = Averaged { seat: self.seat, line: &line };
         let led: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &line };
-        let motion = ContactMotion { line: led, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
+        let motion = PassMotion { task, line: &line, led };
         let step = 0.05 * task.cutter.radius_mm() / speed.abs().max(1e-12);
         let at = Uv::from_axis(self.along, t, point);
         let reach = standoff(task.cutter, task.surface, at, &motion, t, step)?;
@@ -257,8 +277,8 @@ fn measure(
             return Ok(None);
         }
         let feed = if reversed { FeedLine::IsoReversed(along) } else { FeedLine::Iso(along) };
-        let contact =
-            Contact::new(task.surface, at, task.cutter, feed, task.lean).map_err(|e| task.contact(e))?;
+        let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean.at(at))
+            .map_err(|e| task.contact(e))?;
         match strip::exact(&contact, task.tolerance.scallop_mm) {
             Ok(s) => Ok(Some((t, s.width_mm))),
             // Where a line runs into a pole, or a ripple throws the unseated tool off its own contact, there is no

@@ -9,10 +9,12 @@ mod cover;
 mod drop;
 mod fits;
 mod isoparametric;
+mod lead;
 mod level;
 mod line;
 mod link;
 mod march;
+mod motion;
 mod predict;
 mod resample;
 mod seat;
@@ -22,6 +24,7 @@ mod walk;
 pub use contour::contour_2cl;
 pub use drop::{DropTask, Named, RoughTask, Roughing, Sizes, drop_cutter, gradient_3c, z_level};
 pub use isoparametric::isoparametric;
+pub use lead::{LeadField, Leaning, LocalLead};
 pub use level::{curvature_5c, isoplanar, isoscallop, streamline};
 pub use link::{Linked, Links, link};
 pub use predict::predicted_length_mm;
@@ -29,7 +32,7 @@ pub use strategy::{Strategy, run};
 
 use osculate_geom::{Axis, Diagnostic, Point3, Surface, Unit3, Uv};
 use osculate_tools::strip::StripError;
-use osculate_tools::{ContactError, Cutter, Lean, Pose};
+use osculate_tools::{ContactError, Cutter, Pose};
 
 /// What a plan must hold, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,8 +64,8 @@ pub struct Task<'a> {
     pub face: &'a str,
     /// The cutter.
     pub cutter: &'a Cutter,
-    /// Lead and tilt, held along all passes.
-    pub lean: Lean,
+    /// Lead and tilt.
+    pub lean: Leaning<'a>,
     /// What must hold.
     pub tolerance: Tolerance,
     /// Told how far the work is, 0 to 1.
@@ -118,6 +121,20 @@ pub struct Passes {
 }
 
 impl Passes {
+    /// Least, mean (by length) and greatest angle between tool axis and normal, rad; None without points.
+    #[must_use]
+    pub fn inclination_rad(&self) -> Option<[f64; 3]> {
+        let (mut least, mut most, mut sum, mut length) = (f64::INFINITY, 0.0f64, 0.0, 0.0);
+        for w in self.passes.iter().flat_map(|p| p.points.windows(2)) {
+            let [a, b] = [&w[0], &w[1]].map(|p| p.pose.axis.angle(&p.normal));
+            let step = (w[1].point - w[0].point).norm();
+            (least, most) = (least.min(a).min(b), most.max(a).max(b));
+            sum += 0.5 * (a + b) * step;
+            length += step;
+        }
+        (length > 0.0).then(|| [least, sum / length, most])
+    }
+
     /// Length along the contact points, mm.
     #[must_use]
     pub fn length_mm(&self) -> f64 {

@@ -208,7 +208,7 @@ impl<'a> Seat<'a> {
     /// The seated pose at a line parameter, its frame, and the lift.
     pub(super) fn at(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
         let (frame, _) = self.frame(line, t)?;
-        let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
+        let pose = self.task.lean.along(line, t).0.pose(self.task.cutter, &frame, 0.0);
         let radius = self.task.cutter.radius_mm();
         let near = (2.0 * ROUGHNESS).sqrt() * radius;
         let (seated, lift) =
@@ -246,7 +246,7 @@ impl<'a> Seat<'a> {
     /// How far the whole end of the tool, not only the part of it next to the contact, is held off the face.
     pub(super) fn wide_lift(&self, line: &dyn PassLine, t: f64) -> Result<f64, LineError> {
         let (frame, _) = self.frame(line, t)?;
-        let pose = self.task.lean.pose(self.task.cutter, &frame, 0.0);
+        let pose = self.task.lean.along(line, t).0.pose(self.task.cutter, &frame, 0.0);
         Ok(self.rest(line.uv(t), &frame.normal, pose, WIDE * self.task.cutter.radius_mm()).1)
     }
 }

@@ -86,7 +86,7 @@ pub(super) fn place(face: &Face<'_>, count: [usize; 2], i: f64, j: f64) -> Uv {
 }
 
 /// Greatest lengths of the face along u and along v, mm.
-pub(super) fn lengths(surface: &dyn Surface, rectangle: &Rectangle) -> [f64; 2] {
+pub(in crate::plan) fn lengths(surface: &dyn Surface, rectangle: &Rectangle) -> [f64; 2] {
     AXES.map(|axis| {
         let [i, across] = [rectangle.domain.get(axis), rectangle.domain.get(axis.other())];
         let at = |f: f64, g: f64| surface.point(Uv::from_axis(axis, i.at(f), across.at(g)));

@@ -49,7 +49,7 @@ pub(super) fn width_mm(task: &Task<'_>, jet: &Jet2, forms: &Forms, c: [f64; 2]) 
     let left: Vec3 = e1.into_inner() * c[0] + e2.into_inner() * c[1];
     let feed = left.cross(&forms.normal);
     let frame = Darboux::with_forms(jet, forms, &feed, 0.0);
-    let tool = task.lean.tool_curvature(task.cutter, &frame);
+    let tool = task.lean.about(jet.uv, forms, task.cutter).tool_curvature(task.cutter, &frame);
     let q = Relative::new(forms, &tool).along(&left);
     let most = WIDEST * task.cutter.radius_mm();
     let part_per_mm = forms.normal_curvature(&left);

@@ -13,6 +13,9 @@ const THIN: f64 = 0.02;
 /// Places along a border at which that is looked at.
 const LOOKS: u32 = 16;
 
+/// How far the normal may turn over the margin, rad, for a border that is continued by its bend.
+const CURL: f64 = 0.35;
+
 /// The continued face.
 pub(super) struct Extended<'a> {
     base: &'a dyn Surface,
@@ -22,6 +25,8 @@ pub(super) struct Extended<'a> {
     wraps: [bool; 2],
     /// Rough on the scale of the tool: third derivatives belong to ripples there and are left out.
     rough: bool,
+    /// For each axis whether the face goes on straight below its lower and above its upper end.
+    straight: [[bool; 2]; 2],
 }
 
 impl<'a> Extended<'a> {
@@ -31,12 +36,14 @@ impl<'a> Extended<'a> {
         let closes = AXES.map(|axis| meets_itself(base, axis));
         let mut wraps = [false; 2];
         let mut outer = inner;
+        let mut straight = [[false; 2]; 2];
         for (k, axis) in AXES.into_iter().enumerate() {
             let i = inner.get(axis);
             wraps[k] = closes[k] && cut == Some(axis);
             if closes[k] && !wraps[k] {
                 continue;
             }
+            straight[k] = [i.lo, i.hi].map(|t| margin_mm * most_bent(base, axis, t) > CURL);
             let margin = |t: f64| margin(base, axis, t, margin_mm).min(0.1 * i.length());
             let wider = Interval::new(i.lo - margin(i.lo), i.hi + margin(i.hi));
             match axis {
@@ -44,7 +51,7 @@ impl<'a> Extended<'a> {
                 Axis::V => outer.v = wider,
             }
         }
-        Self { base, inner, outer, wraps, rough }
+        Self { base, inner, outer, wraps, rough, straight }
     }
 
     /// The place of the face itself that stands for one of the continuation: the nearest of the border.
@@ -83,6 +90,18 @@ fn margin(base: &dyn Surface, axis: Axis, t: f64, margin_mm: f64) -> f64 {
     margin_mm / speed.fold(f64::INFINITY, f64::min)
 }
 
+/// The greatest normal curvature across a border, 1/mm.
+fn most_bent(base: &dyn Surface, axis: Axis, t: f64) -> f64 {
+    let across = base.domain().get(axis.other());
+    let bent = |k: u32| {
+        let jet = base.jet2(Uv::from_axis(axis, t, across.at(f64::from(k) / f64::from(LOOKS))));
+        let along = if axis == Axis::U { jet.dv } else { jet.du };
+        let forms = jet.forms().ok()?;
+        Some(forms.normal_curvature(&forms.normal.cross(&along)).abs())
+    };
+    (0..=LOOKS).filter_map(bent).fold(0.0, f64::max)
+}
+
 /// The polynomial of a jet at steps of the parameters from its place.
 fn carried(jet: &Jet3, [a, b]: [f64; 2]) -> Jet2 {
     let j = &jet.jet2;
@@ -109,12 +128,19 @@ impl Surface for Extended<'_> {
         if a == 0.0 && b == 0.0 {
             return Jet2 { uv: at, ..self.base.jet2(near) };
         }
-        let jet = if self.rough {
+        let mut jet = if self.rough {
             let none = Vec3::zeros();
             Jet3 { jet2: self.base.jet2(near), duuu: none, duuv: none, duvv: none, dvvv: none }
         } else {
             self.base.jet3(near)
         };
+        let none = Vec3::zeros();
+        if self.straight[0][usize::from(a > 0.0)] && a != 0.0 {
+            (jet.jet2.duu, jet.duuu, jet.duuv) = (none, none, none);
+        }
+        if self.straight[1][usize::from(b > 0.0)] && b != 0.0 {
+            (jet.jet2.dvv, jet.dvvv, jet.duvv) = (none, none, none);
+        }
         Jet2 { uv: at, ..carried(&jet, [a, b]) }
     }
     fn taylor(&self, at: Uv, order: usize) -> Taylor {

@@ -164,8 +164,8 @@ impl crate::plan::line::PassLine for Near<'_> {
     fn uv(&self, t: f64) -> Uv {
         self.place(t).unwrap_or(self.foot)
     }
-    fn rate(&self, _: f64) -> Uv {
-        self.rate
+    fn rate(&self, t: f64) -> Uv {
+        uv(self.rate.u + 2.0 * self.bend.u * t, self.rate.v + 2.0 * self.bend.v * t)
     }
     fn range(&self) -> osculate_geom::Interval {
         osculate_geom::Interval::new(f64::MIN, f64::MAX)

@@ -17,20 +17,26 @@ mod reach;
 mod spline;
 mod trace;
 
+use super::lead::{LeadField, Leaning, LocalLead};
 use super::line::Rectangle;
 use super::seat::Seat;
 use super::{Passes, PlanError, Task, Tolerance};
 use cells::Cells;
+pub(super) use cells::lengths;
 use even::{Even, Wish, even};
 use extended::Extended;
 use field::{Face, Height, ScalarField};
 use fit::Place;
-use osculate_geom::{Axis, Diagnostic, Unit3, Uv};
+use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv};
 use rayon::prelude::*;
+pub(super) use spline::Spline;
 use std::f64::consts::PI;
 
 /// Strip widths that passes can run out over the border.
 const RUN_OUT: f64 = 1.0;
+
+/// Rounds of leads along the passes and passes for these leads, before widths are corrected.
+const LEADS: u32 = 2;
 
 /// Most of the scallop that the chords of the path may take.
 const CHORD: f64 = 0.03;
@@ -97,6 +103,14 @@ fn level_passes(
 /// [`PlanError`]; where the face lies level in the planes, [`PlanError::Contact`]: it has no lines there.
 pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
     task.check()?;
+    if let Leaning::Local(local) = task.lean {
+        let feed = |_: Uv, jet: &Jet2| jet.normal().ok().map(|n| n.cross(&normal));
+        // Passes run out over the border: there too the lead must do.
+        let face = continued(task, None);
+        let task_beyond = Task { surface: &face, ..*task };
+        let field = LeadField::find(&task_beyond, local, (&feed, Seat::any(task).rough()))?;
+        return isoplanar(&Task { lean: Leaning::Field(&field), ..*task }, normal);
+    }
     level_passes(task, &continued(task, None), &Height(normal), "isoplanar", None)
 }
 
@@ -107,6 +121,7 @@ fn even_passes(
     wish: &(dyn Fn(&[Place]) -> Vec<Wish> + Sync),
     trusts: &[f64],
 ) -> Result<Passes, PlanError> {
+    let given = task.lean;
     let along = |grows: Axis| {
         let face = continued(task, Some(grows));
         let even = even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &|_| 1.0)?;
@@ -123,6 +138,17 @@ fn even_passes(
         (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
         (Err(e), Err(_)) => return Err(e),
     };
+    // The directions of the passes say what lead they need, and the lead how wide their strips are.
+    let mut lead = None;
+    if let Leaning::Local(local) = task.lean {
+        for _ in 0..LEADS {
+            let found = lead_along(task, local, &face, &even)?;
+            let task = Task { surface: &face, lean: Leaning::Field(&found), ..*task };
+            even = even::even(&task, grows, (wish, trusts), &|_| 1.0)?;
+            lead = Some(found);
+        }
+    }
+    let task = &Task { lean: lead.as_ref().map_or(task.lean, Leaning::Field), ..*task };
     // The field was made with closed forms of the width: where exact strips say something else it is made again.
     for _ in 0..CORRECTIONS {
         let fine = &continued_task(task, &face);
@@ -130,6 +156,9 @@ fn even_passes(
         let better = {
             let cells = Cells::new(&seat, over(fine, &even.field))?;
             let Some(factors) = cells.correction(&seat).filter(|_| !seat.rough()) else {
+                if matches!(given, Leaning::Local(_)) {
+                    break;
+                }
                 return finished(
                     level_passes(task, &face, &even.field, name, Some(cells))?,
                     task,
@@ -142,7 +171,25 @@ fn even_passes(
         };
         even = better;
     }
+    let lead = match given {
+        Leaning::Local(local) => Some(lead_along(task, local, &face, &even)?),
+        _ => None,
+    };
+    let task = &Task { lean: lead.as_ref().map_or(task.lean, Leaning::Field), ..*task };
     finished(level_passes(task, &face, &even.field, name, None)?, task, name, &even)
+}
+
+/// The lead for passes along the level lines of a field.
+fn lead_along(
+    task: &Task<'_>,
+    local: &LocalLead<'_>,
+    face: &Extended<'_>,
+    even: &Even,
+) -> Result<LeadField, PlanError> {
+    let continued = Task { surface: face, ..*task };
+    let over = over(&continued, &even.field);
+    let feed = |at: Uv, _: &Jet2| over.frame(at, false).ok().map(|f| f.0.tangent.into_inner());
+    LeadField::find(&continued, local, (&feed, Seat::any(task).rough()))
 }
 
 /// Passes with a word about their field.

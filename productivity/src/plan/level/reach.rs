@@ -5,11 +5,11 @@
 
 use super::field::{Face, Near};
 use crate::plan::Task;
+use crate::plan::motion::PassMotion;
 use crate::plan::seat::{Averaged, Seat};
 use crate::plan::walk::Walk;
 use osculate_geom::line::{LineError, SurfaceLine};
 use osculate_geom::{Darboux, Relative, Uv};
-use osculate_tools::ContactMotion;
 use osculate_tools::strip::standoff;
 
 /// Accuracy of a reach, of itself.
@@ -45,8 +45,8 @@ impl Asked<'_> {
         let task = self.task;
         let near = Near::below(self.face, self.at, self.value + by, self.reversed)?;
         let averaged = Averaged { seat: self.seat, line: &near };
-        let line: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &near };
-        let motion = ContactMotion { line, cutter: task.cutter, lean: task.lean, lift_mm: 0.0 };
+        let led: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &near };
+        let motion = PassMotion { task, line: &near, led };
         let radius = task.cutter.radius_mm();
         let reach = standoff(task.cutter, task.surface, self.at, &motion, 0.0, 0.05 * radius)?;
         Ok(reach.map_or(radius, |r| r.at_mm - self.height_mm))
@@ -70,7 +70,7 @@ pub(super) fn reach(seat: &Seat<'_>, face: Face<'_>, at: Uv) -> Result<Reach, Li
     let (_, slope) = Face::ascent(&jet, &phi)?;
     let (frame, ..) = face.frame(at, false)?;
     let forms = jet.forms()?;
-    let q = Relative::new(&forms, &task.lean.tool_curvature(task.cutter, &frame)).along(&frame.left);
+    let q = Relative::new(&forms, &task.lean.at(at).tool_curvature(task.cutter, &frame)).along(&frame.left);
     let height_mm = height_mm(seat, face, at, phi.value, &frame)?;
     let radius = task.cutter.radius_mm();
     let half = (2.0 * height_mm / q.max(1e-9)).sqrt().min(WIDEST * radius);

@@ -6,7 +6,7 @@ use osculate_geom::{Axis, Interval, Jet2, Uv};
 
 /// Uniform cubic B-splines over an interval.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Basis {
+pub(in crate::plan) struct Basis {
     interval: Interval,
     pub spans: usize,
     closed: bool,
@@ -14,7 +14,7 @@ pub(super) struct Basis {
 
 /// The four splines that do not vanish at a parameter: their indices, values, and first and second derivatives.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Four {
+pub(in crate::plan) struct Four {
     pub index: [usize; 4],
     pub value: [f64; 4],
     pub first: [f64; 4],
@@ -67,7 +67,7 @@ impl Basis {
 
 /// The field.
 #[derive(Clone, Debug)]
-pub(super) struct Spline {
+pub(in crate::plan) struct Spline {
     pub bases: [Basis; 2],
     /// In rows of v for each u.
     pub poles: Vec<f64>,
@@ -103,8 +103,9 @@ impl Spline {
     }
 }
 
-impl ScalarField for Spline {
-    fn at(&self, at: Uv, _: &Jet2) -> FieldJet {
+impl Spline {
+    /// Value and derivatives.
+    pub fn jet(&self, at: Uv) -> FieldJet {
         let (u, v) = (self.bases[0].at(at.u), self.bases[1].at(at.v));
         let mut out = FieldJet::default();
         for a in 0..4 {
@@ -119,6 +120,12 @@ impl ScalarField for Spline {
             }
         }
         out
+    }
+}
+
+impl ScalarField for Spline {
+    fn at(&self, at: Uv, _: &Jet2) -> FieldJet {
+        self.jet(at)
     }
 }
 

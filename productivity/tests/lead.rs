@@ -1,0 +1,148 @@
+//! Lead that changes from place to place: what it leaves, how fast it changes and that no lead held all over is shorter.
+#![allow(clippy::unwrap_used)]
+
+#[allow(dead_code)]
+#[path = "common/cutting.rs"]
+mod cutting;
+
+use cutting::{motions, verdict};
+use osculate_geom::line::{IsoLine, SurfaceLine};
+use osculate_geom::{Axis, Point3, Surface};
+use osculate_productivity::plan::{
+    Along, Leaning, LocalLead, Passes, PlanError, Strategy, Task, Tolerance, run,
+};
+use osculate_surfaces::{Net, NurbsSurface};
+use osculate_tools::{Cutter, CutterSpec, Lean};
+
+const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.001 };
+/// Sides of the face, mm.
+const SIZE_MM: f64 = 30.0;
+/// Curvature at the ends, 1/mm: hollow at the upper one, convex at the lower.
+const BENT_PER_MM: f64 = 0.05;
+const RATE_DEG_PER_MM: f64 = 0.8;
+
+/// `z = c x^3` over `|x| <= 15` and `0 <= y <= 30`, material below: hollow by `6 c x`, about.
+fn bend() -> NurbsSurface {
+    let half = 0.5 * SIZE_MM;
+    let c = BENT_PER_MM / (6.0 * half);
+    // Poles of x^3 over [-half, half] as a Bezier polynomial.
+    let cubes = [-1.0, 1.0, -1.0, 1.0].map(|s| s * c * half.powi(3));
+    let points = (0..4)
+        .flat_map(|i| (0..2).map(move |j| (i, j)))
+        .map(|(i, j)| Point3::new(-half + SIZE_MM * i as f64 / 3.0, SIZE_MM * f64::from(j), cubes[i]))
+        .collect();
+    let knots = [vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
+    NurbsSurface::new([3, 1], knots, Net { count: [4, 2], points, weights: None }).unwrap()
+}
+
+fn cutter() -> Cutter {
+    Cutter::try_from(CutterSpec::Toroidal { diameter_mm: 8.0, corner_radius_mm: 1.0, length_mm: 40.0 })
+        .unwrap()
+}
+
+fn local() -> LocalLead<'static> {
+    LocalLead {
+        tilt_rad: 0.0,
+        least_rad: LocalLead::LEAST_RAD,
+        most_rad: LocalLead::MOST_RAD,
+        rate_rad_per_mm: RATE_DEG_PER_MM.to_radians(),
+        holder: None,
+        around: None,
+    }
+}
+
+fn plan(lean: Leaning<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {
+    let (surface, cutter) = (&bend(), &cutter());
+    run(&Task { surface, face: "F1", cutter, lean, tolerance: TOLERANCE, progress: &|_| {} }, strategy)
+}
+
+/// Whether passes hold the tolerance, and by how much they go too deep.
+fn holds(passes: &Passes) -> (bool, f64) {
+    let (surface, cutter) = (bend(), cutter());
+    let moves = motions(&surface, &passes.passes, &cutter);
+    let v = verdict(&surface, &moves, &cutter, TOLERANCE, 0.25);
+    let within = v.scallop_max_mm <= TOLERANCE.scallop_mm
+        && v.gouge_max_mm <= TOLERANCE.gouge_mm
+        && v.uncut_samples == 0;
+    (within, v.gouge_max_mm)
+}
+
+#[test]
+fn a_local_lead_holds_and_is_shorter_than_any_held() {
+    let strategy = Strategy::Isoparametric { along: Along::Fixed(Axis::V) };
+    let passes = plan(Leaning::Local(&local()), &strategy).unwrap();
+    let (within, gouge_mm) = holds(&passes);
+    assert!(within, "gouge {gouge_mm}");
+    let [least, mean, most] = passes.inclination_rad().unwrap();
+    // The hollow end wants R k, less for the corner and for the heel that has left the face; the convex one nothing.
+    let want = (4.0 * BENT_PER_MM).asin();
+    assert!(most > 0.5 * want && most < 1.3 * want && least < 0.5 * mean, "{least} {mean} {most}");
+    // The least of the leads that hold when they are held, a degree apart: the shortest path of them.
+    let held = (5..15).find_map(|deg| {
+        let lean = Lean { lead_rad: f64::from(deg).to_radians(), tilt_rad: 0.0 };
+        plan(lean.into(), &strategy).ok().filter(|p| holds(p).0)
+    });
+    let best = held.unwrap().length_mm();
+    assert!(passes.length_mm() < 0.9 * best, "{} against {best}", passes.length_mm());
+}
+
+#[test]
+fn even_passes_with_a_local_lead_hold() {
+    let passes = plan(Leaning::Local(&local()), &Strategy::Curvature5c).unwrap();
+    let (within, gouge_mm) = holds(&passes);
+    assert!(within, "gouge {gouge_mm}");
+}
+
+/// The lead that a pass has, against that at the point before: no more than the rate; and the tool goes no deeper than the
+/// tolerance into any of ninety thousand points of the face, at places that are no nodes of any grid.
+#[test]
+fn the_lead_changes_no_faster_than_the_rate_and_clears_everywhere() {
+    let strategy = Strategy::Isoparametric { along: Along::Fixed(Axis::U) };
+    let (face, cutter) = (bend(), cutter());
+    let passes = plan(Leaning::Local(&local()), &strategy).unwrap();
+    let domain = face.domain();
+    let part = |k: usize| (k % 301) as f64 / 300.0;
+    let points: Vec<Point3> = (0..301 * 301).map(|k| face.point(domain.at(part(k), part(k / 301)))).collect();
+    let (mut fastest, mut asked) = (0.0f64, 0);
+    for pass in &passes.passes {
+        for w in pass.points.windows(2) {
+            let lead = w.iter().map(|p| p.pose.axis.angle(&p.normal)).collect::<Vec<_>>();
+            let step = (w[1].point - w[0].point).norm();
+            if step > 1e-3 {
+                fastest = fastest.max((lead[1] - lead[0]).abs() / step);
+            }
+        }
+        // Every point of the face against the tool standing there.
+        for p in pass.points.iter().step_by(7) {
+            let deepest =
+                points.iter().map(|x| -cutter.distance(&p.pose, x)).fold(f64::NEG_INFINITY, f64::max);
+            assert!(deepest <= TOLERANCE.gouge_mm, "{:?}: {deepest}", p.uv);
+            asked += 1;
+        }
+    }
+    assert!(asked > 30);
+    // Chords are shorter than the way, by less than a thousandth.
+    let limit = RATE_DEG_PER_MM.to_radians();
+    assert!(fastest <= 1.001 * limit && fastest > 0.1 * limit, "{} deg/mm", fastest.to_degrees());
+}
+
+/// The rates of a pose whose lead changes are those of its differences.
+#[test]
+fn the_motion_with_a_changing_lead_meets_its_differences() {
+    let (face, cutter) = (bend(), cutter());
+    let line = IsoLine { surface: &face, along: Axis::U, fixed: 0.4, reversed: false };
+    let lead = |t: f64| 0.1 + 0.3 * t;
+    let moving = |t: f64| {
+        let (frame, speed) = line.frame(t).unwrap();
+        Lean { lead_rad: lead(t), tilt_rad: 0.2 }.moving(&cutter, &frame, 0.05, (speed, 0.3))
+    };
+    let d = 1e-5;
+    for t in [0.2, 0.55, 0.9] {
+        let (a, b, here) = (moving(t - d), moving(t + d), moving(t));
+        let tip = (b.pose.tip - a.pose.tip) / (2.0 * d);
+        let axis = (b.pose.axis.into_inner() - a.pose.axis.into_inner()) / (2.0 * d);
+        // Differences to second order over rounding of coordinates of some 40 mm.
+        assert!((tip - here.tip_rate).norm() < 1e-6, "{tip:?} {:?}", here.tip_rate);
+        assert!((axis - here.turn.cross(&here.pose.axis)).norm() < 1e-7);
+    }
+}
