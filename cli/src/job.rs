@@ -1,6 +1,7 @@
 //! The job file: TOML with units in its keys, checked as a whole before any work begins.
 
 use crate::failure::{Failure, read_text};
+pub use crate::lead_key::LeadKey;
 use osculate_geom::{Unit3, Vec3};
 use osculate_tools::{Cutter, CutterSpec, HolderSpec, Lean};
 use serde::Deserialize;
@@ -147,37 +148,6 @@ pub struct ToleranceTable {
     pub gouge_mm: Option<f64>,
     /// Chord tolerance of the path; a fifth of the scallop where not given.
     pub chord_mm: Option<f64>,
-}
-
-/// A lead in degrees, "auto" or "local".
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum LeadKey {
-    /// The program chooses one for the whole path.
-    #[default]
-    Auto,
-    /// The least at every place.
-    Local,
-    /// As given.
-    Given(f64),
-}
-
-impl<'de> Deserialize<'de> for LeadKey {
-    fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Raw {
-            Number(f64),
-            Word(String),
-        }
-        match Raw::deserialize(d)? {
-            Raw::Number(x) => Ok(Self::Given(x)),
-            Raw::Word(w) if w == "auto" => Ok(Self::Auto),
-            Raw::Word(w) if w == "local" => Ok(Self::Local),
-            Raw::Word(w) => Err(serde::de::Error::custom(format!(
-                "expected a number, \"auto\" or \"local\", got \"{w}\""
-            ))),
-        }
-    }
 }
 
 /// `[strategy]`

@@ -15,6 +15,7 @@ mod figure;
 mod flank;
 mod ideal;
 mod job;
+mod lead_key;
 mod look;
 mod nc;
 mod output;

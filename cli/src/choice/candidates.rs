@@ -58,13 +58,12 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<(Lean, b
     let held = |leads: &[f64]| -> Result<Vec<(Lean, bool)>, Failure> {
         leads.iter().map(|deg| Ok((job.lean(deg.to_radians())?, false))).collect()
     };
-    let local = || Ok((job.lean(LocalLead::LEAST_RAD)?, true));
     match job.strategy.lead_deg {
         LeadKey::Given(deg) => held(&[deg]),
         // A ball is the same at any lead.
         _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]),
-        LeadKey::Local => Ok(vec![local()?]),
-        LeadKey::Auto => Ok([vec![local()?], held(&LEADS_DEG)?].concat()),
+        LeadKey::Local => Ok(vec![(job.lean(LocalLead::LEAST_RAD)?, true)]),
+        LeadKey::Auto => held(&LEADS_DEG),
     }
 }
 
