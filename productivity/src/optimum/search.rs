@@ -17,9 +17,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Directions, leads and tilts of the grid that is ranked.
 pub(super) const GRID: [usize; 3] = [24, 7, 5];
-/// Directions measured at the least lead, and over waves.
+/// Directions measured at the least lead, and where lines of the chart are traced: places next to edges, and over waves.
 const DIRECTIONS: [usize; 2] = [36, 72];
-/// Postures of the grid above the least lead that are measured, of which the leading order says less over waves; how many of
+/// Postures of the grid above the least lead that are measured, of which the leading order says less there; how many of
 /// all enter the rounds of settling, and how many come through the first.
 const MEASURED: [usize; 2] = [12, 36];
 const ENTERED: usize = 6;
@@ -185,7 +185,7 @@ impl<'a> Search<'a> {
     pub fn run(&mut self) -> Option<Found> {
         // At the least lead the strip is usually widest and the leading order fails: all of it is measured.
         let postures = self.least_lead();
-        let measured = MEASURED[usize::from(self.chart.is_wavy())];
+        let measured = MEASURED[usize::from(self.chart.is_traced())];
         let mut found = Vec::with_capacity(postures.len() + measured);
         let mut promises: Vec<(Found, f64)> = Vec::with_capacity(postures.len());
         for p in postures {
@@ -301,7 +301,7 @@ impl<'a> Search<'a> {
         } else {
             vec![tilt.least_rad]
         };
-        let directions = DIRECTIONS[usize::from(self.chart.is_wavy())];
+        let directions = DIRECTIONS[usize::from(self.chart.is_traced())];
         (0..directions)
             .flat_map(|k| {
                 let direction_rad = TAU * k as f64 / directions as f64;

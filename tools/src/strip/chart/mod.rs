@@ -155,6 +155,12 @@ impl<'a> Chart<'a> {
         self.wavy
     }
 
+    /// Whether no table of lines was good enough, so that each is traced: strips may change within narrow ranges of directions.
+    #[must_use]
+    pub const fn is_traced(&self) -> bool {
+        self.size[0] == 0
+    }
+
     /// How far the chart reaches, mm.
     #[must_use]
     pub const fn radius_mm(&self) -> f64 {
