@@ -63,7 +63,11 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<(Lean, b
         // A ball is the same at any lead.
         _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]),
         LeadKey::Local => Ok(vec![(job.lean(LocalLead::LEAST_RAD)?, true)]),
-        LeadKey::Auto => held(&LEADS_DEG),
+        LeadKey::Auto => {
+            let mut all = held(&LEADS_DEG)?;
+            all.push((job.lean(LocalLead::LEAST_RAD)?, true));
+            Ok(all)
+        }
     }
 }
 

@@ -5,8 +5,9 @@
 //! leaves out is optimistic as a rule (overlaps, links), so that little is missed. Of the leads of one tool and strategy only
 //! the best is open at a time, and each plan of them that fails puts the next one back in the order. A plan that leaves a
 //! little too much is laid out once more for less. Where none holds, tools and strategies that failed least are tried further;
-//! around one that holds, leads beside its own and other strategies with its tool are planned for less time. The work is
-//! bounded by counts, not by time: the same job gives the same choice everywhere.
+//! around one that holds, leads beside its own and other strategies with its tool are planned for less time, and plans whose
+//! lead is found place by place: those take long to plan, and little else gains as much. The work
+//! is bounded by counts, not by time: the same job gives the same choice everywhere.
 
 mod candidates;
 mod settle;
@@ -25,12 +26,14 @@ use crate::report_fill::Extras;
 use osculate_geom::Surface;
 use osculate_productivity::compare::{Around, Candidate, Screened, Setting, Tool, screen};
 use osculate_productivity::ideal::Patch;
+use osculate_productivity::plan::Strategy;
 use std::path::Path;
 
 /// Candidates that are planned at most, and while none is known to hold.
 const MOST_PLANS: usize = 16;
 const MOST_IN_NEED: usize = 28;
-/// Plans around one that holds: with leads beside its own, and with other strategies.
+/// Plans around one that holds: with its tool and leads found place by place, with leads beside its own, and with other strategies.
+const MOST_LOCAL: usize = 4;
 const MOST_BESIDE: usize = 3;
 const MOST_OTHERS: usize = 3;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
@@ -186,7 +189,14 @@ impl<'a> Choice<'a> {
         if let Some(holder) = &self.holder {
             return self.first_around(holder);
         }
-        let waiting = Self::waiting;
+        let holds = self.entries.iter().any(|e| e.verified.is_some_and(|v| v.within_tolerance));
+        let more = self.plans < MOST_PLANS;
+        let in_need = !more && !holds && self.plans < MOST_IN_NEED;
+        // Leads found place by place wait for a plan that holds, where one is held elsewhere.
+        let only_local = self.entries.iter().all(|e| e.candidate.local);
+        let waiting = |e: &Entry| {
+            Self::waiting(e) && (!e.candidate.local || in_need || only_local || e.figures.is_some())
+        };
         let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
         let mut open: Vec<usize> = Vec::new();
         for (k, e) in self.entries.iter().enumerate().filter(|(_, e)| waiting(e)) {
@@ -204,15 +214,13 @@ impl<'a> Choice<'a> {
                 None => open.push(k),
             }
         }
-        let holds = self.entries.iter().any(|e| e.verified.is_some_and(|v| v.within_tolerance));
-        let more = self.plans < MOST_PLANS;
-        let in_need = !more && !holds && self.plans < MOST_IN_NEED;
         open.retain(|k| more || in_need || self.entries[*k].figures.is_some());
         let order = |k: &usize| {
             let e = &self.entries[*k];
             let failed = if e.figures.is_some() { 0 } else { self.failures(e) };
             let put_back = Self::least_min(e) * (1.0 + SET_BACK * failed as f64);
-            (if in_need { failed } else { 0 }, put_back)
+            // In need what is found place by place comes first.
+            ((in_need && !e.candidate.local, if in_need { failed } else { 0 }), put_back)
         };
         open.into_iter().min_by(|a, b| {
             let (a, b) = (order(a), order(b));
@@ -224,31 +232,37 @@ impl<'a> Choice<'a> {
         matches!(entry.state, State::Open | State::Planned(_) | State::Posted(_))
     }
 
-    /// The candidate to go on with that may take less time than one that holds: of its tool and strategy the nearest leads,
-    /// then other strategies, each with its nearest lead and the quickest first.
+    /// The candidate to go on with that may take less time than one that holds, of those with its tool: leads found place by
+    /// place, along parameter lines and lines of curvature first, as these keep their lines whatever the lead; then of its strategy
+    /// the nearest leads; then other strategies, each with its nearest lead and the quickest first.
     fn first_around(&self, holder: &Holder) -> Option<usize> {
         let held = self.entries[holder.entry].candidate;
-        let made = self.plans - holder.plans;
+        let locals = || self.entries.iter().filter(|e| e.candidate.local && e.tried);
+        let made_local = locals().filter(|e| e.candidate.tool == held.tool).count();
+        let made = (self.plans - holder.plans).saturating_sub(locals().count());
         let order = |e: &Entry| {
             let c = &e.candidate;
             let beside = c.strategy == held.strategy;
-            let most = if beside { MOST_BESIDE } else { MOST_BESIDE + MOST_OTHERS };
+            let (made, most) = match (c.local, beside) {
+                (true, _) => (made_local, MOST_LOCAL),
+                (false, true) => (made, MOST_BESIDE),
+                (false, false) => (made, MOST_BESIDE + MOST_OTHERS),
+            };
             let open = Self::waiting(e) && (e.figures.is_some() || made < most);
             let wanted = c.tool == held.tool && Self::least_min(e) < holder.time_min;
-            // A local lead lies on both sides of any.
-            let away = if c.local {
-                0.0
-            } else {
-                (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs()
+            let kind = match c.strategy {
+                _ if !c.local => 2 + usize::from(!beside),
+                Strategy::Isoparametric { .. } | Strategy::Curvature5c => 0,
+                _ => 1,
             };
-            (open && wanted).then_some((e.figures.is_none(), !beside, away, Self::least_min(e)))
+            let away =
+                (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs();
+            let away = if c.local { 0.0 } else { away };
+            (open && wanted).then_some(((e.figures.is_none(), kind), away, Self::least_min(e)))
         };
         let ranked = self.entries.iter().enumerate().filter_map(|(k, e)| order(e).map(|o| (o, k)));
         ranked
-            .min_by(|(a, _), (b, _)| {
-                let nearest = (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2));
-                nearest.then(a.3.total_cmp(&b.3))
-            })
+            .min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2)))
             .map(|(_, k)| k)
     }
 

@@ -13,7 +13,7 @@ use osculate_tools::removal::Limits;
 use std::path::Path;
 
 /// Contenders that are verified at most.
-const MOST_VERIFIED: usize = 7;
+const MOST_VERIFIED: usize = 9;
 
 /// The plan that is chosen.
 pub struct Settled {

@@ -92,12 +92,7 @@ fn of_entry(choice: &Choice<'_>, entry: &Entry, leads: usize) -> Row {
         State::Taken if entry.verified.is_some_and(|v| v.within_tolerance) => (Outcome::Holds, String::new()),
         State::Open => {
             let promise = Choice::least_min(entry);
-            let failed = match choice.failures(entry) {
-                0 => String::new(),
-                1 => "another plan of it failed; ".to_owned(),
-                n => format!("{n} other plans of it failed; "),
-            };
-            (Outcome::NotPlanned, format!("not planned: {failed}strips alone take {promise:.2} min"))
+            (Outcome::NotPlanned, format!("not planned: strips alone take {promise:.2} min"))
         }
         _ => (Outcome::Slower, format!("takes {:.2} min at least", Choice::least_min(entry))),
     };
@@ -126,10 +121,12 @@ fn rank(entry: &Entry) -> (u8, f64) {
     let class = match &entry.state {
         State::Taken => 0,
         State::Posted(_) | State::Planned(_) => 1,
-        State::Open => 2,
-        State::Out(_) if entry.verified.is_some() => 3,
-        State::Out(_) if entry.figures.is_some() => 4,
-        State::Out(_) => 5,
+        // What was planned and failed says more than what was not planned.
+        State::Out(_) if entry.verified.is_some() => 2,
+        State::Out(_) if entry.figures.is_some() => 3,
+        State::Out(_) if entry.tried => 4,
+        State::Open => 5,
+        State::Out(_) => 6,
     };
     (class, Choice::least_min(entry))
 }

@@ -1,8 +1,8 @@
 //! `cargo xtask plans --data FOLDER`: docs/plans.md, what `auto` makes of real faces and of the four surfaces of M86.
 //!
 //! Every face is planned with the same tolerances, feeds and machine: by `auto` over a list of tools, by plain isoparametric
-//! lines with the first tool and with the one that `auto` chose, with that tool and lead by constant scallop and streamlines,
-//! and in parallel planes with the ball. Jobs and results stay below `target/plans`.
+//! lines with the first tool, by them, by constant scallop and by streamlines with the tool that `auto` chose, and in parallel
+//! planes with the ball. Jobs and results stay below `target/plans`.
 
 mod dense;
 mod speed;
@@ -114,28 +114,19 @@ const KINDS: [&str; 6] =
     ["auto", "isoparametric", "isoparametric, tool of auto", "isoscallop", "streamline", BALL];
 const BALL: &str = "ball, 3 axes";
 
-/// What `auto` chose, as keys of a job.
-struct Chosen {
-    tool: String,
-    lead_deg: f64,
-}
-
-impl Chosen {
-    /// From a summary; None where the choice keeps its axis.
-    fn of(summary: &Value) -> Option<Self> {
-        let table: Vec<String> = summary["tool"]
-            .as_object()?
-            .iter()
-            .filter(|(_, v)| v.is_string() || v.is_number())
-            .map(|(k, v)| format!("{k} = {v}"))
-            .collect();
-        let lead_deg = summary["lead_deg"].as_f64().filter(|lead| *lead > 0.0)?;
-        Some(Self { tool: table.join(", "), lead_deg })
-    }
+/// The tool that `auto` chose, as keys of a job; None where the choice keeps its axis.
+fn chosen_tool(summary: &Value) -> Option<String> {
+    let table: Vec<String> = summary["tool"]
+        .as_object()?
+        .iter()
+        .filter(|(_, v)| v.is_string() || v.is_number())
+        .map(|(k, v)| format!("{k} = {v}"))
+        .collect();
+    summary["lead_deg"].as_f64().filter(|lead| *lead > 0.0).map(|_| table.join(", "))
 }
 
 /// The job of a case.
-fn job(case: &Case, kind: &str, data: &str, chosen: Option<&Chosen>) -> String {
+fn job(case: &Case, kind: &str, data: &str, chosen: Option<&str>) -> String {
     let part = match case.source {
         Source::BuiltIn(name) => format!("builtin = {{ kind = \"{name}\" }}"),
         Source::File { path, face, keys } => {
@@ -146,10 +137,8 @@ fn job(case: &Case, kind: &str, data: &str, chosen: Option<&Chosen>) -> String {
     let (tools, strategy): (Vec<&str>, String) = match (kind, chosen) {
         ("auto", _) => (case.tools.to_vec(), "kind = \"auto\"".to_owned()),
         (BALL, _) => (case.tools[3..].to_vec(), format!("kind = \"isoplanar_3c\"\naxis = {:?}", case.axis)),
-        ("isoscallop" | "streamline", Some(c)) => {
-            (vec![&c.tool], format!("kind = \"{kind}\"\nlead_deg = {}", c.lead_deg))
-        }
-        ("isoparametric, tool of auto", Some(c)) => (vec![&c.tool], "kind = \"isoparametric\"".to_owned()),
+        ("isoscallop" | "streamline", Some(c)) => (vec![c], format!("kind = \"{kind}\"")),
+        ("isoparametric, tool of auto", Some(c)) => (vec![c], "kind = \"isoparametric\"".to_owned()),
         _ => (case.tools[..1].to_vec(), "kind = \"isoparametric\"".to_owned()),
     };
     let tools: String = tools.iter().map(|t| format!("  {{ {t} }},\n")).collect();
@@ -275,10 +264,10 @@ fn one(case: &Case, program: &Path, data: &Path, root: &Path) -> Result<String, 
     for kind in KINDS {
         let folder = place.join(kind.replace([' ', ','], "-"));
         let file = folder.join("job.toml");
-        write(&file, &job(case, kind, &data.to_string_lossy(), chosen.as_ref()))?;
+        write(&file, &job(case, kind, &data.to_string_lossy(), chosen.as_deref()))?;
         let summary = plan(program, &file, &folder);
         if kind == "auto" {
-            chosen = summary.as_ref().ok().and_then(Chosen::of);
+            chosen = summary.as_ref().ok().and_then(chosen_tool);
         }
         if cloud.is_none()
             && let Some(area) = summary.as_ref().ok().and_then(|s| s["area_mm2"].as_f64())
@@ -366,7 +355,7 @@ fn look(summary: &Value, cloud: &Cloud, folder: &Path) -> Option<f64> {
 }
 
 const HEAD: &str = "# Plans of real faces\n\nMade by `cargo xtask plans --data FOLDER`: every face planned by `auto` over four tools, by isoparametric lines with \
-the first of them and with the one that `auto` chose (each with the best of six leads), with that tool and lead by constant scallop and by streamlines, and in parallel planes with the ball on three axes; at the same \
+the first of them, by isoparametric lines, constant scallop and streamlines with the one that `auto` chose (each with the best of six leads held all over), and in parallel planes with the ball on three axes; at the same \
 tolerances (gouge half the scallop, chord a fifth), feed (2000 mm/min) and machine. Scallop and gouge are measured from \
 the NC text. *Use* is the median height of the crests between passes over the tolerance. *Ideal* is an estimate of the least time of any plan with the tools of the job, *efficiency* that time over the cutting time; `auto` chooses by time within tolerance. The *second opinion* is how deep the cutter goes into some 40,000 points of the face at poses a fiftieth of its diameter apart, by formulas that share \
 no code with the verification. *Wall* is the whole run of the program; the times of a row depend on the machine.\n\n\
@@ -399,11 +388,15 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
     let text = |k: &str| s[k].as_str().unwrap_or("-").to_owned();
     let n = |v: &Value, digits: usize| v.as_f64().map_or("-".to_owned(), |x| format!("{x:.digits$}"));
     let v = &s["verification"];
+    let lead = |s: &Value| match s["lead_range_deg"].as_array().map(Vec::as_slice) {
+        Some([least, most]) => format!("{} to {} deg, local", n(least, 0), n(most, 0)),
+        _ => format!("{} deg", n(&s["lead_deg"], 0)),
+    };
     format!(
-        "| {name} | {kind}: {} | {}, {} deg | {} | {} | {} | {} | {} | {} / {} | {} | {} | {} | {:.0} |\n",
+        "| {name} | {kind}: {} | {}, {} | {} | {} | {} | {} | {} | {} / {} | {} | {} | {} | {:.0} |\n",
         text("strategy"),
         text("tool_words"),
-        n(&s["lead_deg"], 0),
+        lead(s),
         n(&s["passes"], 0),
         n(&s["cutting_length_mm"], 0),
         n(&s["cutting_time_min"], 2),

@@ -150,7 +150,9 @@ fn even_passes(
     }
     let task = &Task { lean: lead.as_ref().map_or(task.lean, Leaning::Field), ..*task };
     // The field was made with closed forms of the width: where exact strips say something else it is made again.
-    for _ in 0..CORRECTIONS {
+    // The lead follows the lines, so that lines that move with their widths would outrun it.
+    let corrections = if lead.is_some() { 1 } else { CORRECTIONS };
+    for _ in 0..corrections {
         let fine = &continued_task(task, &face);
         let seat = Seat::any(fine);
         let better = {
