@@ -7,7 +7,8 @@ mod cutting;
 
 use cutting::{motions, verdict};
 use osculate_geom::line::{IsoLine, SurfaceLine};
-use osculate_geom::{Axis, Point3, Surface};
+use osculate_geom::{Axis, Point3, Surface, Vec3};
+use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
     Along, Leaning, LocalLead, Passes, PlanError, Strategy, Task, Tolerance, run,
 };
@@ -84,6 +85,30 @@ fn a_local_lead_holds_and_is_shorter_than_any_held() {
     });
     let best = held.unwrap().length_mm();
     assert!(passes.length_mm() < 0.9 * best, "{} against {best}", passes.length_mm());
+}
+
+/// A wall beside the face that the tool touches at any lead: the passes say how many places that concerns.
+#[test]
+fn places_that_no_lead_clears_are_told() {
+    let free =
+        plan(Leaning::Local(&local()), &Strategy::Isoparametric { along: Along::Fixed(Axis::V) }).unwrap();
+    let told = |p: &Passes| p.diagnostics.iter().filter(|d| d.to_string().contains("no lead keeps")).count();
+    assert_eq!(told(&free), 0);
+    let [a, b] = [-0.5 * SIZE_MM, 0.5 * SIZE_MM];
+    // Three millimetres beyond the end of the passes, a radius being four.
+    let corners = [[a, -40.0], [a, 40.0], [b, -40.0], [b, 40.0]];
+    let points = corners.map(|[x, z]| Point3::new(x, SIZE_MM + 3.0, z)).to_vec();
+    let knots = [vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
+    let wall = NurbsSurface::new([1, 1], knots, Net { count: [2, 2], points, weights: None }).unwrap();
+    let around = Around::of(std::iter::once((&wall as &dyn Surface, "wall")));
+    let beside = LocalLead { around: Some(&around), ..local() };
+    for strategy in [
+        Strategy::Isoparametric { along: Along::Fixed(Axis::V) },
+        Strategy::Isoplanar { normal: Vec3::x_axis() },
+    ] {
+        let passes = plan(Leaning::Local(&beside), &strategy).unwrap();
+        assert_eq!(told(&passes), 1, "{strategy:?}");
+    }
 }
 
 #[test]

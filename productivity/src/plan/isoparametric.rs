@@ -60,7 +60,8 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
             let seat = Seat::new(task, axis);
             let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
             let field = LeadField::find(task, local, (&feed, seat.rough()))?;
-            isoparametric(&Task { lean: Leaning::Field(&field), ..*task }, Along::Fixed(axis))
+            let passes = isoparametric(&Task { lean: Leaning::Field(&field), ..*task }, Along::Fixed(axis))?;
+            Ok(field.told(passes, task.face))
         };
         return match along {
             Along::Fixed(axis) => one(axis),

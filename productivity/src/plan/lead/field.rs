@@ -10,8 +10,8 @@ use super::need::{Clearance, Stand};
 use super::{Feed, LocalLead};
 use crate::plan::level::{Spline, lengths};
 use crate::plan::line::Rectangle;
-use crate::plan::{PlanError, Task};
-use osculate_geom::{Axis, Uv};
+use crate::plan::{Passes, PlanError, Task};
+use osculate_geom::{Axis, Diagnostic, Uv};
 use osculate_tools::Lean;
 use rayon::prelude::*;
 
@@ -32,6 +32,8 @@ pub struct LeadField {
     spline: Spline,
     rectangle: Rectangle,
     tilt_rad: f64,
+    /// Places that no lead clears, and all at which one was looked for.
+    unmet: [usize; 2],
 }
 
 /// Poles of a spline over a face as nodes.
@@ -92,7 +94,8 @@ impl LeadField {
         };
         let columns = spline.bases[1].count();
         let pole_at = |k: usize| rectangle.domain.at(corner(k / columns, 0), corner(k % columns, 1));
-        let found: Vec<Option<f64>> = (0..spline.poles.len())
+        // Outside None where passes have no direction, inside where no lead does.
+        let found: Vec<Option<Option<f64>>> = (0..spline.poles.len())
             .into_par_iter()
             .map(|k| {
                 let all = stands(pole_at(k));
@@ -105,7 +108,8 @@ impl LeadField {
                 why: "passes have no direction on it for which a lead could be found".to_owned(),
             });
         }
-        let mut poles: Vec<f64> = found.into_iter().map(|f| f.unwrap_or(local.least_rad)).collect();
+        let unmet = [found.iter().filter(|f| **f == Some(None)).count(), found.iter().flatten().count()];
+        let mut poles: Vec<f64> = found.into_iter().map(|f| f.flatten().unwrap_or(local.least_rad)).collect();
         let form = (0..poles.len())
             .map(|k| {
                 let jet = task.surface.jet2(pole_at(k));
@@ -132,7 +136,7 @@ impl LeadField {
                     let lead = spline.jet(*at).value;
                     // Between two places the need may go on as it does between nodes, up to halfway.
                     let beyond = steepest(&spline, &need, *at) * (0.5 / ASKED as f64);
-                    let short = clearance.least(&stands(*at), lead - beyond) + beyond - lead;
+                    let short = clearance.least(&stands(*at), lead - beyond)? + beyond - lead;
                     (short > clearance.missing_rad()).then_some((*at, short))
                 })
                 .collect();
@@ -150,7 +154,22 @@ impl LeadField {
         }
         raise(&mut poles, &network, rate);
         spline.poles = poles;
-        Ok(Self { spline, rectangle, tilt_rad: local.tilt_rad })
+        Ok(Self { spline, rectangle, tilt_rad: local.tilt_rad, unmet })
+    }
+
+    /// Passes with a word about the places that no lead clears.
+    pub(in crate::plan) fn told(&self, mut passes: Passes, face: &str) -> Passes {
+        let [places, all] = self.unmet;
+        if places > 0 {
+            passes.diagnostics.push(Diagnostic::warning(
+                face,
+                format!(
+                    "at {places} of {all} places no lead keeps cutter and holder off the part: verification says what they cut \
+                     there; give a tilt, a smaller tool or another direction"
+                ),
+            ));
+        }
+        passes
     }
 
     /// Lead and tilt at a place, and the lead's derivatives by u and v; beyond the border of the face its border's.

@@ -6,7 +6,8 @@
 //! along its shank every few.
 //!
 //! *Limits.* Ripples that no tool follows go into it at any lead: what the tool's end meets at a great lead is accepted at any,
-//! and [`super::super::seat`] raises the tool over it. A place that no lead clears asks for none: verification has the last word.
+//! and [`super::super::seat`] raises the tool over it. A place that no lead clears asks for none and is told of: verification has
+//! the last word.
 
 use super::LocalLead;
 use crate::plan::Task;
@@ -280,11 +281,11 @@ impl<'a> Clearance<'a> {
         })
     }
 
-    /// The least lead from `from_rad` on that is clear at all contacts; `from_rad` itself where none is.
-    pub fn least(&self, stands: &[Stand], from_rad: f64) -> f64 {
+    /// The least lead from `from_rad` on that is clear at all contacts; None where none is.
+    pub fn least(&self, stands: &[Stand], from_rad: f64) -> Option<f64> {
         // What goes into the part next to the contact at a great lead too are ripples.
         if stands.iter().all(|s| self.is_clear(s, from_rad, self.accepted_mm)) {
-            return from_rad;
+            return Some(from_rad);
         }
         let relief = RELIEF_RAD.clamp(from_rad, self.local.most_rad.max(from_rad));
         let ripple = |s: &Stand| {
@@ -301,7 +302,7 @@ impl<'a> Clearance<'a> {
                     bad = Some(lead);
                     continue;
                 }
-                let (Some(mut low), mut good) = (bad, lead) else { return lead };
+                let (Some(mut low), mut good) = (bad, lead) else { return Some(lead) };
                 for _ in 0..HALVINGS {
                     if good - low <= self.missing_rad() {
                         break;
@@ -309,10 +310,10 @@ impl<'a> Clearance<'a> {
                     let middle = 0.5 * (low + good);
                     if clear(middle) { good = middle } else { low = middle }
                 }
-                return good;
+                return Some(good);
             }
         }
-        from_rad
+        None
     }
 
     /// A lead that may be missing: the heel, two radii away, comes down by what is accepted.

@@ -109,7 +109,8 @@ pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
         let face = continued(task, None);
         let task_beyond = Task { surface: &face, ..*task };
         let field = LeadField::find(&task_beyond, local, (&feed, Seat::any(task).rough()))?;
-        return isoplanar(&Task { lean: Leaning::Field(&field), ..*task }, normal);
+        let passes = isoplanar(&Task { lean: Leaning::Field(&field), ..*task }, normal)?;
+        return Ok(field.told(passes, task.face));
     }
     level_passes(task, &continued(task, None), &Height(normal), "isoplanar", None)
 }
@@ -178,7 +179,12 @@ fn even_passes(
         _ => None,
     };
     let task = &Task { lean: lead.as_ref().map_or(task.lean, Leaning::Field), ..*task };
-    finished(level_passes(task, &face, &even.field, name, None)?, task, name, &even)
+    let passes = level_passes(task, &face, &even.field, name, None)?;
+    let passes = match &lead {
+        Some(lead) => lead.told(passes, task.face),
+        None => passes,
+    };
+    finished(passes, task, name, &even)
 }
 
 /// The lead for passes along the level lines of a field.
