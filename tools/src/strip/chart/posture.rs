@@ -57,6 +57,8 @@ pub enum ChartError {
 const STEP: f64 = 0.4;
 const MOST_STEP: f64 = 0.15;
 const LEAST_STEP: f64 = 0.125;
+/// Instants to each side at which a tool that does not fit along the feed is looked at.
+const INSTANTS: u32 = 6;
 
 impl Chart<'_> {
     /// How far along the feed the standing tool stays within `height_mm`: as [`mark`](crate::strip::mark()).
@@ -99,6 +101,17 @@ impl Chart<'_> {
             total += bracketed(first, ends[1], 1e-4 * far, |t| excess(sign * t)).map_or(near, |r| r.x);
         }
         Ok(total)
+    }
+
+    /// Depth below the contact of a tool that moves as far as the feed goes on the chart, either way.
+    fn dug_mm(&self, motion: &ChartMotion<'_>, cutter: &Cutter, line: &Line) -> f64 {
+        let (reach, inside) = (motion.feed.reach(), motion.feed.inside());
+        let instants = [-1.0, 1.0].into_iter().zip(0..).flat_map(|(sign, side): (f64, usize)| {
+            let far = reach[side].min(inside[side]).min(self.reach);
+            (1..=INSTANTS).map(move |k| sign * far * f64::from(k) / f64::from(INSTANTS))
+        });
+        let entries = instants.filter_map(|t| cutter.entry(&motion.moving(t)?.pose, line));
+        -entries.map(|e| e.at_mm).fold(0.0, f64::min)
     }
 
     /// The strip of a posture, its feed at `angle_rad` from S_u towards S_v.
@@ -161,6 +174,10 @@ impl Chart<'_> {
             for profile in &mut profiles {
                 side.walk(profile)?;
             }
+        }
+        // Where the tool does not fit along the feed it comes down on both sides of the contact, and a walk follows one.
+        if q.along(&frame.tangent) < 0.0 {
+            undercut = undercut.max(too_deep(self.dug_mm(&motion, cutter, &self.line(&left, 0.0)))?);
         }
         for profile in &profiles {
             undercut =

@@ -59,3 +59,38 @@ fn strips_over_waves_are_the_exact_ones() {
     // A crest that comes up to the tolerance to the chart's error may count or not.
     assert!(jumps > 5 && 40 * far <= count, "{far} of {count} are off, {jumps} jumps");
 }
+
+/// A face that is much smaller than the tool: it is too hollow for it everywhere, and charts say so wherever the exact strip does.
+#[test]
+fn faces_smaller_than_the_tool_are_as_hollow_as_the_exact_strip_says() {
+    let half = 6.0;
+    // z = 0.005 x^2 - 0.003 y^2 as a Bezier patch: x^2 over [-h, h] has the poles h^2, -h^2, h^2.
+    let square = |k: usize| if k == 1 { -half * half } else { half * half };
+    let poles = (0..9)
+        .map(|k| {
+            let (i, j) = (k / 3, k % 3);
+            let z = 0.005 * square(i) - 0.003 * square(j);
+            Point3::new(half * (i as f64 - 1.0), half * (j as f64 - 1.0), z)
+        })
+        .collect();
+    let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    let net = Net { count: [3, 3], points: poles, weights: None };
+    let part = NurbsSurface::new([2, 2], [knots.clone(), knots], net).unwrap();
+    let ball = CutterSpec::Ball { diameter_mm: 300.0, length_mm: 400.0 };
+    let cutter = Cutter::try_from(ball).unwrap();
+    let (h, gouge_mm) = (0.01, 0.005);
+    let lean = Lean { lead_rad: 15f64.to_radians(), tilt_rad: 0.0 };
+    for at in (0..49).map(|k| uv(f64::from(2 * (k / 7) + 1) / 14.0, f64::from(2 * (k % 7) + 1) / 14.0)) {
+        let chart = Chart::new(&part, at, 1.2 * cutter.radius_mm(), 0.05 * h).unwrap();
+        for k in 0..12 {
+            let angle = std::f64::consts::TAU * f64::from(k) / 12.0;
+            let Ok(contact) = Contact::new(&part, at, &cutter, FeedLine::Angle(angle), lean) else {
+                continue;
+            };
+            let too_large = exact(&contact, h).map_or(true, |s| s.undercut_mm > gouge_mm);
+            let got = chart.strip(&cutter, angle, lean, Within { scallop_mm: h, gouge_mm });
+            let fits = got.as_ref().is_ok_and(|s| s.lift_mm == 0.0);
+            assert!(!(too_large && fits), "{at:?} {angle}: {got:?}");
+        }
+    }
+}

@@ -46,7 +46,7 @@ impl ChartMotion<'_> {
     }
 
     /// The motion as far as its line goes, where the chart is no longer good too.
-    fn moving(&self, t: f64) -> Option<Moving> {
+    pub(super) fn moving(&self, t: f64) -> Option<Moving> {
         if !self.goes(t) {
             return None;
         }
