@@ -180,7 +180,11 @@ fn compare_ranks_and_gives_reasons() {
     for r in too_large {
         assert_eq!(r["outcome"], "not_possible");
         let why = r["why"].as_str().unwrap();
-        assert!(why.contains("too large for 100 %") && why.contains("largest diameter"), "{why}");
+        let percent: f64 = why.split_whitespace().nth(3).unwrap().parse().unwrap();
+        // Contour lines leave so small a face at its corners before the ball comes down on it.
+        let least = if r["strategy"] == "contour_2cl" { 90.0 } else { 100.0 };
+        assert!(why.starts_with("too large for ") && percent >= least, "{why}");
+        assert!(why.contains("largest diameter"), "{why}");
         let largest: f64 =
             why.split(": ").last().unwrap().split_whitespace().next().unwrap().parse().unwrap();
         assert!((200.0..202.0).contains(&largest), "{why}");

@@ -57,6 +57,8 @@ pub enum ChartError {
 const STEP: f64 = 0.4;
 const MOST_STEP: f64 = 0.15;
 const LEAST_STEP: f64 = 0.125;
+/// ... and of the way to the further border.
+const OF_FACE: f64 = 0.2;
 /// Instants to each side at which a tool that does not fit along the feed is looked at.
 const INSTANTS: u32 = 6;
 
@@ -103,7 +105,7 @@ impl Chart<'_> {
         Ok(total)
     }
 
-    /// Depth below the contact of a tool that moves as far as the feed goes on the chart, either way.
+    /// Depth below a place of a tool that moves as far as the feed goes on the chart, either way.
     fn dug_mm(&self, motion: &ChartMotion<'_>, cutter: &Cutter, line: &Line) -> f64 {
         let (reach, inside) = (motion.feed.reach(), motion.feed.inside());
         let instants = [-1.0, 1.0].into_iter().zip(0..).flat_map(|(sign, side): (f64, usize)| {
@@ -145,6 +147,9 @@ impl Chart<'_> {
         let step = if q.min > 0.0 { (STEP * half).min(MOST_STEP * radius) } else { MOST_STEP * radius };
         // Between knots there may be a wave.
         let step = step.min((OF_PITCH * left.pitch_mm()).max(LEAST_STEP * step));
+        // Nor may a face that is smaller than the tool be crossed at once.
+        let [behind, ahead] = left.inside();
+        let step = step.min(OF_FACE * behind.max(ahead));
         let mut side = Side {
             motion: &motion,
             cutter,
@@ -177,7 +182,10 @@ impl Chart<'_> {
         }
         // Where the tool does not fit along the feed it comes down on both sides of the contact, and a walk follows one.
         if q.along(&frame.tangent) < 0.0 {
-            undercut = undercut.max(too_deep(self.dug_mm(&motion, cutter, &self.line(&left, 0.0)))?);
+            let ends = profiles.iter().map(|p| p.end(self));
+            for line in std::iter::once(self.line(&left, 0.0)).chain(ends) {
+                undercut = undercut.max(too_deep(self.dug_mm(&motion, cutter, &line))?);
+            }
         }
         for profile in &profiles {
             undercut =
