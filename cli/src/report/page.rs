@@ -21,6 +21,8 @@ const STYLE: &str = include_str!("../../assets/report.css");
 
 /// Tables with more columns than this stand below the picture and not beside it.
 const NARROW_COLUMNS: usize = 3;
+/// Tables of more columns have the width of the page to themselves.
+const BESIDE_ANOTHER: usize = 5;
 
 /// The page of `report`: a complete HTML document that needs no other file and no network.
 pub fn html(report: &Report) -> String {
@@ -68,8 +70,8 @@ pub fn html(report: &Report) -> String {
     viewer(&mut out, report, &faces, &scales);
     if solo.is_empty() {
         out.push_str("<aside class=\"card\"><div>");
-        worst(&mut out, &report.verdict, limits);
         beside.iter().for_each(|t| table(&mut out, t));
+        worst(&mut out, &report.verdict, limits);
         out.push_str("</div></aside>\n");
     }
     out.push_str("</main>\n");
@@ -77,7 +79,8 @@ pub fn html(report: &Report) -> String {
     if !below.is_empty() {
         out.push_str("<div class=\"wide-tables\">");
         for t in below {
-            out.push_str("<section class=\"card scroll\">");
+            let whole = if t.columns.len() > BESIDE_ANOTHER { " whole" } else { "" };
+            let _ = write!(out, "<section class=\"card scroll{whole}\">");
             table(&mut out, t);
             out.push_str("</section>");
         }
