@@ -97,22 +97,22 @@ pub fn hidden(
             })
         })
         .collect();
-    let whole: Vec<Quick> = cells.par_iter().map(|cell| cell.quick(seen)).collect();
-    let level = |(cell, quick): (&Cell<'_>, &Quick)| {
-        0.5 * (1.0 / tool_radius_mm + cell.patch.convex_per_mm) * quick.radius_mm * quick.radius_mm
+    let whole: Vec<(f64, f64)> = cells.par_iter().map(|cell| cell.bound(seen, 0)).collect();
+    let level = |(cell, (_, radius)): (&Cell<'_>, &(f64, f64))| {
+        0.5 * (1.0 / tool_radius_mm + cell.patch.convex_per_mm) * radius * radius
     };
     let gouge_mm = cells.iter().zip(&whole).map(level).fold(0.0, f64::max);
     // The highest first: what they come to need not be undercut by the others.
     let mut order: Vec<usize> = (0..cells.len()).collect();
-    order.sort_unstable_by(|a, b| whole[*b].bound_mm.total_cmp(&whole[*a].bound_mm).then(a.cmp(b)));
+    order.sort_unstable_by(|a, b| whole[*b].0.total_cmp(&whole[*a].0).then(a.cmp(b)));
     let mut highest = seen;
     for group in order.chunks(TOGETHER) {
-        let (first, enough) = (whole[group[0]].bound_mm, highest.max(enough_mm));
+        let (first, enough) = (whole[group[0]].0, highest.max(enough_mm));
         if first <= enough {
             highest = highest.max(first);
             break;
         }
-        let bounds = group.par_iter().map(|k| cells[*k].sharp(&whole[*k], enough));
+        let bounds = group.par_iter().map(|k| cells[*k].bound(enough, DIVISIONS).0);
         highest = bounds.reduce(|| highest, f64::max);
     }
     Ok(Hidden { scallop_mm: highest - seen, gouge_mm })
@@ -176,15 +176,6 @@ struct Cell<'a> {
     own: u32,
     /// Motions that cut the samples around.
     beside: Vec<u32>,
-}
-
-/// A first bound over a cell.
-struct Quick {
-    bound_mm: f64,
-    /// From the middle of the cell to its furthest corner.
-    radius_mm: f64,
-    /// The motions whose mean it is.
-    pair: [u32; 2],
 }
 
 /// What the motions tried so far leave above one patch.
@@ -286,42 +277,25 @@ impl Level {
 }
 
 impl Cell<'_> {
-    /// Bound on the heights over the cell from the motions that cut the samples around; one that is not above `enough` need
-    /// not be sharper.
-    fn quick(&self, enough: f64) -> Quick {
-        let mut level = match Level::new(self, &self.patch) {
+    /// Bound on the heights over the cell, divided so often, and the cell's radius, mm; a bound that is not above
+    /// `enough` need not be sharper.
+    fn bound(&self, enough: f64, divisions: u32) -> (f64, f64) {
+        self.bound_of(&self.patch, None, enough, divisions)
+    }
+
+    /// The same over a patch, from `motions` or, without, from all around.
+    fn bound_of(&self, patch: &Patch, motions: Option<&[u32]>, enough: f64, divisions: u32) -> (f64, f64) {
+        let mut level = match Level::new(self, patch) {
             Ok(level) => level,
-            Err(radius_mm) => return Quick { bound_mm: enough, radius_mm, pair: [self.own; 2] },
+            Err(radius) => return (enough, radius),
         };
-        self.try_beside(&mut level, enough);
-        Quick { bound_mm: level.best, radius_mm: level.radius, pair: level.pair }
-    }
-
-    /// The same from all motions around where that is needed, mm, the cell divided so often.
-    fn sharp(&self, quick: &Quick, enough: f64) -> f64 {
-        // To look for all motions around costs more than all else, and quarters of the cell often do without.
-        let alone = quick.pair[0] == quick.pair[1];
-        let quarters = self.divided(&self.patch, &quick.pair[usize::from(alone)..], enough, 0);
-        if quarters <= enough {
-            return quarters;
-        }
-        quarters.min(quick.bound_mm).min(self.bound_of(&self.patch, None, enough, DIVISIONS))
-    }
-
-    /// Bound over a patch divided so often, mm, from `motions` or, without, from all around.
-    fn bound_of(&self, patch: &Patch, motions: Option<&[u32]>, enough: f64, divisions: u32) -> f64 {
-        let Ok(mut level) = Level::new(self, patch) else { return enough };
+        let radius = level.radius;
         if self.try_all(&mut level, motions, enough) || divisions == 0 {
-            return level.best;
+            return (level.best, radius);
         }
-        level.best.min(self.divided(patch, &level.likely(), enough, divisions - 1))
-    }
-
-    /// The highest bound over the quarters of a patch that are on the face, each divided so often.
-    fn divided(&self, patch: &Patch, motions: &[u32], enough: f64, divisions: u32) -> f64 {
-        let middle = patch.middle();
+        let (likely, middle) = (level.likely(), patch.middle());
         let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
-        let mut highest = 0.0f64;
+        let mut divided = 0.0f64;
         for (u, v) in [
             ([u0, middle.u], [v0, middle.v]),
             ([middle.u, u1], [v0, middle.v]),
@@ -330,10 +304,10 @@ impl Cell<'_> {
         ] {
             let part = Patch { u, v, ..*patch };
             if self.on_face(&part) {
-                highest = highest.max(self.bound_of(&part, Some(motions), enough, divisions));
+                divided = divided.max(self.bound_of(&part, Some(&likely), enough, divisions - 1).0);
             }
         }
-        highest
+        (level.best.min(divided), radius)
     }
 
     /// Whether the motions, tried one after the other, bring the bound down to `enough`.
@@ -341,24 +315,19 @@ impl Cell<'_> {
         if let Some(motions) = motions {
             return motions.iter().any(|m| level.with(self, *m) <= enough);
         }
-        if self.try_beside(level, enough) {
+        if level.with(self, self.own) <= enough {
             return true;
         }
         let other = |m: &&u32| **m != self.own;
+        if self.beside.iter().filter(other).any(|m| level.with(self, *m) <= enough) {
+            return true;
+        }
         let height = level.best.min(self.world.job.stock_mm);
         let around = self.around(level.points, level.middle, level.normal, height);
         around
             .iter()
             .filter(other)
             .filter(|m| !self.beside.contains(m))
-            .any(|m| level.with(self, *m) <= enough)
-    }
-
-    /// The same with the motions that cut the samples around.
-    fn try_beside(&self, level: &mut Level, enough: f64) -> bool {
-        let other = |m: &&u32| **m != self.own;
-        std::iter::once(&self.own)
-            .chain(self.beside.iter().filter(other))
             .any(|m| level.with(self, *m) <= enough)
     }
 
