@@ -14,7 +14,7 @@ use super::motion::PassMotion;
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
 use super::walk::Walk;
-use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task};
+use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task, shorter};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
@@ -106,19 +106,6 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
         format!("{} isoparametric passes along {axis}, {:.0} mm", out.passes.len(), out.length_mm()),
     ));
     Ok(out)
-}
-
-/// The shorter of two that there may be.
-fn shorter<T>(
-    u: Result<T, PlanError>,
-    v: Result<T, PlanError>,
-    length_mm: impl Fn(&T) -> f64,
-) -> Result<T, PlanError> {
-    match (u, v) {
-        (Ok(u), Ok(v)) => Ok(if length_mm(&v) < length_mm(&u) { v } else { u }),
-        (Ok(one), Err(_)) | (Err(_), Ok(one)) => Ok(one),
-        (Err(e), Err(_)) => Err(e),
-    }
 }
 
 fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {

@@ -237,3 +237,16 @@ impl Task<'_> {
         0.98 * (t.scallop_mm - chord - left_mm).max(0.1 * t.scallop_mm)
     }
 }
+
+/// The shorter of two that there may be.
+fn shorter<T>(
+    u: Result<T, PlanError>,
+    v: Result<T, PlanError>,
+    length_mm: impl Fn(&T) -> f64,
+) -> Result<T, PlanError> {
+    match (u, v) {
+        (Ok(u), Ok(v)) => Ok(if length_mm(&v) < length_mm(&u) { v } else { u }),
+        (Ok(one), Err(_)) | (Err(_), Ok(one)) => Ok(one),
+        (Err(e), Err(_)) => Err(e),
+    }
+}

@@ -20,7 +20,7 @@ mod trace;
 use super::lead::{LeadField, Leaning, LocalLead};
 use super::line::Rectangle;
 use super::seat::Seat;
-use super::{Passes, PlanError, Task, Tolerance};
+use super::{Passes, PlanError, Task, Tolerance, shorter};
 use cells::Cells;
 pub(super) use cells::lengths;
 use even::{Even, Wish, even};
@@ -128,17 +128,8 @@ fn even_passes(
         let even = even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &|_| 1.0)?;
         Ok((face, even, grows))
     };
-    let (face, mut even, grows) = match rayon::join(|| along(Axis::U), || along(Axis::V)) {
-        (Ok(u), Ok(v)) => {
-            if v.1.length_mm < u.1.length_mm {
-                v
-            } else {
-                u
-            }
-        }
-        (Ok(one), Err(_)) | (Err(_), Ok(one)) => one,
-        (Err(e), Err(_)) => return Err(e),
-    };
+    let (u, v) = rayon::join(|| along(Axis::U), || along(Axis::V));
+    let (face, mut even, grows) = shorter(u, v, |(_, even, _)| even.length_mm)?;
     // The directions of the passes say what lead they need, and the lead how wide their strips are.
     let mut lead = None;
     if let Leaning::Local(local) = task.lean {

@@ -149,7 +149,9 @@ impl Chart<'_> {
         let step = step.min((OF_PITCH * left.pitch_mm()).max(LEAST_STEP * step));
         // Nor may a face that is smaller than the tool be crossed at once.
         let [behind, ahead] = left.inside();
-        let step = step.min(OF_FACE * behind.max(ahead));
+        let across = behind.max(ahead);
+        // At a corner there is nothing to cross.
+        let step = if across > 0.0 { step.min(OF_FACE * across) } else { step };
         let mut side = Side {
             motion: &motion,
             cutter,

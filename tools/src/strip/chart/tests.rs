@@ -98,5 +98,10 @@ fn faces_smaller_than_the_tool_are_as_hollow_as_the_exact_strip_says() {
             }
         }
     }
+    // At a corner the face ends at once, and the chart says no more than that the contact stands.
+    let corner = Chart::new(&part, uv(0.0, 0.0), 1.2 * cutter.radius_mm(), 0.05 * h).unwrap();
+    let small = Cutter::try_from(CutterSpec::Ball { diameter_mm: 4.0, length_mm: 20.0 }).unwrap();
+    let got = corner.strip(&small, 0.25 * std::f64::consts::PI, lean, Within { scallop_mm: h, gouge_mm });
+    assert!(got.as_ref().is_ok_and(|s| s.width_mm < 1e-6 && s.lift_mm == 0.0), "{got:?}");
     assert!(count > 4000 && 500 * missed <= count, "{missed} of {count}");
 }
