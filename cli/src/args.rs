@@ -48,6 +48,13 @@ pub enum Verb {
     Compare {
         /// The job file.
         job: PathBuf,
+        /// Folder for compare.json and for pictures of the best posture all over the faces: of every tool, and of the
+        /// best tool at each place.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Pictures: places along u and along v.
+        #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u64).range(1..=200))]
+        nodes: u64,
     },
     /// The main job: path, CL file, NC program, verification, report.
     Plan {

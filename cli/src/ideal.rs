@@ -18,7 +18,7 @@ const PLACES: usize = 16;
 pub struct Bound {
     /// Least time, min.
     pub time_min: f64,
-    /// Error of the sum over places, min.
+    /// Standard error of the sum over places, min.
     pub error_min: f64,
     /// Places.
     pub places: usize,
@@ -47,12 +47,7 @@ pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
     for (one, cutter) in jobs.iter().zip(&cutters) {
         tools.push(Feeding { cutter, feed_mm_min: one.feed_mm_min()? });
     }
-    // Where the job does not tilt, nor does the bound: the feed is free to turn instead.
-    let (tilt, tilts) = if job.strategy.tilt_deg == 0.0 {
-        (Range::only(0.0), "no tilt")
-    } else {
-        (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt")
-    };
+    let (tilt, tilts) = tilts(job);
     let search = Search { places: PLACES, tilt };
     let found = ideal::ideal(&patches(faces), &tools, &job.tolerance()?, search)
         .map_err(|e| Failure::file(&job.path, e))?;
@@ -67,6 +62,15 @@ pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
             MOST_LEAD_RAD.to_degrees()
         ),
     })
+}
+
+/// Tilts of the bound, and in words: where the job does not tilt, nor does the bound, as the feed is free to turn instead.
+pub fn tilts(job: &Job) -> (Range, &'static str) {
+    if job.strategy.tilt_deg == 0.0 {
+        (Range::only(0.0), "no tilt")
+    } else {
+        (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt")
+    }
 }
 
 /// The bound beside a plan.

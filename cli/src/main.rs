@@ -47,7 +47,9 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Probe { part, face, at } => cmd::probe::run(part, face.as_deref(), at, cli.json),
         Verb::Lines(options) => cmd::lines::run(options, cli.json),
         Verb::Strip { job } => cmd::strip::run(job, cli.json),
-        Verb::Compare { job } => cmd::compare::run(job, cli.json),
+        Verb::Compare { job, out, nodes } => {
+            cmd::compare::run(job, out.as_deref(), *nodes as usize, cli.json)
+        }
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),

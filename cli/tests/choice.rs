@@ -152,6 +152,35 @@ fn auto_chooses_what_holds() {
     assert!(deepest > 0.01 && deepest < 0.03, "{deepest}");
 }
 
+/// Every tool's postures and the best of them at every place, as arrays and as pictures.
+fn fields_hold_together(out: &std::path::Path, said: &str) {
+    let text = std::fs::read_to_string(out.join("compare.json")).unwrap();
+    let v: Value = serde_json::from_str(&text).unwrap();
+    let face = &v["fields"][0];
+    let tools = face["tools"].as_array().unwrap();
+    let rates: Vec<Vec<Option<f64>>> = tools
+        .iter()
+        .map(|t| t["postures"]["area_mm2_min"].as_array().unwrap().iter().map(|e| e.as_f64()).collect())
+        .collect();
+    let best = &face["best"]["postures"];
+    for k in 0..16 {
+        let greatest = rates.iter().filter_map(|r| r[k]).fold(f64::NAN, f64::max);
+        let tool = best["tool"][k].as_u64().unwrap() as usize;
+        assert_eq!(rates[tool][k], Some(greatest));
+        assert_eq!(best["area_mm2_min"][k].as_f64(), Some(greatest));
+    }
+    // The ball of 300 mm reaches the bottom of the hollow nowhere.
+    let large = tools.iter().position(|t| t["tool"] == "ball 300").unwrap();
+    assert!(rates[large][5].is_none() && rates[large][10].is_none(), "{:?}", rates[large]);
+    let shares: f64 =
+        face["best"]["share_percent"].as_array().unwrap().iter().map(|s| s.as_f64().unwrap()).sum();
+    assert!((shares - 100.0).abs() < 1e-9 && said.contains("the best at"), "{shares} {said}");
+    for picture in tools.iter().chain([&face["best"]]).map(|t| t["picture"].as_str().unwrap()) {
+        let svg = std::fs::read_to_string(out.join(picture)).unwrap();
+        assert!(svg.starts_with("<svg") && svg.contains("strip width"), "{picture}");
+    }
+}
+
 #[test]
 fn compare_ranks_and_gives_reasons() {
     let scratch = Scratch::new();
@@ -189,7 +218,10 @@ fn compare_ranks_and_gives_reasons() {
             why.split(": ").last().unwrap().split_whitespace().next().unwrap().parse().unwrap();
         assert!((200.0..202.0).contains(&largest), "{why}");
     }
-    let text = osculate(&["compare", path.to_str().unwrap()]);
+    let out = scratch.path("fields");
+    let folder = out.to_str().unwrap();
+    let text = osculate(&["compare", path.to_str().unwrap(), "--out", folder, "--nodes", "4"]);
+    fields_hold_together(&out, &text.out);
     assert!(text.out.contains("within tolerance") && text.out.contains("too large"), "{}", text.out);
 
     // None possible: all reasons in one table, and nothing is written.

@@ -99,8 +99,9 @@ struct Holder {
     entry: usize,
     /// Its time, min.
     time_min: f64,
-    /// Plans that were made before.
+    /// Plans that were made before, and those of them with leads found place by place.
     plans: usize,
+    locals: usize,
 }
 
 /// The candidates of a job.
@@ -219,8 +220,9 @@ impl<'a> Choice<'a> {
             let e = &self.entries[*k];
             let failed = if e.figures.is_some() { 0 } else { self.failures(e) };
             let put_back = Self::least_min(e) * (1.0 + SET_BACK * failed as f64);
-            // In need what is found place by place comes first.
-            ((in_need && !e.candidate.local, if in_need { failed } else { 0 }), put_back)
+            // In need what is planned is settled before more is planned, of which leads found place by place come first.
+            let later = in_need && e.figures.is_none();
+            ((later, later && !e.candidate.local, if in_need { failed } else { 0 }), put_back)
         };
         open.into_iter().min_by(|a, b| {
             let (a, b) = (order(a), order(b));
@@ -228,37 +230,46 @@ impl<'a> Choice<'a> {
         })
     }
 
+    /// Plans with leads found place by place that were tried.
+    fn locals(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().filter(|e| e.candidate.local && e.tried)
+    }
+
     const fn waiting(entry: &Entry) -> bool {
         matches!(entry.state, State::Open | State::Planned(_) | State::Posted(_))
     }
 
-    /// The candidate to go on with that may take less time than one that holds, of those with its tool: leads found place by
+    /// The candidate to go on with that may take less time than one that holds: first what is planned already, whatever its
+    /// tool; then with the tool that holds leads found place by
     /// place, along parameter lines and lines of curvature first, as these keep their lines whatever the lead; then of its strategy
     /// the nearest leads; then other strategies, each with its nearest lead and the quickest first.
     fn first_around(&self, holder: &Holder) -> Option<usize> {
         let held = self.entries[holder.entry].candidate;
-        let locals = || self.entries.iter().filter(|e| e.candidate.local && e.tried);
-        let made_local = locals().filter(|e| e.candidate.tool == held.tool).count();
-        let made = (self.plans - holder.plans).saturating_sub(locals().count());
+        let made_local = self.locals().filter(|e| e.candidate.tool == held.tool).count();
+        let made = (self.plans - holder.plans).saturating_sub(self.locals().count() - holder.locals);
         let order = |e: &Entry| {
             let c = &e.candidate;
+            if !Self::waiting(e) || Self::least_min(e) >= holder.time_min {
+                return None;
+            }
+            if e.figures.is_some() {
+                return Some((0, 0.0, Self::least_min(e)));
+            }
             let beside = c.strategy == held.strategy;
             let (made, most) = match (c.local, beside) {
                 (true, _) => (made_local, MOST_LOCAL),
                 (false, true) => (made, MOST_BESIDE),
                 (false, false) => (made, MOST_BESIDE + MOST_OTHERS),
             };
-            let open = Self::waiting(e) && (e.figures.is_some() || made < most);
-            let wanted = c.tool == held.tool && Self::least_min(e) < holder.time_min;
             let kind = match c.strategy {
-                _ if !c.local => 2 + usize::from(!beside),
-                Strategy::Isoparametric { .. } | Strategy::Curvature5c => 0,
-                _ => 1,
+                _ if !c.local => 3 + usize::from(!beside),
+                Strategy::Isoparametric { .. } | Strategy::Curvature5c => 1,
+                _ => 2,
             };
             let away =
                 (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs();
             let away = if c.local { 0.0 } else { away };
-            (open && wanted).then_some(((e.figures.is_none(), kind), away, Self::least_min(e)))
+            (c.tool == held.tool && made < most).then_some((kind, away, Self::least_min(e)))
         };
         let ranked = self.entries.iter().enumerate().filter_map(|(k, e)| order(e).map(|o| (o, k)));
         ranked
@@ -269,9 +280,10 @@ impl<'a> Choice<'a> {
     /// From here on only what may take less time than this contender, which holds, is looked at.
     pub fn undercut(&mut self, contender: &Contender) {
         let time_min = contender.posted.time_min();
-        let plans = self.holder.map_or(self.plans, |h| h.plans);
+        let (plans, locals) =
+            self.holder.map_or_else(|| (self.plans, self.locals().count()), |h| (h.plans, h.locals));
         if self.holder.is_none_or(|h| time_min < h.time_min) {
-            self.holder = Some(Holder { entry: contender.entry, time_min, plans });
+            self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals });
         }
     }
 

@@ -1,18 +1,25 @@
 //! `compare`: tools, strategies, directions and leads of a job side by side, ranked, with the reason why each lost.
 
 use crate::choice::{self, Choice, Row};
-use crate::failure::{Done, Outcome};
+use crate::failure::{Done, Failure, Outcome};
+use crate::figure::postures::{Arrays, Postures};
+use crate::figure::{Study, Wanted, sheet};
 use crate::ideal::{self, Bound};
 use crate::job::Job;
-use crate::part;
+use crate::part::{self, JobFaces, LoadedFace};
 use crate::program::WallS;
 use crate::progress::Stage;
-use crate::render;
+use crate::{output, render};
+use osculate_geom::{Unit3, Vec3};
+use osculate_productivity::ideal::Feeding;
 use serde::Serialize;
+use std::fmt::Write;
 use std::path::Path;
 
 /// Contenders that are verified beside the best.
 const VERIFIED: usize = 3;
+/// Lines of height of a face, which its pictures do not show.
+const LEVELS: usize = 1;
 
 /// The answer.
 #[derive(Debug, Serialize)]
@@ -23,10 +30,39 @@ struct Comparison {
     /// Fastest first.
     candidates: Vec<Row>,
     story: String,
+    /// Best postures over the faces, with `--out`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    fields: Vec<FaceFields>,
+}
+
+/// Best postures over a face.
+#[derive(Debug, Serialize)]
+struct FaceFields {
+    face: String,
+    /// Each tool of the job by itself.
+    tools: Vec<ToolField>,
+    /// The best of them at every node.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    best: Option<BestField>,
+}
+
+#[derive(Debug, Serialize)]
+struct ToolField {
+    tool: String,
+    picture: String,
+    postures: Arrays,
+}
+
+#[derive(Debug, Serialize)]
+struct BestField {
+    picture: String,
+    /// Share of the nodes at which each tool is the best.
+    share_percent: Vec<f64>,
+    postures: Arrays,
 }
 
 /// Runs the verb.
-pub fn run(path: &Path, json: bool) -> Outcome {
+pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome {
     let job = Job::load(path)?;
     let stage = Stage::begin("import");
     let faces = part::of_job(&job)?;
@@ -34,23 +70,118 @@ pub fn run(path: &Path, json: bool) -> Outcome {
     let stage = Stage::begin("ideal");
     let ideal = ideal::of_job(&job, &faces)?;
     stage.end();
+    let fields = match out {
+        Some(out) => {
+            let stage = Stage::begin("fields");
+            let made = fields(&job, &faces, nodes, out, &|f| stage.at(f))?;
+            stage.end();
+            made
+        }
+        None => Vec::new(),
+    };
     let stage = Stage::begin("choose");
     let mut choice = Choice::screen(&job, &faces)?;
     let settled = choice::settle(&mut choice, VERIFIED, None, &mut WallS::default(), &|f| stage.at(f))?;
     stage.end();
     let area_mm2 = faces.faces.iter().map(part::area).sum();
-    let answer = Comparison { format: 1, area_mm2, ideal, candidates: choice.rows(), story: choice.story() };
+    let candidates = choice.rows();
+    let answer = Comparison { format: 1, area_mm2, ideal, candidates, story: choice.story(), fields };
+    if let Some(out) = out {
+        let text = serde_json::to_string(&answer).map_err(Failure::job)?;
+        output::write(&out.join("compare.json"), text.as_bytes())?;
+    }
     if json {
         render::json(&answer)?;
     } else {
         render::text(&format!(
-            "\n{}\n  {}\n  ideal time, estimated {:.2} +- {:.2} min: {}\n\n",
+            "\n{}\n  {}\n  ideal time, estimated {:.2} +- {:.2} min: {}\n{}\n",
             choice::text_table(&answer.candidates),
             answer.story,
             answer.ideal.time_min,
             answer.ideal.error_min,
-            answer.ideal.assumes
+            answer.ideal.assumes,
+            described(&answer.fields, out)
         ));
     }
     Ok(if settled.verified.summary.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+/// The best postures of the job's tools over its faces, with a picture of each.
+fn fields(
+    job: &Job,
+    faces: &JobFaces,
+    nodes: usize,
+    out: &Path,
+    progress: &dyn Fn(f64),
+) -> Result<Vec<FaceFields>, Failure> {
+    let jobs = job.each_tool();
+    let steps = (faces.faces.len() * jobs.len()) as f64;
+    let mut made = Vec::with_capacity(faces.faces.len());
+    for (k, face) in faces.faces.iter().enumerate() {
+        let at = |tool: usize| progress((k * jobs.len() + tool) as f64 / steps);
+        made.push(of_face(job, &jobs, face, nodes, out, &at)?);
+    }
+    Ok(made)
+}
+
+fn of_face(
+    job: &Job,
+    jobs: &[Job],
+    face: &LoadedFace,
+    nodes: usize,
+    out: &Path,
+    at: &dyn Fn(usize),
+) -> Result<FaceFields, Failure> {
+    let refuse = |e: String| Failure::file(&job.path, format!("{}: {e}", face.id));
+    let wanted = Wanted { axis: Unit3::new_normalize(Vec3::z()), spacing_mm: None, levels: LEVELS };
+    let study = Study::of(&face.surface, face.nurbs(), &wanted).map_err(|e| refuse(e.to_string()))?;
+    let scene = sheet::scene(&study, None);
+    let tolerance = job.tolerance()?;
+    let write = |picture: &str, postures: &Postures<'_>, tool: &str| {
+        let page = postures.page(&study, &scene, &format!("{}, {tool}", face.id));
+        output::write(&out.join(picture), page.as_bytes())
+    };
+    let (mut all, mut tools) = (Vec::with_capacity(jobs.len()), Vec::with_capacity(jobs.len()));
+    for (k, one) in jobs.iter().enumerate() {
+        at(k);
+        let cutter = one.cutter()?;
+        let feeding = Feeding { cutter: &cutter, feed_mm_min: one.feed_mm_min()? };
+        let limits = osculate_productivity::ideal::limits(&feeding, &tolerance, ideal::tilts(job).0);
+        let postures =
+            Postures::of(&face.surface, &cutter, &limits, nodes).map_err(|e| refuse(e.to_string()))?;
+        let (tool, picture) = (one.tool_words(), format!("postures-{}-tool-{}.svg", face.id, k + 1));
+        write(&picture, &postures, &tool)?;
+        tools.push(ToolField { tool, picture, postures: postures.arrays() });
+        all.push(postures);
+    }
+    let several = (all.len() > 1).then(|| Postures::best_of(&all)).flatten();
+    let best = match several {
+        Some(best) => {
+            let picture = format!("postures-{}-best.svg", face.id);
+            write(&picture, &best, "the best tool at every place")?;
+            let share_percent = best.shares_percent(all.len());
+            Some(BestField { picture, share_percent, postures: best.arrays() })
+        }
+        None => None,
+    };
+    Ok(FaceFields { face: face.id.clone(), tools, best })
+}
+
+/// What was made of the fields, in words.
+fn described(fields: &[FaceFields], out: Option<&Path>) -> String {
+    let mut text = String::new();
+    for face in fields {
+        for (k, tool) in face.tools.iter().enumerate() {
+            let share = face
+                .best
+                .as_ref()
+                .map(|b| format!(", the best at {:.0} % of the places", b.share_percent[k]));
+            let _ =
+                writeln!(text, "  {}, tool {}: {}{}", face.face, k + 1, tool.tool, share.unwrap_or_default());
+        }
+    }
+    if let Some(out) = out {
+        let _ = writeln!(text, "  pictures and compare.json in {}", out.display());
+    }
+    text
 }

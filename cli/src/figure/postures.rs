@@ -24,9 +24,12 @@ const BAR: f64 = 150.0;
 const BAR_AT: [f64; 2] = [FRAME[0] + FRAME[2] - 70.0, FRAME[1]];
 
 /// The postures of a face.
+#[derive(Clone)]
 pub struct Postures<'a> {
     field: Field,
     face: &'a TrimmedSurface,
+    /// The tool at every node, where there are more than one.
+    tools: Option<Vec<Option<usize>>>,
 }
 
 /// The same as arrays, by node: v grows first, then u. `null` outside the face and where the tool has no posture.
@@ -50,6 +53,9 @@ pub struct Arrays {
     relative_min_per_mm: Vec<Option<f64>>,
     /// Between the direction that the indicatrix of conformity claims and that of the widest strip.
     conformity_claim_off_deg: Vec<Option<f64>>,
+    /// The tool by its place in the list, from 0, where there is a list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tool: Option<Vec<Option<usize>>>,
 }
 
 /// One quantity of the page.
@@ -71,7 +77,31 @@ impl<'a> Postures<'a> {
         limits: &Limits,
         nodes: usize,
     ) -> Result<Self, OptimumError> {
-        Ok(Self { field: best_postures(face, &[*cutter], limits, [nodes; 2])?, face })
+        Ok(Self { field: best_postures(face, &[*cutter], limits, [nodes; 2])?, face, tools: None })
+    }
+
+    /// Of tools' postures at the same nodes those of the greatest area per minute; None of an empty list.
+    pub fn best_of(all: &[Self]) -> Option<Self> {
+        let rates: Vec<Vec<f64>> = all.iter().map(|p| p.field.productivity_mm2_min()).collect();
+        let mut best = all.first()?.clone();
+        let tools = (0..best.field.nodes.len())
+            .map(|k| {
+                let posed = (0..all.len()).filter(|t| rates[*t][k].is_finite());
+                // Of equals the first.
+                let tool = posed.min_by(|a, b| rates[*b][k].total_cmp(&rates[*a][k]))?;
+                best.field.nodes[k] = all[tool].field.nodes[k].clone();
+                Some(tool)
+            })
+            .collect();
+        best.tools = Some(tools);
+        Some(best)
+    }
+
+    /// Share of the nodes on the face at which each of the tools is the best, per cent.
+    pub fn shares_percent(&self, tools: usize) -> Vec<f64> {
+        let on_face = self.field.nodes.iter().filter(|n| n.best.is_some()).count().max(1);
+        let count = |t: usize| self.tools.iter().flatten().filter(|k| **k == Some(t)).count();
+        (0..tools).map(|t| 100.0 * count(t) as f64 / on_face as f64).collect()
     }
 
     /// The arrays.
@@ -95,6 +125,7 @@ impl<'a> Postures<'a> {
             undercut_mm: f.values(|o| o.undercut_mm),
             relative_min_per_mm: f.nodes.iter().map(|n| n.relative_min_per_mm).collect(),
             conformity_claim_off_deg: f.nodes.iter().map(|n| n.claim_off_rad.map(f64::to_degrees)).collect(),
+            tool: self.tools.clone(),
         }
     }
 
@@ -104,11 +135,18 @@ impl<'a> Postures<'a> {
         let f = &self.field;
         let off = f.nodes.iter().map(|n| n.claim_off_rad.map_or(f64::NAN, f64::to_degrees)).collect();
         let leads = f.leads_rad().into_iter().map(f64::to_degrees).collect();
+        let last = match &self.tools {
+            Some(tools) => {
+                let numbers = tools.iter().map(|t| t.map_or(f64::NAN, |t| (t + 1) as f64)).collect();
+                ("d", "the best tool, by its place in the list", "tool", numbers)
+            }
+            None => ("d", "conformity: how far its claim is off the widest direction", "\u{b0}", off),
+        };
         let all = [
             ("a", "strip width, with the direction of feed", "mm", f.widths_mm()),
             ("b", "area per minute", "mm\u{b2}/min", f.productivity_mm2_min()),
             ("c", "lead", "\u{b0}", leads),
-            ("d", "conformity: how far its claim is off the widest direction", "\u{b0}", off),
+            last,
         ]
         .map(|(letter, name, unit, values)| Shown { letter, name, unit, values });
         let mut sheet = Drawing::default();
