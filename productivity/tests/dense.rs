@@ -11,9 +11,10 @@
 mod cutting;
 
 use osculate_geom::analytic::{Paraboloid, Sphere, Torus};
-use osculate_geom::{Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
+use osculate_geom::{Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Along, DropTask, Named, Pass, Strategy, Task, Tolerance, drop_cutter, run,
+    Along, DropTask, Links, Named, Pass, Passes, PlanError, RoughTask, Sizes, Strategy, Task, Tolerance,
+    drop_cutter, gradient_3c, run, z_level,
 };
 use osculate_tools::removal::Swept;
 use osculate_tools::{Cutter, CutterSpec, Lean};
@@ -166,9 +167,16 @@ fn balls_on_a_saddle_and_a_dome() {
 #[test]
 fn dropped_cutters_on_a_saddle() {
     let saddle = Paraboloid::new([0.02, -0.015], 6.0).unwrap();
-    for (name, tool) in [("ball", BALL), ("toroidal", TOROIDAL)] {
-        let passes = drop_cutter(&DropTask {
-            faces: &[Named { face: "F1", surface: &saddle }],
+    let hill = Paraboloid::new([-0.02, -0.04], 6.0).unwrap();
+    type Plan = fn(&DropTask<'_>) -> Result<Passes, PlanError>;
+    let all: [(&str, &Paraboloid, Tool, Plan); 3] = [
+        ("ball, planes", &saddle, BALL, drop_cutter),
+        ("toroidal, planes", &saddle, TOROIDAL, drop_cutter),
+        ("toroidal, gradient lines", &hill, TOROIDAL, gradient_3c),
+    ];
+    for (name, face, tool, plan) in all {
+        let passes = plan(&DropTask {
+            faces: &[Named { face: "F1", surface: face }],
             check: &[],
             cutter: &tool.cutter(),
             axis: Vec3::z_axis(),
@@ -176,8 +184,51 @@ fn dropped_cutters_on_a_saddle() {
             tolerance: TOLERANCE,
             progress: &|_| {},
         });
-        holds(name, &saddle, &tool, &passes.unwrap().passes);
+        holds(name, face, &tool, &passes.unwrap().passes);
     }
+}
+
+/// Layers of roughing keep the cutter, grown by the allowance, off the part, links, ramps and all.
+#[test]
+fn roughing_keeps_its_allowance() {
+    let saddle = Paraboloid::new([0.02, -0.03], 8.0).unwrap();
+    let sizes =
+        Sizes { stepdown_mm: 1.5, stepover_mm: 2.0, allowance_mm: 0.4, ramp_rad: 0.1, chord_mm: 0.01 };
+    let blank = Box3 { min: Point3::new(-9.0, -9.0, -4.0), max: Point3::new(9.0, 9.0, 3.0) };
+    let links = Links {
+        obstacles: blank,
+        clearance_mm: 5.0,
+        approach_mm: 1.0,
+        cutter_radius_mm: TOROIDAL.radius,
+        feed_mm_min: 1000.0,
+        plunge_mm_min: 400.0,
+    };
+    let rough = z_level(&RoughTask {
+        faces: &[Named { face: "F1", surface: &saddle }],
+        check: &[],
+        cutter: &TOROIDAL.cutter(),
+        axis: Vec3::z_axis(),
+        feed: Vec3::x(),
+        blank,
+        sizes,
+        links: &links,
+        progress: &|_| {},
+    })
+    .unwrap();
+    let motions = Swept::along(&rough.linked.path);
+    let a = sizes.allowance_mm;
+    let grown = Tool {
+        radius: TOROIDAL.radius + a,
+        corner: TOROIDAL.corner + a,
+        length: TOROIDAL.length + 2.0 * a,
+        ..TOROIDAL
+    };
+    let points = points(&saddle);
+    // The grown cutter's tip is the allowance below that of the cutter.
+    let [cutter, holder] = grown.deepest(&motions, &points, a);
+    assert!(cutter <= sizes.chord_mm && holder < 0.0, "{cutter} {holder}");
+    // It does come as near as that.
+    assert!(cutter > -0.1 * a, "{cutter}");
 }
 
 /// A holder that is too wide for its length is seen.
