@@ -135,7 +135,7 @@ fn of_face(
     let refuse = |e: String| Failure::file(&job.path, format!("{}: {e}", face.id));
     let wanted = Wanted { axis: Unit3::new_normalize(Vec3::z()), spacing_mm: None, levels: LEVELS };
     let study = Study::of(&face.surface, face.nurbs(), &wanted).map_err(|e| refuse(e.to_string()))?;
-    let scene = sheet::scene(&study, None);
+    let scene = sheet::beside_bar(&study, None);
     let tolerance = job.tolerance()?;
     let write = |picture: &str, postures: &Postures<'_>, tool: &str| {
         let page = postures.page(&study, &scene, &format!("{}, {tool}", face.id));
@@ -154,12 +154,14 @@ fn of_face(
         tools.push(ToolField { tool, picture, postures: postures.arrays() });
         all.push(postures);
     }
-    let several = (all.len() > 1).then(|| Postures::best_of(&all)).flatten();
+    let several = (all.len() > 1)
+        .then(|| Postures::best_of(&all, jobs.iter().map(Job::tool_words).collect()))
+        .flatten();
     let best = match several {
         Some(best) => {
             let picture = format!("postures-{}-best.svg", face.id);
             write(&picture, &best, "the best tool at every place")?;
-            let share_percent = best.shares_percent(all.len());
+            let share_percent = best.shares_percent();
             Some(BestField { picture, share_percent, postures: best.arrays() })
         }
         None => None,

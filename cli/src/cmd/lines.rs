@@ -41,6 +41,7 @@ pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     if let Some((cutter, limits)) = &tool {
         let postures = Postures::of(&face.surface, cutter, limits, args.postures.nodes)
             .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
+        let scene = sheet::beside_bar(&study, from);
         files.push(("h-postures.svg".to_owned(), postures.page(&study, &scene, &name)));
         answer.postures = Some(postures.arrays());
     }

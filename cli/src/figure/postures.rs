@@ -7,7 +7,7 @@ use super::drawing::{Anchor, Drawing, Type, letters, pen};
 use super::panel::{self, FRAME, HEIGHT, WIDTH};
 use super::scene::Scene;
 use super::study::Study;
-use crate::report::legend::{Scale, UNKNOWN};
+use crate::report::legend::{Rgb, Scale, UNKNOWN};
 use osculate_geom::{Surface, Uv, Vec3};
 use osculate_productivity::field::{Field, best_postures};
 use osculate_productivity::optimum::{Limits, Optimum, OptimumError};
@@ -23,13 +23,44 @@ const STROKES: usize = 12;
 const BAR: f64 = 150.0;
 const BAR_AT: [f64; 2] = [FRAME[0] + FRAME[2] - 70.0, FRAME[1]];
 
+/// Rows of a list of tools, its coloured boxes, and how far left of a bar it stands, px.
+const ROW: f64 = 15.0;
+const SWATCH: f64 = 9.0;
+const INDENT: f64 = 30.0;
+/// The figure that shows the best tool of several in place of conformity.
+const TOOL: &str = "d";
+/// Colours of tools, told apart by colour-blind eyes and, the first four, by their lightness; a ninth tool has the first's.
+const TOOL_COLOURS: [Rgb; 8] = [
+    [0x33, 0x22, 0x88],
+    [0xdd, 0xcc, 0x77],
+    [0x11, 0x77, 0x33],
+    [0xcc, 0x66, 0x77],
+    [0x88, 0xcc, 0xee],
+    [0x88, 0x22, 0x55],
+    [0x44, 0xaa, 0x99],
+    [0x99, 0x99, 0x33],
+];
+
+const fn tool_colour(tool: usize) -> Rgb {
+    TOOL_COLOURS[tool % TOOL_COLOURS.len()]
+}
+
 /// The postures of a face.
 #[derive(Clone)]
 pub struct Postures<'a> {
     field: Field,
     face: &'a TrimmedSurface,
-    /// The tool at every node, where there are more than one.
-    tools: Option<Vec<Option<usize>>>,
+    /// Of a list of tools the best one.
+    tools: Option<Tools>,
+}
+
+/// Which of several tools is the best.
+#[derive(Clone)]
+struct Tools {
+    /// In words.
+    names: Vec<String>,
+    /// At every node.
+    best: Vec<Option<usize>>,
 }
 
 /// The same as arrays, by node: v grows first, then u. `null` outside the face and where the tool has no posture.
@@ -81,10 +112,10 @@ impl<'a> Postures<'a> {
     }
 
     /// Of tools' postures at the same nodes those of the greatest area per minute; None of an empty list.
-    pub fn best_of(all: &[Self]) -> Option<Self> {
+    pub fn best_of(all: &[Self], names: Vec<String>) -> Option<Self> {
         let rates: Vec<Vec<f64>> = all.iter().map(|p| p.field.productivity_mm2_min()).collect();
         let mut best = all.first()?.clone();
-        let tools = (0..best.field.nodes.len())
+        let found = (0..best.field.nodes.len())
             .map(|k| {
                 let posed = (0..all.len()).filter(|t| rates[*t][k].is_finite());
                 // Of equals the first.
@@ -93,15 +124,17 @@ impl<'a> Postures<'a> {
                 Some(tool)
             })
             .collect();
-        best.tools = Some(tools);
+        best.tools = Some(Tools { names, best: found });
         Some(best)
     }
 
     /// Share of the nodes on the face at which each of the tools is the best, per cent.
-    pub fn shares_percent(&self, tools: usize) -> Vec<f64> {
+    pub fn shares_percent(&self) -> Vec<f64> {
         let on_face = self.field.nodes.iter().filter(|n| n.best.is_some()).count().max(1);
-        let count = |t: usize| self.tools.iter().flatten().filter(|k| **k == Some(t)).count();
-        (0..tools).map(|t| 100.0 * count(t) as f64 / on_face as f64).collect()
+        let share = |tools: &Tools, t: usize| {
+            100.0 * tools.best.iter().filter(|k| **k == Some(t)).count() as f64 / on_face as f64
+        };
+        self.tools.as_ref().map_or_else(Vec::new, |all| (0..all.names.len()).map(|t| share(all, t)).collect())
     }
 
     /// The arrays.
@@ -125,7 +158,7 @@ impl<'a> Postures<'a> {
             undercut_mm: f.values(|o| o.undercut_mm),
             relative_min_per_mm: f.nodes.iter().map(|n| n.relative_min_per_mm).collect(),
             conformity_claim_off_deg: f.nodes.iter().map(|n| n.claim_off_rad.map(f64::to_degrees)).collect(),
-            tool: self.tools.clone(),
+            tool: self.tools.as_ref().map(|t| t.best.clone()),
         }
     }
 
@@ -137,8 +170,8 @@ impl<'a> Postures<'a> {
         let leads = f.leads_rad().into_iter().map(f64::to_degrees).collect();
         let last = match &self.tools {
             Some(tools) => {
-                let numbers = tools.iter().map(|t| t.map_or(f64::NAN, |t| (t + 1) as f64)).collect();
-                ("d", "the best tool, by its place in the list", "tool", numbers)
+                let numbers = tools.best.iter().map(|t| t.map_or(f64::NAN, |t| t as f64)).collect();
+                (TOOL, "the best tool", "", numbers)
             }
             None => ("d", "conformity: how far its claim is off the widest direction", "\u{b0}", off),
         };
@@ -160,8 +193,13 @@ impl<'a> Postures<'a> {
 
     fn figure(&self, study: &Study, scene: &Scene, shown: &Shown) -> Drawing {
         let mut d = Drawing::default();
+        let tools = self.tools.as_ref().filter(|_| shown.letter == TOOL);
         let scale = Scale::sequential(shown.name, shown.unit, shown.values.iter().copied());
-        self.paint(&mut d, scene, |k| scale.as_ref().map_or(UNKNOWN, |s| s.colour(shown.values[k])));
+        self.paint(&mut d, scene, |k| match (tools, &scale) {
+            (Some(tools), _) => tools.best[k].map_or(UNKNOWN, tool_colour),
+            (None, Some(s)) => s.colour(shown.values[k]),
+            (None, None) => UNKNOWN,
+        });
         let ink = pen("#222", 1.0);
         d.lines(&panel::seen(scene, &study.silhouette(&scene.toward())), pen("#222", 0.8));
         d.lines(&panel::seen(scene, &study.borders), ink);
@@ -171,7 +209,16 @@ impl<'a> Postures<'a> {
             d.lines(&strokes, ink);
         }
         panel::ornaments(&mut d, study, scene);
-        if let Some(s) = &scale {
+        if let Some(tools) = tools {
+            for (t, name) in tools.names.iter().enumerate() {
+                let y = BAR_AT[1] + ROW * t as f64;
+                let (left, right) = (BAR_AT[0] - INDENT, BAR_AT[0] - INDENT + SWATCH);
+                let [r, g, b] = tool_colour(t);
+                let box_of = [[left, y], [right, y], [right, y + SWATCH], [left, y + SWATCH]];
+                d.area(&box_of, &format!("#{r:02x}{g:02x}{b:02x}"));
+                d.text([right + 5.0, y + SWATCH - 1.0], name, letters(9.5));
+            }
+        } else if let Some(s) = &scale {
             d.fragment(&s.bar(BAR), BAR_AT, 9.5);
             let middle = Type { anchor: Anchor::Middle, ..letters(9.5) };
             d.text([BAR_AT[0] + 24.0, BAR_AT[1] + BAR + 16.0], shown.unit, middle);

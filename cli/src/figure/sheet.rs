@@ -6,10 +6,20 @@ use super::scene::{Scene, direction};
 use super::study::Study;
 use crate::report::project::{Direction, Frame};
 
+/// Room for a colour bar with its numbers, px.
+const BAR: f64 = 85.0;
+
 /// The view of a face in every figure.
 pub fn scene(study: &Study, from: Option<Direction>) -> Scene {
     let [x, y, width, height] = FRAME;
     Scene::new(study, from.unwrap_or_else(|| direction(study)), Frame { x, y, width, height })
+}
+
+/// The view of a face that leaves room for a colour bar.
+pub fn beside_bar(study: &Study, from: Option<Direction>) -> Scene {
+    let [x, y, width, height] = FRAME;
+    let frame = Frame { x, y, width: width - BAR, height };
+    Scene::new(study, from.unwrap_or_else(|| direction(study)), frame)
 }
 
 /// One figure as a file of its own.
