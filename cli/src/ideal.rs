@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
 use crate::program::{Planned, Posted};
+use crate::render::number;
 use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Search};
 use osculate_productivity::optimum::Range;
 use serde::Serialize;
@@ -26,6 +27,13 @@ pub struct Bound {
     pub unreached_mm2: f64,
     /// What it is the least time of.
     pub assumes: String,
+}
+
+impl Bound {
+    /// Time and error, min, as tables show them.
+    pub fn words(&self) -> String {
+        format!("{} +- {}", number(self.time_min, 3), number(self.error_min, 2))
+    }
 }
 
 /// The bound and the plan's share of it, keys of `summary.json`.

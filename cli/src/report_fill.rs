@@ -311,7 +311,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
     };
     let ideal = s.ideal.as_ref().map_or_else(Vec::new, |i| {
         vec![
-            ("ideal time, estimated", format!("{:.2} +- {:.2} min", i.ideal.time_min, i.ideal.error_min)),
+            ("ideal time, estimated", format!("{} min", i.ideal.words())),
             ("efficiency", format!("{:.0} %", i.efficiency_percent)),
             ("the estimate took", format!("{:.1} s at {} places", s.wall_s.ideal, i.ideal.places)),
         ]

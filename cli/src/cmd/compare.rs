@@ -94,11 +94,10 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
         render::json(&answer)?;
     } else {
         render::text(&format!(
-            "\n{}\n  {}\n  ideal time, estimated {:.2} +- {:.2} min: {}\n{}\n",
+            "\n{}\n  {}\n  ideal time, estimated {} min: {}\n{}\n",
             choice::text_table(&answer.candidates),
             answer.story,
-            answer.ideal.time_min,
-            answer.ideal.error_min,
+            answer.ideal.words(),
             answer.ideal.assumes,
             described(&answer.fields, out)
         ));

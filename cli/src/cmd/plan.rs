@@ -296,7 +296,7 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
     row("area", format!("{:.1}", s.area_mm2), "mm2");
     row("global productivity", format!("{:.1}", s.productivity_mm2_min.global), "mm2/min");
     if let Some(i) = &s.ideal {
-        row("ideal time, estimated", format!("{:.2} +- {:.2}", i.ideal.time_min, i.ideal.error_min), "min");
+        row("ideal time, estimated", i.ideal.words(), "min");
         row("efficiency", format!("{:.0}", i.efficiency_percent), "%");
     }
     let mut text = String::from("\n");
