@@ -2,7 +2,7 @@
 //! tolerance, and user time of planning. From the repository's root:
 //! `cargo run --release -p osculate-productivity --example strategies -- FACE CUTTER SCALLOP LEADS [STRATEGY ...]`.
 //!
-//! FACE is `m86-1` ... `m86-4`, `groove`, `plane`, or `FILE:F7`; CUTTER is `ball:6` or `toroidal:6:2`; LEADS are degrees, comma
+//! FACE is `m86-1` ... `m86-4`, `groove`, `plane`, or `FILE:F7`, flipped with `-` before it; CUTTER is `ball:6` or `toroidal:6:2`; LEADS are degrees, comma
 //! separated.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
@@ -29,6 +29,7 @@ fn face(name: &str) -> Box<dyn Surface> {
         _ if name.starts_with("m86-") => {
             Box::new(osculate_surfaces::gallery::m86(name[4..].parse().unwrap()))
         }
+        _ if name.starts_with('-') => Box::new(Flipped(face(&name[1..]))),
         _ => {
             let (file, id) = name.rsplit_once(':').expect("FILE:FACE");
             let part = osculate_surfaces::read(&std::fs::read(file).unwrap()).unwrap();
@@ -43,6 +44,7 @@ fn cutter(name: &str) -> Cutter {
     let number = |k: usize| part[k].parse::<f64>().unwrap();
     let length_mm = 80.0;
     let spec = match part[0] {
+        "flat" => CutterSpec::Flat { diameter_mm: number(1), length_mm },
         "ball" => CutterSpec::Ball { diameter_mm: number(1), length_mm },
         _ => CutterSpec::Toroidal { diameter_mm: number(1), corner_radius_mm: number(2), length_mm },
     };

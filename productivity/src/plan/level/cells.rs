@@ -1,17 +1,13 @@
 //! The parameter rectangle in cells: what of the face lies in each, which levels of the field pass it, and how far a pass
-//! reaches there; and from these the levels of the passes.
-//!
-//! A pass on level c covers the part of a cell with `c - up <= phi <= c + down`. So after passes up to c the lowest
-//! uncovered value of a cell with values in [low, high] is `f = max(low, c + down)`, and the next pass may lie at
-//! `f + up`: the least of these over the cells is taken. No order of the passes along the face is needed, so that level
-//! lines may close, part and join.
+//! reaches there.
 
 use super::even::closed_width_mm;
 use super::field::Face;
 use super::reach::reach;
+use super::ways::Ways;
 use crate::plan::line::Rectangle;
 use crate::plan::seat::Seat;
-use crate::plan::{MAX_PASSES, PlanError, Task};
+use crate::plan::{PlanError, Task};
 use osculate_geom::line::LineError;
 use osculate_geom::{Axis, Surface, Uv, uv};
 use rayon::prelude::*;
@@ -48,17 +44,28 @@ pub(super) struct Cell {
     pub high: f64,
     /// Whether all of it lies inside.
     pub full: bool,
-    /// Reaches as differences of the field.
-    pub up: f64,
-    pub down: f64,
+    /// Reaches of passes above and below as differences of the field: of those with the uphill side to the left, and of those
+    /// that run the other way.
+    pub up: [f64; 2],
+    pub down: [f64; 2],
     /// Slope of the field, 1/mm.
     pub slope_per_mm: f64,
     /// Where the way up from here ends inside the face, and the way down: beyond these levels no pass lies near.
-    peak: f64,
-    floor: f64,
+    pub peak: f64,
+    pub floor: f64,
 }
 
 impl Cell {
+    /// How far passes may lie apart, as a difference of the field: the mean of both ways.
+    pub fn spacing(&self) -> f64 {
+        0.5 * (self.up[0] + self.up[1] + self.down[0] + self.down[1])
+    }
+
+    /// Width of strips, mm.
+    pub fn width_mm(&self) -> f64 {
+        self.spacing() / self.slope_per_mm
+    }
+
     pub fn inside(&self) -> bool {
         self.low <= self.high
     }
@@ -76,6 +83,8 @@ pub(super) struct Cells<'a> {
     pub cells: Vec<Cell>,
     /// Values of the field at the corners, in rows of v for each u; NaN where there are none.
     corners: Vec<f64>,
+    /// Which way the passes run, level by level.
+    pub ways: Ways,
     /// Half a strip at the narrowest extreme of the field around which lines bend, mm.
     loops_mm: Option<f64>,
 }
@@ -133,16 +142,17 @@ impl<'a> Cells<'a> {
             low: f64::INFINITY,
             high: f64::NEG_INFINITY,
             full: false,
-            up: f64::NAN,
-            down: f64::NAN,
+            up: [f64::NAN; 2],
+            down: [f64::NAN; 2],
             slope_per_mm: f64::NAN,
             peak: f64::INFINITY,
             floor: f64::NEG_INFINITY,
         };
         let mut cells =
-            Self { face, count, cells: vec![empty; count[0] * count[1]], corners, loops_mm: None };
+            Self { face, count, cells: vec![empty; count[0] * count[1]], corners, ways: Ways::Either, loops_mm: None };
         cells.find_inside();
         cells.find_extremes();
+        cells.find_ways(seat);
         cells.find_reaches(seat)?;
         Ok(cells)
     }
@@ -243,12 +253,13 @@ impl<'a> Cells<'a> {
     fn find_reaches(&mut self, seat: &Seat<'_>) -> Result<(), PlanError> {
         let task = seat.task();
         let (face, n) = (self.face, self.count);
-        let found: Vec<Option<Result<[Option<f64>; 3], LineError>>> = (0..self.cells.len())
+        let found: Vec<Option<Result<[Option<f64>; 5], LineError>>> = (0..self.cells.len())
             .into_par_iter()
             .map(|k| {
                 self.cells[k].inside().then(|| {
                     let (i, j) = ((k / n[1]) as f64 + 0.5, (k % n[1]) as f64 + 0.5);
-                    reach(seat, face, place(&face, n, i, j)).map(|r| [r.up, r.down, Some(r.slope_per_mm)])
+                    let r = reach(seat, face, place(&face, n, i, j))?;
+                    Ok([r.up[0], r.up[1], r.down[0], r.down[1], Some(r.slope_per_mm)])
                 })
             })
             .collect();
@@ -263,12 +274,12 @@ impl<'a> Cells<'a> {
         let sure = if seat.rough() { ROUGH } else { 1.0 };
         let mut lost = None;
         let mut count = 0;
-        let mut values = vec![[f64::NAN; 3]; found.len()];
+        let mut values = vec![[f64::NAN; 5]; found.len()];
         for (v, f) in values.iter_mut().zip(found) {
             match f {
-                Some(Ok([up, down, slope])) => {
-                    let sound = |x: Option<f64>| x.filter(|x| *x > 0.0).unwrap_or(f64::NAN);
-                    *v = [sure * sound(up), sure * sound(down), sound(slope)];
+                Some(Ok(all)) => {
+                    *v = all.map(|x| x.filter(|x| *x > 0.0).unwrap_or(f64::NAN));
+                    v[..4].iter_mut().for_each(|x| *x *= sure);
                 }
                 Some(Err(e)) => {
                     count += 1;
@@ -282,7 +293,7 @@ impl<'a> Cells<'a> {
         {
             return Err(task.contact(e.into()));
         }
-        for q in 0..3 {
+        for q in 0..5 {
             let spread = self.spread(values.iter().map(|v| v[q]).collect());
             if spread.iter().zip(&self.cells).any(|(x, c)| c.inside() && x.is_nan()) {
                 return Err(PlanError::Nothing {
@@ -302,10 +313,16 @@ impl<'a> Cells<'a> {
                     .fold(spread[k], f64::min);
                 let c = &mut self.cells[k];
                 match q {
-                    0 => c.up = least,
-                    1 => c.down = least,
+                    0 | 1 => c.up[q] = least,
+                    2 | 3 => c.down[q - 2] = least,
                     _ => c.slope_per_mm = spread[k],
                 }
+            }
+        }
+        if self.ways == Ways::Either {
+            for c in &mut self.cells {
+                c.up = [c.up[0].min(c.up[1]); 2];
+                c.down = [c.down[0].min(c.down[1]); 2];
             }
         }
         for k in 0..self.cells.len() {
@@ -331,7 +348,7 @@ impl<'a> Cells<'a> {
                 (m % self.count[1]) as f64 + 0.5,
             );
             let closed = closed_width_mm(task, &self.face, at).unwrap_or(f64::INFINITY);
-            closed.min((c.up + c.down) / c.slope_per_mm)
+            closed.min(c.width_mm())
         };
         let around = self.neighbours(k).filter(|m| self.cells[*m].inside());
         let width = around.map(width).fold(width(k), f64::min);
@@ -366,9 +383,9 @@ impl<'a> Cells<'a> {
             }
             let c = &mut self.cells[k];
             if reach > 0.0 && sign > 0.0 {
-                c.up = c.up.min(reach);
+                c.up = c.up.map(|x| x.min(reach));
             } else if reach > 0.0 {
-                c.down = c.down.min(reach);
+                c.down = c.down.map(|x| x.min(reach));
             }
         }
     }
@@ -428,52 +445,7 @@ impl<'a> Cells<'a> {
 
     /// Strip width around a place, mm: the reach of passes above and below it, over the field's slope.
     pub fn width_mm(&self, at: Uv) -> f64 {
-        self.locate(at).map_or(f64::NAN, |(k, _)| {
-            let c = &self.cells[k];
-            (c.up + c.down) / c.slope_per_mm
-        })
-    }
-
-    /// The levels of the passes, ascending.
-    pub fn levels(&self, seat: &Seat<'_>) -> Result<Vec<f64>, PlanError> {
-        let task = seat.task();
-        let mut open: Vec<&Cell> = self.cells.iter().filter(|c| c.inside()).collect();
-        open.sort_by(|a, b| a.low.total_cmp(&b.low));
-        let range = |f: fn(f64, f64) -> f64, of: fn(&Cell) -> f64| open.iter().map(|c| of(c)).reduce(f);
-        let (Some(top), Some(bottom)) = (range(f64::max, |c| c.high), range(f64::min, |c| c.low)) else {
-            return Ok(Vec::new());
-        };
-        let slack = 1e-7 * (top - bottom);
-        let mut levels: Vec<f64> = Vec::new();
-        let mut last = f64::NEG_INFINITY;
-        loop {
-            let frontier = |c: &Cell| {
-                if last < c.floor { c.low } else { c.low.max(last + c.down) }
-            };
-            open.retain(|c| frontier(c) < c.high - slack);
-            let mut next = f64::INFINITY;
-            for c in &open {
-                if c.low >= next {
-                    break;
-                }
-                let f = frontier(c);
-                // What is left below a peak is covered from its middle.
-                let up = if f + c.up > c.peak { 0.5 * (c.peak - f).max(c.high - f) } else { c.up };
-                next = next.min(f + up.min(c.up));
-            }
-            if open.is_empty() {
-                return Ok(levels);
-            }
-            if levels.len() >= MAX_PASSES {
-                return Err(PlanError::TooManyPasses {
-                    face: task.face.to_owned(),
-                    limit: MAX_PASSES,
-                    scallop_mm: task.tolerance.scallop_mm,
-                });
-            }
-            levels.push(next);
-            last = next;
-        }
+        self.locate(at).map_or(f64::NAN, |(k, _)| self.cells[k].width_mm())
     }
 
     /// Whether any of the face lies across a level line at a place, between parameters `from` and `to`.

@@ -41,6 +41,8 @@ pub(super) struct Even {
     /// Root mean square of `|grad phi| w - 1` over the face.
     pub deviation: f64,
     pub rounds: u32,
+    /// How far wishes were trusted.
+    pub trust: f64,
 }
 
 /// Width of the strip whose direction across is `c` in the tangent frame: the planar closed form.
@@ -62,9 +64,12 @@ pub(super) fn width_mm(task: &Task<'_>, jet: &Jet2, forms: &Forms, c: [f64; 2]) 
 }
 
 impl Place {
-    /// Width of the strip whose direction across is `c` in the tangent frame.
+    /// Width of the strip whose direction across is `c` in the tangent frame, mm; as measured where it was, in any direction.
+    ///
+    /// Where the closed form changes steeply with the direction no field can follow it, and lines begin to waver between
+    /// directions; measured widths are those of lines that are nearly there already.
     pub fn width_mm(&self, task: &Task<'_>, c: [f64; 2]) -> f64 {
-        self.factor * width_mm(task, &self.jet, &self.forms, c)
+        self.measured_mm.unwrap_or_else(|| width_mm(task, &self.jet, &self.forms, c))
     }
 }
 
@@ -110,7 +115,7 @@ fn wanted(
 fn settle(task: &Task<'_>, problem: &Problem, grows: Axis, wishes: &[Wish], trust: f64) -> Even {
     let mut gradients: Vec<[f64; 2]> = problem.places.iter().map(|p| p.parameter_gradient(grows)).collect();
     let mut out =
-        Even { field: problem.zero(), length_mm: f64::INFINITY, deviation: f64::INFINITY, rounds: 0 };
+        Even { field: problem.zero(), length_mm: f64::INFINITY, deviation: f64::INFINITY, rounds: 0, trust };
     for round in 1..=ROUNDS {
         let x = wanted(task, problem, &gradients, wishes, trust);
         out.field = problem.solve(&x);
@@ -151,26 +156,33 @@ fn judged(task: &Task<'_>, problem: &Problem, gradients: &[[f64; 2]]) -> (f64, f
 }
 
 /// Wishes of places, and trusts to try them with.
-pub(super) type Wishes<'a> = (&'a dyn Fn(&[Place]) -> Vec<Wish>, &'a [f64]);
+#[derive(Clone, Copy)]
+pub(super) struct Wishes<'a> {
+    pub of: &'a (dyn Fn(&[Place]) -> Vec<Wish> + Sync),
+    pub trusts: &'a [f64],
+    /// Whether lines follow them whatever that costs.
+    pub binding: bool,
+}
 
-/// The field of the shortest path that starts along a parameter, among the trusts given; strips are `factor` times as wide as
-/// their closed form.
+/// The field of the shortest path that starts along a parameter, among the trusts given; `measured` tells the width of strips
+/// where it is known, mm.
 pub(super) fn even(
     task: &Task<'_>,
     grows: Axis,
-    (wish, trusts): Wishes<'_>,
-    factor: &dyn Fn(Uv) -> f64,
+    wishes: Wishes<'_>,
+    measured: &dyn Fn(Uv) -> Option<f64>,
 ) -> Result<Even, PlanError> {
     let nothing = |why: &str| PlanError::Nothing { face: task.face.to_owned(), why: why.to_owned() };
     let rectangle = Rectangle::of(task.surface);
-    let mut problem =
-        Problem::new(task, &rectangle, spans(task, &rectangle), trusts.iter().all(|t| *t > 0.0))
+    let mut problem = Problem::new(task, &rectangle, spans(task, &rectangle), wishes.binding)
             .map_err(|_| nothing("no field can be laid over it: it has no area"))?;
-    problem.places.iter_mut().for_each(|p| p.factor = factor(p.jet.uv));
-    let wishes = wish(&problem.places);
-    trusts
+    // Wishes compare directions, of which measured widths know one.
+    let all = (wishes.of)(&problem.places);
+    problem.places.iter_mut().for_each(|p| p.measured_mm = measured(p.jet.uv));
+    wishes
+        .trusts
         .iter()
-        .map(|trust| settle(task, &problem, grows, &wishes, *trust))
+        .map(|trust| settle(task, &problem, grows, &all, *trust))
         .reduce(|a, b| if b.length_mm < a.length_mm { b } else { a })
         .ok_or_else(|| nothing("no field was tried"))
 }

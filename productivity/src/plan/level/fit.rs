@@ -30,8 +30,8 @@ pub(super) struct Place {
     /// Area that it stands for, mm2; less outside the trims.
     pub area_mm2: f64,
     pub inside: bool,
-    /// Strips here are so many times as wide as their closed form.
-    pub factor: f64,
+    /// Measured width of strips here along the passes of the field before, mm; None while only the closed form is known.
+    pub measured_mm: Option<f64>,
     u: Four,
     v: Four,
     /// Rates of u and v along the tangent frame's two directions.
@@ -189,7 +189,7 @@ fn places(task: &Task<'_>, rectangle: &Rectangle, spline: &Spline) -> Vec<Place>
                     forms,
                     area_mm2: if inside { area } else { OUTSIDE * area },
                     inside,
-                    factor: 1.0,
+                    measured_mm: None,
                     u: spline.bases[0].at(u),
                     v: spline.bases[1].at(v),
                     along,

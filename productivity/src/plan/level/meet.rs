@@ -7,6 +7,7 @@
 
 use super::cells::{Cells, place};
 use super::reach::met;
+use super::ways::Ways;
 use crate::plan::PlanError;
 use crate::plan::seat::Seat;
 use rayon::prelude::*;
@@ -16,10 +17,18 @@ const ROUNDS: u32 = 3;
 /// Places of a cell from which ridges are looked for, in its sides: of half of them in turn, of all in the last round.
 const PLACES: [[f64; 2]; 4] = [[0.2, 0.3], [0.8, 0.7], [0.3, 0.8], [0.7, 0.2]];
 
+/// Reaches at a ridge.
+struct Met {
+    /// Which of the reaches of a cell they are, below and above.
+    ways: [usize; 2],
+    up: f64,
+    down: f64,
+}
+
 impl Cells<'_> {
     /// The levels of passes that meet at the design height.
     pub fn met_levels(&mut self, seat: &Seat<'_>) -> Result<Vec<f64>, PlanError> {
-        let mut levels = self.levels(seat)?;
+        let mut levels = self.fewest_levels(seat)?;
         for round in 1..=ROUNDS {
             let places = match round {
                 ROUNDS => &PLACES[..],
@@ -36,29 +45,43 @@ impl Cells<'_> {
     /// stay, and longer ones are taken only where that is asked for.
     fn measure(&mut self, seat: &Seat<'_>, levels: &[f64], places: &[[f64; 2]], longer: bool) {
         let n = self.count;
-        let found: Vec<Option<[f64; 2]>> = (0..self.cells.len())
+        let found: Vec<Vec<Met>> = (0..self.cells.len())
             .into_par_iter()
             .map(|k| {
                 let c = &self.cells[k];
-                let share = c.down / (c.up + c.down);
                 let ridge = |[f, g]: [f64; 2]| {
                     let at = place(&self.face, n, (k / n[1]) as f64 + f, (k % n[1]) as f64 + g);
                     let (.., phi) = self.face.at(at)?;
                     let above = levels.partition_point(|l| *l <= phi.value);
                     let between = [*levels.get(above.checked_sub(1)?)?, *levels.get(above)?];
-                    met(seat, self.face, at, between, share)
+                    let ways @ [down, up] = self.ways.around(above);
+                    let share = c.down[down] / (c.up[up] + c.down[down]);
+                    let reversed = self.ways.reversed(above).map(|r| [!r, r]);
+                    let [up, down] = met(seat, self.face, at, between, (share, reversed))?;
+                    Some(Met { ways, up, down })
                 };
                 let whole = c.inside() && !c.at_extreme();
-                let all = places.iter().filter(|_| whole).filter_map(|p| ridge(*p));
-                all.reduce(|a, b| if b[0] + b[1] < a[0] + a[1] { b } else { a })
+                places.iter().filter(|_| whole).filter_map(|p| ridge(*p)).collect()
             })
             .collect();
-        for (c, f) in self.cells.iter_mut().zip(found) {
-            // Ripples of rough faces change from place to place within a cell: one place does not speak for it.
-            match f {
-                Some([up, down]) if longer => (c.up, c.down) = (up, down),
-                Some([up, down]) => (c.up, c.down) = (c.up.min(up), c.down.min(down)),
-                None => {}
+        for (c, all) in self.cells.iter_mut().zip(found) {
+            // Ridges with far sides and those with near sides are told apart.
+            for ways in [[0, 0], [0, 1], [1, 0]] {
+                let Some([up, down]) = all
+                    .iter()
+                    .filter(|m| m.ways == ways)
+                    .map(|m| [m.up, m.down])
+                    .reduce(|a, b| if b[0] + b[1] < a[0] + a[1] { b } else { a })
+                else {
+                    continue;
+                };
+                for (k, (was, now)) in [(ways[1], (&mut c.up, up)), (ways[0], (&mut c.down, down))] {
+                    // Ripples of rough faces change from place to place within a cell: one place does not speak for it.
+                    was[k] = if longer { now } else { was[k].min(now) };
+                }
+                if self.ways == Ways::Either {
+                    (c.up[1], c.down[1]) = (c.up[0], c.down[0]);
+                }
             }
         }
     }

@@ -16,6 +16,7 @@ mod passes;
 mod reach;
 mod spline;
 mod trace;
+mod ways;
 
 use super::lead::{LeadField, Leaning, LocalLead};
 use super::line::Rectangle;
@@ -23,7 +24,7 @@ use super::seat::Seat;
 use super::{Passes, PlanError, Task, Tolerance, shorter};
 use cells::Cells;
 pub(super) use cells::lengths;
-use even::{Even, Wish, even};
+use even::{Even, Wish, Wishes, even};
 use extended::Extended;
 use field::{Face, Height, ScalarField};
 use fit::Place;
@@ -119,13 +120,12 @@ pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
 fn even_passes(
     task: &Task<'_>,
     name: &str,
-    wish: &(dyn Fn(&[Place]) -> Vec<Wish> + Sync),
-    trusts: &[f64],
+    wishes: Wishes<'_>,
 ) -> Result<Passes, PlanError> {
     let given = task.lean;
     let along = |grows: Axis| {
         let face = continued(task, Some(grows));
-        let even = even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &|_| 1.0)?;
+        let even = even(&Task { surface: &face, ..*task }, grows, wishes, &|_| None)?;
         Ok((face, even, grows))
     };
     let (u, v) = rayon::join(|| along(Axis::U), || along(Axis::V));
@@ -136,12 +136,13 @@ fn even_passes(
         for _ in 0..LEADS {
             let found = lead_along(task, local, &face, &even)?;
             let task = Task { surface: &face, lean: Leaning::Field(&found), ..*task };
-            even = even::even(&task, grows, (wish, trusts), &|_| 1.0)?;
+            even = even::even(&task, grows, wishes, &|_| None)?;
             lead = Some(found);
         }
     }
     let task = &Task { lean: lead.as_ref().map_or(task.lean, Leaning::Field), ..*task };
-    // The field was made with closed forms of the width: where exact strips say something else it is made again.
+    // The field was made with closed forms of the width: where exact strips say something else it is made again, in the
+    // directions that were chosen.
     // The lead follows the lines, so that lines that move with their widths would outrun it.
     let corrections = if lead.is_some() { 1 } else { CORRECTIONS };
     for _ in 0..corrections {
@@ -149,7 +150,7 @@ fn even_passes(
         let seat = Seat::any(fine);
         let better = {
             let cells = Cells::new(&seat, over(fine, &even.field))?;
-            let Some(factors) = cells.correction(&seat).filter(|_| !seat.rough()) else {
+            let Some(widths) = cells.measured_widths(&seat).filter(|_| !seat.rough()) else {
                 if matches!(given, Leaning::Local(_)) {
                     break;
                 }
@@ -160,8 +161,9 @@ fn even_passes(
                     &even,
                 );
             };
-            let factor = |at: Uv| cells.locate(at).map_or(1.0, |(k, _)| factors[k]);
-            even::even(&Task { surface: &face, ..*task }, grows, (wish, trusts), &factor)?
+            let measured = |at: Uv| cells.locate(at).map(|(k, _)| widths[k]);
+            let wishes = Wishes { trusts: &[even.trust], ..wishes };
+            even::even(&Task { surface: &face, ..*task }, grows, wishes, &measured)?
         };
         even = better;
     }
@@ -210,7 +212,8 @@ fn finished(mut out: Passes, task: &Task<'_>, name: &str, even: &Even) -> Result
 /// [`PlanError`].
 pub fn isoscallop(task: &Task<'_>) -> Result<Passes, PlanError> {
     task.check()?;
-    even_passes(task, "isoscallop", &|places| vec![Wish::default(); places.len()], &[0.0])
+    let none = |places: &[Place]| vec![Wish::default(); places.len()];
+    even_passes(task, "isoscallop", Wishes { of: &none, trusts: &[0.0], binding: false })
 }
 
 /// Plans passes across the direction of the widest strip, as far as they can also be evenly spaced; whatever of both gives
@@ -221,7 +224,7 @@ pub fn isoscallop(task: &Task<'_>) -> Result<Passes, PlanError> {
 pub fn streamline(task: &Task<'_>) -> Result<Passes, PlanError> {
     task.check()?;
     let wish = |places: &[Place]| places.par_iter().map(|p| widest(task, p)).collect();
-    even_passes(task, "streamline", &wish, &[0.0, 0.3, 1.0])
+    even_passes(task, "streamline", Wishes { of: &wish, trusts: &[0.0, 0.3, 1.0], binding: false })
 }
 
 /// Directions in which widths are compared, over half a turn.
@@ -260,7 +263,8 @@ pub fn curvature_5c(task: &Task<'_>) -> Result<Passes, PlanError> {
         let principal = p.forms.principal();
         principal.k_max - principal.k_min
     };
-    even_passes(task, "curvature_5c", &|places| places_by_difference(places, difference), &[1.0, 0.6])
+    let wish = |places: &[Place]| places_by_difference(places, difference);
+    even_passes(task, "curvature_5c", Wishes { of: &wish, trusts: &[1.0, 0.6], binding: true })
 }
 
 /// The wish of every place for the flattest direction across, trusted by the difference of the principal curvatures.

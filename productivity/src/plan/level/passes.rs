@@ -27,6 +27,8 @@ struct Stretch<'a> {
     range: [f64; 2],
     whole_loop: bool,
     level: usize,
+    /// Whether it is run with the uphill side to the right, where that is settled.
+    reversed: Option<bool>,
 }
 
 /// The passes on the levels, in the order of cutting.
@@ -75,7 +77,7 @@ fn stretches<'a>(cells: &Cells<'a>, grid: Grid<'_>, levels: &[f64], k: usize) ->
         let marks: Vec<bool> = (0..=looks as usize).map(|j| needed(&line, at(j))).collect();
         if marks.iter().all(|m| *m) {
             let whole_loop = line.closed;
-            out.push(Stretch { line, range: [0.0, length], whole_loop, level: k });
+            out.push(Stretch { line, range: [0.0, length], whole_loop, level: k, reversed: cells.ways.reversed(k) });
             continue;
         }
         let Some(gap) = marks.iter().position(|m| !m) else { continue };
@@ -92,7 +94,8 @@ fn stretches<'a>(cells: &Cells<'a>, grid: Grid<'_>, levels: &[f64], k: usize) ->
             }
         }
         for range in union(found, 1.5 * length / looks + 0.5 * middle) {
-            out.push(Stretch { line: line.clone(), range, whole_loop: false, level: k });
+            let reversed = cells.ways.reversed(k);
+            out.push(Stretch { line: line.clone(), range, whole_loop: false, level: k, reversed });
         }
     }
     out
@@ -105,9 +108,13 @@ impl Stretch<'_> {
 
     /// The nearest place at which the pass can begin: its distance, and the node of a loop or the end (0 or 1).
     fn nearest(&self, from: &Point3) -> (f64, usize) {
-        let count = if self.whole_loop { self.line.nodes.len() - 1 } else { 2 };
+        let starts = match (self.whole_loop, self.reversed) {
+            (true, _) => 0..self.line.nodes.len() - 1,
+            (false, None) => 0..2,
+            (false, Some(r)) => usize::from(r)..usize::from(r) + 1,
+        };
         let at = |k: usize| if self.whole_loop { self.line.nodes[k].point } else { self.end(k) };
-        (0..count)
+        starts
             .map(|k| ((at(k) - from).norm(), k))
             .fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a })
     }
@@ -121,7 +128,8 @@ fn in_order(stretches: Vec<Stretch<'_>>, reach_mm: f64) -> Vec<Stretch<'_>> {
     let mut position: Option<Point3> = None;
     while let Some(first) = (lowest..open.len()).find(|k| open[*k].is_some()) {
         lowest = first;
-        let mut chosen = (first, 0);
+        let first_way = open[first].as_ref().and_then(|s| s.reversed).unwrap_or(false);
+        let mut chosen = (first, usize::from(first_way));
         if let Some(from) = position {
             let last = out.last().map_or(0, |s| s.level);
             let mut best = reach_mm;
@@ -144,6 +152,7 @@ fn in_order(stretches: Vec<Stretch<'_>>, reach_mm: f64) -> Vec<Stretch<'_>> {
         let Some(mut s) = open[chosen.0].take() else { continue };
         if s.whole_loop {
             s.line = s.line.begun_at(chosen.1);
+            s.line.reversed = s.reversed.unwrap_or(false);
             position = s.line.nodes.last().map(|n| n.point);
         } else {
             s.line.reversed = chosen.1 == 1;

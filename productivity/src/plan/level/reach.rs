@@ -19,11 +19,12 @@ const FURTHEST: f64 = 12.0;
 /// Leading-order half width at most, of the tool's radius.
 const WIDEST: f64 = 0.8;
 
-/// Reaches of the passes above and below a place, as differences of the field; None where the face ends before.
+/// Reaches of the passes above and below a place, as differences of the field; None where the face ends before. Of passes with
+/// the uphill side to the left, and of those that run the other way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reach {
-    pub up: Option<f64>,
-    pub down: Option<f64>,
+    pub up: [Option<f64>; 2],
+    pub down: [Option<f64>; 2],
     /// The field's slope, 1/mm.
     pub slope_per_mm: f64,
 }
@@ -60,7 +61,7 @@ impl Asked<'_> {
     }
 }
 
-/// The reaches around a place, both feeds along the level lines allowed for.
+/// The reaches around a place; a tool without side is the same both ways.
 ///
 /// # Errors
 /// [`LineError`] where the level lines have no frame.
@@ -74,31 +75,32 @@ pub(super) fn reach(seat: &Seat<'_>, face: Face<'_>, at: Uv) -> Result<Reach, Li
     let height_mm = height_mm(seat, face, at, phi.value, &frame)?;
     let radius = task.cutter.radius_mm();
     let half = (2.0 * height_mm / q.max(1e-9)).sqrt().min(WIDEST * radius);
-    let least = |a: Option<f64>, b: Option<f64>| match (a, b) {
-        (Some(a), Some(b)) => Some(f64::min(a, b)),
-        (a, b) => a.or(b),
+    let both = |sign: f64| {
+        let one = |reversed: bool| {
+            let asked = Asked { task, seat, face, at, value: phi.value, height_mm, reversed };
+            asked.reach(sign, half * slope)
+        };
+        let first = one(false);
+        let second = if task.cutter.is_ball() { first } else { one(true) };
+        // Where one of them is not known the other stands for both.
+        [first.or(second), second.or(first)]
     };
-    let mut out = Reach { up: None, down: None, slope_per_mm: slope };
-    for reversed in ways(task) {
-        let asked = Asked { task, seat, face, at, value: phi.value, height_mm, reversed: *reversed };
-        out.up = least(out.up, asked.reach(1.0, half * slope));
-        out.down = least(out.down, asked.reach(-1.0, half * slope));
-    }
-    Ok(out)
+    Ok(Reach { up: both(1.0), down: both(-1.0), slope_per_mm: slope })
 }
 
 /// Standoffs tell how far passes reach where they are at least so high, of the design height.
 const LOW: f64 = 0.4;
 
 /// Reaches of the passes on two levels at the ridge between them that lies steepest up or down from a place, up and down from
-/// the ridge; `share` of the way between the levels lies below it. None where one of the passes is not there, or they meet so
+/// the ridge; `share` of the way between the levels lies below it, and `reversed` tells whether the pass below and that above run
+/// the other way; where that is open both ways are asked. None where one of the passes is not there, or they meet so
 /// low that the ridge does not tell.
 pub(super) fn met(
     seat: &Seat<'_>,
     face: Face<'_>,
     from: Uv,
     [below, above]: [f64; 2],
-    share: f64,
+    (share, reversed): (f64, Option<[bool; 2]>),
 ) -> Option<[f64; 2]> {
     let task = seat.task();
     let (_, jet, phi) = face.at(from)?;
@@ -107,15 +109,22 @@ pub(super) fn met(
     let at = face.settle(from, uphill, value).ok()?;
     let (frame, ..) = face.frame(at, false).ok()?;
     let height_mm = height_mm(seat, face, at, value, &frame).ok()?;
-    let reach = |by: f64| {
+    let reach = |by: f64, way: Option<bool>| {
         let mut left = 0.0_f64;
-        for reversed in ways(task) {
+        let both = [false, true];
+        let asked = match way {
+            Some(false) => &both[..1],
+            Some(true) => &both[1..],
+            None if task.cutter.is_ball() => &both[..1],
+            None => &both[..],
+        };
+        for reversed in asked {
             let asked = Asked { task, seat, face, at, value, height_mm, reversed: *reversed };
             left = left.max(asked.excess(by).ok()? + height_mm);
         }
         (left >= LOW * height_mm).then(|| by.abs() * (height_mm / left).sqrt())
     };
-    Some([reach(above - value)?, reach(below - value)?])
+    Some([reach(above - value, reversed.map(|r| r[1]))?, reach(below - value, reversed.map(|r| r[0]))?])
 }
 
 /// The height that passes are laid out for at a place of a level line.
@@ -123,9 +132,4 @@ fn height_mm(seat: &Seat<'_>, face: Face<'_>, at: Uv, level: f64, frame: &Darbou
     let left_mm =
         if seat.rough() { seat.left_over(&Near::below(face, at, level, false)?, 0.0)? } else { 0.0 };
     Ok(seat.task().design_scallop_mm(frame.turn.dot(&frame.left), left_mm))
-}
-
-/// Feeds that are asked: a tool without side is the same both ways.
-fn ways(task: &Task<'_>) -> &'static [bool] {
-    if task.cutter.is_ball() { &[false] } else { &[false, true] }
 }
