@@ -110,6 +110,36 @@ fn even_passes_on_round_and_free_faces() {
     }
 }
 
+/// A flat cutter's strips along the hollows of this face are bounded by its rim, which the closed form of the width does not see:
+/// lines that followed that form wavered between directions and used a fifth of the tolerance.
+#[test]
+fn a_flat_cutter_leaves_even_crests() {
+    let face = osculate_surfaces::gallery::m86(4);
+    let spec = CutterSpec::Flat { diameter_mm: 12.0, length_mm: 80.0 };
+    let job = Job { spacing_mm: 0.5, ..Job::new(Cutter::try_from(spec).unwrap(), 6.0_f64.to_radians()) };
+    let moves = job.holds("m86-4", &face, &Strategy::Isoscallop);
+    let used = cusps(&face, &moves, &job.cutter, TOLERANCE.scallop_mm);
+    assert!(used > 0.85, "{used}");
+}
+
+/// On a face that winds along the passes a leaning tool reaches further to one side. To and fro passes meet with far sides and near
+/// sides in turn: both kinds of ridges stand at the tolerance, and spacing is wide and narrow by turns.
+#[test]
+fn passes_to_and_fro_use_the_far_side_of_the_tool() {
+    let saddle = Paraboloid::new([0.004, -0.004], 30.0).unwrap();
+    let spec = CutterSpec::Toroidal { diameter_mm: 16.0, corner_radius_mm: 2.0, length_mm: 80.0 };
+    let job = Job { spacing_mm: 0.5, ..Job::new(Cutter::try_from(spec).unwrap(), 0.06) };
+    let strategy = isoplanar([1.0, 1.0, 0.0]);
+    let passes = job.plan(&saddle, &strategy).passes;
+    let moves = job.holds("saddle", &saddle, &strategy);
+    let used = cusps(&saddle, &moves, &job.cutter, TOLERANCE.scallop_mm);
+    let levels: Vec<f64> = passes.iter().map(|p| p.points[1].point.x + p.points[1].point.y).collect();
+    let gaps: Vec<f64> = levels.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    let uneven =
+        gaps[2..gaps.len() - 2].windows(2).map(|w| (w[1] / w[0]).ln().abs()).fold(f64::INFINITY, f64::min);
+    assert!(used > 0.85 && uneven > 0.05, "{used} {uneven} {gaps:?}");
+}
+
 /// How much passes turn at most within `arc_mm` of their way, rad.
 fn sharpest_turn(passes: &Passes, arc_mm: f64) -> f64 {
     let mut sharpest = 0.0f64;

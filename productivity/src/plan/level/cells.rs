@@ -56,14 +56,14 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// How far passes may lie apart, as a difference of the field: the mean of both ways.
+    /// How far passes may lie apart that run to and fro, as a difference of the field: the lesser of both kinds of ridges.
     pub fn spacing(&self) -> f64 {
-        0.5 * (self.up[0] + self.up[1] + self.down[0] + self.down[1])
+        (self.down[0] + self.up[1]).min(self.down[1] + self.up[0])
     }
 
     /// Width of strips, mm.
     pub fn width_mm(&self) -> f64 {
-        self.spacing() / self.slope_per_mm
+        0.5 * (self.up[0] + self.up[1] + self.down[0] + self.down[1]) / self.slope_per_mm
     }
 
     pub fn inside(&self) -> bool {
@@ -148,8 +148,14 @@ impl<'a> Cells<'a> {
             peak: f64::INFINITY,
             floor: f64::NEG_INFINITY,
         };
-        let mut cells =
-            Self { face, count, cells: vec![empty; count[0] * count[1]], corners, ways: Ways::Either, loops_mm: None };
+        let mut cells = Self {
+            face,
+            count,
+            cells: vec![empty; count[0] * count[1]],
+            corners,
+            ways: Ways::Either,
+            loops_mm: None,
+        };
         cells.find_inside();
         cells.find_extremes();
         cells.find_ways(seat);

@@ -15,15 +15,17 @@ const WIDEST: f64 = 2.0;
 const ROUNDS: u32 = 2;
 
 impl Cells<'_> {
-    /// For each cell the exact width of strips, smoothed, mm; None where passes have the same spacing in the field all over the
+    /// For each cell how far passes may lie apart, smoothed, mm; None where passes have the same spacing in the field all over the
     /// face already.
     pub fn measured_widths(&self, seat: &Seat<'_>) -> Option<Vec<f64>> {
         let widest = WIDEST * seat.task().cutter.radius_mm();
         // Where strips are cut short by an extreme of the field they say nothing.
         let whole = |k: &usize| self.cells[*k].full && !self.cells[*k].at_extreme();
-        let width = |k: usize| Some(self.cells[k].width_mm()).filter(|w| w.is_finite() && whole(&k));
-        let mut widths =
-            self.spread((0..self.cells.len()).map(|k| width(k).map_or(f64::NAN, |w| w.min(widest))).collect());
+        let width = |k: usize| {
+            Some(self.cells[k].spacing() / self.cells[k].slope_per_mm).filter(|w| w.is_finite() && whole(&k))
+        };
+        let mut widths = self
+            .spread((0..self.cells.len()).map(|k| width(k).map_or(f64::NAN, |w| w.min(widest))).collect());
         if widths.iter().any(|w| w.is_nan()) {
             return None;
         }

@@ -175,7 +175,7 @@ pub(super) fn even(
     let nothing = |why: &str| PlanError::Nothing { face: task.face.to_owned(), why: why.to_owned() };
     let rectangle = Rectangle::of(task.surface);
     let mut problem = Problem::new(task, &rectangle, spans(task, &rectangle), wishes.binding)
-            .map_err(|_| nothing("no field can be laid over it: it has no area"))?;
+        .map_err(|_| nothing("no field can be laid over it: it has no area"))?;
     // Wishes compare directions, of which measured widths know one.
     let all = (wishes.of)(&problem.places);
     problem.places.iter_mut().for_each(|p| p.measured_mm = measured(p.jet.uv));

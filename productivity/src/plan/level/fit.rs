@@ -17,7 +17,7 @@ const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 /// Weight of the second differences of the poles where the field may follow its own direction, and where it has wishes to
 /// follow: those turn on the scale of a span near umbilics, and passes with them.
-const SMOOTH: [f64; 2] = [3e-4, 1.0];
+const SMOOTH: [f64; 2] = [0.1, 1.0];
 /// Weight of places outside the trims: a margin that guides the lines over the boundary.
 const OUTSIDE: f64 = 0.02;
 /// Holds the constant that no gradient sees.

@@ -117,11 +117,7 @@ pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
 }
 
 /// Passes along the level lines of the even field with the shorter predicted path of those that start along u and along v.
-fn even_passes(
-    task: &Task<'_>,
-    name: &str,
-    wishes: Wishes<'_>,
-) -> Result<Passes, PlanError> {
+fn even_passes(task: &Task<'_>, name: &str, wishes: Wishes<'_>) -> Result<Passes, PlanError> {
     let given = task.lean;
     let along = |grows: Axis| {
         let face = continued(task, Some(grows));
@@ -150,7 +146,7 @@ fn even_passes(
         let seat = Seat::any(fine);
         let better = {
             let cells = Cells::new(&seat, over(fine, &even.field))?;
-            let Some(widths) = cells.measured_widths(&seat).filter(|_| !seat.rough()) else {
+            let Some(widths) = cells.measured_widths(&seat) else {
                 if matches!(given, Leaning::Local(_)) {
                     break;
                 }

@@ -77,7 +77,13 @@ fn stretches<'a>(cells: &Cells<'a>, grid: Grid<'_>, levels: &[f64], k: usize) ->
         let marks: Vec<bool> = (0..=looks as usize).map(|j| needed(&line, at(j))).collect();
         if marks.iter().all(|m| *m) {
             let whole_loop = line.closed;
-            out.push(Stretch { line, range: [0.0, length], whole_loop, level: k, reversed: cells.ways.reversed(k) });
+            out.push(Stretch {
+                line,
+                range: [0.0, length],
+                whole_loop,
+                level: k,
+                reversed: cells.ways.reversed(k),
+            });
             continue;
         }
         let Some(gap) = marks.iter().position(|m| !m) else { continue };
