@@ -4,7 +4,8 @@ use crate::args::PartArgs;
 use crate::builtin::{self, Builtin};
 use crate::failure::{Failure, beside, read};
 use crate::job::{FaceChoice, Job, Normals};
-use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
+use osculate_geom::{Box3, Diagnostic, Point3, Severity, Side, Surface, Unit3};
+use osculate_surfaces::orient::Enclosure;
 use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface, orient, tessellate};
 use std::path::Path;
 use std::sync::Arc;
@@ -185,6 +186,18 @@ pub struct JobFaces {
     pub check: Vec<LoadedFace>,
 }
 
+impl JobFaces {
+    /// A failure with what was warned of when the part was read: it may be why.
+    pub fn warned(&self, why: Failure) -> Failure {
+        let heavy = self.part.diagnostics.iter().filter(|d| d.severity > Severity::Note);
+        let warnings: String = heavy.map(|d| format!("\n{d}")).collect();
+        match why {
+            Failure::Job(text) => Failure::Job(text + &warnings),
+            usage @ Failure::Usage(_) => usage,
+        }
+    }
+}
+
 /// The faces of a job, with their material sides settled.
 pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
     let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
@@ -202,6 +215,7 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
         return Err(Failure::file(&job.path, "[part] faces chooses no face"));
     }
     settle_sides(job, &mut part, &mut faces)?;
+    doubt_sides(job, &mut part, &faces);
     let check = match &job.part.check_faces {
         None => Vec::new(),
         some => {
@@ -298,10 +312,34 @@ pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, 
     out
 }
 
-/// Turns faces over whose file does not say where the material is.
+/// Triangles of a whole part.
+fn soup(part: &Loaded) -> Vec<[Point3; 3]> {
+    let whole = part.faces.iter().fold(Box3::empty(), |b, f| b.union(&bounds(f)));
+    let chord = VOTE_CHORD * whole.diagonal_mm();
+    let mut triangles: Vec<[Point3; 3]> = Vec::new();
+    for f in &part.faces {
+        let m = tessellate(&f.surface, chord, None);
+        let at = |k: u32| Point3::from(m.positions[k as usize]);
+        triangles.extend(m.triangles.iter().map(|t| t.map(at)));
+    }
+    triangles
+}
+
+/// On which side of a face the part encloses material, where it does so clearly.
+fn enclosed(face: &LoadedFace, triangles: &[[Point3; 3]]) -> Option<Enclosure> {
+    let points: Vec<(Point3, Unit3)> =
+        grid(&*face.surface, VOTE_GRID).into_iter().map(|(_, p, n)| (p, n)).collect();
+    orient::enclosed_side(&points, triangles).filter(|e| e.certainty >= CLEAR_VOTE)
+}
+
+/// Faces whose file does not say where the material is.
+fn unsaid(faces: &[LoadedFace]) -> Vec<usize> {
+    (0..faces.len()).filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented)).collect()
+}
+
+/// Turns faces over whose file does not say where the material is, or all of them where the job says so.
 fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<(), Failure> {
-    let open: Vec<usize> =
-        (0..faces.len()).filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented)).collect();
+    let open = unsaid(faces);
     let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
     match job.part.normals {
         Normals::File => return Ok(()),
@@ -312,23 +350,11 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
         Normals::Auto if open.is_empty() => return Ok(()),
         Normals::Auto => {}
     }
-    let mut whole = Box3::empty();
-    for f in &part.faces {
-        whole = whole.union(&bounds(f));
-    }
-    let chord = VOTE_CHORD * whole.diagonal_mm();
-    let mut triangles: Vec<[Point3; 3]> = Vec::new();
-    for f in &part.faces {
-        let m = tessellate(&f.surface, chord, None);
-        let at = |k: u32| Point3::from(m.positions[k as usize]);
-        triangles.extend(m.triangles.iter().map(|t| t.map(at)));
-    }
+    let triangles = soup(part);
     for k in open {
         let face = &mut faces[k];
-        let points: Vec<(Point3, Unit3)> =
-            grid(&*face.surface, VOTE_GRID).into_iter().map(|(_, p, n)| (p, n)).collect();
-        match orient::enclosed_side(&points, &triangles) {
-            Some(e) if e.certainty >= CLEAR_VOTE => {
+        match enclosed(face, &triangles) {
+            Some(e) => {
                 if e.side == Side::Against {
                     flip(face);
                 }
@@ -341,7 +367,7 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
                     ),
                 ));
             }
-            _ => {
+            None => {
                 return Err(Failure::file(
                     &job.path,
                     format!(
@@ -354,6 +380,28 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
         }
     }
     Ok(())
+}
+
+/// Warns of faces that the job has machined from the side on which the part has its material: a blade from within. Only
+/// where the file itself says no side, as a job may well turn over what a file says.
+fn doubt_sides(job: &Job, part: &mut Loaded, faces: &[LoadedFace]) {
+    let open = unsaid(faces);
+    if open.is_empty() || job.part.normals == Normals::Auto {
+        return;
+    }
+    let triangles = soup(part);
+    for face in open.into_iter().map(|k| &faces[k]) {
+        if let Some(e) = enclosed(face, &triangles).filter(|e| e.side == Side::Against) {
+            part.diagnostics.push(Diagnostic::warning(
+                face.id.clone(),
+                format!(
+                    "the tool is on the side that the part encloses (certainty {:.0} %), as [part] normals has it: the \
+                     part would be cut from within; leave normals out, or turn it over",
+                    100.0 * e.certainty
+                ),
+            ));
+        }
+    }
 }
 
 /// Range of the principal curvatures over a face, 1/mm, from a grid of its inside.

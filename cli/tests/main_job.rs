@@ -188,3 +188,45 @@ fn cl_data_is_posted_for_other_machines() {
     ])
     .refused(&["bad.cl", "line 1"]);
 }
+
+/// A lens between two sides that bulge towards +y (ss) and -y (ps), as point sections.
+fn lens() -> String {
+    let mut text = "span_index,ss_x,ss_y,ss_z,ps_x,ps_y,ps_z\n".to_owned();
+    for z in 0..5 {
+        for k in 0..=12 {
+            let x = f64::from(k) - 6.0;
+            let y = 1.5 * (1.0 - (x / 6.0).powi(2));
+            text.push_str(&format!("{z},{x},{y},{0},{x},{1},{0}\n", 2 * z, -y));
+        }
+    }
+    text
+}
+
+#[test]
+fn a_side_from_within_the_part_is_told() {
+    let scratch = Scratch::new();
+    let part = scratch.write("lens.csv", &lens());
+    let probe = ["probe", part.to_str().unwrap(), "--face", "F1", "--at", "0.5,0.5", "--json"];
+    let along = number(&osculate(&probe).json()["points"][0]["normal"][1], &[]) > 0.0;
+    for (normals, inside) in [("auto", false), ("file", !along), ("reversed", along)] {
+        let text = job(|j| {
+            let builtin = j.lines().find(|l| l.starts_with("builtin")).unwrap().to_owned();
+            let file = format!("file = \"lens.csv\"\nunit_mm = 1\nfaces = [\"F1\"]\nnormals = \"{normals}\"");
+            j.replace(&builtin, &file).replace("max_samples = 20000", "max_samples = 1000")
+        });
+        let path = scratch.write("lens.toml", &text);
+        let out = scratch.path(normals);
+        let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+        let said = run.json()["diagnostics"].to_string();
+        assert_eq!(said.contains("cut from within"), inside, "{normals}: {said}");
+        // The sides are bent with a radius of 12 mm: where there is no plan it is said too.
+        let large = text.replace("diameter_mm = 10", "diameter_mm = 40");
+        let path = scratch.write("large.toml", &large);
+        let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+        if inside {
+            run.refused(&["does not fit", "cut from within"]);
+        } else {
+            assert_ne!(run.code, 2, "{}", run.err);
+        }
+    }
+}

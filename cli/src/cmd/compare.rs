@@ -80,8 +80,9 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
         None => Vec::new(),
     };
     let stage = Stage::begin("choose");
-    let mut choice = Choice::screen(&job, &faces)?;
-    let settled = choice::settle(&mut choice, VERIFIED, None, &mut WallS::default(), &|f| stage.at(f))?;
+    let mut choice = Choice::screen(&job, &faces).map_err(|why| faces.warned(why))?;
+    let settled = choice::settle(&mut choice, VERIFIED, None, &mut WallS::default(), &|f| stage.at(f))
+        .map_err(|why| faces.warned(why))?;
     stage.end();
     let area_mm2 = faces.faces.iter().map(part::area).sum();
     let candidates = choice.rows();

@@ -106,10 +106,10 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
 
     let open = job.strategy.kind == "auto" || job.each_tool().len() > 1;
     let proved = if open {
-        chosen(&job, &faces, out, &mut wall_s)?
+        chosen(&job, &faces, out, &mut wall_s).map_err(|why| faces.warned(why))?
     } else {
         let stage = Stage::begin("plan");
-        let planned = planned(&job, &faces, out, &|f| stage.at(f))?;
+        let planned = planned(&job, &faces, out, &|f| stage.at(f)).map_err(|why| faces.warned(why))?;
         wall_s.plan = stage.end();
         let posted = Posted::of(&job, &faces, &planned, &mut wall_s, Some(out))?;
         let verified = posted.verify(&job, &faces, &planned, &mut wall_s)?;
