@@ -41,7 +41,7 @@ pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Result<Links, Fail
         obstacles,
         clearance_mm: length("clearance_mm", job.setup.clearance_mm, 10.0)?,
         approach_mm: length("approach_mm", job.setup.approach_mm, 2.0)?,
-        cutter_radius_mm: cutter.radius_mm(),
+        cutter: *cutter,
         feed_mm_min,
         plunge_mm_min: 0.5 * feed_mm_min,
     })

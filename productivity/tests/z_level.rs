@@ -22,7 +22,7 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         obstacles: blank,
         clearance_mm: 5.0,
         approach_mm: 1.0,
-        cutter_radius_mm: cutter.radius_mm(),
+        cutter: *cutter,
         feed_mm_min: 1000.0,
         plunge_mm_min: 400.0,
     };

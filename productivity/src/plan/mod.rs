@@ -3,6 +3,7 @@
 //! A strategy places passes of contact points ([`Pass`]) so that the exact strips meet within the scallop tolerance;
 //! [`link`] joins passes to a [`ClPath`](osculate_tools::cl::ClPath). What a plan promises is checked elsewhere, from the NC text.
 
+mod around;
 mod columns;
 mod contour;
 mod cover;

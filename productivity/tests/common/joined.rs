@@ -18,7 +18,7 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         obstacles,
         clearance_mm: 5.0,
         approach_mm: 2.0,
-        cutter_radius_mm: cutter.radius_mm(),
+        cutter: *cutter,
         feed_mm_min: 1000.0,
         plunge_mm_min: 500.0,
     };

@@ -1,0 +1,53 @@
+//! The contact points of passes as a picture of the part: how deep a tool goes into it where it does not cut.
+//!
+//! Passes lie as close as their strips reach and their points are filled up along them, so that the tool finds what it could
+//! run into of the faces that it machines. Depths are those at points: what lies between them can be a little deeper.
+
+use super::Pass;
+use osculate_geom::Point3;
+use osculate_tools::{Cutter, Pose};
+
+/// Points in a group.
+const GROUP: usize = 48;
+
+/// Points in groups that follow each other along passes.
+pub(super) struct Cloud {
+    /// Middle, greatest distance from it, points.
+    groups: Vec<(Point3, f64, Vec<Point3>)>,
+}
+
+impl Cloud {
+    /// The contact points of passes, no further apart along them than `spacing_mm`.
+    pub fn of(passes: &[Pass], spacing_mm: f64) -> Self {
+        let mut groups = Vec::new();
+        for pass in passes {
+            let mut points: Vec<Point3> = Vec::new();
+            for p in &pass.points {
+                if let Some(last) = points.last().copied() {
+                    let step = p.point - last;
+                    let pieces = (step.norm() / spacing_mm).ceil().max(1.0);
+                    points.extend((1..pieces as usize).map(|k| last + step * (k as f64 / pieces)));
+                }
+                points.push(p.point);
+            }
+            groups.extend(points.chunks(GROUP).map(|chunk| {
+                let middle = chunk[chunk.len() / 2];
+                let reach = chunk.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+                (middle, reach, chunk.to_vec())
+            }));
+        }
+        Self { groups }
+    }
+
+    /// How deep the deepest point lies in the cutter, zero where none does.
+    pub fn depth_mm(&self, cutter: &Cutter, pose: &Pose) -> f64 {
+        let mut depth = 0.0f64;
+        for (middle, reach, points) in &self.groups {
+            // A signed distance changes by no more than the way to another point.
+            if cutter.distance(pose, middle) - reach < -depth {
+                depth = points.iter().map(|p| -cutter.distance(pose, p)).fold(depth, f64::max);
+            }
+        }
+        depth
+    }
+}
