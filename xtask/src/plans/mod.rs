@@ -73,7 +73,7 @@ const fn file(name: &'static str, path: &'static str, face: &'static str, axis: 
 }
 
 const BLADE: &str = "blade/nasa_pyturbo_centrif_compressor_mainblade_xyz_pts.csv";
-const BLADE_KEYS: &str = "unit_mm = 1000\nnormals = \"file\"\n";
+const BLADE_KEYS: &str = "unit_mm = 1000\n";
 
 const fn blade(name: &'static str, face: &'static str, axis: [f64; 3]) -> Case {
     let source = Source::File { path: BLADE, face, keys: BLADE_KEYS };
@@ -89,7 +89,7 @@ const CASES: [Case; 12] = [
     m86("m86-3"),
     m86("m86-4"),
     blade("compressor blade, suction side", "F1", [-0.45, -0.59, -0.67]),
-    blade("compressor blade, pressure side", "F2", [-0.44, -0.59, -0.67]),
+    blade("compressor blade, pressure side", "F2", [0.44, 0.59, 0.67]),
     file("impeller blade", "iges/pyiges_impeller.igs", "F118", [0.16, -0.72, -0.68]),
     file("impeller hub", "iges/pyiges_impeller.igs", "F33", [0.0, -0.06, 1.0]),
     file("propeller", "step/autogiro_propeller.step", "F7", [-0.03, 0.9, 0.43]),
