@@ -219,14 +219,12 @@ fn a_side_from_within_the_part_is_told() {
         let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
         let said = run.json()["diagnostics"].to_string();
         assert_eq!(said.contains("cut from within"), inside, "{normals}: {said}");
-        // The sides are bent with a radius of 12 mm: where there is no plan it is said too.
-        let large = text.replace("diameter_mm = 10", "diameter_mm = 40");
-        let path = scratch.write("large.toml", &large);
-        let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
         if inside {
+            // The sides are bent with a radius of 12 mm: where there is no plan it is said too.
+            let large = text.replace("diameter_mm = 10", "diameter_mm = 40");
+            let path = scratch.write("large.toml", &large);
+            let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
             run.refused(&["does not fit", "cut from within"]);
-        } else {
-            assert_ne!(run.code, 2, "{}", run.err);
         }
     }
 }
