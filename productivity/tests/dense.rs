@@ -199,7 +199,7 @@ fn roughing_keeps_its_allowance() {
         obstacles: blank,
         clearance_mm: 5.0,
         approach_mm: 1.0,
-        cutter_radius_mm: TOROIDAL.radius,
+        cutter: TOROIDAL.cutter(),
         feed_mm_min: 1000.0,
         plunge_mm_min: 400.0,
     };
