@@ -103,7 +103,8 @@ const CASES: [Case; 12] = [
         scallop_mm: 0.001,
         ..file("connecting rod", "step/occt_linkrods.step", "F24", [0.09, -1.0, 0.0])
     },
-    Case { name: "teapot patch", source: TEAPOT, tools: TINY, scallop_mm: 0.001, axis: [-0.67, 0.67, -0.34] },
+    // The cavity of a mould for the body: the side towards the axis.
+    Case { name: "teapot mould", source: TEAPOT, tools: TINY, scallop_mm: 0.001, axis: [-0.67, 0.67, -0.34] },
 ];
 
 /// The tool of the pictures around umbilics, so that they stay comparable.
