@@ -199,13 +199,13 @@ fn compare(
     surface: &dyn Surface,
     at: Uv,
     cutter: &Cutter,
-    (posture, wavy): (Posture, bool),
+    (posture, waves): (Posture, bool),
     limits: &Limits,
 ) -> Result<Measured, StripError> {
     let contact = Contact::new(surface, at, cutter, FeedLine::Angle(posture.direction_rad), posture.lean)?;
     let along = contact.relative().along(&contact.frame.tangent);
     let (cap, _) = limits.caps.greatest_per_tooth();
-    if wavy || !(along > 0.0 && along.is_finite()) {
+    if waves || !(along > 0.0 && along.is_finite()) {
         let mark = |c: &Contact<'_>, h: f64| strip::mark(c, h).map(|m| m.length_mm());
         let share = share_of(&contact, cap, limits.scallop_mm, mark)?;
         return measure_contact(&contact, share, limits, COMPARED);

@@ -261,6 +261,14 @@ impl Cutter {
         self.local_entry(&LocalLine::new(line, pose))
     }
 
+    /// A height that a line does not enter the cutter below, by the plane of the tip alone: a fraction of what the entry costs.
+    /// -infinity where the line does not rise along the axis.
+    #[must_use]
+    pub(crate) fn least_entry_mm(pose: &Pose, line: &Line) -> f64 {
+        let rise = line.direction.dot(&pose.axis);
+        if rise > 0.0 { (pose.tip - line.origin).dot(&pose.axis) / rise } else { f64::NEG_INFINITY }
+    }
+
     fn local_entry(&self, l: &LocalLine) -> Option<Entry> {
         // Enter the circumscribed cylinder first: the later of its three entries.
         let disc = l.b * l.b - l.a * (l.c - self.radius * self.radius);
@@ -462,6 +470,7 @@ mod tests {
                 Some(e) => {
                     prop_assert!(c.distance(&pose, &line.point(e.at_mm)).abs() < 1e-9);
                     prop_assert!(c.distance(&pose, &line.point(e.at_mm - 0.5)) > 0.0);
+                    prop_assert!(e.at_mm > Cutter::least_entry_mm(&pose, &line) - 1e-9);
                     // The normal points against the line.
                     let n = c.normal_at(&pose, &line.point(e.at_mm), e.part);
                     prop_assert!(n.dot(&direction) <= 1e-6, "{n:?}");

@@ -121,7 +121,7 @@ impl<'a> Search<'a> {
         let measured = match on_chart {
             Err(ChartError::Beyond { .. }) => {
                 self.exact += 1;
-                compare(self.surface, self.at, self.cutter, (p, self.chart.is_wavy()), self.limits)
+                compare(self.surface, self.at, self.cutter, (p, self.chart.is_traced()), self.limits)
             }
             Err(ChartError::Above { standoff_mm }) => {
                 Err(StripError::AboveTolerance { standoff_mm, scallop_mm: self.limits.scallop_mm })
@@ -147,8 +147,8 @@ impl<'a> Search<'a> {
         let (cap, _) = limits.caps.greatest_per_tooth();
         let tangent = self.tangent(p.direction_rad);
         let along = self.chart.relative(cutter, p.direction_rad, p.lean).along(&tangent);
-        // Waves bend the part within a mark.
-        let planar = along > 0.0 && along.is_finite() && !self.chart.is_wavy();
+        // Waves bend the part within a mark, and a strip that ends at one of them jumps by little more in height.
+        let planar = along > 0.0 && along.is_finite() && !self.chart.is_traced();
         let part_per_mm = self.chart.forms.normal_curvature(&tangent);
         let (share, mark) = share_by(along, cap, limits.scallop_mm, |height_mm| {
             if planar {

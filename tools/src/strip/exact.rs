@@ -4,7 +4,7 @@ use super::ContactMotion;
 use super::knotted::Knotted;
 use super::local::LocalMotion;
 use super::passages::{self, Passages};
-use super::side::{SHARE, Side};
+use super::side::{JUMP, SHARE, Side};
 use super::traced::Traced;
 use crate::contact::{Contact, ContactError, ContactLine};
 use crate::cutter::{Cutter, Line};
@@ -159,7 +159,7 @@ pub fn exact_to(contact: &Contact<'_>, scallop_mm: f64, demand: Demand) -> Resul
     let passages =
         Passages::new(contact, &motion, (t0, contact_speed), (passages::reach(contact, rate), along_mm));
     let here = Line { origin: contact.frame.point, direction: contact.frame.normal };
-    let dip_mm = -passages.lowest_mm(contact.cutter, &here);
+    let dip_mm = -passages.lowest_mm(contact.cutter, &here, -demand.deepest_mm);
     if dip_mm > demand.deepest_mm {
         return Err(StripError::TooDeep { dip_mm, deepest_mm: demand.deepest_mm });
     }
@@ -173,7 +173,7 @@ pub fn exact_to(contact: &Contact<'_>, scallop_mm: f64, demand: Demand) -> Resul
         part: &part,
         motion: &local,
         t0,
-        t_step: 0.05 * radius / contact_speed,
+        t_step: JUMP * radius / contact_speed,
         h,
         step: (half / STEPS_PER_SIDE)
             .min(4.0 * contact.step_mm())

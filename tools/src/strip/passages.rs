@@ -29,6 +29,9 @@ const OF_PITCH: f64 = 1.0 / 3.0;
 const AROUND: f64 = 1.25;
 /// How far an entry is taken to go on falling between instants, of what it falls from one to the next.
 const AHEAD: f64 = 1.0;
+/// How much further than to the instants next to it an entry may fall, for which its least stands: entries bend more than the plane
+/// of the tip where the corner comes over a line.
+const SLACK: f64 = 2.0;
 /// First step of the search from an instant looked at, of the distance between them.
 const FIRST: f64 = 0.25;
 
@@ -84,27 +87,18 @@ impl Passages {
         (t(k + 1) - t(k)).abs().max((t(k) - t(k.saturating_sub(1))).abs())
     }
 
-    /// Calls `see` with the instants at which the entry of a line is lower than at its neighbours, or as low, with the entry and
-    /// the most that it falls to there.
-    fn minima(&self, cutter: &Cutter, line: &Line, mut see: impl FnMut(usize, f64, f64)) {
-        let entry = |pose: &Pose| cutter.entry(pose, line).map_or(f64::INFINITY, |e| e.at_mm);
-        let mut before = [f64::INFINITY; 2];
-        // One more than there are, so that the last can be the lowest.
-        let ahead = self.poses.iter().map(|p| entry(&p.1)).chain([f64::INFINITY]);
-        for (k, next) in ahead.enumerate() {
-            let [a, b] = before;
-            if b.is_finite() && b <= a && b <= next {
-                let fall = |x: f64| if x.is_finite() { x - b } else { 0.0 };
-                see(k - 1, b, fall(a).max(fall(next)));
-            }
-            before = [b, next];
-        }
+    /// As [`minima`], with the entry and the most that it falls to there.
+    fn falling(&self, cutter: &Cutter, line: &Line, below_mm: f64, mut see: impl FnMut(usize, f64, f64)) {
+        minima(cutter, line, (&self.poses, below_mm), |k, [a, b, c]| {
+            let fall = |x: f64| if x.is_finite() { x - b } else { 0.0 };
+            see(k, b, fall(a).max(fall(c)));
+        });
     }
 
     /// Whether the tool comes down to `height_mm` over a line at another instant than near `t`, or heads there.
     pub(super) fn matter(&self, cutter: &Cutter, line: &Line, t: f64, height_mm: f64) -> bool {
         let mut found = false;
-        self.minima(cutter, line, |k, low, falls| {
+        self.falling(cutter, line, height_mm, |k, low, falls| {
             let other = (self.poses[k].0 - t).abs() > 1.5 * self.apart(k);
             found |= other && low - AHEAD * falls <= height_mm;
         });
@@ -120,7 +114,7 @@ impl Passages {
         (bound_mm, but): (f64, f64),
     ) -> Option<Reach> {
         let mut best = Reach { at_mm: bound_mm, t: f64::NAN };
-        self.minima(cutter, line, |k, low, falls| {
+        self.falling(cutter, line, bound_mm, |k, low, falls| {
             let t = self.poses[k].0;
             if low - AHEAD * falls < best.at_mm && (t - but).abs() > self.apart(k) {
                 let found = reach_from(cutter, line, motion, t, FIRST * self.apart(k));
@@ -130,15 +124,57 @@ impl Passages {
         best.t.is_finite().then_some(best)
     }
 
-    /// The lowest of the entries looked at over a line at other instants than that of contact; infinite without.
-    pub(super) fn lowest_mm(&self, cutter: &Cutter, line: &Line) -> f64 {
+    /// The lowest of the entries below a height that are looked at over a line at other instants than that of contact; infinite
+    /// without.
+    pub(super) fn lowest_mm(&self, cutter: &Cutter, line: &Line, below_mm: f64) -> f64 {
         let mut lowest = f64::INFINITY;
-        self.minima(cutter, line, |k, low, _| {
+        self.falling(cutter, line, below_mm, |k, low, _| {
             if k != self.own {
                 lowest = lowest.min(low);
             }
         });
         lowest
+    }
+}
+
+/// Calls `see` with the instants at which the entry of a line is lower than at its neighbours, or as low, with the three entries
+/// (infinite where the line misses, and beyond the ends), where it may come down below a height. An instant whose plane of the tip
+/// stays above that, by more than [`SLACK`] times what it falls by to the instants next to it, is not looked at.
+pub(super) fn minima(
+    cutter: &Cutter,
+    line: &Line,
+    (poses, below_mm): (&[(f64, Pose)], f64),
+    mut see: impl FnMut(usize, [f64; 3]),
+) {
+    let entry = |k: Option<usize>| {
+        let pose = k.and_then(|k| poses.get(k));
+        pose.and_then(|p| cutter.entry(&p.1, line)).map_or(f64::INFINITY, |e| e.at_mm)
+    };
+    let least = |k: usize| poses.get(k).map(|p| Cutter::least_entry_mm(&p.1, line));
+    let (mut least_before, mut least_here) = (None, least(0));
+    let mut before = [f64::INFINITY; 2];
+    // One more than there are, so that the last can be the lowest.
+    for k in 0..=poses.len() {
+        let least_next = least(k + 1);
+        let next = match least_here {
+            Some(here) => {
+                let falls =
+                    [least_before, least_next].into_iter().flatten().fold(0.0, |f, x| (x - here).max(f));
+                if here - SLACK * falls > below_mm { f64::INFINITY } else { entry(Some(k)) }
+            }
+            None => f64::INFINITY,
+        };
+        let [a, b] = before;
+        if b.is_finite() && b <= a && b <= next {
+            // Those next to it may be above the height, not looked at.
+            let [first, last] = [(a, k.checked_sub(2)), (next, Some(k))]
+                .map(|(x, of)| if x.is_finite() { x } else { entry(of) });
+            if b <= first && b <= last {
+                see(k - 1, [first, b, last]);
+            }
+        }
+        before = [b, next];
+        (least_before, least_here) = (least_here, least_next);
     }
 }
 

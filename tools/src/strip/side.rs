@@ -14,6 +14,13 @@ use osculate_geom::{Degenerate, Uv};
 
 /// Crests of the profile that come up to this share of the tolerance are looked at between places.
 const SUSPECT: f64 = 0.7;
+/// Crossings of two passages between places that are lower than this share of the tolerance do not come up to it.
+const LOW: f64 = 0.25;
+/// Least way between instants of different passages beyond the way across, of the tool's radius: the first step of the search for the
+/// deepest instant.
+pub(super) const JUMP: f64 = 0.05;
+/// Halvings of a step towards a crossing: what it rises in what is left is a millionth of what it rises in the step.
+const HALVINGS: u32 = 20;
 /// Most steps of the walk: strips that conform far better than the leading order says are still found.
 const MAX_STEPS: u32 = 4000;
 /// Rounding in the standoff at the contact itself, relative to the tolerance.
@@ -108,7 +115,8 @@ impl<'a, M: SweptMotion> Side<'a, M> {
         if height > self.h * (1.0 + CLOSED_BAND) {
             return Err(StripError::AboveTolerance { standoff_mm: height, scallop_mm: self.h });
         }
-        let mut undercut = Undercut::new(here, t, height);
+        let deepest = first.map_or(self.t0, |(r, _)| r.t);
+        let mut undercut = Undercut::new(Place { state: here, t, height, deepest });
         for _ in 0..MAX_STEPS {
             let next = self.advance(&here, self.step)?;
             if !domain.contains(next.at) {
@@ -117,13 +125,17 @@ impl<'a, M: SweptMotion> Side<'a, M> {
             let reach = self.standoff(next.at, t)?;
             match reach {
                 Some((r, near)) if r.at_mm <= self.h => {
-                    if let Some((from, step, f_out)) = self.crest(&undercut, r.at_mm)? {
+                    let top = match self.crossing(&undercut, r)? {
+                        None => self.crest(&undercut, r.at_mm)?,
+                        found => found,
+                    };
+                    if let Some((from, step, f_out)) = top {
                         let behind = if from.state.at == here.at { 0.0 } else { self.step };
                         let to_crest = Side { step, ..*self };
                         return to_crest.edge(from.state, q - behind, from.t, f_out, undercut);
                     }
                     (t, here, q) = (near, next, q + self.step);
-                    undercut.see(here, t, r.at_mm);
+                    undercut.see(Place { state: here, t, height: r.at_mm, deepest: r.t });
                 }
                 outside => {
                     let f_out = outside.map_or(self.contact.cutter.radius_mm(), |(r, _)| r.at_mm - self.h);
@@ -132,6 +144,33 @@ impl<'a, M: SweptMotion> Side<'a, M> {
             }
         }
         Err(StripError::Edge(RootError::NotConverged { evaluations: MAX_STEPS, residual: q }))
+    }
+
+    /// Where the profile exceeds the tolerance between the last place and the next, over which another passage of the tool is the
+    /// deepest: at the edge in which the two meet. The place before it, the way there, and the excess.
+    fn crossing(&self, seen: &Undercut, next: Reach) -> Result<Option<(Place, f64, f64)>, Degenerate> {
+        let Some(a) = seen.last[1] else { return Ok(None) };
+        // The instant of one passage moves by about the way across, `t_step` being JUMP of the tool's radius.
+        let least = JUMP * self.contact.cutter.radius_mm();
+        let jumps = |from: f64, to: f64, way: f64| (to - from).abs() > self.t_step * (1.0 + way / least);
+        let high = a.height.max(next.at_mm) > LOW * self.h;
+        if self.passages.is_none() || !high || !jumps(a.deepest, next.t, self.step) {
+            return Ok(None);
+        }
+        let (mut near, mut far) = ((0.0, a.deepest), (self.step, next.t));
+        for _ in 0..HALVINGS {
+            let x = 0.5 * (near.0 + far.0);
+            let place = self.advance(&a.state, x)?.at;
+            let Some((r, _)) = self.standoff(place, a.t)? else { return Ok(None) };
+            if r.at_mm > self.h {
+                return Ok(Some((a, x, r.at_mm - self.h)));
+            }
+            *(if (r.t - near.1).abs() < (far.1 - r.t).abs() { &mut near } else { &mut far }) = (x, r.t);
+            if !jumps(near.1, far.1, far.0 - near.0) {
+                return Ok(None);
+            }
+        }
+        Ok(None)
     }
 
     /// Where the profile exceeds the tolerance between places that do not: the crest of the parabola through the last two

@@ -25,15 +25,17 @@ pub(super) struct Place {
     pub state: GeodesicState,
     pub t: Near,
     pub height: f64,
+    /// The instant at which the tool is deepest over it, of all passages.
+    pub deepest: f64,
 }
 
 impl Undercut {
-    pub fn new(state: GeodesicState, t: Near, height: f64) -> Self {
-        Self { last: [None, Some(Place { state, t, height })], lowest: height, before_lowest: None }
+    pub fn new(first: Place) -> Self {
+        Self { last: [None, Some(first)], lowest: first.height, before_lowest: None }
     }
 
-    pub fn see(&mut self, state: GeodesicState, t: Near, height: f64) {
-        let new = Place { state, t, height };
+    pub fn see(&mut self, new: Place) {
+        let height = new.height;
         if let [Some(a), Some(b)] = self.last
             && b.height <= a.height
             && b.height <= height

@@ -75,8 +75,6 @@ pub struct Chart<'a> {
     radius: f64,
     reach: f64,
     error: f64,
-    /// Whether the usual nodes cannot follow the part.
-    wavy: bool,
     /// By ray and node; the place itself, which all rays share, first.
     table: Vec<Node>,
     /// The last lines made, and frames further along the feed.
@@ -96,7 +94,7 @@ fn greatest(errors: &[f64]) -> f64 {
 
 impl<'a> Chart<'a> {
     /// The chart to `radius_mm`, or as far as its error is at most `tolerance_mm` (some times as much where the part's curvature jumps);
-    /// over waves to twice the radius, made anew to 0.4 of it, three times at most, where less than a third is good.
+    /// where lines are traced to twice the radius, made anew to 0.4 of it, three times at most, where less than a third is good.
     ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane at the place.
@@ -118,7 +116,6 @@ impl<'a> Chart<'a> {
             radius: radius_mm.min(TURN * NODES as f64 / bend),
             reach: 0.0,
             error: 0.0,
-            wavy: false,
             table: Vec::new(),
             lines: RefCell::new(Vec::with_capacity(KEPT)),
             trails: RefCell::new(Vec::with_capacity(KEPT_TRAILS)),
@@ -127,14 +124,10 @@ impl<'a> Chart<'a> {
         if chart.tabulate(tolerance_mm)? {
             return Ok(chart);
         }
-        if chart.by_lines(tolerance_mm, [NODES, 2 * NODES])? {
-            return Ok(chart);
-        }
-        chart.wavy = true;
         chart.radius *= FURTHER as f64;
         for attempt in 0..4 {
-            chart.by_lines(tolerance_mm, [2 * NODES * FURTHER, MOST_NODES])?;
-            if attempt == 3 || 3.0 * chart.reach >= chart.radius {
+            let good = chart.by_lines(tolerance_mm)?;
+            if good || attempt == 3 || 3.0 * chart.reach >= chart.radius {
                 break;
             }
             chart.radius *= 0.4;
@@ -148,14 +141,8 @@ impl<'a> Chart<'a> {
         self.error
     }
 
-    /// Whether the part is too wavy for the usual nodes, so that a strip may end at one wave for one direction and not for its
-    /// neighbour, and the tool may come over it at several instants.
-    #[must_use]
-    pub const fn is_wavy(&self) -> bool {
-        self.wavy
-    }
-
-    /// Whether no table of lines was good enough, so that each is traced: strips may change within narrow ranges of directions.
+    /// Whether no table of lines was good enough, so that each is traced: the part has waves, a strip may end at one for one direction
+    /// and not for its neighbour, and the tool may come over it at several instants.
     #[must_use]
     pub const fn is_traced(&self) -> bool {
         self.size[0] == 0
@@ -214,14 +201,10 @@ impl<'a> Chart<'a> {
         Ok(Some(Errors { between: self.errors_between(), along }))
     }
 
-    /// Traces lines from now on, with as many nodes of a range as some of them need; whether that is good all over.
-    fn by_lines(
-        &mut self,
-        tolerance_mm: f64,
-        [least, greatest_count]: [usize; 2],
-    ) -> Result<bool, Degenerate> {
+    /// Traces lines from now on, with as many nodes as some of them need; whether that is good all over.
+    fn by_lines(&mut self, tolerance_mm: f64) -> Result<bool, Degenerate> {
         self.table = Vec::new();
-        let mut nodes = least;
+        let mut nodes = NODES * FURTHER;
         loop {
             self.size = [0, nodes];
             self.lines.get_mut().clear();
@@ -235,7 +218,7 @@ impl<'a> Chart<'a> {
                 let behind = self.way(towards.map(|x| -x), stride, true)?;
                 self.hollow = self.hollow.max(ahead.hollow_per_mm).max(behind.hollow_per_mm);
                 let ways = [&behind.nodes[..], &ahead.nodes[..]];
-                let made = Nodes::new(&self.place, ways, (self.radius, nodes), self.looked_at(pitch));
+                let made = Nodes::new(&self.place, ways, (self.radius, nodes), pitch);
                 let made = Rc::new(made);
                 for (way, backwards) in [(&ahead, false), (&behind, true)] {
                     let ray = Ray { line: Rc::clone(&made), backwards };
@@ -249,7 +232,7 @@ impl<'a> Chart<'a> {
             let good = along.iter().position(|e| *e > most).unwrap_or(nodes);
             self.reach = step * good as f64;
             self.error = greatest(&along[..good]);
-            if good == nodes || nodes >= greatest_count {
+            if good == nodes || nodes >= MOST_NODES {
                 return Ok(good == nodes);
             }
             nodes *= 2;
@@ -260,8 +243,7 @@ impl<'a> Chart<'a> {
     fn stride(&self, pitch: f64) -> usize {
         let nodes = self.size[1];
         let of_pitch = OF_PITCH * pitch * nodes as f64 / self.radius;
-        let usual = if self.wavy { NODES * FURTHER } else { NODES };
-        (nodes / usual).min(of_pitch.max(1.0) as usize)
+        (nodes / (NODES * FURTHER)).min(of_pitch.max(1.0) as usize)
     }
 
     fn way(&self, towards: [f64; 2], stride: usize, midway: bool) -> Result<Way, Degenerate> {
@@ -351,12 +333,7 @@ impl<'a> Chart<'a> {
         let [behind, ahead] = [-1.0, 1.0].map(|sign| {
             self.way(direction.map(|x| sign * x), stride, false).map_or_else(|_| only(), |w| w.nodes)
         });
-        Nodes::new(&self.place, [&behind, &ahead], (self.radius, self.size[1]), self.looked_at(pitch))
-    }
-
-    /// The distance between knots, where there may be waves between them.
-    const fn looked_at(&self, pitch: f64) -> f64 {
-        if self.wavy { pitch } else { f64::INFINITY }
+        Nodes::new(&self.place, [&behind, &ahead], (self.radius, self.size[1]), pitch)
     }
 
     /// The line in a direction, between those of the table.

@@ -152,14 +152,13 @@ impl Chart<'_> {
         let across = behind.max(ahead);
         // At a corner there is nothing to cross.
         let step = if across > 0.0 { step.min(OF_FACE * across) } else { step };
-        let mut side = Side {
+        let side = Side {
             motion: &motion,
             cutter,
             pace: Pace { step: 0.05 * radius, settled_mm: 2e-4 * within.scallop_mm },
             h: within.scallop_mm + self.error_mm(),
             step,
             fits: q.min > 0.0,
-            everywhere: false,
             nearby: OnceCell::new(),
         };
         let new = || [1.0, -1.0].map(|sign| Profile::new(left.clone(), sign));
@@ -174,24 +173,28 @@ impl Chart<'_> {
         for profile in &mut profiles {
             side.walk(profile)?;
         }
-        // A surface that a table cannot follow may have waves over which the tool comes twice.
-        if self.is_wavy() && profiles.iter().any(|p| side.comes_again(p)) {
-            side.everywhere = true;
-            profiles = new();
+        // A surface that a table cannot follow may have waves over which the tool comes twice: at the contact, or at one end.
+        if self.is_traced() {
+            let both = side.comes_again(&profiles[0], 0.0);
             for profile in &mut profiles {
-                side.walk(profile)?;
+                let edge = profile.nearly_edge(within.scallop_mm);
+                if both || side.comes_again(profile, edge) {
+                    profile.begin_everywhere();
+                    side.walk(profile)?;
+                }
             }
         }
         // Where the tool does not fit along the feed it comes down on both sides of the contact, and a walk follows one.
         if q.along(&frame.tangent) < 0.0 {
-            let ends = profiles.iter().map(|p| p.end(self));
+            let ends = profiles.iter().map(|p| p.last_line(self));
             for line in std::iter::once(self.line(&left, 0.0)).chain(ends) {
                 undercut = undercut.max(too_deep(self.dug_mm(&motion, cutter, &line))?);
             }
         }
         for profile in &profiles {
-            undercut =
-                undercut.max(too_deep(side.undercut(profile))?).max(too_deep(dip(&profile.end(self)))?);
+            undercut = undercut
+                .max(too_deep(side.undercut(profile, within.scallop_mm))?)
+                .max(too_deep(dip(&profile.last_line(self)))?);
         }
         let lift = (undercut - within.gouge_mm).max(0.0);
         let (mut width, mut most) = (0.0, 0.0);

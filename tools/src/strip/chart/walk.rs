@@ -7,7 +7,7 @@ use crate::cutter::{Cutter, Line};
 use crate::meridian::Arc;
 use crate::pose::Pose;
 use crate::strip::local::{Near, Pace, deepest};
-use crate::strip::passages::dip;
+use crate::strip::passages::{dip, minima};
 use crate::sweep::{Moving, SweptMotion};
 use osculate_geom::roots::{End, bracketed};
 use osculate_geom::{Unit3, Vec3};
@@ -108,6 +108,8 @@ pub(super) struct Profile {
     sign: f64,
     places: Vec<Spot>,
     at_edge: bool,
+    /// Whether every place takes the deepest of all passages on the chart.
+    everywhere: bool,
 }
 
 /// A place of a profile.
@@ -131,7 +133,7 @@ impl Spot {
 
 impl Profile {
     pub(super) fn new(ray: Ray, sign: f64) -> Self {
-        Self { ray, sign, places: Vec::with_capacity(ROOM), at_edge: false }
+        Self { ray, sign, places: Vec::with_capacity(ROOM), at_edge: false, everywhere: false }
     }
 
     /// The normal of the part at the distance `q` from the contact.
@@ -140,8 +142,26 @@ impl Profile {
     }
 
     /// The normal of the part at the last place.
-    pub(super) fn end(&self, chart: &Chart<'_>) -> Line {
+    pub(super) fn last_line(&self, chart: &Chart<'_>) -> Line {
         self.line(chart, self.places.last().map_or(0.0, |p| p.q))
+    }
+
+    /// Where the profile nearly comes up to a height: by the chord of the roots before its last place, which is far beyond.
+    pub(super) fn nearly_edge(&self, height: f64) -> f64 {
+        match self.places[..] {
+            [.., a, b] if a.height < height && height < b.height => {
+                let [low, edge, high] = [a.height, height, b.height].map(|x| x.max(0.0).sqrt());
+                a.q + (edge - low) / (high - low) * (b.q - a.q)
+            }
+            [.., last] => last.q,
+            [] => 0.0,
+        }
+    }
+
+    /// To be walked anew, by all passages.
+    pub(super) fn begin_everywhere(&mut self) {
+        self.places.clear();
+        (self.at_edge, self.everywhere) = (false, true);
     }
 }
 
@@ -153,18 +173,18 @@ pub(super) struct Side<'a> {
     pub step: f64,
     /// Whether Q is positive definite.
     pub fits: bool,
-    /// Whether every place takes the deepest of all passages on the chart.
-    pub everywhere: bool,
     /// Poses of the tool along the feed, equally spaced, made when first asked for.
-    pub nearby: OnceCell<Vec<(f64, Option<Pose>)>>,
+    pub nearby: OnceCell<Vec<(f64, Pose)>>,
 }
 
 /// Distance between the instants that are looked at for other passages, in the tool's radius, and of that between knots.
 const APART: [f64; 2] = [0.02, 0.15];
 const OF_PITCH: f64 = 1.0 / 3.0;
-/// Places looked at between two at which different passages are the deepest, and how far these lie apart at least, in the tool's
-/// radius.
-const CROSSINGS: u32 = 3;
+/// Other passages are told up to so many times the tolerance: where they cross the contact's own they are nearly as high.
+const HEADROOM: f64 = 2.0;
+/// Places looked at between two at which different passages are the deepest, at least, and at most while they still are; and how far
+/// these lie apart at least, in the tool's radius.
+const CROSSINGS: [u32; 2] = [3, 10];
 const JUMP: f64 = 0.05;
 
 impl Side<'_> {
@@ -173,7 +193,11 @@ impl Side<'_> {
         // A tool that does not pass over the place stands above it by more than any tolerance.
         let (own, near) = deepest(self.cutter, &line, self.motion, near, self.pace)
             .map_or((self.cutter.radius_mm(), near), |(reach, near)| (reach.at_mm, near));
-        let (other, t) = if self.everywhere { self.lowest(&line, near.t) } else { (f64::INFINITY, near.t) };
+        let (other, t) = if profile.everywhere {
+            self.lowest(&line, near.t, HEADROOM * self.h)
+        } else {
+            (f64::INFINITY, near.t)
+        };
         Spot { q, height: own.min(other), near, t: if other < own { t } else { near.t }, gap: own - other }
     }
 
@@ -184,7 +208,7 @@ impl Side<'_> {
     }
 
     /// Poses as far as the feed goes.
-    fn poses(&self) -> &[(f64, Option<Pose>)] {
+    fn poses(&self) -> &[(f64, Pose)] {
         self.nearby.get_or_init(|| {
             let apart = self.apart();
             let [behind, ahead] = self.motion.feed.reach().map(|r| (r / apart) as i32);
@@ -192,26 +216,24 @@ impl Side<'_> {
             // Beyond a right angle the tool is on the part's other side.
             let faces = |k: &i32| self.motion.faces(at(*k));
             let back = (1..=behind).map(|k| -k).take_while(faces).count() as i32;
-            let pose = |k: i32| (at(k), self.motion.moving(at(k)).map(|m| m.pose));
-            (-back..=0).chain((1..=ahead).take_while(faces)).map(pose).collect()
+            let pose = |k: i32| self.motion.moving(at(k)).map(|m| (at(k), m.pose));
+            (-back..=0).chain((1..=ahead).take_while(faces)).filter_map(pose).collect()
         })
     }
 
-    /// The lowest entry of the line on the chart, at instants away from that of the contact's own passage, and its instant.
-    fn lowest(&self, line: &Line, own: f64) -> (f64, f64) {
+    /// The lowest entry of the line on the chart, at instants away from that of the contact's own passage, and its instant; infinite
+    /// where none comes below a height.
+    fn lowest(&self, line: &Line, own: f64, below_mm: f64) -> (f64, f64) {
         let apart = self.apart();
         let mut lowest = (f64::INFINITY, 0.0);
-        let mut before = [(0.0, f64::INFINITY); 2];
-        for (t, pose) in self.poses() {
-            let entry = pose.as_ref().and_then(|p| self.cutter.entry(p, line));
-            let now = (*t, entry.map_or(f64::INFINITY, |e| e.at_mm));
-            let [a, b] = before;
-            if (b.0 - own).abs() > 2.0 * apart && b.1 < a.1 && b.1 <= now.1 {
-                let found = self.bottom(line, [a.1, b.1, now.1], b.0);
+        let poses = self.poses();
+        minima(self.cutter, line, (poses, below_mm), |k, heights| {
+            let t = poses[k].0;
+            if (t - own).abs() > 2.0 * apart {
+                let found = self.bottom(line, heights, t);
                 lowest = if found.0 < lowest.0 { found } else { lowest };
             }
-            before = [b, now];
-        }
+        });
         lowest
     }
 
@@ -231,14 +253,11 @@ impl Side<'_> {
             .map_or(by_parabola, |(reach, _)| (reach.at_mm, reach.t))
     }
 
-    /// Whether the tool at another instant than the profile's own comes down to the tolerance over its end, on the left
-    /// over the contact too.
-    pub(super) fn comes_again(&self, profile: &Profile) -> bool {
-        let first = profile.places.first().filter(|_| profile.sign > 0.0);
-        first
-            .into_iter()
-            .chain(profile.places.last())
-            .any(|p| self.lowest(&profile.line(self.motion.chart, p.q), p.near.t).0 <= self.h)
+    /// Whether the tool at another instant than that of the contact's own passage comes down to the tolerance over the place `q` from
+    /// the contact.
+    pub(super) fn comes_again(&self, profile: &Profile, q: f64) -> bool {
+        let own = profile.places.iter().rfind(|p| p.q <= q).map_or(0.0, |p| p.near.t);
+        self.lowest(&profile.line(self.motion.chart, q), own, self.h).0 <= self.h
     }
 
     pub(super) fn walk(&self, profile: &mut Profile) -> Result<(), ChartError> {
@@ -249,7 +268,7 @@ impl Side<'_> {
         let inside = profile.ray.inside()[side];
         while profile.places.len() < PLACES {
             // A tool that fits touches where it is.
-            let touches = profile.places.is_empty() && self.fits && !self.everywhere;
+            let touches = profile.places.is_empty() && self.fits && !profile.everywhere;
             let spot = if touches {
                 Spot { q, height: 0.0, near, t: 0.0, gap: 0.0 }
             } else {
@@ -286,10 +305,13 @@ impl Side<'_> {
         let ahead =
             before.last().map_or(0.0, |p| a.height + (a.height - p.height) * (b.q - a.q) / (a.q - p.q));
         let bends = ahead > self.h && b.height <= self.h;
-        if !self.motion.chart.is_wavy() || !(bends || b.jumps(&a, JUMP * self.cutter.radius_mm())) {
+        if !self.motion.chart.is_traced() || !(bends || b.jumps(&a, JUMP * self.cutter.radius_mm())) {
             return false;
         }
-        for _ in 0..CROSSINGS {
+        for tried in 0..CROSSINGS[1] {
+            if tried >= CROSSINGS[0] && !b.jumps(&a, JUMP * self.cutter.radius_mm()) {
+                break;
+            }
             // Where both passages are as deep, by chords where both are known.
             let share = a.gap / (a.gap - b.gap);
             let share = if share > 0.05 && share < 0.95 { share } else { 0.5 };
@@ -322,9 +344,12 @@ impl Side<'_> {
         top.height > self.h
     }
 
-    /// Depth below the part: the lowest place, and the parabola through it and its neighbours.
-    pub(super) fn undercut(&self, profile: &Profile) -> f64 {
-        let seen = &profile.places[..];
+    /// Depth below the part within the strip, which ends where the profile first exceeds a height: the lowest place, and the parabola
+    /// through it and its neighbours.
+    pub(super) fn undercut(&self, profile: &Profile, height: f64) -> f64 {
+        // A walk goes on over crests that exceed it by less than the chart's error.
+        let all = &profile.places[..];
+        let seen = &all[..all.iter().position(|p| p.height > height).map_or(all.len(), |k| k + 1)];
         let least = seen.iter().enumerate().min_by(|a, b| a.1.height.total_cmp(&b.1.height));
         let Some((k, _)) = least else { return 0.0 };
         let mut lowest = seen[k].height;
