@@ -13,10 +13,11 @@
 
 use super::course::Course;
 use super::laid::Laid;
+use super::rounds::{Round, in_rounds};
 use super::wants::{LEVEL, Lost, Want};
 use super::{
-    DropTask, Ground, Lines, MAX_PASSES, Pass, Passes, PlanError, ROUNDS, asked, design_mm, ground, hide,
-    measure, nothing, told, trace,
+    DropTask, Ground, Lines, MAX_PASSES, Pass, Passes, PlanError, asked, design_mm, ground, hide, nothing,
+    told, too_many, trace,
 };
 use osculate_geom::{Diagnostic, Point3, Surface};
 use rayon::prelude::*;
@@ -62,24 +63,13 @@ pub fn gradient_3c(task: &DropTask<'_>) -> Result<Passes, PlanError> {
             .map_or_else(String::new, |r| format!("; its contour lines take a cutter of radius {r:.3} mm"));
         return Err(nothing(task, &format!("no place of it can be cut from above with this tool{advice}")));
     }
-    (task.progress)(0.3);
-    let (mut passes, mut left) = (Vec::new(), 0.0);
-    for round in 0..ROUNDS {
-        let courses = lay(&ground, &wants)?;
-        passes = courses.par_iter().flat_map_iter(|c| trace::along(&ground, c)).collect();
-        (task.progress)(0.3 + 0.7 * (round + 1) as f64 / ROUNDS as f64);
-        let off = |w: &Want| courses.iter().map(|c| c.nearest(w.at).0).fold(f64::INFINITY, f64::min);
-        let unmet = measure(&ground, &mut wants, &passes, off)?;
-        left = unmet.area_mm2;
-        if unmet.mended == 0 {
-            break;
-        }
-    }
-    lost.push((left, "keeps more than scallop_mm even under a pass"));
-    (task.progress)(1.0);
-    if passes.is_empty() {
-        return Err(nothing(task, "the tool meets none of it from above; give another axis"));
-    }
+    (task.progress)(0.4);
+    let passes = in_rounds(&ground, &mut wants, &mut lost, |wants| {
+        let courses = lay(&ground, wants)?;
+        let passes = courses.par_iter().flat_map_iter(|c| trace::along(&ground, c)).collect();
+        let off = move |w: &Want| courses.iter().map(|c| c.nearest(w.at).0).fold(f64::INFINITY, f64::min);
+        Ok(Round { passes, off: Box::new(off) })
+    })?;
     let mut out = told(&ground, in_order(passes), &lost);
     if let Some(r) = fits {
         let text = format!("its tightest hollow contour line takes a cutter of radius {r:.3} mm, not more");
@@ -122,11 +112,7 @@ fn lay(ground: &Ground<'_>, wants: &[Want]) -> Result<Vec<Course>, PlanError> {
         laid.give_up(k);
         out.push(course);
         if out.len() > MAX_PASSES {
-            return Err(PlanError::TooManyPasses {
-                face: ground.task.faces[0].face.to_owned(),
-                limit: MAX_PASSES,
-                scallop_mm: ground.task.tolerance.scallop_mm,
-            });
+            return Err(too_many(ground.task));
         }
     }
     Ok(out)

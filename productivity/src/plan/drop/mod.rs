@@ -14,6 +14,7 @@ mod gradient;
 mod height;
 mod laid;
 mod layers;
+mod rounds;
 mod trace;
 mod wants;
 
@@ -25,8 +26,9 @@ use frame::Frame;
 use height::{Drops, Rest, Seed};
 use osculate_geom::{Axis, Diagnostic, Surface, Unit3, Uv, Vec3, quadrature};
 use osculate_tools::Cutter;
-use osculate_tools::removal::{self, Job, Sample, Swept, sample_surface};
+use osculate_tools::removal::{self, Sample, sample_surface};
 use rayon::prelude::*;
+use rounds::{Round, in_rounds};
 use wants::{Lost, Want, want};
 
 /// A face and its name.
@@ -69,10 +71,6 @@ const FEWEST: usize = 200;
 const RIM_LINES: [f64; 2] = [20.0, 2000.0];
 /// The share of the tolerance that passes are laid out for: the rest is for what the leading order neglects.
 const DESIGN: f64 = 0.94;
-/// Rounds of measuring and asking again.
-const ROUNDS: usize = 5;
-/// A pass within this part of a place's reach runs right over it.
-const RIGHT_OVER: f64 = 0.05;
 /// Shares of the area below which a loss is not worth a word.
 const WORTH_A_WORD: f64 = 1e-3;
 
@@ -180,36 +178,23 @@ pub fn drop_cutter(task: &DropTask<'_>) -> Result<Passes, PlanError> {
         ));
     }
     (task.progress)(0.4);
-    let mut passes = Vec::new();
-    let mut left = 0.0;
-    for round in 0..ROUNDS {
-        let levels = levels(&mut wants);
+    let passes = in_rounds(&ground, &mut wants, &mut lost, |wants| {
+        let levels = levels(wants);
         if levels.len() > MAX_PASSES {
-            return Err(PlanError::TooManyPasses {
-                face: task.faces[0].face.to_owned(),
-                limit: MAX_PASSES,
-                scallop_mm: task.tolerance.scallop_mm,
-            });
+            return Err(too_many(task));
         }
-        passes = trace::passes(&ground, &wants, &levels);
-        (task.progress)(0.4 + 0.6 * (round + 1) as f64 / ROUNDS as f64);
-        let off = |w: &Want| {
-            let k = levels.partition_point(|z| *z < w.at[1]);
-            let near = [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|k| levels.get(k));
-            near.map(|z| (z - w.at[1]).abs()).fold(f64::INFINITY, f64::min)
-        };
-        let unmet = measure(&ground, &mut wants, &passes, off)?;
-        left = unmet.area_mm2;
-        if unmet.mended == 0 {
-            break;
-        }
-    }
-    lost.push((left, "keeps more than scallop_mm even under a pass"));
-    (task.progress)(1.0);
-    if passes.is_empty() {
-        return Err(nothing(task, "the tool meets none of it from above; give another axis"));
-    }
+        let passes = trace::passes(&ground, wants, &levels);
+        Ok(Round { passes, off: Box::new(move |w| off(&levels, w)) })
+    })?;
     Ok(told(&ground, passes, &lost))
+}
+
+fn too_many(task: &DropTask<'_>) -> PlanError {
+    PlanError::TooManyPasses {
+        face: task.faces[0].face.to_owned(),
+        limit: MAX_PASSES,
+        scallop_mm: task.tolerance.scallop_mm,
+    }
 }
 
 fn nothing(task: &DropTask<'_>, why: &str) -> PlanError {
@@ -358,6 +343,13 @@ fn rim(surface: &dyn Surface, face: u32, (frame, spacing_mm): (&Frame, f64), see
     seeds.extend(surface.turns().into_iter().map(see));
 }
 
+/// How far a place is off the nearest of levels, mm.
+fn off(levels: &[f64], w: &Want) -> f64 {
+    let k = levels.partition_point(|z| *z < w.at[1]);
+    let near = [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|k| levels.get(k));
+    near.map(|z| (z - w.at[1]).abs()).fold(f64::INFINITY, f64::min)
+}
+
 /// What every sample wants, and the areas that want nothing possible.
 fn asked(ground: &Ground<'_>) -> (Vec<Want>, Vec<(f64, &'static str)>) {
     let task = ground.task;
@@ -436,60 +428,4 @@ fn levels(wants: &mut [Want]) -> Vec<f64> {
         out.push(next);
         last = next;
     }
-}
-
-/// What measuring found.
-struct Unmet {
-    /// Places that are asked again, closer.
-    mended: usize,
-    /// Area that no pass can help, mm2.
-    area_mm2: f64,
-}
-
-/// Measures what the passes leave; a place that keeps too much becomes a want of its own with a shorter reach. `off` tells
-/// how far a place is off the nearest pass, mm.
-fn measure(
-    ground: &Ground<'_>,
-    wants: &mut Vec<Want>,
-    passes: &[Pass],
-    off: impl Fn(&Want) -> f64,
-) -> Result<Unmet, PlanError> {
-    let task = ground.task;
-    let motions: Vec<Swept> = passes
-        .iter()
-        .flat_map(|p| p.points.windows(2))
-        .map(|w| Swept { from: w[0].pose, to: w[1].pose, rapid: false, block: 0 })
-        .collect();
-    let limit = task.tolerance.scallop_mm;
-    let job = Job {
-        cutter: task.cutter,
-        holder: None,
-        motions: &motions,
-        samples: &ground.judged,
-        stock_mm: 4.0 * limit,
-        depth_mm: limit,
-    };
-    let cuts = removal::cut(&job, &|_| ()).map_err(|e| nothing(task, &e.to_string()))?;
-    let (mut unmet, mut more) = (Unmet { mended: 0, area_mm2: 0.0 }, Vec::new());
-    for (s, c) in ground.judged.iter().zip(&cuts) {
-        if c.standoff_mm <= ground.lines.met() * limit {
-            continue;
-        }
-        // What cannot be cut from above was told of before.
-        let Ok(mut w) = ground.want(s, [design_mm(&task.tolerance), 0.0]) else { continue };
-        if ground.drops.coarse(w.at) > w.tip + limit {
-            continue;
-        }
-        let off = off(&w);
-        // A pass right over the place left it: another one will not help.
-        if off <= RIGHT_OVER * w.reach {
-            unmet.area_mm2 += s.area_mm2;
-            continue;
-        }
-        w.reach = off.min(w.reach) * (DESIGN * limit / c.standoff_mm).sqrt().min(0.95);
-        unmet.mended += 1;
-        more.push(w);
-    }
-    wants.extend(more);
-    Ok(unmet)
 }
