@@ -6,7 +6,7 @@
 //! the best is open at a time, and each plan of them that fails puts the next one back in the order. A plan that leaves a
 //! little too much is laid out once more for less. Where none holds, tools and strategies that failed least are tried further;
 //! around one that holds, leads beside its own and other strategies with its tool are planned for less time, and plans whose
-//! lead is found place by place: those take long to plan, and little else gains as much. The work
+//! lead is found place by place, with other tools too: those take long to plan, and little else gains as much. The work
 //! is bounded by counts, not by time: the same job gives the same choice everywhere.
 
 mod candidates;
@@ -36,6 +36,8 @@ const MOST_IN_NEED: usize = 28;
 const MOST_LOCAL: usize = 4;
 const MOST_BESIDE: usize = 3;
 const MOST_OTHERS: usize = 3;
+/// Other tools that are tried then, each with one plan.
+const MOST_ELSEWHERE: usize = 3;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
 /// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.
@@ -77,8 +79,9 @@ struct Entry {
     verified: Option<table::Measured>,
     /// The share of the scallop that it is laid out for.
     share: f64,
-    /// Whether it was planned, or would have been.
+    /// Whether it was planned, or would have been, and whether that was around a plan with another tool.
     tried: bool,
+    elsewhere: bool,
 }
 
 /// A plan that promises the least time of all.
@@ -121,6 +124,10 @@ pub fn patches(faces: &JobFaces) -> Vec<Patch<'_>> {
     faces.faces.iter().map(|f| Patch { surface: &*f.surface, area_mm2: part::area(f) }).collect()
 }
 
+const fn keeps_lines(strategy: &Strategy) -> bool {
+    matches!(strategy, Strategy::Isoparametric { .. } | Strategy::Curvature5c)
+}
+
 impl<'a> Choice<'a> {
     /// Screens all candidates of a job.
     ///
@@ -149,7 +156,16 @@ impl<'a> Choice<'a> {
             .zip(screened)
             .map(|(candidate, screened)| {
                 let state = screened.out.as_ref().map_or(State::Open, |r| State::Out(r.to_string()));
-                Entry { candidate, screened, state, figures: None, verified: None, share: 1.0, tried: false }
+                Entry {
+                    candidate,
+                    screened,
+                    state,
+                    figures: None,
+                    verified: None,
+                    share: 1.0,
+                    tried: false,
+                    elsewhere: false,
+                }
             })
             .collect();
         let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
@@ -230,6 +246,19 @@ impl<'a> Choice<'a> {
         })
     }
 
+    /// Of the lines that keep where they are whatever the lead those on which a tool took the least time so far, with that time;
+    /// None where none was planned, or leads found place by place were.
+    fn quickest(&self, tool: usize) -> Option<(Strategy, f64)> {
+        let planned = self.entries.iter().filter(|e| e.candidate.tool == tool && e.tried);
+        if planned.clone().any(|e| e.candidate.local) {
+            return None;
+        }
+        planned
+            .filter(|e| e.figures.is_some() && keeps_lines(&e.candidate.strategy))
+            .map(|e| (e.candidate.strategy, Self::least_min(e)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Plans with leads found place by place that were tried.
     fn locals(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter().filter(|e| e.candidate.local && e.tried)
@@ -240,13 +269,15 @@ impl<'a> Choice<'a> {
     }
 
     /// The candidate to go on with that may take less time than one that holds: first what is planned already, whatever its
-    /// tool; then with the tool that holds leads found place by
-    /// place, along parameter lines and lines of curvature first, as these keep their lines whatever the lead; then of its strategy
-    /// the nearest leads; then other strategies, each with its nearest lead and the quickest first.
+    /// tool; then with the tool that holds leads found place by place, along parameter lines and lines of curvature first, as
+    /// these keep their lines whatever the lead; then of its strategy the nearest leads; then other strategies, each with its
+    /// nearest lead and the quickest first; then leads found place by place with other tools, each along the lines on which it
+    /// was the quickest so far.
     fn first_around(&self, holder: &Holder) -> Option<usize> {
         let held = self.entries[holder.entry].candidate;
         let made_local = self.locals().filter(|e| e.candidate.tool == held.tool).count();
         let made = (self.plans - holder.plans).saturating_sub(self.locals().count() - holder.locals);
+        let elsewhere = self.entries.iter().filter(|e| e.elsewhere).count();
         let order = |e: &Entry| {
             let c = &e.candidate;
             if !Self::waiting(e) || Self::least_min(e) >= holder.time_min {
@@ -255,21 +286,26 @@ impl<'a> Choice<'a> {
             if e.figures.is_some() {
                 return Some((0, 0.0, Self::least_min(e)));
             }
+            if c.tool != held.tool {
+                let quickest =
+                    (c.local && elsewhere < MOST_ELSEWHERE).then(|| self.quickest(c.tool)).flatten();
+                let (strategy, time_min) = quickest?;
+                return (strategy == c.strategy).then_some((5, 0.0, time_min));
+            }
             let beside = c.strategy == held.strategy;
             let (made, most) = match (c.local, beside) {
                 (true, _) => (made_local, MOST_LOCAL),
                 (false, true) => (made, MOST_BESIDE),
                 (false, false) => (made, MOST_BESIDE + MOST_OTHERS),
             };
-            let kind = match c.strategy {
-                _ if !c.local => 3 + usize::from(!beside),
-                Strategy::Isoparametric { .. } | Strategy::Curvature5c => 1,
-                _ => 2,
+            let kind = match c.local {
+                false => 3 + usize::from(!beside),
+                true => 2 - usize::from(keeps_lines(&c.strategy)),
             };
             let away =
                 (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs();
             let away = if c.local { 0.0 } else { away };
-            (c.tool == held.tool && made < most).then_some((kind, away, Self::least_min(e)))
+            (made < most).then_some((kind, away, Self::least_min(e)))
         };
         let ranked = self.entries.iter().enumerate().filter_map(|(k, e)| order(e).map(|o| (o, k)));
         ranked
@@ -300,7 +336,10 @@ impl<'a> Choice<'a> {
             let job = &self.jobs[self.entries[k].candidate.tool];
             self.entries[k].state = match state {
                 State::Open => {
-                    self.entries[k].tried = true;
+                    let held = self.holder.map(|h| self.entries[h.entry].candidate.tool);
+                    let entry = &mut self.entries[k];
+                    entry.tried = true;
+                    entry.elsewhere = held.is_some_and(|tool| tool != entry.candidate.tool);
                     // One that fails is a loser with a reason.
                     self.planned(k).unwrap_or_else(|e| State::Out(e.message().to_owned()))
                 }
