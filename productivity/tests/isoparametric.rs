@@ -7,9 +7,10 @@ mod joined;
 use joined::joined;
 use osculate_geom::analytic::{Paraboloid, Torus};
 use osculate_geom::{Axis, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};
-use osculate_productivity::plan::{Along, Task, Tolerance, isoparametric};
+use osculate_productivity::plan::{Along, Leaning, LocalLead, Task, Tolerance, isoparametric};
 use osculate_tools::cl::{ClMove, Motion};
 use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean, Pose, strip};
+use std::sync::Mutex;
 
 /// Material left at a point along its normal by a ball that moves linearly between CL points: the first meeting of the
 /// line with a sphere or with the cylinder around each segment of ball centres, in closed form. The cutter's
@@ -161,4 +162,34 @@ fn a_tool_too_large_for_the_hollow_is_refused_with_the_largest_that_fits() {
     let error = isoparametric(&task, Along::Auto).unwrap_err().to_string();
     assert!(error.contains("F7") && error.contains("does not fit"), "{error}");
     assert!(error.contains("60.000 mm or less") || error.contains("59.999"), "{error}");
+}
+
+/// With both directions laid out to find the shorter, and with leads found place by place, what is told of the progress never
+/// falls back: a run that is stopped says how far it came.
+#[test]
+fn progress_goes_on_only() {
+    let surface = Paraboloid::new([0.004, -0.006], 8.0).unwrap();
+    let spec = CutterSpec::Toroidal { diameter_mm: 10.0, corner_radius_mm: 2.0, length_mm: 50.0 };
+    let cutter = &Cutter::try_from(spec).unwrap();
+    let held = Lean { lead_rad: 0.1, tilt_rad: 0.0 };
+    let local = LocalLead {
+        tilt_rad: 0.0,
+        least_rad: 0.05,
+        most_rad: LocalLead::MOST_RAD,
+        rate_rad_per_mm: 0.02,
+        holder: None,
+        around: None,
+    };
+    for lean in [held.into(), Leaning::Local(&local)] {
+        let told = Mutex::new(Vec::new());
+        let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
+        let progress = |f: f64| told.lock().unwrap().push(f);
+        let task = Task { surface: &surface, face: "F1", cutter, lean, tolerance, progress: &progress };
+        // Threads may tell theirs in any order.
+        let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        one_thread.install(|| isoparametric(&task, Along::Auto)).unwrap();
+        let told = told.into_inner().unwrap();
+        assert!(told.len() > 10 && told.is_sorted(), "{told:?}");
+        assert_eq!(told.last(), Some(&1.0));
+    }
 }

@@ -20,6 +20,7 @@ use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
 use osculate_tools::{Contact, FeedLine};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// Rows to each side of a pass in which the stretches that it must run over are looked for.
 const COVER_ROWS: i32 = 10;
@@ -56,26 +57,42 @@ struct Layout {
 pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
     task.check()?;
     if let Leaning::Local(local) = task.lean {
-        let one = |axis: Axis| {
+        let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
             let seat = Seat::new(task, axis);
             let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
             let field = LeadField::find(task, local, (&feed, seat.rough()))?;
-            let passes = isoparametric(&Task { lean: Leaning::Field(&field), ..*task }, Along::Fixed(axis))?;
+            let lean = Leaning::Field(&field);
+            let passes = isoparametric(&Task { lean, progress, ..*task }, Along::Fixed(axis))?;
             Ok(field.told(passes, task.face))
         };
         return match along {
-            Along::Fixed(axis) => one(axis),
-            Along::Auto => shorter(one(Axis::U), one(Axis::V), Passes::length_mm),
+            Along::Fixed(axis) => one(axis, task.progress),
+            Along::Auto => {
+                let u = one(Axis::U, &|f| (task.progress)(0.5 * f));
+                shorter(u, one(Axis::V, &|f| (task.progress)(0.5 + 0.5 * f)), Passes::length_mm)
+            }
         };
     }
     let layout = match along {
-        Along::Fixed(axis) => lay_out(task, axis)?,
+        Along::Fixed(axis) => lay_out(task, axis, &|f| (task.progress)(0.5 * f))?,
         Along::Auto => {
-            let (u, v) = rayon::join(|| lay_out(task, Axis::U), || lay_out(task, Axis::V));
+            // Both at a time: the progress is that of the one that is less far.
+            let far = [0, 1].map(|_| AtomicU64::new(0));
+            let at = |k: usize, f: f64| {
+                far[k].store(f.to_bits(), Ordering::Relaxed);
+                let both = far.each_ref().map(|x| f64::from_bits(x.load(Ordering::Relaxed)));
+                (task.progress)(0.5 * both[0].min(both[1]));
+            };
+            let one = |k: usize, axis: Axis| {
+                let made = lay_out(task, axis, &|f| at(k, f));
+                at(k, 1.0);
+                made
+            };
+            let (u, v) = rayon::join(|| one(0, Axis::U), || one(1, Axis::V));
             shorter(u, v, |l| l.length_mm)?
         }
     };
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
     let total = layout.levels.len();
     let breaks = task.surface.breaks(layout.along);
     let seat = Seat::new(task, layout.along);
@@ -85,7 +102,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
         .enumerate()
         .map(|(k, level)| {
             let passes = build(&seat, task, &layout, k, level, &breaks);
-            let n = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+            let n = done.fetch_add(1, Ordering::Relaxed) + 1;
             (task.progress)(0.5 + 0.5 * n as f64 / total as f64);
             passes
         })
@@ -108,7 +125,8 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     Ok(out)
 }
 
-fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
+/// The levels of passes along a parameter; `progress` is told the share of the face that they cover so far.
+fn lay_out(task: &Task<'_>, along: Axis, progress: &(dyn Fn(f64) + Sync)) -> Result<Layout, PlanError> {
     let surface = task.surface;
     let nothing = || PlanError::Nothing {
         face: task.face.to_owned(),
@@ -182,7 +200,7 @@ fn lay_out(task: &Task<'_>, along: Axis) -> Result<Layout, PlanError> {
         }
         levels.push(level);
         let open = columns.iter().filter_map(|c| c.frontier).fold(hi, f64::min);
-        (task.progress)(0.5 * (open - lo) / (hi - lo));
+        progress((open - lo) / (hi - lo));
     }
     Ok(Layout { along, across: [lo, hi], levels, length_mm })
 }
