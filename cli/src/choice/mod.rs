@@ -36,8 +36,9 @@ const MOST_IN_NEED: usize = 28;
 const MOST_LOCAL: usize = 4;
 const MOST_BESIDE: usize = 3;
 const MOST_OTHERS: usize = 3;
-/// Other tools that are tried then, each with one plan.
-const MOST_ELSEWHERE: usize = 3;
+/// Plans with other tools then, and with one of them.
+const MOST_ELSEWHERE: usize = 4;
+const MOST_OF_ANOTHER: usize = 2;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
 /// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.
@@ -246,17 +247,24 @@ impl<'a> Choice<'a> {
         })
     }
 
-    /// Of the lines that keep where they are whatever the lead those on which a tool took the least time so far, with that time;
-    /// None where none was planned, or leads found place by place were.
-    fn quickest(&self, tool: usize) -> Option<(Strategy, f64)> {
-        let planned = self.entries.iter().filter(|e| e.candidate.tool == tool && e.tried);
-        if planned.clone().any(|e| e.candidate.local) {
+    /// The rank of leads found place by place with another tool than the one that holds: along the lines on which that tool was the
+    /// quickest so far, then along those on which it was not planned yet; None for others.
+    fn with_another(&self, entry: &Entry) -> Option<(usize, f64, f64)> {
+        let c = &entry.candidate;
+        let planned: Vec<&Entry> =
+            self.entries.iter().filter(|e| e.candidate.tool == c.tool && e.tried).collect();
+        if planned.iter().filter(|e| e.candidate.local).count() >= MOST_OF_ANOTHER {
             return None;
         }
-        planned
+        let quickest = planned
+            .iter()
             .filter(|e| e.figures.is_some() && keeps_lines(&e.candidate.strategy))
-            .map(|e| (e.candidate.strategy, Self::least_min(e)))
-            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .min_by(|a, b| Self::least_min(a).total_cmp(&Self::least_min(b)))?;
+        if quickest.candidate.strategy == c.strategy {
+            return Some((5, 0.0, Self::least_min(quickest)));
+        }
+        let new = planned.iter().all(|e| e.candidate.strategy != c.strategy);
+        new.then_some((6, 0.0, Self::least_min(entry)))
     }
 
     /// Plans with leads found place by place that were tried.
@@ -271,8 +279,7 @@ impl<'a> Choice<'a> {
     /// The candidate to go on with that may take less time than one that holds: first what is planned already, whatever its
     /// tool; then with the tool that holds leads found place by place, along parameter lines and lines of curvature first, as
     /// these keep their lines whatever the lead; then of its strategy the nearest leads; then other strategies, each with its
-    /// nearest lead and the quickest first; then leads found place by place with other tools, each along the lines on which it
-    /// was the quickest so far.
+    /// nearest lead and the quickest first; then leads found place by place with other tools.
     fn first_around(&self, holder: &Holder) -> Option<usize> {
         let held = self.entries[holder.entry].candidate;
         let made_local = self.locals().filter(|e| e.candidate.tool == held.tool).count();
@@ -287,10 +294,8 @@ impl<'a> Choice<'a> {
                 return Some((0, 0.0, Self::least_min(e)));
             }
             if c.tool != held.tool {
-                let quickest =
-                    (c.local && elsewhere < MOST_ELSEWHERE).then(|| self.quickest(c.tool)).flatten();
-                let (strategy, time_min) = quickest?;
-                return (strategy == c.strategy).then_some((5, 0.0, time_min));
+                let wanted = c.local && keeps_lines(&c.strategy) && elsewhere < MOST_ELSEWHERE;
+                return wanted.then(|| self.with_another(e)).flatten();
             }
             let beside = c.strategy == held.strategy;
             let (made, most) = match (c.local, beside) {
