@@ -10,6 +10,9 @@ use rayon::prelude::*;
 
 /// A pass is first looked at in steps of this part of the tool's radius.
 const STEP: f64 = 0.25;
+/// Where a chord is looked at besides its middle, as a part of it: over the corner of a face the path can bend down and up again,
+/// and cross the chord's middle.
+const ASIDE: f64 = 0.27;
 /// Steps are not halved below this part of the tool's radius: at a concave corner of faces the path has a kink.
 const SHORTEST: f64 = 1e-3;
 
@@ -132,8 +135,17 @@ fn halve(ground: &Ground<'_>, course: &Course, a: Stop, b: Stop, run: &mut Vec<S
         let x = 0.5 * (last.x + next.x);
         let short = next.x - last.x <= SHORTEST * ground.task.cutter.radius_mm();
         let mid = if short { None } else { ground.drops.rest(course.at(x)) };
+        let off = |part: f64, tip: f64| {
+            (tip - last.rest.tip - (next.rest.tip - last.rest.tip) * part).abs() > 0.5 * chord
+        };
+        let aside = || {
+            ground
+                .drops
+                .rest(course.at(last.x + ASIDE * (next.x - last.x)))
+                .is_some_and(|r| off(ASIDE, r.tip))
+        };
         match mid {
-            Some(rest) if (rest.tip - 0.5 * (last.rest.tip + next.rest.tip)).abs() > 0.5 * chord => {
+            Some(rest) if off(0.5, rest.tip) || aside() => {
                 stack.push(next);
                 stack.push(Stop { x, rest });
             }
