@@ -351,7 +351,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
         pairs(
             "Verification",
             vec![
-                ("samples", v.samples.to_string()),
+                ("samples", format!("{}, {} of them where limits were near", v.samples, v.added_samples)),
                 ("spacing", format!("{} mm", number(v.spacing_mm, 3))),
                 (
                     "may hide between samples",

@@ -6,13 +6,17 @@ use crate::part::JobFaces;
 use crate::rough;
 use osculate_geom::{Diagnostic, Surface};
 use osculate_tools::Cutter;
-use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Patch, Sample, Swept, Verdict};
+use osculate_tools::removal::{self, Cut, Density, Kind, Limits, Measured, Patch, Sample, Swept, Verdict};
 use serde::Serialize;
 
 /// Most samples where the job does not say.
 const MAX_SAMPLES: usize = 1_000_000;
 /// Check faces are sampled this many times as coarsely: there only deep contact matters.
 const CHECK_COARSER: f64 = 4.0;
+/// Samples that are added at most, of the even ones.
+const MOST_ADDED: usize = 4;
+/// The share of a verification's time that the even samples take, for its progress.
+const EVEN_SHARE: f64 = 0.7;
 /// Samples across the narrowest usual strip.
 const SAMPLES_ACROSS: f64 = 10.0;
 
@@ -23,7 +27,9 @@ pub struct Verification {
     pub source: &'static str,
     /// Number of samples.
     pub samples: usize,
-    /// Distance between samples, mm.
+    /// Those of them that were added where limits might be exceeded between the others.
+    pub added_samples: usize,
+    /// Distance between the others, mm.
     pub spacing_mm: f64,
     /// Scallop that may hide between samples above the highest one seen, mm.
     pub hidden_scallop_mm: f64,
@@ -77,9 +83,13 @@ impl Verification {
             },
         );
         format!(
-            "{} samples {:.4} mm apart; {bend}; between them scallops may be {:.5} mm higher and gouges {:.5} mm deeper than \
-             measured",
-            self.samples, self.spacing_mm, self.hidden_scallop_mm, self.hidden_gouge_mm
+            "{} samples {:.4} mm apart and {} between them where limits were near; {bend}; between them all scallops may be \
+             {:.5} mm higher and gouges {:.5} mm deeper than measured",
+            self.samples - self.added_samples,
+            self.spacing_mm,
+            self.added_samples,
+            self.hidden_scallop_mm,
+            self.hidden_gouge_mm
         )
     }
 }
@@ -109,7 +119,7 @@ pub struct Verified {
     pub worst: Vec<WorstPlace>,
     /// Area by what stands on it.
     pub histogram: Vec<HistogramBin>,
-    /// Where it was measured.
+    /// Where it was measured: evenly at first, then the samples that were added.
     pub samples: Vec<Sample>,
     /// What was measured there.
     pub cuts: Vec<Cut>,
@@ -212,20 +222,42 @@ pub fn run(
     patches.resize(samples.len(), None);
     let density = density.ok_or_else(|| Failure::job("there is no face to verify"))?;
     let work = to_cut((&cutter, holder.as_ref()), motions, &samples, tolerance.scallop_mm);
-    let cuts = removal::cut(&work, progress).map_err(Failure::job)?;
+    let cuts = removal::cut(&work, &|f| progress(EVEN_SHARE * f)).map_err(Failure::job)?;
     // The tool's effective radius across the feed, from the strip that it leaves.
     let effective = strip * strip / (8.0 * tolerance.scallop_mm);
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
-    let mut verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
     let surfaces: Vec<&dyn Surface> = (0..all.len()).map(surface).collect();
     let crest_median_mm =
         removal::crests(&surfaces, &work, &cuts, strip, limits.uncut_mm).map_err(Failure::job)?;
     let wanted = removal::Wanted {
         uncut_mm: limits.uncut_mm,
-        enough_mm: limits.scallop_mm,
+        // What a roughing leaves above its allowance is told, not judged.
+        enough_mm: if rough::is(job) { f64::INFINITY } else { limits.scallop_mm },
         tool_radius_mm: effective,
     };
-    verdict.hidden = removal::hidden(&surfaces, &work, (&patches, &cuts), wanted).map_err(Failure::job)?;
+    let even = samples.len();
+    let mut measured = Measured { samples: samples.clone(), patches, cuts };
+    let mut verdict =
+        removal::judge(&samples, &measured.cuts, &limits, &density, effective).map_err(Failure::job)?;
+    // Between samples of a path that fails already nothing is left to be found out.
+    let holds = verdict.within || rough::is(job);
+    let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
+    let refined = removal::refine(&surfaces, &work, &mut measured, (wanted, limits.gouge_mm), most)
+        .map_err(Failure::job)?;
+    let Measured { samples, patches, cuts } = measured;
+    if refined.added > 0 {
+        verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
+    }
+    verdict.hidden = refined.hidden;
+    if holds && refined.left_out > 0 {
+        let text = format!(
+            "limits may be exceeded at {} places between samples more than were looked at: set [verification] spacing_mm \
+             below {:.4}, and max_samples above {max} where it is reached",
+            refined.left_out, density.spacing_mm
+        );
+        diagnostics.push(Diagnostic::warning("verification", text));
+    }
+    progress(1.0);
     if rough::is(job) {
         // What a roughing leaves above its allowance is told, not judged: finishing takes it.
         verdict.within = verdict.gouge_max_mm <= limits.gouge_mm
@@ -263,6 +295,7 @@ pub fn run(
     let summary = Verification {
         source,
         samples: samples.len(),
+        added_samples: refined.added,
         spacing_mm: density.spacing_mm,
         hidden_scallop_mm: verdict.hidden.scallop_mm,
         hidden_gouge_mm: verdict.hidden.gouge_mm,

@@ -170,6 +170,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         let mut t = Table::new(["verified", "", "unit"]);
         let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
         row("samples", s.samples.to_string(), "");
+        row("of them where limits were near", s.added_samples.to_string(), "");
         row("spacing", number(s.spacing_mm, 4), "mm");
         row("scallop max", format!("{:.5}", s.scallop_max_mm), "mm");
         row("scallop p99", format!("{:.5}", s.scallop_p99_mm), "mm");

@@ -152,7 +152,9 @@ pub fn agreement(motion: &Motion, lead_mm: f64, verified: &Verified) -> Agreemen
         pieces.extend(leads(axes, lead_mm));
     }
     let envelope = Envelope::new(motion.side, &pieces);
-    let pairs: Vec<_> = verified.samples.iter().zip(&verified.cuts).collect();
+    // The even samples: those added crowd where limits are near.
+    let even = verified.summary.samples - verified.summary.added_samples;
+    let pairs: Vec<_> = verified.samples.iter().zip(&verified.cuts).take(even).collect();
     let mut differences: Vec<f64> = pairs
         .par_iter()
         .map_init(Scratch::default, |scratch, (sample, cut)| {

@@ -34,7 +34,7 @@ use super::sampling::Patch;
 use super::target::Target;
 use super::tree::{Tree, Which};
 use crate::cutter::Line;
-use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
+use osculate_geom::{Point3, Surface, Unit3, uv};
 use rayon::prelude::*;
 
 /// How often a cell is halved in both directions.
@@ -74,48 +74,89 @@ pub fn hidden(
     (patches, cuts): (&[Option<Patch>], &[Cut]),
     wanted: Wanted,
 ) -> Result<Hidden, JobError> {
-    let Wanted { uncut_mm, enough_mm, tool_radius_mm } = wanted;
-    let judged = |k: usize| {
-        let (s, c) = (&job.samples[k], &cuts[k]);
-        !s.check_only && c.by.is_some() && c.standoff_mm <= uncut_mm
-    };
-    let seen = (0..cuts.len()).filter(|k| judged(*k)).map(|k| cuts[k].standoff_mm).fold(0.0, f64::max);
-    let body = Body { cutter: job.cutter, above_mm: 0.0 };
-    let pieces = pieces(job.motions, job.cutter.length_mm().hypot(job.cutter.radius_mm()))?;
-    let world =
-        World { job, body, tree: Tree::new(job.motions, &pieces, job.cutter.radius_mm()), pieces, seen };
-    let cells: Vec<Cell<'_>> = clusters(job.samples)?
-        .par_iter()
-        .flat_map_iter(|group| {
-            let world = &world;
-            group.members.iter().filter_map(move |k| {
-                let k = *k as usize;
-                let (Some(patch), true) = (patches.get(k).copied().flatten(), judged(k)) else { return None };
-                let surface = surfaces[job.samples[k].face as usize];
-                let own = cuts[k].by.map_or(0, |by| by.motion);
-                Some(Cell { surface, world, patch, own, beside: world.beside(k, &group.members, cuts) })
-            })
-        })
-        .collect();
-    let whole: Vec<(f64, f64)> = cells.par_iter().map(|cell| cell.bound(seen, 0)).collect();
-    let level = |(cell, (_, radius)): (&Cell<'_>, &(f64, f64))| {
-        0.5 * (1.0 / tool_radius_mm + cell.patch.convex_per_mm) * radius * radius
-    };
-    let gouge_mm = cells.iter().zip(&whole).map(level).fold(0.0, f64::max);
+    let world = World::new(job, cuts, wanted.uncut_mm)?;
+    let seen = world.seen;
+    let cells = world.cells(surfaces, (patches, cuts), wanted)?;
+    let gouge_mm = cells.iter().map(|c| c.level_mm).fold(0.0, f64::max);
     // The highest first: what they come to need not be undercut by the others.
-    let mut order: Vec<usize> = (0..cells.len()).collect();
-    order.sort_unstable_by(|a, b| whole[*b].0.total_cmp(&whole[*a].0).then(a.cmp(b)));
+    let mut order: Vec<&Bounded<'_>> = cells.iter().collect();
+    order.sort_by(|a, b| b.height_mm.total_cmp(&a.height_mm));
     let mut highest = seen;
     for group in order.chunks(TOGETHER) {
-        let (first, enough) = (whole[group[0]].0, highest.max(enough_mm));
+        let (first, enough) = (group[0].height_mm, highest.max(wanted.enough_mm));
         if first <= enough {
             highest = highest.max(first);
             break;
         }
-        let bounds = group.par_iter().map(|k| cells[*k].bound(enough, DIVISIONS).0);
+        let bounds = group.par_iter().map(|c| c.cell.bound(enough, DIVISIONS, &mut Vec::new()).0);
         highest = bounds.reduce(|| highest, f64::max);
     }
     Ok(Hidden { scallop_mm: highest - seen, gouge_mm })
+}
+
+/// Bounds over the cells of samples, and where these are above limits.
+pub(super) struct Doubts {
+    /// What nothing in the cells stands above, mm, or [`Wanted::enough_mm`] where that is higher.
+    pub height_mm: f64,
+    /// What no gouge in the cells is deeper than, mm.
+    pub depth_mm: f64,
+    /// Samples whose cells may hold more than the limits, with the parts that do and the greater of the two bounds' shares
+    /// of its limit.
+    pub places: Vec<(usize, Patch, f64)>,
+}
+
+/// Where gouges deeper than `gouge_mm` or heights above [`Wanted::enough_mm`] may hide.
+pub(super) fn doubts(
+    surfaces: &[&dyn Surface],
+    job: &Job<'_>,
+    (patches, cuts): (&[Option<Patch>], &[Cut]),
+    wanted: Wanted,
+    gouge_mm: f64,
+) -> Result<Doubts, JobError> {
+    let world = World::new(job, cuts, wanted.uncut_mm)?;
+    let cells = world.cells(surfaces, (patches, cuts), wanted)?;
+    let enough = wanted.enough_mm;
+    let found: Vec<(f64, f64, Vec<(usize, Patch, f64)>)> = cells
+        .par_iter()
+        .map(|c| {
+            let depth = c.level_mm - cuts[c.sample].standoff_mm;
+            let (mut height, mut parts) = (c.height_mm, Vec::new());
+            if height > enough {
+                height = c.cell.bound(enough, DIVISIONS, &mut parts).0;
+            }
+            let mut places: Vec<_> =
+                parts.into_iter().map(|(part, bound)| (c.sample, part, bound / enough)).collect();
+            // Gouges are wide: the cell is divided evenly, and what stands too high there is found in the parts.
+            if depth > gouge_mm {
+                let share = depth / gouge_mm.max(f64::MIN_POSITIVE);
+                let parts = c.cell.patch.parts().into_iter().flat_map(|p| p.parts());
+                places = parts.filter(|p| c.cell.on_face(p)).map(|p| (c.sample, p, share)).collect();
+            }
+            (height, depth, places)
+        })
+        .collect();
+    let mut out = Doubts { height_mm: world.seen, depth_mm: 0.0, places: Vec::new() };
+    for (height, depth, places) in found {
+        out.height_mm = out.height_mm.max(height);
+        out.depth_mm = out.depth_mm.max(depth);
+        out.places.extend(places);
+    }
+    Ok(out)
+}
+
+/// A cell that is not divided, with its bounds.
+struct Bounded<'a> {
+    cell: Cell<'a>,
+    sample: usize,
+    /// What nothing in it stands above, mm.
+    height_mm: f64,
+    /// By how much a gouge may be deeper than at the sample, mm.
+    level_mm: f64,
+}
+
+/// Whether a sample is judged by the height that was left: one that something cut, of a machined face.
+pub(super) fn judged(job: &Job<'_>, cuts: &[Cut], uncut_mm: f64, k: usize) -> bool {
+    !job.samples[k].check_only && cuts[k].by.is_some() && cuts[k].standoff_mm <= uncut_mm
 }
 
 struct World<'a> {
@@ -130,7 +171,37 @@ struct World<'a> {
 /// Samples around a cell whose motions are tried first.
 const BESIDE: usize = 10;
 
-impl World<'_> {
+impl<'a> World<'a> {
+    fn new(job: &'a Job<'a>, cuts: &[Cut], uncut_mm: f64) -> Result<Self, JobError> {
+        let pieces = pieces(job.motions, job.cutter.length_mm().hypot(job.cutter.radius_mm()))?;
+        let tree = Tree::new(job.motions, &pieces, job.cutter.radius_mm());
+        let judged = (0..cuts.len()).filter(|k| judged(job, cuts, uncut_mm, *k));
+        let seen = judged.map(|k| cuts[k].standoff_mm).fold(0.0, f64::max);
+        Ok(World { job, body: Body { cutter: job.cutter, above_mm: 0.0 }, tree, pieces, seen })
+    }
+
+    /// The cells of the samples that are judged.
+    fn cells(
+        &'a self,
+        surfaces: &[&'a dyn Surface],
+        (patches, cuts): (&[Option<Patch>], &[Cut]),
+        wanted: Wanted,
+    ) -> Result<Vec<Bounded<'a>>, JobError> {
+        let groups = clusters(self.job.samples)?;
+        let cell = |k: usize, members: &[u32]| -> Option<Bounded<'a>> {
+            let patch = patches[k].filter(|_| judged(self.job, cuts, wanted.uncut_mm, k))?;
+            let surface = surfaces[self.job.samples[k].face as usize];
+            let own = cuts[k].by.map_or(0, |by| by.motion);
+            let cell = Cell { surface, world: self, patch, own, beside: self.beside(k, members, cuts) };
+            let (height_mm, radius) = cell.bound(self.seen, 0, &mut Vec::new());
+            let level_mm = 0.5 * (1.0 / wanted.tool_radius_mm + patch.convex_per_mm) * radius * radius;
+            Some(Bounded { cell, sample: k, height_mm, level_mm })
+        };
+        let of =
+            |members: &[u32]| members.iter().filter_map(|k| cell(*k as usize, members)).collect::<Vec<_>>();
+        Ok(groups.par_iter().flat_map_iter(|group| of(&group.members)).collect())
+    }
+
     /// The motions that cut the samples nearest to sample `k` among `members`: at a cusp they are the other side.
     fn beside(&self, k: usize, members: &[u32], cuts: &[Cut]) -> Vec<u32> {
         let here = self.job.samples[k].point;
@@ -278,33 +349,37 @@ impl Level {
 
 impl Cell<'_> {
     /// Bound on the heights over the cell, divided so often, and the cell's radius, mm; a bound that is not above
-    /// `enough` need not be sharper.
-    fn bound(&self, enough: f64, divisions: u32) -> (f64, f64) {
-        self.bound_of(&self.patch, None, enough, divisions)
+    /// `enough` need not be sharper. The last parts whose own bounds are above it are put into `above`.
+    fn bound(&self, enough: f64, divisions: u32, above: &mut Vec<(Patch, f64)>) -> (f64, f64) {
+        self.bound_of(&self.patch, None, enough, (divisions, above))
     }
 
     /// The same over a patch, from `motions` or, without, from all around.
-    fn bound_of(&self, patch: &Patch, motions: Option<&[u32]>, enough: f64, divisions: u32) -> (f64, f64) {
+    fn bound_of(
+        &self,
+        patch: &Patch,
+        motions: Option<&[u32]>,
+        enough: f64,
+        (divisions, above): (u32, &mut Vec<(Patch, f64)>),
+    ) -> (f64, f64) {
         let mut level = match Level::new(self, patch) {
             Ok(level) => level,
             Err(radius) => return (enough, radius),
         };
         let radius = level.radius;
-        if self.try_all(&mut level, motions, enough) || divisions == 0 {
+        let holds = self.try_all(&mut level, motions, enough);
+        if holds || divisions == 0 {
+            if !holds {
+                above.push((*patch, level.best));
+            }
             return (level.best, radius);
         }
-        let (likely, middle) = (level.likely(), patch.middle());
-        let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
+        let likely = level.likely();
         let mut divided = 0.0f64;
-        for (u, v) in [
-            ([u0, middle.u], [v0, middle.v]),
-            ([middle.u, u1], [v0, middle.v]),
-            ([u0, middle.u], [middle.v, v1]),
-            ([middle.u, u1], [middle.v, v1]),
-        ] {
-            let part = Patch { u, v, ..*patch };
+        for part in patch.parts() {
             if self.on_face(&part) {
-                divided = divided.max(self.bound_of(&part, Some(&likely), enough, divisions - 1).0);
+                let below = (divisions - 1, &mut *above);
+                divided = divided.max(self.bound_of(&part, Some(&likely), enough, below).0);
             }
         }
         (level.best.min(divided), radius)
@@ -356,11 +431,7 @@ impl Cell<'_> {
 
     /// Whether a raster of places of a patch meets the face.
     fn on_face(&self, patch: &Patch) -> bool {
-        const RASTER: u32 = 4;
-        let at =
-            |range: [f64; 2], k: u32| range[0] + (range[1] - range[0]) * f64::from(k) / f64::from(RASTER);
-        let place = |k: u32| -> Uv { uv(at(patch.u, k % (RASTER + 1)), at(patch.v, k / (RASTER + 1))) };
-        (0..(RASTER + 1) * (RASTER + 1)).any(|k| self.surface.contains(place(k)))
+        patch.raster().any(|place| self.surface.contains(place))
     }
 
     /// What one motion leaves above a point along a direction; none where that is not below `useful`.

@@ -8,7 +8,8 @@
 //!
 //! Tools are exact and so are the motions ([`crate::sweep::LinearMotion`]), but for 2e-5 mm where a turning
 //! tool is deepest twice within a small stretch. What is approximate is that the part is looked at in
-//! samples: [`hidden()`] bounds what can hide between them cell by cell, [`Density::bound`] quickly and loosely.
+//! samples: [`hidden()`] bounds what can hide between them cell by cell, [`Density::bound`] quickly and loosely, and [`refine`] puts
+//! samples where more than the limits can.
 //!
 //! What a single height per normal cannot say: an island that a tool leaves hanging above the height it cut
 //! is not seen, and the layer of stock is taken to be as high everywhere.
@@ -51,6 +52,7 @@ mod grid;
 mod hidden;
 mod job;
 mod piece;
+mod refine;
 mod sampling;
 pub mod stock;
 mod target;
@@ -63,5 +65,6 @@ pub use cut::cut;
 pub use density::{Density, Hidden};
 pub use hidden::{DIVISIONS, Wanted, hidden};
 pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
+pub use refine::{Measured, Refined, refine};
 pub use sampling::{Patch, Sampling, SamplingError, sample_surface};
 pub use verdict::{Bin, JudgeError, Kind, Limits, Verdict, Worst, judge};

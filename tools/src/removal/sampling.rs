@@ -45,6 +45,33 @@ impl Patch {
     pub(super) fn middle(&self) -> Uv {
         uv(0.5 * (self.u[0] + self.u[1]), 0.5 * (self.v[0] + self.v[1]))
     }
+
+    /// Its quarters.
+    pub(super) fn parts(&self) -> [Self; 4] {
+        let (middle, [[u0, u1], [v0, v1]]) = (self.middle(), [self.u, self.v]);
+        [
+            ([u0, middle.u], [v0, middle.v]),
+            ([middle.u, u1], [v0, middle.v]),
+            ([u0, middle.u], [middle.v, v1]),
+            ([middle.u, u1], [middle.v, v1]),
+        ]
+        .map(|(u, v)| Self { u, v, ..*self })
+    }
+
+    /// Its share of a patch that it is a part of.
+    pub(super) fn share_of(&self, whole: &Self) -> f64 {
+        let size = |p: &Self| (p.u[1] - p.u[0]) * (p.v[1] - p.v[0]);
+        if size(whole) > 0.0 { (size(self) / size(whole)).min(1.0) } else { 0.0 }
+    }
+
+    /// Places of a raster over it, its corners among them.
+    pub(super) fn raster(&self) -> impl Iterator<Item = Uv> + '_ {
+        const RASTER: u32 = 4;
+        let at =
+            |range: [f64; 2], k: u32| range[0] + (range[1] - range[0]) * f64::from(k) / f64::from(RASTER);
+        (0..(RASTER + 1) * (RASTER + 1))
+            .map(move |k| uv(at(self.u, k % (RASTER + 1)), at(self.v, k / (RASTER + 1))))
+    }
 }
 
 /// A sampling that cannot be made.

@@ -4,7 +4,8 @@ use crate::common::{ball, sample, toroidal, upright};
 use osculate_geom::analytic::{Cylinder, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::removal::{
-    Cut, Job, Patch, Sampling, Swept, Wanted, cut, hidden, sample_boundary, sample_surface,
+    Cut, Job, Measured, Patch, Refined, Sample, Sampling, Swept, Wanted, cut, hidden, refine,
+    sample_boundary, sample_surface,
 };
 use osculate_tools::{Cutter, Pose};
 
@@ -139,4 +140,74 @@ fn tips_of_trims_are_looked_at() {
     };
     let (inside, with_edge) = (highest(&sampling.samples), highest(&edge));
     assert!((with_edge - left).abs() < 1e-9 && inside < left, "{inside} {with_edge} {left}");
+}
+
+/// Samples put where limits may be exceeded, and how those came out: the highest and the deepest seen, with their bounds.
+fn refined(
+    surface: &dyn Surface,
+    spacing: f64,
+    (cutter, motions): (&Cutter, &[Swept]),
+    (scallop, gouge): (f64, f64),
+    most: usize,
+) -> (Measured, Refined) {
+    let sampling = sample_surface(surface, 0, spacing, 1_000_000).unwrap();
+    let job = Job { cutter, holder: None, motions, samples: &sampling.samples, stock_mm: 0.5, depth_mm: 1.0 };
+    let patches = sampling.patches.iter().copied().map(Some).collect();
+    let cuts = cut(&job, &|_| ()).expect("a good job");
+    let mut measured = Measured { samples: sampling.samples.clone(), patches, cuts };
+    let wanted = Wanted { uncut_mm: 0.4, enough_mm: scallop, tool_radius_mm: cutter.radius_mm() };
+    let refined = refine(&[surface], &job, &mut measured, (wanted, gouge), most).expect("a good job");
+    let area = |s: &[Sample]| s.iter().map(|s| s.area_mm2).sum::<f64>();
+    assert!((area(&measured.samples) - sampling.area_mm2).abs() < 1e-9 * sampling.area_mm2);
+    assert!(measured.samples.iter().all(|s| s.area_mm2 >= 0.0));
+    (measured, refined)
+}
+
+#[test]
+fn a_cusp_between_samples_is_found_by_samples_added_there() {
+    let (r, step) = (3.0f64, 0.61);
+    let motions = raster(step, 20, |x, y| upright(x, y - 0.13, 0.0));
+    let truth = r - (r * r - 0.25 * step * step).sqrt();
+    let (surface, cutter) = (square(3.0), ball(2.0 * r));
+    let top = |m: &Measured| m.cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
+    let measure = |limit: f64, most: usize| refined(&surface, 0.16, (&cutter, &motions), (limit, 0.01), most);
+    // Without more samples the cusp seems lower than it is.
+    let (before, none) = measure(0.999 * truth, 0);
+    assert!(top(&before) < 0.9995 * truth && none.added == 0 && none.left_out > 0, "{none:?}");
+    assert!(top(&before) + none.hidden.scallop_mm >= truth);
+    // A limit just below the cusp is seen to be exceeded, one just above to be kept.
+    let (over, some) = measure(0.9995 * truth, 1_000_000);
+    assert!(top(&over) > 0.9995 * truth && top(&over) <= truth + 1e-12 && some.added > 0);
+    let (under, kept) = measure(1.0005 * truth, 1_000_000);
+    assert!(top(&under) + kept.hidden.scallop_mm <= 1.0005 * truth && kept.left_out == 0, "{kept:?}");
+    assert!(top(&under) + kept.hidden.scallop_mm >= truth - 1e-12);
+    // With room for some only, what could not be looked at may hide still.
+    let (few, short) = measure(0.9995 * truth, 40);
+    assert!(short.added == 40 && short.left_out > 0 && few.samples.len() == before.samples.len() + 40);
+    assert!(top(&few) + short.hidden.scallop_mm >= truth);
+}
+
+#[test]
+fn a_gouge_between_samples_is_found_by_samples_added_there() {
+    // One pass digs in by this much, with its bottom between two rows of samples.
+    let (depth, r) = (0.012, 3.0);
+    let motions = [Swept {
+        from: upright(-10.0, 1.43, -depth),
+        to: upright(20.0, 1.6, -depth),
+        rapid: false,
+        block: 1,
+    }];
+    let (surface, cutter) = (square(3.0), ball(2.0 * r));
+    let deepest = |m: &Measured| m.cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max);
+    // Most of the face is not cut at all: gouges are looked for beside it.
+    let measure =
+        |limit: f64, most: usize| refined(&surface, 0.3, (&cutter, &motions), (f64::INFINITY, limit), most);
+    let (before, none) = measure(0.99995 * depth, 0);
+    assert!(deepest(&before) + none.hidden.gouge_mm >= depth, "{none:?}");
+    let (over, some) = measure(0.99995 * depth, 1_000_000);
+    assert!(deepest(&over) > 0.99995 * depth && deepest(&over) <= depth + 1e-12 && some.added > 0);
+    assert!(deepest(&before) < deepest(&over));
+    let (under, kept) = measure(1.0005 * depth, 1_000_000);
+    assert!(deepest(&under) + kept.hidden.gouge_mm <= 1.0005 * depth, "{kept:?}");
+    assert!(deepest(&under) + kept.hidden.gouge_mm >= depth - 1e-12);
 }
