@@ -1,5 +1,6 @@
 //! What ends a command early, and with which exit code.
 
+use osculate_geom::{Diagnostic, Severity};
 use std::path::{Path, PathBuf};
 
 /// A command that cannot be done, with the message for the user.
@@ -20,6 +21,16 @@ impl Failure {
     /// Something in a file.
     pub fn file(path: &Path, message: impl std::fmt::Display) -> Self {
         Self::Job(format!("{}: {message}", path.display()))
+    }
+
+    /// The failure with what was warned of before: it may be why.
+    pub fn warned(self, diagnostics: &[Diagnostic]) -> Self {
+        let heavy = diagnostics.iter().filter(|d| d.severity > Severity::Note);
+        let warnings: String = heavy.map(|d| format!("\n{d}")).collect();
+        match self {
+            Self::Job(text) => Self::Job(text + &warnings),
+            usage @ Self::Usage(_) => usage,
+        }
     }
 
     /// The exit code.

@@ -22,6 +22,7 @@ mod output;
 mod part;
 mod passes;
 mod ply;
+mod posted_setup;
 mod program;
 mod progress;
 mod render;

@@ -4,7 +4,7 @@ use crate::args::PartArgs;
 use crate::builtin::{self, Builtin};
 use crate::failure::{Failure, beside, read};
 use crate::job::{FaceChoice, Job, Normals};
-use osculate_geom::{Box3, Diagnostic, Point3, Severity, Side, Surface, Unit3};
+use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
 use osculate_surfaces::orient::Enclosure;
 use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface, orient, tessellate};
 use std::path::Path;
@@ -189,12 +189,7 @@ pub struct JobFaces {
 impl JobFaces {
     /// A failure with what was warned of when the part was read: it may be why.
     pub fn warned(&self, why: Failure) -> Failure {
-        let heavy = self.part.diagnostics.iter().filter(|d| d.severity > Severity::Note);
-        let warnings: String = heavy.map(|d| format!("\n{d}")).collect();
-        match why {
-            Failure::Job(text) => Failure::Job(text + &warnings),
-            usage @ Failure::Usage(_) => usage,
-        }
+        why.warned(&self.part.diagnostics)
     }
 }
 

@@ -14,6 +14,7 @@ use crate::nc::block::RotaryName;
 use crate::nc::writer::Writer;
 use crate::nc::{Coolant, Dialect, FeedWord, Orientation, Program, WriteError};
 use crate::setup::Setup;
+use crate::setup_comment;
 use crate::solve::SolveOptions;
 use crate::solve_error::SolveError;
 use crate::source::MoveSource;
@@ -371,5 +372,6 @@ fn comments(machine: &Machine, setup: &Setup, (tcp, planes): (bool, bool)) -> Ve
             lines.push(format!("posted for a gauge length of {:.4} mm", setup.gauge_length_mm));
         }
     }
+    lines.extend(setup_comment::lines(setup));
     lines
 }

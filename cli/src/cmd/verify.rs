@@ -6,6 +6,7 @@ use crate::nc;
 use crate::output;
 use crate::part;
 use crate::ply;
+use crate::posted_setup;
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
 use crate::stock_keys::{self, StockSummary};
@@ -122,7 +123,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         } else {
             diagnostics.extend(notes);
         }
-        let (setup, notes) = nc::setup(&job, &faces, &[])?;
+        let (setup, notes) = posted_setup::of_program(&job, &faces, &text, control.dialect)?;
         diagnostics.extend(notes);
         let read =
             nc::read_back(&text, &control, &setup, options.lenient).map_err(|e| Failure::file(file, e))?;
@@ -133,7 +134,8 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     if motions.is_empty() {
         return Err(Failure::file(file, "has no motion: at least two positions are needed"));
     }
-    diagnostics.extend(meet(file, &motions, &faces)?);
+    let strange = meet(file, &motions, &faces).map_err(|why| why.warned(&diagnostics))?;
+    diagnostics.extend(strange);
     let stage = Stage::begin("verify");
     let v = verify::run(&job, &faces, &motions, source, None, &|f| stage.at(f))?;
     let wall = stage.end();

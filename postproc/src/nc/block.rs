@@ -64,7 +64,7 @@ impl Coolant {
 pub struct Program {
     /// Its name; letters, digits and underscores survive.
     pub name: String,
-    /// Lines for people at its head.
+    /// Comments at its head.
     pub comments: Vec<String>,
     /// Tool-centre-point control is on.
     pub tcp: bool,
