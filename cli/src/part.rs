@@ -5,10 +5,11 @@ use crate::builtin::{self, Builtin};
 use crate::failure::{Failure, beside, read};
 use crate::job::{FaceChoice, Job, Normals};
 use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
+use osculate_productivity::plan::Walls;
 use osculate_surfaces::orient::Enclosure;
 use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface, orient, tessellate};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Certainty below which a vote on the material side does not count.
 const CLEAR_VOTE: f64 = 0.5;
@@ -184,6 +185,8 @@ pub struct JobFaces {
     pub faces: Vec<LoadedFace>,
     /// Faces that the tool must not touch.
     pub check: Vec<LoadedFace>,
+    /// The check faces as hops see them, once they are asked for.
+    pub walls: OnceLock<Arc<Walls>>,
 }
 
 impl JobFaces {
@@ -242,7 +245,7 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
             ),
         ));
     }
-    Ok(JobFaces { part, faces, check })
+    Ok(JobFaces { part, faces, check, walls: OnceLock::new() })
 }
 
 /// The single face of a job.

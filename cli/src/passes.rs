@@ -6,16 +6,17 @@ use crate::job::{Job, LeadKey};
 use crate::look::Look;
 use crate::nc;
 use crate::output;
-use crate::part::{self, JobFaces};
+use crate::part::{self, JobFaces, LoadedFace};
 use osculate_geom::{Box3, Diagnostic, Surface};
 use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
-    Leaning, Linked, Links, LocalLead, Passes, Strategy, Task, Tolerance, link, predicted_length_mm,
-    run as plan_face,
+    Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Tolerance, Walls, link,
+    predicted_length_mm, run as plan_face,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::{Cutter, Lean};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Leads tried where the job leaves the choice to the program, degrees.
 pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
@@ -32,24 +33,53 @@ pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Result<Links, Fail
         obstacles = obstacles.union(&part::bounds(f));
     }
     let feed_mm_min = job.feed_mm_min()?;
-    let length = |key: &str, given: Option<f64>, default: f64| match given {
-        Some(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Some(v) => Err(Failure::file(&job.path, format!("[setup] {key} = {v} must be a positive number"))),
-        None => Ok(default),
-    };
     Ok(Links {
         obstacles,
-        clearance_mm: length("clearance_mm", job.setup.clearance_mm, 10.0)?,
-        approach_mm: length("approach_mm", job.setup.approach_mm, 2.0)?,
+        clearance_mm: length(job, "clearance_mm", job.setup.clearance_mm)?.unwrap_or(10.0),
+        approach_mm: approach_mm(job)?,
         cutter: *cutter,
+        holder: job.holder()?,
         feed_mm_min,
         plunge_mm_min: 0.5 * feed_mm_min,
     })
 }
 
+/// A length of `[setup]`, which must be positive.
+fn length(job: &Job, key: &str, given: Option<f64>) -> Result<Option<f64>, Failure> {
+    match given {
+        Some(v) if !(v.is_finite() && v > 0.0) => {
+            Err(Failure::file(&job.path, format!("[setup] {key} = {v} must be a positive number")))
+        }
+        other => Ok(other),
+    }
+}
+
+fn approach_mm(job: &Job) -> Result<f64, Failure> {
+    Ok(length(job, "approach_mm", job.setup.approach_mm)?.unwrap_or(2.0))
+}
+
+/// Faces as hops see them.
+fn walls_of<'a>(job: &Job, faces: impl Iterator<Item = &'a LoadedFace>) -> Result<Walls, Failure> {
+    // Below the height of a hop, which passes over neighbours of the faces to machine.
+    let clearance_mm = length(job, "check_clearance_mm", job.setup.check_clearance_mm)?
+        .map_or_else(|| approach_mm(job).map(|a| 0.5 * a), Ok)?;
+    let named: Vec<Named<'_>> = faces.map(|f| Named { face: &f.id, surface: &*f.surface }).collect();
+    Walls::of(&named, clearance_mm)
+        .map_err(|e| Failure::file(&job.path, format!("faces that hops keep off: {e}")))
+}
+
+/// The check faces as hops see them, made once for all plans of a job.
+fn walls(job: &Job, faces: &JobFaces) -> Result<Arc<Walls>, Failure> {
+    if let Some(made) = faces.walls.get() {
+        return Ok(Arc::clone(made));
+    }
+    let walls = walls_of(job, faces.check.iter())?;
+    Ok(Arc::clone(faces.walls.get_or_init(|| Arc::new(walls))))
+}
+
 /// Passes joined to a path.
 pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
-    Ok(link(&passes.passes, &links(job, faces, cutter)?))
+    Ok(link(&passes.passes, &links(job, faces, cutter)?, &*walls(job, faces)?))
 }
 
 /// A linked path with the tool and spindle of the job.
@@ -131,7 +161,10 @@ pub fn each_face(
         {
             let empty = cl_path(job, &Linked::default())?;
             let (done, links, name) = (out.passes.clone(), links(job, faces, cutter)?, title(job));
-            let text = move || nc::cl_text(&ClPath { moves: link(&done, &links).path.moves, ..empty }, &name);
+            let walls = walls(job, faces)?;
+            let text = move || {
+                nc::cl_text(&ClPath { moves: link(&done, &links, &walls).path.moves, ..empty }, &name)
+            };
             keep_partial(folder, text, format!("the passes of {} of {n} faces", k + 1));
         }
     }

@@ -200,6 +200,7 @@ fn roughing_keeps_its_allowance() {
         clearance_mm: 5.0,
         approach_mm: 1.0,
         cutter: TOROIDAL.cutter(),
+        holder: None,
         feed_mm_min: 1000.0,
         plunge_mm_min: 400.0,
     };

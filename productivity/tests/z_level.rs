@@ -23,6 +23,7 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         clearance_mm: 5.0,
         approach_mm: 1.0,
         cutter: *cutter,
+        holder: None,
         feed_mm_min: 1000.0,
         plunge_mm_min: 400.0,
     };

@@ -4,10 +4,12 @@
 //! sphere (grown by the clearance) on the side the axis points to; there nothing of the part can meet the tool,
 //! whose body lies beyond the tip. From the pole of that plane the axis swings over the sphere, always pointing
 //! outward, to the pole of the next pass and down again. Passes that begin near the end of the one before are
-//! joined by a hop instead: up along the normal, across, and down; where the tool would meet another wall of the part on
-//! that way, up and down along its axis; where it would there too, by a retract.
+//! joined by a hop instead: up along the normal, across, and down; where cutter or holder would meet another wall of the part
+//! on that way, or come too near to a face that is not machined, up and down along the axis; where they would there too,
+//! by a retract.
 
 use super::around::Cloud;
+use super::walls::Walls;
 use super::{CcPoint, Pass};
 use osculate_geom::{Box3, Point3, Unit3, Vec3};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
@@ -25,6 +27,8 @@ pub struct Links {
     pub approach_mm: f64,
     /// The cutter.
     pub cutter: Cutter,
+    /// The holder, a body whose lower end sits where the cutter's length ends.
+    pub holder: Option<Cutter>,
     /// Feed of the tip on the part.
     pub feed_mm_min: f64,
     /// Feed on approaches.
@@ -58,6 +62,7 @@ const LOOKS: u32 = 6;
 
 struct Builder<'a> {
     links: &'a Links,
+    walls: &'a Walls,
     cloud: Cloud,
     out: Linked,
     centre: Point3,
@@ -136,16 +141,31 @@ impl Builder<'_> {
     fn hop_over(&self, from: &CcPoint, to: &CcPoint) -> Option<[Pose; 2]> {
         let height = self.links.approach_mm;
         let lift = |p: &CcPoint| Pose { tip: p.pose.tip + p.normal.into_inner() * height, axis: p.pose.axis };
-        let cutter = &self.links.cutter;
-        // What the tool is into the points of the contacts' own neighbourhood is no obstacle.
-        let limit = [from, to].iter().map(|p| self.cloud.depth_mm(cutter, &p.pose)).fold(0.0, f64::max)
-            + SLACK * cutter.radius_mm();
+        let ends = [from.pose, to.pose];
+        let slack_mm = SLACK * self.links.cutter.radius_mm();
+        let cutter = (&self.links.cutter, 0.0);
+        let holder = self.links.holder.as_ref().map(|h| (h, self.links.cutter.length_mm()));
+        // Of each body how far above the tip it sits, and how deep it is in at the ends: what the tool is into the points of
+        // the contacts' own neighbourhood is no obstacle.
+        let bodies = [Some(cutter), holder].into_iter().flatten().map(|(body, up_mm)| {
+            let ends = ends.map(|p| p.retracted(up_mm));
+            let limit = ends.iter().map(|p| self.cloud.depth_mm(body, p)).fold(0.0, f64::max) + slack_mm;
+            (body, up_mm, ends, limit)
+        });
+        let bodies: Vec<_> = bodies.collect();
+        let is_clear = |pose: &Pose| {
+            bodies.iter().all(|(body, up_mm, ends, limit)| {
+                let pose = pose.retracted(*up_mm);
+                self.cloud.depth_mm(body, &pose) <= *limit
+                    && self.walls.cleared_by(body, &pose, ends, slack_mm)
+            })
+        };
         let clear = |[up, over]: &[Pose; 2]| {
             [(from.pose, *up), (*up, *over), (to.pose, *over)].iter().all(|(a, b)| {
                 let motion = LinearMotion { from: *a, to: *b };
                 (1..=LOOKS).all(|k| {
                     let now = motion.at(f64::from(k) / f64::from(LOOKS));
-                    now.is_some_and(|now| self.cloud.depth_mm(cutter, &now.pose) <= limit)
+                    now.is_some_and(|now| is_clear(&now.pose))
                 })
             })
         };
@@ -185,13 +205,13 @@ fn near(links: &Links, from: &CcPoint, to: &CcPoint) -> bool {
         && from.pose.axis.angle(&to.pose.axis) <= HOP_SWING
 }
 
-/// Joins passes in their order.
+/// Joins passes in their order, by hops that keep off `walls`.
 #[must_use]
-pub fn link(passes: &[Pass], links: &Links) -> Linked {
+pub fn link(passes: &[Pass], links: &Links, walls: &Walls) -> Linked {
     let centre = links.obstacles.centre();
     let radius = 0.5 * links.obstacles.diagonal_mm() + links.clearance_mm;
     let cloud = Cloud::of(passes, NEAR_POINTS * links.cutter.radius_mm());
-    let mut b = Builder { links, cloud, out: Linked::default(), centre, radius };
+    let mut b = Builder { links, walls, cloud, out: Linked::default(), centre, radius };
     let mut last: Option<CcPoint> = None;
     for (k, pass) in passes.iter().enumerate() {
         let (Some(first), Some(end)) = (pass.points.first(), pass.points.last()) else { continue };
@@ -218,7 +238,9 @@ pub fn link(passes: &[Pass], links: &Links) -> Linked {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use osculate_geom::uv;
+    use crate::plan::Named;
+    use osculate_geom::analytic::Line;
+    use osculate_geom::{Extruded, Interval, uv};
     use osculate_tools::CutterSpec;
 
     const TROUGH_MM: f64 = 4.0;
@@ -248,12 +270,13 @@ mod tests {
             clearance_mm: 5.0,
             approach_mm: 4.0 * (TROUGH_MM - BALL_MM),
             cutter,
+            holder: None,
             feed_mm_min: 1000.0,
             plunge_mm_min: 500.0,
         };
         let passes: Vec<Pass> =
             (-18..=18).map(|k| pass(f64::from(k) * 5.0f64.to_radians(), k % 2 == 0)).collect();
-        let linked = link(&passes, &links);
+        let linked = link(&passes, &links, &Walls::default());
         for w in linked.path.moves.windows(2) {
             let motion = LinearMotion { from: w[0].pose, to: w[1].pose };
             for k in 0..=20 {
@@ -270,5 +293,96 @@ mod tests {
         // All the same passes are joined by hops: nothing goes up to the sphere but at both ends.
         let rapid = linked.path.moves.iter().filter(|m| m.motion == Motion::Rapid).count();
         assert_eq!(rapid, 5);
+    }
+
+    /// Passes along y, `apart` from each other, over the plane z = 0 with a ball that stands upright.
+    fn over_plane(apart: f64, radius: f64) -> Vec<Pass> {
+        let one = |x: f64, back: bool| {
+            let at = |k: u32| {
+                let y = if back { f64::from(8 - k) } else { f64::from(k) };
+                let point = Point3::new(x, y, 0.0);
+                let pose = Pose { tip: point, axis: Vec3::z_axis() };
+                CcPoint { uv: uv(x, y), point, normal: Vec3::z_axis(), pose, width_mm: radius }
+            };
+            Pass { points: (0..=8).map(at).collect(), closed: false }
+        };
+        (0..3).map(|k| one((f64::from(k) - 0.5) * apart, k % 2 == 1)).collect()
+    }
+
+    #[test]
+    fn a_hop_keeps_off_a_wall_that_is_not_machined() {
+        const RADIUS: f64 = 6.0;
+        const APART: f64 = 8.8;
+        let passes = over_plane(APART, RADIUS);
+        let links = Links {
+            obstacles: Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
+            clearance_mm: 5.0,
+            approach_mm: 1.2,
+            cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 })
+                .unwrap(),
+            holder: None,
+            feed_mm_min: 1000.0,
+            plunge_mm_min: 500.0,
+        };
+        // A thin wall on the plane x = 0, between the first two passes.
+        let joined = |height: f64, clearance: f64| {
+            let foot = Line::new(Point3::origin(), Vec3::y(), Interval::new(-2.0, 10.0)).unwrap();
+            let wall = Extruded::new(foot, Vec3::z(), Interval::new(0.0, height)).unwrap();
+            let named = Named { face: "wall", surface: &wall };
+            link(&passes, &links, &Walls::of(&[named], clearance).unwrap())
+        };
+        // How far the ball's surface is off the wall at the nearest, in the closed form.
+        let gap = |linked: &Linked, height: f64| {
+            let motions = linked.path.moves.windows(2);
+            let motions = motions.map(|w| LinearMotion { from: w[0].pose, to: w[1].pose });
+            let at = motions.flat_map(|m| (0..=40).map(move |k| m.at(f64::from(k) / 40.0).unwrap().pose.tip));
+            at.map(|tip| {
+                let c = tip + Vec3::z() * RADIUS;
+                let nearest = Point3::new(0.0, c.y.clamp(-2.0, 10.0), c.z.clamp(0.0, height));
+                (c - nearest).norm() - RADIUS
+            })
+            .fold(f64::INFINITY, f64::min)
+        };
+        let rapid = |linked: &Linked| linked.path.moves.iter().filter(|m| m.motion == Motion::Rapid).count();
+        let hops = link(&passes, &links, &Walls::default());
+        // A wall higher than the hop: a hop that does not see it goes into it, one that does is none. The hop from the second
+        // pass to the third stays.
+        assert!(gap(&hops, 1.5) < -0.29, "{}", gap(&hops, 1.5));
+        let seen = joined(1.5, 0.5);
+        let at_passes = (0.5 * APART).hypot(RADIUS - 1.5) - RADIUS;
+        assert!(gap(&seen, 1.5) >= at_passes - 1e-9 && rapid(&seen) > rapid(&hops), "{}", gap(&seen, 1.5));
+        assert_eq!(
+            seen.path.moves.iter().rev().take(20).collect::<Vec<_>>(),
+            hops.path.moves.iter().rev().take(20).collect::<Vec<_>>()
+        );
+        // One that leaves 0.3 mm is passed over with a clearance of 0.2, not of 0.5.
+        assert_eq!(joined(0.9, 0.2), hops);
+        assert!((gap(&hops, 0.9) - 0.3).abs() < 1e-9);
+        assert_eq!(rapid(&joined(0.9, 0.5)), rapid(&seen));
+    }
+
+    #[test]
+    fn a_holder_keeps_off_a_wall_too() {
+        let passes = over_plane(6.0, 4.0);
+        let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 10.0 }).unwrap();
+        let with = |holder: Option<Cutter>| Links {
+            obstacles: Box3 { min: Point3::new(-3.0, 0.0, 0.0), max: Point3::new(9.0, 12.2, 20.0) },
+            clearance_mm: 5.0,
+            approach_mm: 1.2,
+            cutter: ball,
+            holder,
+            feed_mm_min: 1000.0,
+            plunge_mm_min: 500.0,
+        };
+        // A post above the cutter's length, behind the middle between the ends of the first two passes: 5.05 mm off their axes, and
+        // 4.2 mm off that of a tool half way between.
+        let foot = Line::new(Point3::new(0.0, 12.2, 12.0), Vec3::x(), Interval::new(-0.2, 0.2)).unwrap();
+        let post = Extruded::new(foot, Vec3::z(), Interval::new(0.0, 8.0)).unwrap();
+        let walls = Walls::of(&[Named { face: "post", surface: &post }], 0.5).unwrap();
+        let without = link(&passes, &with(None), &walls);
+        assert_eq!(without, link(&passes, &with(None), &Walls::default()));
+        let holder = Some(Cutter::cylinder(9.0, 30.0).unwrap());
+        assert_eq!(link(&passes, &with(holder), &Walls::default()), without);
+        assert_ne!(link(&passes, &with(holder), &walls), without);
     }
 }

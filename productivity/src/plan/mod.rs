@@ -21,6 +21,7 @@ mod resample;
 mod seat;
 mod strategy;
 mod walk;
+mod walls;
 
 pub use contour::contour_2cl;
 pub use drop::{DropTask, Named, RoughTask, Roughing, Sizes, drop_cutter, gradient_3c, z_level};
@@ -30,6 +31,7 @@ pub use level::{curvature_5c, isoplanar, isoscallop, streamline};
 pub use link::{Linked, Links, link};
 pub use predict::predicted_length_mm;
 pub use strategy::{Strategy, run};
+pub use walls::Walls;
 
 use osculate_geom::{Axis, Diagnostic, Point3, Surface, Unit3, Uv};
 use osculate_tools::strip::StripError;

@@ -1,7 +1,7 @@
 //! Passes over one face, joined to a path around the face's box.
 
 use osculate_geom::{Box3, Surface};
-use osculate_productivity::plan::{Links, Pass, link};
+use osculate_productivity::plan::{Links, Pass, Walls, link};
 use osculate_tools::Cutter;
 use osculate_tools::cl::ClPath;
 
@@ -19,8 +19,9 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         clearance_mm: 5.0,
         approach_mm: 2.0,
         cutter: *cutter,
+        holder: None,
         feed_mm_min: 1000.0,
         plunge_mm_min: 500.0,
     };
-    link(passes, &links).path
+    link(passes, &links, &Walls::default()).path
 }
