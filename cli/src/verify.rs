@@ -15,6 +15,8 @@ const MAX_SAMPLES: usize = 1_000_000;
 const CHECK_COARSER: f64 = 4.0;
 /// Samples that are added at most, of the even ones.
 const MOST_ADDED: usize = 4;
+/// The share of `max_samples` that the even ones take at most.
+const MOST_EVEN: f64 = 0.8;
 /// The share of a verification's time that the even samples take, for its progress.
 const EVEN_SHARE: f64 = 0.7;
 /// Samples across the narrowest usual strip.
@@ -183,7 +185,7 @@ pub fn run(
     let area: f64 = faces.faces.iter().map(crate::part::area).sum();
     let check_area: f64 = faces.check.iter().map(crate::part::area).sum();
     let mut diagnostics = Vec::new();
-    let coarsest = ((area + check_area / (CHECK_COARSER * CHECK_COARSER)) / max as f64).sqrt();
+    let coarsest = ((area + check_area / (CHECK_COARSER * CHECK_COARSER)) / (MOST_EVEN * max as f64)).sqrt();
     let spacing = wanted.max(coarsest);
     if spacing > 1.01 * wanted {
         diagnostics.push(Diagnostic::warning(

@@ -211,7 +211,8 @@ impl Cutter {
             return m.near(rho_mm, z_mm).distance;
         }
         let (x, y) = (rho_mm - self.core_mm(), self.corner - z_mm);
-        (if x > 0.0 && y > 0.0 { x.hypot(y) } else { x.max(y) }) - self.corner
+        // Millimetres neither overflow nor underflow: the plain form, several times faster than hypot.
+        (if x > 0.0 && y > 0.0 { (x * x + y * y).sqrt() } else { x.max(y) }) - self.corner
     }
 
     /// Signed distance of a point to the cutter in a pose, see [`Cutter::local_distance`].
