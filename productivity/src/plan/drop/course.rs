@@ -58,18 +58,6 @@ impl Course {
         };
         self.nodes.get(first..last).into_iter().flatten().map(off).fold(0.0, f64::max)
     }
-
-    /// The distance of a place, and the length at which the course is that near.
-    pub(super) fn nearest(&self, c: [f64; 2]) -> (f64, f64) {
-        let mut best = (f64::INFINITY, 0.0);
-        for (k, w) in self.nodes.windows(2).enumerate() {
-            let (d, t) = from_piece(c, w[0], w[1]);
-            if d < best.0 {
-                best = (d, self.lengths[k] + t * (self.lengths[k + 1] - self.lengths[k]));
-            }
-        }
-        best
-    }
 }
 
 /// The distance of a place from a straight piece, and how far along that is, 0 to 1.
@@ -92,7 +80,7 @@ mod tests {
         assert_eq!((c.at(2.0), c.at(5.0), c.at(8.0)), ([2.0, 0.0], [3.0, 2.0], [3.0, 5.0]));
         // The corner over the chord of a 3-4-5 triangle.
         assert!((c.stray(0.0, 7.0) - 2.4).abs() < 1e-12 && c.stray(3.5, 6.0) == 0.0);
-        assert_eq!(c.nearest([4.0, 1.0]), (1.0, 4.0));
+        assert_eq!(from_piece([4.0, 1.0], [3.0, 0.0], [3.0, 4.0]), (1.0, 0.25));
         assert_eq!(Course::through([[1.0, 1.0], [1.0, 1.0]]), None);
     }
 }

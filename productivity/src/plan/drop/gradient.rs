@@ -67,8 +67,12 @@ pub fn gradient_3c(task: &DropTask<'_>) -> Result<Passes, PlanError> {
     let passes = in_rounds(&ground, &mut wants, &mut lost, |wants| {
         let courses = lay(&ground, wants)?;
         let passes = courses.par_iter().flat_map_iter(|c| trace::along(&ground, c)).collect();
-        let off = move |w: &Want| courses.iter().map(|c| c.nearest(w.at).0).fold(f64::INFINITY, f64::min);
-        Ok(Round { passes, off: Box::new(off) })
+        let shares = move |wants: &[Want]| {
+            let mut laid = Laid::new(wants);
+            courses.iter().for_each(|c| laid.add(c));
+            laid.into_shares()
+        };
+        Ok(Round { passes, shares: Box::new(shares) })
     })?;
     let mut out = told(&ground, in_order(passes), &lost);
     if let Some(r) = fits {

@@ -167,15 +167,23 @@ impl<'a> Drops<'a> {
         at[2] - if b.is_finite() { a + (b - a) * f } else { a }
     }
 
-    /// The highest that any seed holds the tip over `c`: a height below the true one by what lies between seeds.
-    pub(super) fn coarse(&self, c: [f64; 2]) -> f64 {
-        let mut best = f64::NEG_INFINITY;
-        // What stands below the axis is as a rule near the highest, and most other bins are then seen to be lower.
-        if let [Some(i), Some(j)] = [0, 1].map(|k| self.own_bin(k, c[k])) {
-            self.of_row(j, i..i + 1).iter().for_each(|s| best = best.max(self.held(s, c)));
-        }
-        self.each(c, &mut best, |s, best| *best = best.max(self.held(s, c)));
-        best
+    /// Whether any seed holds the tip over `c` above a height; between seeds it may be held higher.
+    pub(super) fn is_above(&self, c: [f64; 2], height: f64) -> bool {
+        let (mut floor, mut above) = (height, false);
+        self.each(c, &mut floor, |s, floor| {
+            if !above && self.held(s, c) > height {
+                // Nothing else needs to be looked at.
+                (above, *floor) = (true, f64::INFINITY);
+            }
+        });
+        above
+    }
+
+    /// The highest that the seeds of the bin at `c` hold the tip there. What stands below the axis is as a rule near the highest,
+    /// and most other bins are then seen to be lower.
+    fn below_axis(&self, c: [f64; 2]) -> f64 {
+        let [Some(i), Some(j)] = [0, 1].map(|k| self.own_bin(k, c[k])) else { return f64::NEG_INFINITY };
+        self.of_row(j, i..i + 1).iter().map(|s| self.held(s, c)).fold(f64::NEG_INFINITY, f64::max)
     }
 
     fn own_bin(&self, side: usize, x: f64) -> Option<usize> {
@@ -205,7 +213,7 @@ impl<'a> Drops<'a> {
     }
 
     /// Every seed that may hold the tip over `c` higher than `floor`, which may rise on the way.
-    fn each(&self, c: [f64; 2], floor: &mut f64, mut f: impl FnMut(&Seed, &mut f64)) {
+    fn each<'s>(&'s self, c: [f64; 2], floor: &mut f64, mut f: impl FnMut(&'s Seed, &mut f64)) {
         let across = self.bins(0, c[0]);
         for j in self.bins(1, c[1]) {
             let dy = self.beside(1, j, c[1]);
@@ -219,37 +227,36 @@ impl<'a> Drops<'a> {
 
     /// Where the tool rests over `c`; None where nothing is below it.
     pub(super) fn rest(&self, c: [f64; 2]) -> Option<Rest> {
-        let best = self.coarse(c);
-        if best == f64::NEG_INFINITY {
-            return None;
-        }
         // Places that may still win once climbed: within what a seed can be off by half its spacing up a slope of one.
         let slack = self.spacing;
-        let mut near: Vec<(f64, Seed)> = Vec::new();
+        let mut best = self.below_axis(c);
+        let mut near: Vec<(f64, &Seed)> = Vec::new();
         self.each(c, &mut (best - slack), |s, least| {
             let h = self.held(s, c);
-            if h >= *least {
-                near.push((h, *s));
+            if h >= *least && h > f64::NEG_INFINITY {
+                near.push((h, s));
+                best = best.max(h);
+                *least = best - slack;
             }
         });
-        near.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut starts: Vec<Seed> = Vec::new();
-        for (_, s) in near {
+        near.retain(|(h, _)| *h >= best - slack);
+        let mut won: Option<Rest> = None;
+        for _ in 0..CLIMBS {
+            // The first of the highest.
+            let highest = near.iter().copied().reduce(|a, b| if b.0 > a.0 { b } else { a });
+            let Some((_, s)) = highest else { break };
+            let rest = if s.is_rim() { self.on_rim(s, c) } else { self.climb(s, c) };
+            if won.is_none_or(|w| rest.tip >= w.tip) {
+                won = Some(rest);
+            }
             // A rim may hold the tool where the face beside it does not.
-            let apart = |o: &Seed| {
+            near.retain(|(_, o)| {
                 o.face != s.face
                     || o.is_rim() != s.is_rim()
                     || (o.at[0] - s.at[0]).hypot(o.at[1] - s.at[1]) > 4.0 * self.spacing
-            };
-            if starts.iter().all(apart) {
-                starts.push(s);
-                if starts.len() == CLIMBS {
-                    break;
-                }
-            }
+            });
         }
-        let tips = starts.iter().map(|s| if s.is_rim() { self.on_rim(s, c) } else { self.climb(s, c) });
-        tips.max_by(|a, b| a.tip.total_cmp(&b.tip))
+        won
     }
 
     /// The tool on the nearest place of a rim's piece, or higher up on the face beside it.

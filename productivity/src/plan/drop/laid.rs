@@ -87,6 +87,11 @@ impl<'a> Laid<'a> {
         }
     }
 
+    /// How far places are off the nearest course, of the reach that they are taken in with; infinite far from all.
+    pub(super) fn into_shares(self) -> Vec<f64> {
+        self.ratio
+    }
+
     /// Counts a place as taken in, whether it is or not.
     pub(super) fn give_up(&mut self, k: usize) {
         self.ratio[k] = 0.0;

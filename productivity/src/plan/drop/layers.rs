@@ -9,7 +9,7 @@
 use super::clear::Clearing;
 use super::course::Course;
 use super::height::Drops;
-use super::{DropTask, Ground, Lines, Named, WORTH_A_WORD, frame::Frame, seeds, trace};
+use super::{DropTask, Ground, Lines, Named, WORTH_A_WORD, areas, frame::Frame, seeds, trace};
 use crate::plan::{CcPoint, Linked, Links, Pass, Passes, PlanError, Tolerance};
 use osculate_geom::{Box3, Diagnostic, Point3, Surface, Unit3, Vec3};
 use osculate_tools::{Cutter, CutterSpec};
@@ -111,7 +111,7 @@ pub fn z_level(task: &RoughTask<'_>) -> Result<Roughing, PlanError> {
     let drop = DropTask { faces, check, cutter: &grown, axis, feed, tolerance, progress: task.progress };
     let surfaces: Vec<&dyn Surface> = faces.iter().chain(check).map(|n| n.surface).collect();
     let frame = Frame::new(axis, &feed);
-    let (seeds, spacing, extent) = seeds(&drop, &surfaces, &frame)?;
+    let (seeds, spacing, extent) = seeds(&drop, (&surfaces, &areas(&surfaces)), &frame)?;
     let drops = Drops::new(&surfaces, &grown, frame, seeds, spacing);
     let ground = Ground {
         task: &drop,

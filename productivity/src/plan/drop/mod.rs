@@ -101,6 +101,16 @@ impl Lines {
         }
     }
 
+    /// A place nearer to a pass than this part of its reach, and not right under it, is not measured: what it keeps grows with the
+    /// square of the distance, so that a place further out would tell first if leading order were wrong by as much. Gradient
+    /// lines turn beside a place, which leading order does not know.
+    const fn near(self) -> f64 {
+        match self {
+            Self::Planes => 0.7,
+            Self::Gradient => 0.0,
+        }
+    }
+
     /// Most places to measure, over all faces.
     const fn most_judged(self) -> f64 {
         match self {
@@ -184,7 +194,7 @@ pub fn drop_cutter(task: &DropTask<'_>) -> Result<Passes, PlanError> {
             return Err(too_many(task));
         }
         let passes = trace::passes(&ground, wants, &levels);
-        Ok(Round { passes, off: Box::new(move |w| off(&levels, w)) })
+        Ok(Round { passes, shares: Box::new(move |wants| shares(&levels, wants)) })
     })?;
     Ok(told(&ground, passes, &lost))
 }
@@ -248,15 +258,18 @@ fn areas(surfaces: &[&dyn Surface]) -> Vec<f64> {
 type Seeds = (Vec<Seed>, f64, [[f64; 2]; 2]);
 
 /// Seeds on all faces and their rims.
-fn seeds(task: &DropTask<'_>, surfaces: &[&dyn Surface], frame: &Frame) -> Result<Seeds, PlanError> {
+fn seeds(
+    task: &DropTask<'_>,
+    (surfaces, areas): (&[&dyn Surface], &[f64]),
+    frame: &Frame,
+) -> Result<Seeds, PlanError> {
     let radius = task.cutter.radius_mm();
-    let areas = areas(surfaces);
     let all: f64 = areas.iter().sum();
     let (mut seeds, mut spacing): (Vec<Seed>, f64) = (Vec::new(), 0.0);
     // Between seeds on an edge the tool sinks by the sagitta of its radius.
     let along_rim = (SEEDS * radius).min((2.0 * radius * task.tolerance.gouge_mm).sqrt());
     for (k, surface) in surfaces.iter().enumerate() {
-        let sampling = sampled((task, surfaces, &areas), k, SEEDS * radius, [MOST_SEEDS, all])?;
+        let sampling = sampled((task, surfaces, areas), k, SEEDS * radius, [MOST_SEEDS, all])?;
         spacing = spacing.max(sampling.density.spacing_mm);
         seeds.extend(sampling.samples.iter().map(|s| Seed {
             at: frame.of(&s.point),
@@ -279,10 +292,10 @@ fn ground<'a>(
     lines: Lines,
 ) -> Result<Ground<'a>, PlanError> {
     let frame = Frame::new(task.axis, &task.feed);
-    let (seeds, spacing, _) = seeds(task, surfaces, &frame)?;
+    let areas = areas(surfaces);
+    let (seeds, spacing, _) = seeds(task, (surfaces, &areas), &frame)?;
     let drops = Drops::new(surfaces, task.cutter, frame, seeds, spacing);
     let strip = 2.0 * (2.0 * task.tolerance.scallop_mm * task.cutter.radius_mm()).sqrt();
-    let areas = areas(surfaces);
     let machined: f64 = areas[..task.faces.len()].iter().sum();
     let over = |part: f64, most: f64| -> Result<(Vec<Sample>, f64), PlanError> {
         let (mut samples, mut spacing): (Vec<Sample>, f64) = (Vec::new(), 0.0);
@@ -343,11 +356,14 @@ fn rim(surface: &dyn Surface, face: u32, (frame, spacing_mm): (&Frame, f64), see
     seeds.extend(surface.turns().into_iter().map(see));
 }
 
-/// How far a place is off the nearest of levels, mm.
-fn off(levels: &[f64], w: &Want) -> f64 {
-    let k = levels.partition_point(|z| *z < w.at[1]);
-    let near = [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|k| levels.get(k));
-    near.map(|z| (z - w.at[1]).abs()).fold(f64::INFINITY, f64::min)
+/// How far places are off the nearest of levels, of their reach.
+fn shares(levels: &[f64], wants: &[Want]) -> Vec<f64> {
+    let share = |w: &Want| {
+        let k = levels.partition_point(|z| *z < w.at[1]);
+        let near = [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|k| levels.get(k));
+        near.map(|z| (z - w.at[1]).abs()).fold(f64::INFINITY, f64::min) / w.reach
+    };
+    wants.par_iter().map(share).collect()
 }
 
 /// What every sample wants, and the areas that want nothing possible.
@@ -387,7 +403,7 @@ fn design_mm(t: &Tolerance) -> f64 {
 fn hide(ground: &Ground<'_>, wants: &mut Vec<Want>) -> f64 {
     // Seeds see the height to within what lies between them, so that this errs towards keeping a want.
     let slack = ground.task.tolerance.scallop_mm;
-    let kept: Vec<bool> = wants.par_iter().map(|w| ground.drops.coarse(w.at) <= w.tip + slack).collect();
+    let kept: Vec<bool> = wants.par_iter().map(|w| !ground.drops.is_above(w.at, w.tip + slack)).collect();
     let mut area = 0.0;
     let mut keep = kept.iter();
     wants.retain(|w| {
