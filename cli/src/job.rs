@@ -182,6 +182,22 @@ pub struct StrategyTable {
     pub allowance_mm: Option<f64>,
     /// Of a roughing: steepest way down into material.
     pub ramp_deg: Option<f64>,
+    /// What becomes of places where the tool would go into the part or a check face.
+    #[serde(default)]
+    pub gouges: Gouges,
+    /// Of places left out: what cutter and holder keep from check faces, and the holder from faces to machine.
+    pub keep_off_mm: Option<f64>,
+}
+
+/// What becomes of places where the tool would go into the part.
+#[derive(Debug, Clone, Copy, Deserialize, Default, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Gouges {
+    /// They are machined, and verification says that the path does not hold.
+    #[default]
+    Report,
+    /// Passes end before them; verification counts what stands as uncut.
+    LeaveOut,
 }
 
 fn auto() -> String {
@@ -203,6 +219,8 @@ impl Default for StrategyTable {
             stepover_mm: None,
             allowance_mm: None,
             ramp_deg: None,
+            gouges: Gouges::Report,
+            keep_off_mm: None,
         }
     }
 }

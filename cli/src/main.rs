@@ -16,6 +16,7 @@ mod flank;
 mod ideal;
 mod job;
 mod lead_key;
+mod left_out;
 mod look;
 mod nc;
 mod output;

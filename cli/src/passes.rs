@@ -3,6 +3,7 @@
 use crate::cancel;
 use crate::failure::Failure;
 use crate::job::{Job, LeadKey};
+use crate::left_out;
 use crate::look::Look;
 use crate::nc;
 use crate::output;
@@ -80,6 +81,17 @@ fn walls(job: &Job, faces: &JobFaces) -> Result<Arc<Walls>, Failure> {
 /// Passes joined to a path.
 pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
     Ok(link(&passes.passes, &links(job, faces, cutter)?, &*walls(job, faces)?))
+}
+
+/// Passes joined to a path whose hops keep off faces to machine too: over places that passes leave out.
+pub fn linked_around_all(
+    job: &Job,
+    faces: &JobFaces,
+    passes: &Passes,
+    cutter: &Cutter,
+) -> Result<Linked, Failure> {
+    let walls = walls_of(job, faces.faces.iter().chain(&faces.check))?;
+    Ok(link(&passes.passes, &links(job, faces, cutter)?, &walls))
 }
 
 /// A linked path with the tool and spindle of the job.
@@ -202,17 +214,23 @@ pub fn with_best_lead(
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
                 let gouge = Look::at(job, faces, &linked(job, faces, &p, cutter)?)?.gouge_mm;
+                // Where such places are left out, the lead that leaves out the least is the best.
+                let (off, what, fine) = if left_out::is_wanted(job) {
+                    let left = left_out::of(job, faces, &p)?;
+                    let area: f64 = left.area_mm2.iter().sum();
+                    (area, format!("area left out ({area:.3} mm2)"), left.touched == 0)
+                } else {
+                    (gouge, format!("gouge ({gouge:.4} mm)"), gouge <= job.tolerance()?.gouge_mm)
+                };
                 p.diagnostics.push(Diagnostic::note(
                     "lead",
-                    format!(
-                        "{deg:.0} deg chosen of {LEADS_DEG:?} by predicted length and gouge ({gouge:.4} mm)"
-                    ),
+                    format!("{deg:.0} deg chosen of {LEADS_DEG:?} by predicted length and {what}"),
                 ));
-                if gouge <= job.tolerance()?.gouge_mm {
+                if fine {
                     return Ok((p, lean));
                 }
-                if best.as_ref().is_none_or(|b| gouge < b.0) {
-                    best = Some((gouge, p, lean));
+                if best.as_ref().is_none_or(|b| off < b.0) {
+                    best = Some((off, p, lean));
                 }
             }
             Ok(p) => return Ok((p, lean)),

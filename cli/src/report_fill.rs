@@ -2,6 +2,7 @@
 
 use crate::cmd::plan::Summary;
 use crate::job::Job;
+use crate::left_out::FaceLeftOut;
 use crate::nc::Motions;
 use crate::part::{JobFaces, LoadedFace, area};
 use crate::render::number;
@@ -61,6 +62,8 @@ pub struct Extras<'a> {
     pub tables: Vec<Table>,
     /// Tool axes, for a setup in which they look up.
     pub axes: Vec<Unit3>,
+    /// What passes leave out of faces so as not to go into the part.
+    pub left_out: Vec<FaceLeftOut>,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
 }

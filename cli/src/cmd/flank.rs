@@ -151,7 +151,8 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let linked = passes::linked(&job, &faces, &passes, &cutter)?;
     wall_s.plan = stage.end();
     let axes = passes.passes.iter().flat_map(|p| &p.points).map(|p| p.pose.axis).collect();
-    let extras = Extras { axes, maps: maps(&answers), tables: vec![page_table(&comparison)], diagnostics };
+    let tables = vec![page_table(&comparison)];
+    let extras = Extras { axes, maps: maps(&answers), tables, left_out: Vec::new(), diagnostics };
     let strategy = format!("flank, {}", table.method);
     let planned =
         Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: false };

@@ -6,6 +6,7 @@ use crate::drop;
 use crate::failure::{Done, Failure, Outcome};
 use crate::ideal::{self, IdealTime};
 use crate::job::{Job, LeadKey};
+use crate::left_out::{self, FaceLeftOut};
 use crate::nc::Control;
 use crate::output;
 use crate::part::{self, JobFaces};
@@ -13,7 +14,7 @@ use crate::passes::{self, Way};
 use crate::program::{Planned, Posted, WallS};
 use crate::progress::Stage;
 use crate::render::{self, Table, number};
-use crate::report_fill::{self, Extras, Story};
+use crate::report_fill::{self, Story};
 use crate::rough;
 use crate::verify::{self, Verification, Verified};
 use osculate_geom::Diagnostic;
@@ -66,6 +67,9 @@ pub struct Summary {
     #[serde(flatten)]
     pub ideal: Option<IdealTime>,
     pub verification: Verification,
+    /// Of faces, what passes leave out so that the tool does not go into the part; it is uncut too.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<FaceLeftOut>,
     worst: Vec<verify::WorstPlace>,
     pub wall_s: WallS,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -101,6 +105,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     let job = Job::load(path)?;
     let mut wall_s = WallS::default();
     let stage = Stage::begin("import");
+    left_out::check(&job)?;
     let faces = part::of_job(&job)?;
     wall_s.import = stage.end();
 
@@ -170,7 +175,10 @@ struct Whole<'a> {
 fn write(whole: Whole<'_>, mut wall_s: WallS, out: &Path) -> Result<(Summary, String, Verified), Failure> {
     let Whole { job, faces, planned, posted, verified, compared } = whole;
     let stage = Stage::begin("ideal");
-    let ideal = if planned.with_strips { Some(ideal::of_plan(job, faces, planned, &posted)?) } else { None };
+    // The least time for whole faces says nothing of a plan that leaves some of them out.
+    let whole = planned.extras.left_out.is_empty();
+    let ideal =
+        if planned.with_strips && whole { Some(ideal::of_plan(job, faces, planned, &posted)?) } else { None };
     wall_s.ideal = stage.end();
     let stage = Stage::begin("report");
     let Posted { cl_text, control, program, read, diagnostics } = posted;
@@ -185,7 +193,8 @@ fn write(whole: Whole<'_>, mut wall_s: WallS, out: &Path) -> Result<(Summary, St
         .collect();
     let area_mm2: f64 = faces.faces.iter().map(part::area).sum();
     let feed = job.feed_mm_min()?;
-    let totals = Totals { area_mm2, time_min: read.time_min };
+    let left_mm2: f64 = planned.extras.left_out.iter().map(|f| f.area_mm2).sum();
+    let totals = Totals { area_mm2: area_mm2 - left_mm2, time_min: read.time_min };
     let l = levels(&planned.passes.passes, feed, totals);
     let found = if planned.local { planned.passes.inclination_rad() } else { None };
     let mut summary = Summary {
@@ -214,6 +223,7 @@ fn write(whole: Whole<'_>, mut wall_s: WallS, out: &Path) -> Result<(Summary, St
         },
         ideal,
         verification: verified.summary.clone(),
+        left_out: planned.extras.left_out.clone(),
         worst: verified.worst.clone(),
         wall_s,
         compared,
@@ -259,8 +269,8 @@ fn planned(
 ) -> Result<Planned<'static>, Failure> {
     if drop::KINDS.contains(&job.strategy.kind.as_str()) {
         let passes = drop::passes(job, faces, progress)?;
-        let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
-        let (strategy, extras) = (job.strategy.kind.clone(), Extras::default());
+        let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+        let strategy = job.strategy.kind.clone();
         let lean = Lean::default();
         return Ok(Planned { passes, linked, strategy, lean, local: false, extras, with_strips: true });
     }
@@ -275,8 +285,8 @@ fn planned(
         }
         None => passes::with_best_lead(job, faces, strategy, out, progress)?,
     };
-    let linked = passes::linked(job, faces, &passes, &job.cutter()?)?;
-    let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
+    let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+    let strategy = strategy.name().to_owned();
     let local = job.strategy.lead_deg == LeadKey::Local;
     Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
 }
@@ -294,6 +304,9 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
     row("time", format!("{:.2}", s.time_min), "min");
     row("of it cutting", format!("{:.2}", s.cutting_time_min), "min");
     row("area", format!("{:.1}", s.area_mm2), "mm2");
+    for left in &s.left_out {
+        row(&format!("left out of {}", left.face), format!("{:.3}", left.area_mm2), "mm2");
+    }
     row("global productivity", format!("{:.1}", s.productivity_mm2_min.global), "mm2/min");
     if let Some(i) = &s.ideal {
         row("ideal time, estimated", i.ideal.words(), "min");

@@ -1,0 +1,341 @@
+//! Passes cut where the tool would go into the part: what it cannot machine is left out.
+//!
+//! The faces are samples in a tree of balls. At poses close to each other along every pass the tree says whether cutter or
+//! holder comes nearer to a sample than it may; a signed distance changes by no more than the way to another point, so that
+//! balls far off are passed over. A stretch that goes too deep is left out as far as the tool is deeper than half of
+//! what is accepted on either side. What remains is the same motion as before, less these stretches.
+//!
+//! *Limits.* Depth is the signed distance of a sample to the tool. Verification measures along the face's normal, which is more
+//! where the tool meets the edge of a face from the side: a tool of radius R that is d deep there is sqrt(2 R d) deep along it.
+//! Between samples the tool may be a little deeper, and moves between passes are not looked at: verification has the last word.
+//! A stretch is left out, never machined in another way: leads are chosen before.
+
+use super::walls;
+use super::{CcPoint, Named, Pass, Passes, Tolerance};
+use osculate_geom::{Point3, Vec3, quadrature};
+use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept};
+use osculate_tools::sweep::{LinearMotion, SweptMotion};
+use osculate_tools::{Cutter, Pose};
+use rayon::prelude::*;
+
+/// Most samples that the tool is held against, over all faces, and fewest of one face.
+const MOST: f64 = 4e5;
+const FEWEST: usize = 400;
+/// Samples by which areas are measured, over all faces to machine.
+const MOST_MEASURED: f64 = 4e4;
+/// Samples stand no closer than lets the cutter's radius go deeper between them by this part of the gouge tolerance.
+const HIDDEN: f64 = 0.05;
+/// What half a cell's diagonal and a little bend add to a distance kept at samples, of their spacing.
+const ADDED: f64 = 0.75;
+/// Distance of poses along a pass, in radii of the cutter.
+const STEP: f64 = 0.05;
+/// The share of the accepted depth that ends a stretch left out.
+const RELEASE: f64 = 0.5;
+/// What remains between two stretches left out is left out too where it is shorter than this part of its strip's width.
+const SHORT: f64 = 0.25;
+/// Points in a leaf of the tree.
+const LEAF: usize = 12;
+
+/// What passes are held against. Lengths mm.
+#[derive(Clone, Copy)]
+pub struct Guard<'a> {
+    /// Faces to machine.
+    pub faces: &'a [Named<'a>],
+    /// Faces that the tool must not cut.
+    pub check: &'a [Named<'a>],
+    /// The cutter with its shank.
+    pub cutter: &'a Cutter,
+    /// The holder, a body whose lower end sits where the cutter's length ends.
+    pub holder: Option<&'a Cutter>,
+    /// What must hold: the cutter may go as deep into faces to machine as its gouges say.
+    pub tolerance: Tolerance,
+    /// What cutter and holder keep from check faces, and the holder from faces to machine. Zero: nothing, and they may go in by the
+    /// gouge tolerance as verification accepts it.
+    pub keep_off_mm: f64,
+}
+
+/// Passes with what was left out of them.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct LeftOut {
+    /// What remains.
+    pub passes: Passes,
+    /// Passes of which something was left out.
+    pub touched: usize,
+    /// Of each face to machine, the area that the whole passes cut and what remains of them leaves standing, mm2.
+    pub area_mm2: Vec<f64>,
+}
+
+/// Why nothing can be said about passes.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LeaveOutError {
+    /// A distance that is none.
+    #[error("what the tool keeps off must be finite and not negative, got {got} mm")]
+    KeepOff {
+        /// The value, mm.
+        got: f64,
+    },
+    /// A face that cannot be sampled.
+    #[error("face {face}: {source}")]
+    Sampling {
+        /// The face.
+        face: String,
+        /// What is wrong.
+        source: SamplingError,
+    },
+    /// What is left cannot be measured.
+    #[error(transparent)]
+    Removal(#[from] JobError),
+}
+
+/// Samples of faces, and their greatest spacing, mm.
+fn sampled(faces: &[Named<'_>], [spacing_mm, most]: [f64; 2]) -> Result<(Vec<Sample>, f64), LeaveOutError> {
+    let areas: Vec<f64> = faces.par_iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
+    let all: f64 = areas.iter().sum();
+    let (mut samples, mut coarsest) = (Vec::new(), 0.0f64);
+    for (k, (face, area)) in faces.iter().zip(&areas).enumerate() {
+        // A share of what may be no number goes to the sampling, which says so.
+        let share = if all > 0.0 { area / all } else { 1.0 };
+        let most = ((most * share) as usize).max(FEWEST);
+        let found = walls::sampled(face.surface, k as u32, spacing_mm, most)
+            .map_err(|source| LeaveOutError::Sampling { face: face.face.to_owned(), source })?;
+        coarsest = coarsest.max(found.density.spacing_mm);
+        samples.extend(found.samples);
+    }
+    Ok((samples, coarsest))
+}
+
+/// A ball around points, and where it is divided.
+struct Node {
+    centre: Point3,
+    radius: f64,
+    kind: Kind,
+}
+
+enum Kind {
+    /// Points from, to.
+    Leaf(usize, usize),
+    /// The two halves.
+    Inner(usize, usize),
+}
+
+/// Points in balls within balls.
+struct Tree {
+    points: Vec<Point3>,
+    nodes: Vec<Node>,
+}
+
+impl Tree {
+    fn new(mut points: Vec<Point3>) -> Self {
+        let mut nodes = Vec::new();
+        if !points.is_empty() {
+            let n = points.len();
+            Self::grow(&mut points, 0, n, &mut nodes);
+        }
+        Self { points, nodes }
+    }
+
+    /// Puts the points of a range in order; the node's place.
+    fn grow(points: &mut [Point3], from: usize, to: usize, nodes: &mut Vec<Node>) -> usize {
+        let here = &mut points[from..to];
+        let mut low = Vec3::repeat(f64::INFINITY);
+        let mut high = -low;
+        for p in here.iter() {
+            (low, high) = (low.inf(&p.coords), high.sup(&p.coords));
+        }
+        let centre = Point3::from(0.5 * (low + high));
+        let radius = here.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+        let place = nodes.len();
+        nodes.push(Node { centre, radius, kind: Kind::Leaf(from, to) });
+        if here.len() > LEAF {
+            let axis = (high - low).imax();
+            let half = here.len() / 2;
+            here.select_nth_unstable_by(half, |a, b| a[axis].total_cmp(&b[axis]));
+            let left = Self::grow(points, from, from + half, nodes);
+            let right = Self::grow(points, from + half, to, nodes);
+            nodes[place].kind = Kind::Inner(left, right);
+        }
+        place
+    }
+
+    /// Whether a point is nearer to the body than `limit_mm`.
+    fn any_within(&self, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
+        !self.nodes.is_empty() && self.within(0, body, pose, limit_mm)
+    }
+
+    fn within(&self, place: usize, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
+        let node = &self.nodes[place];
+        if body.distance(pose, &node.centre) - node.radius >= limit_mm {
+            return false;
+        }
+        match node.kind {
+            Kind::Leaf(from, to) => self.points[from..to].iter().any(|p| body.distance(pose, p) < limit_mm),
+            Kind::Inner(a, b) => self.within(a, body, pose, limit_mm) || self.within(b, body, pose, limit_mm),
+        }
+    }
+}
+
+/// Faces and tool ready to be asked.
+struct Watch<'a> {
+    guard: &'a Guard<'a>,
+    faces: Tree,
+    check: Tree,
+    /// Signed distance that is kept from faces to machine by the holder and from check faces by all, mm.
+    keep_mm: f64,
+}
+
+impl<'a> Watch<'a> {
+    fn new(guard: &'a Guard<'a>) -> Result<Self, LeaveOutError> {
+        let keep = guard.keep_off_mm;
+        if !(keep >= 0.0 && keep.is_finite()) {
+            return Err(LeaveOutError::KeepOff { got: keep });
+        }
+        let gouge_mm = guard.tolerance.gouge_mm;
+        // Between two samples on a plane a ball comes deeper by s^2 / 8 r.
+        let spacing_mm = (8.0 * guard.cutter.radius_mm() * HIDDEN * gouge_mm).sqrt();
+        let points = |s: Vec<Sample>| s.into_iter().map(|s| s.point).collect();
+        let (faces, apart) = sampled(guard.faces, [spacing_mm, MOST])?;
+        let (check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
+        let keep_mm = if keep > 0.0 { keep + ADDED * apart.max(check_apart) } else { -gouge_mm };
+        Ok(Self { guard, faces: Tree::new(points(faces)), check: Tree::new(points(check)), keep_mm })
+    }
+
+    /// Whether the tool is where it must not be, with limits of this share of the depths accepted.
+    fn is_in(&self, pose: &Pose, share: f64) -> bool {
+        let depth = -share * self.guard.tolerance.gouge_mm;
+        let keep = if self.keep_mm > 0.0 { self.keep_mm } else { share * self.keep_mm };
+        let Guard { cutter, holder, .. } = self.guard;
+        self.faces.any_within(cutter, pose, depth)
+            || self.check.any_within(cutter, pose, keep)
+            || holder.is_some_and(|h| {
+                let pose = pose.retracted(cutter.length_mm());
+                self.faces.any_within(h, &pose, keep) || self.check.any_within(h, &pose, keep)
+            })
+    }
+
+    /// The pieces of a pass that remain; None where it remains whole.
+    fn remaining(&self, pass: &Pass) -> Option<Vec<Pass>> {
+        let stations = stations(pass, STEP * self.guard.cutter.radius_mm());
+        let mut out: Vec<bool> = stations.iter().map(|s| self.is_in(&s.point.pose, 1.0)).collect();
+        if !out.iter().any(|b| *b) {
+            return None;
+        }
+        // Both ways from what is left out, as far as the tool is in by the lesser limit.
+        let n = out.len();
+        let grow = |out: &mut Vec<bool>, order: &mut dyn Iterator<Item = usize>| {
+            let mut before = false;
+            for k in order {
+                out[k] = out[k] || (before && self.is_in(&stations[k].point.pose, RELEASE));
+                before = out[k];
+            }
+        };
+        // A closed pass goes on over its end: twice around reaches everywhere.
+        let rounds = if pass.closed { 2 } else { 1 };
+        grow(&mut out, &mut (0..rounds * n).map(|k| k % n));
+        grow(&mut out, &mut (0..rounds * n).rev().map(|k| k % n));
+        let mut runs: Vec<Vec<CcPoint>> = Vec::new();
+        let mut run: Vec<CcPoint> = Vec::new();
+        for (k, s) in stations.iter().enumerate() {
+            if out[k] {
+                runs.extend((!run.is_empty()).then(|| std::mem::take(&mut run)));
+                continue;
+            }
+            let is_end = run.is_empty() || out.get(k + 1).is_none_or(|next| *next);
+            if s.of_pass || is_end {
+                run.push(s.point);
+            }
+        }
+        if !run.is_empty() {
+            // Where a closed pass begins nothing is left out: its end leads on to its beginning, which is the same point.
+            if pass.closed && !out[0] && !runs.is_empty() {
+                run.extend(runs.remove(0).into_iter().skip(1));
+            }
+            runs.push(run);
+        }
+        let pieces = runs.into_iter().map(|points| Pass { points, closed: false });
+        let is_long = |p: &Pass| p.points.len() > 1 && p.length_mm() >= SHORT * p.mean_width_mm();
+        Some(pieces.filter(is_long).collect())
+    }
+}
+
+/// A pose along a pass; those between its points are put in.
+struct Station {
+    point: CcPoint,
+    of_pass: bool,
+}
+
+/// The points of a pass with others between them, no further apart than `step_mm` at tip and contact.
+fn stations(pass: &Pass, step_mm: f64) -> Vec<Station> {
+    let mut out = Vec::new();
+    for w in pass.points.windows(2) {
+        let [a, b] = [w[0], w[1]];
+        out.push(Station { point: a, of_pass: true });
+        let motion = LinearMotion { from: a.pose, to: b.pose };
+        let length = (b.point - a.point).norm().max((b.pose.tip - a.pose.tip).norm());
+        // A pass has no gaps: a length that is no number, or endless, was refused before.
+        let pieces = (length / step_mm).ceil().max(1.0) as usize;
+        for k in 1..pieces {
+            let t = k as f64 / pieces as f64;
+            let Some(now) = motion.at(t) else { continue };
+            // Parameters may jump over a seam: those of the nearer point.
+            let near = if t < 0.5 { a } else { b };
+            let point = a.point + (b.point - a.point) * t;
+            let width_mm = a.width_mm + (b.width_mm - a.width_mm) * t;
+            out.push(Station { point: CcPoint { point, pose: now.pose, width_mm, ..near }, of_pass: false });
+        }
+    }
+    out.extend(pass.points.last().map(|p| Station { point: *p, of_pass: true }));
+    out
+}
+
+/// Area of each face that one set of passes cuts and another leaves standing, mm2.
+fn left_standing(guard: &Guard<'_>, whole: &[Pass], rest: &[Pass]) -> Result<Vec<f64>, LeaveOutError> {
+    let (samples, _) = sampled(guard.faces, [STEP * guard.cutter.radius_mm(), MOST_MEASURED])?;
+    let t = guard.tolerance;
+    let uncut_mm = Limits::new(t.scallop_mm, t.gouge_mm).uncut_mm;
+    let standing = |passes: &[Pass]| -> Result<Vec<bool>, LeaveOutError> {
+        let pairs = passes.iter().zip(0u32..).flat_map(|(p, k)| p.points.windows(2).map(move |w| (w, k)));
+        let motions: Vec<Swept> =
+            pairs.map(|(w, block)| Swept { from: w[0].pose, to: w[1].pose, rapid: false, block }).collect();
+        let work = removal::Job {
+            cutter: guard.cutter,
+            holder: None,
+            motions: &motions,
+            samples: &samples,
+            stock_mm: 2.0 * uncut_mm,
+            depth_mm: guard.cutter.radius_mm(),
+        };
+        Ok(removal::cut(&work, &|_| {})?.iter().map(|c| c.standoff_mm > uncut_mm).collect())
+    };
+    let (before, after) = (standing(whole)?, standing(rest)?);
+    let mut out = vec![0.0; guard.faces.len()];
+    for ((s, before), after) in samples.iter().zip(before).zip(after) {
+        if after && !before {
+            out[s.face as usize] += s.area_mm2;
+        }
+    }
+    Ok(out)
+}
+
+/// Leaves out of passes what the tool cannot machine without going into the part or the check faces.
+///
+/// Without such places the passes come back as they are. A closed pass of which something is left out is open.
+///
+/// # Errors
+/// A distance to keep off that is none, or faces and passes that cannot be measured.
+pub fn leave_out(passes: &Passes, guard: &Guard<'_>) -> Result<LeftOut, LeaveOutError> {
+    let watch = Watch::new(guard)?;
+    let remaining: Vec<Option<Vec<Pass>>> = passes.passes.par_iter().map(|p| watch.remaining(p)).collect();
+    let area_mm2 = vec![0.0; guard.faces.len()];
+    if remaining.iter().all(Option::is_none) {
+        return Ok(LeftOut { passes: passes.clone(), touched: 0, area_mm2 });
+    }
+    let touched = remaining.iter().filter(|r| r.is_some()).count();
+    let pieces = passes.passes.iter().zip(remaining);
+    let rest: Vec<Pass> = pieces.flat_map(|(p, r)| r.unwrap_or_else(|| vec![p.clone()])).collect();
+    let area_mm2 = left_standing(guard, &passes.passes, &rest)?;
+    Ok(LeftOut {
+        passes: Passes { passes: rest, diagnostics: passes.diagnostics.clone() },
+        touched,
+        area_mm2,
+    })
+}

@@ -1,0 +1,156 @@
+//! Passes that end before the tool goes into a wall, against closed forms.
+#![allow(clippy::unwrap_used)]
+
+use osculate_geom::analytic::{Line, Plane};
+use osculate_geom::{Domain, Extruded, Interval, Point3, Vec3, uv};
+use osculate_productivity::plan::{CcPoint, Guard, LeaveOutError, Named, Pass, Passes, Tolerance, leave_out};
+use osculate_tools::{Cutter, CutterSpec, Pose};
+
+const RADIUS: f64 = 2.0;
+const LENGTH: f64 = 30.0;
+const GOUGE: f64 = 0.01;
+const SCALLOP: f64 = 0.02;
+/// Half the side of the plane, and half the length of the wall that stands on it at x = 0, along y.
+const SIDE: f64 = 8.0;
+const WALL: f64 = 3.0;
+/// Distance of passes, mm.
+const APART: f64 = 0.25;
+/// The longest way between two poses that are looked at.
+const STEP: f64 = 0.05 * RADIUS;
+
+fn ball() -> Cutter {
+    Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: LENGTH }).unwrap()
+}
+
+fn plane() -> Plane {
+    Plane::new(Domain { u: Interval::new(-SIDE, SIDE), v: Interval::new(-SIDE, SIDE) })
+}
+
+/// The wall from one height to another.
+fn wall(from: f64, to: f64) -> Extruded<Line> {
+    let foot = Line::new(Point3::new(0.0, 0.0, 0.0), Vec3::y(), Interval::new(-WALL, WALL)).unwrap();
+    Extruded::new(foot, Vec3::z(), Interval::new(from, to)).unwrap()
+}
+
+/// Upright at a place of the plane.
+fn contact(x: f64, y: f64) -> CcPoint {
+    let pose = Pose { tip: Point3::new(x, y, 0.0), axis: Vec3::z_axis() };
+    CcPoint { uv: uv(x, y), point: pose.tip, normal: Vec3::z_axis(), pose, width_mm: 2.0 * APART }
+}
+
+/// To and fro along x, of two points each: the tool is seen between them.
+fn rows() -> Passes {
+    let count = (2.0 * SIDE / APART) as usize;
+    let one = |k: usize| {
+        let y = k as f64 * APART - SIDE;
+        let x = if k % 2 == 0 { SIDE } else { -SIDE };
+        Pass { points: vec![contact(-x, y), contact(x, y)], closed: false }
+    };
+    Passes { passes: (0..=count).map(one).collect(), diagnostics: Vec::new() }
+}
+
+/// How far a place of the plane is off the wall's foot.
+fn off(p: &Point3) -> f64 {
+    let y = (p.y.abs() - WALL).max(0.0);
+    p.x.hypot(y)
+}
+
+fn guard<'a>(faces: &'a [Named<'a>], check: &'a [Named<'a>], cutter: &'a Cutter) -> Guard<'a> {
+    let tolerance = Tolerance { scallop_mm: SCALLOP, gouge_mm: GOUGE, chord_mm: 0.005 };
+    Guard { faces, check, cutter, holder: None, tolerance, keep_off_mm: 0.0 }
+}
+
+/// The least distance of passes from the wall's foot, their points and what lies between.
+fn nearest(passes: &Passes) -> f64 {
+    let pairs = passes.passes.iter().flat_map(|p| p.points.windows(2));
+    let at = pairs.flat_map(|w| {
+        (0..=200).map(move |k| w[0].point + (w[1].point - w[0].point) * (f64::from(k) / 200.0))
+    });
+    at.map(|p| off(&p)).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn passes_end_before_a_wall() {
+    let (floor, wall, cutter) = (plane(), wall(0.0, 10.0), ball());
+    let (faces, check) =
+        ([Named { face: "floor", surface: &floor }], [Named { face: "wall", surface: &wall }]);
+    let guard = guard(&faces, &check, &cutter);
+    let whole = rows();
+    let left = leave_out(&whole, &guard).unwrap();
+    // Half the gouge tolerance ends a stretch; between samples of the wall the tool's side is no nearer than at them, but for a
+    // twentieth of it.
+    let near = nearest(&left.passes);
+    assert!(near >= RADIUS - 0.6 * GOUGE && near <= RADIUS + STEP, "{near}");
+    // Every row that the wall is in the way of, by more than the tolerance, is two now, and ends no further off it than a step.
+    let blocked = |p: &Pass| p.points[0].point.y.abs() < WALL + (RADIUS - GOUGE);
+    assert_eq!(left.touched, whole.passes.iter().filter(|p| blocked(p)).count());
+    assert_eq!(left.passes.passes.len(), whole.passes.len() + left.touched);
+    let length = |p: &Passes| p.passes.iter().map(Pass::length_mm).sum::<f64>();
+    let blocked_mm = |y: f64| 2.0 * (RADIUS.powi(2) - (y.abs() - WALL).max(0.0).powi(2)).max(0.0).sqrt();
+    let gone: f64 = whole.passes.iter().map(|p| blocked_mm(p.points[0].point.y)).sum();
+    let is = length(&whole) - length(&left.passes);
+    // Either end of a row is a step off at most. Where a row only grazes the circle the half tolerance is a longer way.
+    let most = left.touched as f64 * 2.0 * STEP;
+    assert!(is > gone - 0.5 && is < gone + most, "{is} {gone}");
+    // What stands above five scallops: between the wall and the ball's nearest places, at height h the ball is
+    // sqrt(2 R h - h^2) wide.
+    let height: f64 = 5.0 * SCALLOP;
+    let wide = (height * (2.0 * RADIUS - height)).sqrt();
+    let round = RADIUS - wide;
+    let area = 4.0 * WALL * round + std::f64::consts::PI * round * round;
+    let found = left.area_mm2[0];
+    // Ends a step further off make it larger by that all around.
+    let around = 4.0 * WALL + 2.0 * std::f64::consts::PI * round;
+    assert!(found > 0.97 * area && found < area + STEP * around, "{found} {area}");
+    // Twice is once.
+    let again = leave_out(&left.passes, &guard).unwrap();
+    assert!(again.touched == 0 && again.passes == left.passes && again.area_mm2 == [0.0]);
+    // With a distance to keep.
+    let kept = leave_out(&whole, &Guard { keep_off_mm: 0.5, ..guard }).unwrap();
+    let near = nearest(&kept.passes);
+    assert!(near >= RADIUS + 0.5 && near < RADIUS + 0.6 + STEP, "{near}");
+    let bad = leave_out(&whole, &Guard { keep_off_mm: -1.0, ..guard });
+    assert!(matches!(bad, Err(LeaveOutError::KeepOff { got }) if got == -1.0));
+}
+
+#[test]
+fn only_the_holder_is_in_the_way() {
+    const HOLDER: f64 = 4.0;
+    // The wall hangs above the cutter's length.
+    let (floor, wall, cutter) = (plane(), wall(LENGTH + 1.0, LENGTH + 6.0), ball());
+    let (faces, check) =
+        ([Named { face: "floor", surface: &floor }], [Named { face: "wall", surface: &wall }]);
+    let whole = rows();
+    let guard = guard(&faces, &check, &cutter);
+    let without = leave_out(&whole, &guard).unwrap();
+    assert!(without.touched == 0 && without.passes == whole);
+    let holder = Cutter::cylinder(2.0 * HOLDER, 20.0).unwrap();
+    let with = leave_out(&whole, &Guard { holder: Some(&holder), ..guard }).unwrap();
+    let near = nearest(&with.passes);
+    assert!(near >= HOLDER - 0.6 * GOUGE && near <= HOLDER + STEP, "{near}");
+}
+
+#[test]
+fn faces_to_machine_are_no_prey_either_and_closed_passes_open() {
+    // A round pass about the origin that meets the wall at two places, where the wall is a face to machine.
+    const AROUND: f64 = WALL + 1.0;
+    let (floor, wall, cutter) = (plane(), wall(0.0, 10.0), ball());
+    let faces = [Named { face: "floor", surface: &floor }, Named { face: "wall", surface: &wall }];
+    let at = |k: u32| {
+        let (s, c) = (f64::from(k % 90) * 4f64.to_radians()).sin_cos();
+        contact(AROUND * c, AROUND * s)
+    };
+    let circle = Pass { points: (0..=90).map(at).collect(), closed: true };
+    let passes = Passes { passes: vec![circle], diagnostics: Vec::new() };
+    let left = leave_out(&passes, &guard(&faces, &[], &cutter)).unwrap();
+    // It begins on the x axis, where the tool is clear: of its three stretches the last leads on to the first.
+    assert_eq!((left.passes.passes.len(), left.touched), (2, 1));
+    assert!(nearest(&left.passes) >= RADIUS - 0.6 * GOUGE);
+    for p in &left.passes.passes {
+        let (first, last) = (p.points[0].point, p.points[p.points.len() - 1].point);
+        assert!(!p.closed && (first.y + last.y).abs() < 2.0 * STEP, "{first} {last}");
+        assert!([first, last].iter().all(|p| off(p) < RADIUS + STEP));
+        let steps = p.points.windows(2).map(|w| (w[1].point - w[0].point).norm());
+        assert!(steps.fold(0.0, f64::max) < 0.07 * AROUND * 1.001);
+    }
+}
