@@ -183,10 +183,11 @@ impl<'a> Options<'a> {
     /// missing where it is needed.
     pub fn of(words: &[&'a str]) -> Option<Self> {
         let mut out = Self::default();
-        if let ["--speed", rest @ ..] = words {
-            let program = match rest {
+        if words.contains(&"--speed") {
+            let rest: Vec<&str> = words.iter().copied().filter(|w| *w != "--speed").collect();
+            let program = match rest[..] {
                 [] => None,
-                ["--program", p] => Some(*p),
+                ["--program", p] => Some(p),
                 _ => return None,
             };
             return Some(Self { program, speed: true, ..out });
