@@ -24,6 +24,21 @@ pub struct Degenerate {
 /// fewer than five of double precision's sixteen digits.
 pub(crate) const MIN_SIN_UV: f64 = 1e-11;
 
+/// The outward unit normal, and the length of S_u.
+#[inline]
+pub(crate) fn normal_of(jet: &Jet2) -> Result<(Unit3, f64), Degenerate> {
+    let cross = jet.du.cross(&jet.dv);
+    let (a, b) = (jet.du.norm(), jet.dv.norm());
+    let area = cross.norm();
+    let sin_uv = if a > 0.0 && b > 0.0 { area / (a * b) } else { 0.0 };
+    // The negated comparison also catches NaN.
+    if !(sin_uv > MIN_SIN_UV && sin_uv.is_finite()) {
+        return Err(Degenerate { at: jet.uv, sin_uv });
+    }
+    // One division: the length is known and not zero.
+    Ok((Unit3::new_unchecked(cross * (jet.side.sign() / area)), a))
+}
+
 /// Both fundamental forms at a point, in the parameter basis and in an orthonormal tangent frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forms {
@@ -42,16 +57,7 @@ pub struct Forms {
 impl Forms {
     pub(crate) fn of(jet: &Jet2) -> Result<Self, Degenerate> {
         let (su, sv) = (jet.du, jet.dv);
-        let cross = su.cross(&sv);
-        let (a, b) = (su.norm(), sv.norm());
-        let area = cross.norm();
-        let sin_uv = if a > 0.0 && b > 0.0 { area / (a * b) } else { 0.0 };
-        // The negated comparison also catches NaN.
-        if !(sin_uv > MIN_SIN_UV && sin_uv.is_finite()) {
-            return Err(Degenerate { at: jet.uv, sin_uv });
-        }
-        // One division each: the lengths are known and not zero.
-        let normal = Unit3::new_unchecked(cross * (jet.side.sign() / area));
+        let (normal, a) = normal_of(jet)?;
         let e1 = Unit3::new_unchecked(su * (1.0 / a));
         let e2 = Unit3::new_unchecked(normal.cross(&e1));
         // S_u = a e1, S_v = p e1 + q e2. The second derivatives' normal parts, carried over to the frame, give W

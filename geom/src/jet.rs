@@ -1,6 +1,6 @@
 //! Taylor data of a surface at a point to second and third order, and what follows from it alone.
 
-use crate::forms::{Degenerate, Forms};
+use crate::forms::{Degenerate, Forms, normal_of};
 use crate::point::{Point3, Unit3, Uv, Vec3};
 
 /// Which side of a surface the material is on.
@@ -62,7 +62,7 @@ impl Jet2 {
     /// # Errors
     /// [`Degenerate`] where S_u and S_v are parallel or vanish.
     pub fn normal(&self) -> Result<Unit3, Degenerate> {
-        Ok(self.forms()?.normal)
+        Ok(normal_of(self)?.0)
     }
 
     /// First and second fundamental form with the outward normal.

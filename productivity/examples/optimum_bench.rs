@@ -14,6 +14,8 @@ use std::time::Instant;
 
 /// Scan of directions, leads and tilts.
 const SCAN: [usize; 3] = [24, 7, 3];
+/// Misses that are shown.
+const SHOWN: f64 = 0.003;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let places: usize = std::env::args().nth(1).map_or(Ok(1000), |a| a.parse())?;
@@ -72,15 +74,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             100.0 * gain.iter().sum::<f64>() / gain.len().max(1) as f64,
             best.iter().flatten().map(|b| b.evaluations).sum::<u32>() / at.len() as u32,
         );
-        let mut shown = 0;
-        for (k, r) in results.iter().enumerate() {
-            if let Some(([miss, _], posture)) = r
-                && *miss > 0.005
-                && shown < 6
-            {
-                shown += 1;
-                println!("    {:?} {miss:.4}: {posture:?} beats {:?}", at[k], best[k]);
-            }
+        // The worst ones, where the scan is better.
+        let mut missed: Vec<(f64, usize)> = results
+            .iter()
+            .enumerate()
+            .filter_map(|(k, r)| r.map(|r| (r.0[0], k)))
+            .filter(|(miss, _)| *miss > SHOWN)
+            .collect();
+        missed.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (miss, k) in missed.into_iter().take(6) {
+            let posture = results[k].map(|r| r.1);
+            println!("    {:?} {:.4} %: {posture:?} beats {:?}", at[k], 100.0 * miss, best[k]);
         }
     }
     Ok(())

@@ -5,6 +5,8 @@
 //! r = 0). Cones, barrels and APT's general cutter have a [`crate::meridian`] of their own. Local coordinates: rho is the
 //! distance from the axis, z the height above the tip.
 
+mod bounds;
+
 use crate::make::CutterError;
 use crate::meridian::{Arc, LocalNear, Meridian, end_mill_corner};
 use crate::pose::Pose;
@@ -262,14 +264,6 @@ impl Cutter {
         self.local_entry(&LocalLine::new(line, pose))
     }
 
-    /// A height that a line does not enter the cutter below, by the plane of the tip alone: a fraction of what the entry costs.
-    /// -infinity where the line does not rise along the axis.
-    #[must_use]
-    pub(crate) fn least_entry_mm(pose: &Pose, line: &Line) -> f64 {
-        let rise = line.direction.dot(&pose.axis);
-        if rise > 0.0 { (pose.tip - line.origin).dot(&pose.axis) / rise } else { f64::NEG_INFINITY }
-    }
-
     fn local_entry(&self, l: &LocalLine) -> Option<Entry> {
         // Enter the circumscribed cylinder first: the later of its three entries.
         let disc = l.b * l.b - l.a * (l.c - self.radius * self.radius);
@@ -472,6 +466,11 @@ mod tests {
                     prop_assert!(c.distance(&pose, &line.point(e.at_mm)).abs() < 1e-9);
                     prop_assert!(c.distance(&pose, &line.point(e.at_mm - 0.5)) > 0.0);
                     prop_assert!(e.at_mm > Cutter::least_entry_mm(&pose, &line) - 1e-9);
+                    prop_assert!(!c.enters_above(&pose, &line, e.at_mm + 1e-6));
+                    // The body of this question has no top.
+                    if kind == 0 && e.part != Part::Top {
+                        prop_assert!(c.enters_above(&pose, &line, e.at_mm - 1e-3));
+                    }
                     // The normal points against the line.
                     let n = c.normal_at(&pose, &line.point(e.at_mm), e.part);
                     prop_assert!(n.dot(&direction) <= 1e-6, "{n:?}");

@@ -5,7 +5,9 @@
 //! greatest feed per tooth [R97, eq. 41], the body of revolution standing for the edges.
 
 use super::exact::StripError;
-use crate::contact::Contact;
+use super::knotted::Knotted;
+use super::traced::Traced;
+use crate::contact::{Contact, ContactLine};
 use crate::cutter::Line;
 use osculate_geom::line::SurfaceLine;
 use osculate_geom::quadrature::gauss;
@@ -48,6 +50,15 @@ pub fn mark(contact: &Contact<'_>, height_mm: f64) -> Result<Mark, StripError> {
     let (line, t0) = contact.line()?;
     let pose = contact.pose();
     let radius = contact.cutter.radius_mm();
+    let part = Knotted::new(contact.surface);
+    let traced = match &line {
+        ContactLine::Geodesic(line) => {
+            let rate = contact.forms.rate(&contact.surface.jet2(contact.at), &contact.frame.tangent);
+            Some(Traced::new(contact, &part, line, part.pitch_mm(contact.at, rate, radius))?)
+        }
+        ContactLine::Iso(_) => None,
+    };
+    let line = traced.as_ref().map_or(&line as &dyn SurfaceLine, |t| t);
     // Above the tolerance: positive; None where the line has ended.
     let excess = |t: f64| -> Option<f64> {
         let (frame, _) = line.frame(t).ok()?;
@@ -88,7 +99,8 @@ pub fn mark(contact: &Contact<'_>, height_mm: f64) -> Result<Mark, StripError> {
         Ok((near.0, step.abs() * mm, true))
     };
     let (ahead, behind) = (walk(1.0)?, walk(-1.0)?);
-    let length = |t: f64| gauss(t0, t, 1, speed).abs();
+    // A geodesic runs by its length.
+    let length = |t: f64| if traced.is_some() { (t - t0).abs() } else { gauss(t0, t, 1, speed).abs() };
     Ok(Mark {
         ahead_mm: length(ahead.0),
         behind_mm: length(behind.0),

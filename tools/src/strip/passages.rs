@@ -32,6 +32,9 @@ const AHEAD: f64 = 1.0;
 /// How much further than to the instants next to it an entry may fall, for which its least stands: entries bend more than the plane
 /// of the tip where the corner comes over a line.
 const SLACK: f64 = 2.0;
+/// Way of the cutter's bottom between instants that is short against the corner's radius: a circle rises over half of it, the way to
+/// the nearer instant, by an eighth of what the square of all of it over the radius says.
+const SHORT: f64 = 0.5;
 /// First step of the search from an instant looked at, of the distance between them.
 const FIRST: f64 = 0.25;
 
@@ -139,7 +142,8 @@ impl Passages {
 
 /// Calls `see` with the instants at which the entry of a line is lower than at its neighbours, or as low, with the three entries
 /// (infinite where the line misses, and beyond the ends), where it may come down below a height. An instant whose plane of the tip
-/// stays above that, by more than [`SLACK`] times what it falls by to the instants next to it, is not looked at.
+/// stays above that, by more than [`SLACK`] times what it falls by to the instants next to it, is not looked at, nor one whose
+/// corner does by as much as a least entry between instants may be lower.
 pub(super) fn minima(
     cutter: &Cutter,
     line: &Line,
@@ -160,7 +164,10 @@ pub(super) fn minima(
             Some(here) => {
                 let falls =
                     [least_before, least_next].into_iter().flatten().fold(0.0, |f, x| (x - here).max(f));
-                if here - SLACK * falls > below_mm { f64::INFINITY } else { entry(Some(k)) }
+                let looked_mm = below_mm + SLACK * falls;
+                let above = here > looked_mm
+                    || cutter.enters_above(&poses[k].1, line, looked_mm + rise_mm(cutter, poses, k));
+                if above { f64::INFINITY } else { entry(Some(k)) }
             }
             None => f64::INFINITY,
         };
@@ -176,6 +183,22 @@ pub(super) fn minima(
         before = [b, next];
         (least_before, least_here) = (least_here, least_next);
     }
+}
+
+/// How much higher than at its least an entry into the corner may be at the instant looked at next to it, mm: as a circle of the
+/// corner's radius rises over the way of the cutter's bottom from this instant to its neighbours. Infinite where that is not short
+/// against the radius.
+fn rise_mm(cutter: &Cutter, poses: &[(f64, Pose)], k: usize) -> f64 {
+    let corner = cutter.corner_mm();
+    let (own, across) = (&poses[k].1, 2.0 * cutter.radius_mm());
+    let way_squared = |to: usize| {
+        poses.get(to).map_or(0.0, |(_, p)| {
+            let turn = p.axis.into_inner() - own.axis.into_inner();
+            2.0 * ((p.tip - own.tip).norm_squared() + across * across * turn.norm_squared())
+        })
+    };
+    let way = way_squared(k + 1).max(way_squared(k.wrapping_sub(1)));
+    if way < (SHORT * corner).powi(2) { way / corner } else { f64::INFINITY }
 }
 
 /// How far the tool's body reaches over the contact, ahead of and behind it in the motion's sense, mm.

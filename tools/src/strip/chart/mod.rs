@@ -181,7 +181,7 @@ impl<'a> Chart<'a> {
         let mut midway = Vec::with_capacity(rays.div_ceil(CHECKED));
         for ray in 0..rays {
             let midway_too = ray % CHECKED == 0;
-            let way = self.way(direction(ray, rays), 1, midway_too)?;
+            let way = self.way(direction(ray, rays), midway_too)?;
             if way.nodes.len() <= nodes {
                 return Ok(None);
             }
@@ -213,9 +213,8 @@ impl<'a> Chart<'a> {
             for line in 0..RAYS / (2 * CHECKED) {
                 let towards = direction(CHECKED * line, RAYS);
                 let pitch = self.place.pitch_mm(towards, self.radius);
-                let stride = self.stride(pitch);
-                let ahead = self.way(towards, stride, true)?;
-                let behind = self.way(towards.map(|x| -x), stride, true)?;
+                let ahead = self.way(towards, true)?;
+                let behind = self.way(towards.map(|x| -x), true)?;
                 self.hollow = self.hollow.max(ahead.hollow_per_mm).max(behind.hollow_per_mm);
                 let ways = [&behind.nodes[..], &ahead.nodes[..]];
                 let made = Nodes::new(&self.place, ways, (self.radius, nodes), pitch);
@@ -239,16 +238,9 @@ impl<'a> Chart<'a> {
         }
     }
 
-    /// Nodes to a step of the integration: as far as usual, but not over more than half the distance between knots.
-    fn stride(&self, pitch: f64) -> usize {
-        let nodes = self.size[1];
-        let of_pitch = OF_PITCH * pitch * nodes as f64 / self.radius;
-        (nodes / (NODES * FURTHER)).min(of_pitch.max(1.0) as usize)
-    }
-
-    fn way(&self, towards: [f64; 2], stride: usize, midway: bool) -> Result<Way, Degenerate> {
+    fn way(&self, towards: [f64; 2], midway: bool) -> Result<Way, Degenerate> {
         let count = self.size[1];
-        self.place.trace(towards, Pace { step_mm: self.radius / count as f64, count, stride, midway })
+        self.place.trace(towards, Pace { step_mm: self.radius / count as f64, count, midway })
     }
 
     /// Notes what a line is off by midway between its nodes, inside the rectangle.
@@ -327,12 +319,10 @@ impl<'a> Chart<'a> {
     /// The line in a direction, traced on the surface.
     fn traced(&self, direction: [f64; 2]) -> Nodes {
         let pitch = self.place.pitch_mm(direction, self.radius);
-        let stride = self.stride(pitch);
         // Without a way there is the place itself.
         let only = || vec![[0.0; PARTS]];
-        let [behind, ahead] = [-1.0, 1.0].map(|sign| {
-            self.way(direction.map(|x| sign * x), stride, false).map_or_else(|_| only(), |w| w.nodes)
-        });
+        let [behind, ahead] = [-1.0, 1.0]
+            .map(|sign| self.way(direction.map(|x| sign * x), false).map_or_else(|_| only(), |w| w.nodes));
         Nodes::new(&self.place, [&behind, &ahead], (self.radius, self.size[1]), pitch)
     }
 

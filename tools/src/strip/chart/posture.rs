@@ -5,6 +5,7 @@ use super::{Chart, OF_PITCH};
 use crate::contact::{ContactError, Lean};
 use crate::cutter::{Cutter, Line};
 use crate::strip::local::Pace;
+use crate::strip::passages::extent;
 use osculate_geom::roots::{End, bracketed};
 use std::cell::{Cell, OnceCell};
 
@@ -152,6 +153,8 @@ impl Chart<'_> {
         let across = behind.max(ahead);
         // At a corner there is nothing to cross.
         let step = if across > 0.0 { step.min(OF_FACE * across) } else { step };
+        let hollow = (-self.forms.principal().k_min).max(0.0);
+        let [back, front] = extent(cutter, lean, &frame, hollow);
         let side = Side {
             motion: &motion,
             cutter,
@@ -159,6 +162,8 @@ impl Chart<'_> {
             h: within.scallop_mm + self.error_mm(),
             step,
             fits: q.min > 0.0,
+            // Parts of the body behind the contact come over it later.
+            over: [front, -back],
             nearby: OnceCell::new(),
         };
         let new = || [1.0, -1.0].map(|sign| Profile::new(left.clone(), sign));

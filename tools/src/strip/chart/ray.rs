@@ -5,7 +5,7 @@
 use crate::strip::knotted::Knotted;
 use crate::strip::traced::{Kept, between};
 use osculate_geom::geodesic::GeodesicState;
-use osculate_geom::{Darboux, Degenerate, Domain, Forms, Jet2, Surface, Taylor, Unit3, Uv, Vec3, uv};
+use osculate_geom::{Degenerate, Domain, Forms, Jet2, Surface, Taylor, Unit3, Uv, Vec3, uv};
 use std::rc::Rc;
 use std::sync::OnceLock;
 
@@ -15,6 +15,12 @@ pub(super) const PARTS: usize = 14;
 pub(super) const DERIVATIVES: usize = 8;
 /// Order of the continuation outside the rectangle.
 const BEYOND: usize = 4;
+/// Second derivatives from which a line goes on.
+const BACK: usize = 4;
+/// By how much the two formulas of a step may disagree on the direction, rad; a fourteenth of it is left.
+const DISAGREE: f64 = 1e-3;
+/// Square of the sine between S_u and S_v below which there is no tangent plane, as for the forms.
+const FLAT: f64 = 1e-22;
 /// Halvings of the piece in which a line leaves the rectangle.
 const HALVINGS: u32 = 30;
 
@@ -74,8 +80,6 @@ pub(super) struct Way {
 pub(super) struct Pace {
     pub step_mm: f64,
     pub count: usize,
-    /// Nodes to a Runge-Kutta step.
-    pub stride: usize,
     pub midway: bool,
 }
 
@@ -105,76 +109,118 @@ impl<'a> Place<'a> {
     /// The geodesic that leaves in a direction.
     pub(super) fn trace(&self, direction: [f64; 2], pace: Pace) -> Result<Way, Degenerate> {
         let extended = Extended::new(self.part.surface);
-        let state = GeodesicState::start(self.part.surface, self.jet.uv, &self.direction(direction))?;
+        let mut state = GeodesicState::start(self.part.surface, self.jet.uv, &self.direction(direction))?;
         let mut way =
             Way { nodes: Vec::with_capacity(pace.count + 1), midway: Vec::new(), hollow_per_mm: 0.0 };
-        let (node, k_min) = self.parts(&self.jet, state)?;
-        way.nodes.push(node);
-        way.hollow_per_mm = (-k_min).max(0.0);
-        let mut kept = None;
-        let mut state = state;
+        let first = self.seen(&self.jet, state)?;
+        way.nodes.push(first.node);
+        way.hollow_per_mm = (-first.k_min).max(0.0);
+        let mut seconds = [first.second; BACK];
         while way.nodes.len() <= pace.count {
-            match self.stretch(&extended, (state, kept), pace, &mut way) {
-                Ok(end) => (state, kept) = end,
-                // What there is of the way is good.
-                Err(_) => break,
+            let known = way.nodes.len().min(BACK);
+            // What there is of the way is good.
+            let Ok((next, seen)) = self.next(&extended, state, &seconds[..known], pace.step_mm) else {
+                break;
+            };
+            if pace.midway {
+                let kept = |state: GeodesicState, second: Uv| Kept { state, second, clear: true };
+                let half = between(&kept(state, seconds[0]), &kept(next, seen.second), pace.step_mm, 0.5);
+                let Ok(there) = self.seen(&extended.jet2(half.at), half) else { break };
+                way.midway.push(there.node);
             }
+            if self.holds(&seen.node) {
+                way.hollow_per_mm = way.hollow_per_mm.max(-seen.k_min);
+            }
+            way.nodes.push(seen.node);
+            seconds.rotate_right(1);
+            (state, seconds[0]) = (next, seen.second);
         }
         way.midway.truncate(way.nodes.len() - 1);
         Ok(way)
     }
 
-    /// One Runge-Kutta step with its nodes; its end, and that with the second derivative where that was needed.
-    fn stretch(
+    /// The next state at the step `h`, from the second derivatives at the last states, the latest first.
+    ///
+    /// The place is that of the cubic through four second derivatives, its rate that of the cubic through the new one and
+    /// three before (Adams's formulas): one jet a node. Where the two do not agree on the direction, or fewer are known, by a
+    /// Runge-Kutta step.
+    fn next(
         &self,
         extended: &Extended<'_>,
-        (from, kept): (GeodesicState, Option<Kept>),
-        pace: Pace,
-        way: &mut Way,
-    ) -> Result<(GeodesicState, Option<Kept>), Degenerate> {
-        let many = pace.stride.min(pace.count + 1 - way.nodes.len());
-        let long = pace.step_mm * many as f64;
-        let end = from.step(extended, long)?;
-        let known = |state: GeodesicState| -> Result<Kept, Degenerate> {
-            Ok(Kept { state, second: state.acceleration(extended)?, clear: true })
-        };
-        let ends = if many > 1 || pace.midway {
-            let first = kept.map_or_else(|| known(from), Ok)?;
-            Some((first, known(end)?))
-        } else {
-            None
-        };
-        let inner = |k: f64| ends.as_ref().map(|(a, b)| between(a, b, long, k / many as f64));
-        for k in 1..=many {
-            if pace.midway
-                && let Some(half) = inner(k as f64 - 0.5)
-            {
-                way.midway.push(self.parts(&extended.jet2(half.at), half)?.0);
+        state: GeodesicState,
+        seconds: &[Uv],
+        h: f64,
+    ) -> Result<(GeodesicState, Seen), Degenerate> {
+        if let [a, b, c, d] = *seconds {
+            let sum = |w: [f64; BACK], of: [Uv; BACK]| {
+                let of = |x: fn(&Uv) -> f64| of.iter().zip(w).map(|(s, w)| w * x(s)).sum::<f64>();
+                uv(of(|s| s.u), of(|s| s.v))
+            };
+            let on = |from: Uv, rate: Uv, by: f64| uv(from.u + by * rate.u, from.v + by * rate.v);
+            let bend = sum([323.0, -264.0, 159.0, -38.0], [a, b, c, d]);
+            let at = on(on(state.at, state.rate, h), bend, h * h / 360.0);
+            let told = on(state.rate, sum([55.0, -59.0, 37.0, -9.0], [a, b, c, d]), h / 24.0);
+            let jet = extended.jet2(at);
+            let second = bend_of(&jet, told);
+            let rate = on(state.rate, sum([9.0, 19.0, -5.0, 1.0], [second, a, b, c]), h / 24.0);
+            // Nor do they where there is no tangent plane.
+            if jet.tangent(uv(rate.u - told.u, rate.v - told.v)).norm() <= DISAGREE {
+                let next = GeodesicState { at, rate };
+                return Ok((next, self.seen(&jet, next)?));
             }
-            let state = if k < many { inner(k as f64).unwrap_or(end) } else { end };
-            let (node, k_min) = self.parts(&extended.jet2(state.at), state)?;
-            if self.holds(&node) {
-                way.hollow_per_mm = way.hollow_per_mm.max(-k_min);
-            }
-            way.nodes.push(node);
         }
-        Ok((end, ends.map(|e| e.1)))
+        let next = state.step(extended, h)?;
+        Ok((next, self.seen(&extended.jet2(next.at), next)?))
     }
 
-    /// The parts of a place less those of the chart's own, and the smaller principal curvature there.
-    fn parts(&self, here: &Jet2, state: GeodesicState) -> Result<(Node, f64), Degenerate> {
-        let own = here.forms()?;
+    /// What the surface says at a state.
+    fn seen(&self, here: &Jet2, state: GeodesicState) -> Result<Seen, Degenerate> {
+        let (su, sv) = (&here.du, &here.dv);
+        let cross = su.cross(sv);
+        let (e, f, g) = (su.norm_squared(), su.dot(sv), sv.norm_squared());
+        let det = cross.norm_squared();
+        // The negated comparison also catches NaN.
+        if !(det > FLAT * e * g && det.is_finite()) {
+            return Err(Degenerate { at: state.at, sin_uv: (det / (e * g)).sqrt() });
+        }
+        let own = cross * (here.side.sign() / det.sqrt());
+        let (l, m, n) = (here.duu.dot(&own), here.duv.dot(&own), here.dvv.dot(&own));
         let tangent = here.tangent(state.rate);
-        // Weingarten: the normal turns with the frame.
-        let frame = Darboux::with_forms(here, &own, &tangent, 0.0);
-        let n_rate = frame.turn.cross(&own.normal);
+        let speed = tangent.norm();
+        let d = tangent / speed;
+        // Weingarten: the derivatives of the normal, from its products with S_u and S_v.
+        let (p, q) = (l * state.rate.u + m * state.rate.v, m * state.rate.u + n * state.rate.v);
+        let turn = (su * (f * q - g * p) + sv * (f * p - e * q)) / (det * speed);
+        let (mean, gauss) = (-0.5 * (e * n - 2.0 * f * m + g * l) / det, (l * n - m * m) / det);
         let x = here.point - self.jet.point;
-        let n = own.normal.into_inner() - self.forms.normal.into_inner();
+        let w = own - self.forms.normal.into_inner();
         let (u, v) = (state.at.u - self.jet.uv.u, state.at.v - self.jet.uv.v);
-        let d = frame.tangent;
-        let node = [x.x, x.y, x.z, n.x, n.y, n.z, u, v, d.x, d.y, d.z, n_rate.x, n_rate.y, n_rate.z];
-        Ok((node, own.principal().k_min))
+        Ok(Seen {
+            node: [x.x, x.y, x.z, w.x, w.y, w.z, u, v, d.x, d.y, d.z, turn.x, turn.y, turn.z],
+            k_min: mean - (mean * mean - gauss).max(0.0).sqrt(),
+            second: bend_of(here, state.rate),
+        })
     }
+}
+
+/// The second derivative of the parameters that keeps a line with their rate geodesic; no number without a tangent plane.
+#[inline]
+fn bend_of(here: &Jet2, rate: Uv) -> Uv {
+    let (su, sv) = (&here.du, &here.dv);
+    let (e, f, g) = (su.norm_squared(), su.dot(sv), sv.norm_squared());
+    let second = here.second(rate);
+    let (a, b, det) = (-second.dot(su), -second.dot(sv), e * g - f * f);
+    uv((a * g - b * f) / det, (b * e - a * f) / det)
+}
+
+/// A place on a line.
+struct Seen {
+    /// Its parts, less those of the chart's own.
+    node: Node,
+    /// The smaller principal curvature, 1/mm.
+    k_min: f64,
+    /// The second derivative of the parameters along a geodesic, per mm2.
+    second: Uv,
 }
 
 /// A line by nodes, the place in the middle; derivatives are per step of nodes.

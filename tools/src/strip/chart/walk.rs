@@ -173,6 +173,8 @@ pub(super) struct Side<'a> {
     pub step: f64,
     /// Whether Q is positive definite.
     pub fits: bool,
+    /// How far before and after the contact's instant the body can lie over it, mm of feed.
+    pub over: [f64; 2],
     /// Poses of the tool along the feed, equally spaced, made when first asked for.
     pub nearby: OnceCell<Vec<(f64, Pose)>>,
 }
@@ -207,11 +209,12 @@ impl Side<'_> {
         (OF_PITCH * self.motion.feed.pitch_mm()).clamp(APART[0] * radius, APART[1] * radius)
     }
 
-    /// Poses as far as the feed goes.
+    /// Poses as far as the feed goes, while the body can lie over the strip.
     fn poses(&self) -> &[(f64, Pose)] {
         self.nearby.get_or_init(|| {
             let apart = self.apart();
-            let [behind, ahead] = self.motion.feed.reach().map(|r| (r / apart) as i32);
+            let reach = self.motion.feed.reach();
+            let [behind, ahead] = [0, 1].map(|k| (reach[k].min(self.over[k]) / apart) as i32);
             let at = |k: i32| f64::from(k) * apart;
             // Beyond a right angle the tool is on the part's other side.
             let faces = |k: &i32| self.motion.faces(at(*k));
