@@ -5,7 +5,7 @@
 mod joined;
 
 use joined::joined;
-use osculate_geom::analytic::{Paraboloid, Torus};
+use osculate_geom::analytic::{Paraboloid, Plane, Torus};
 use osculate_geom::{Axis, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};
 use osculate_productivity::plan::{Along, Leaning, LocalLead, Task, Tolerance, isoparametric};
 use osculate_tools::cl::{ClMove, Motion};
@@ -136,7 +136,8 @@ fn groove_passes_are_evenly_spaced_by_the_exact_strip() {
             let contact = Contact::new(&groove, at, &cutter, FeedLine::Iso(Axis::U), lean).unwrap();
             strip::exact(&contact, 0.0098).unwrap().width_mm
         };
-        let want = 0.5 * (width(a.uv) + width(b.uv));
+        // At the end of the face, on which the tool goes on, a strip is cut short.
+        let want = 0.5 * (width(uv(0.15, a.uv.v)) + width(uv(0.15, b.uv.v)));
         assert!((spacing / want - 1.0).abs() < 0.02, "{spacing} against {want}");
     }
     for p in &passes {
@@ -191,5 +192,55 @@ fn progress_goes_on_only() {
         let told = told.into_inner().unwrap();
         assert!(told.len() > 10 && told.is_sorted(), "{told:?}");
         assert_eq!(told.last(), Some(&1.0));
+    }
+}
+
+/// On a plane the bottom circle of a leaning tool, of radius 8 mm, is at its lowest in front, and comes down to a place `d` beside
+/// the line of contacts 8 - sqrt(64 - d^2) mm further on only. Between the passes what is left at the border is what is left
+/// inside: the design height, 98 % of the scallop.
+#[test]
+fn passes_run_out_until_the_border_is_cut_between_them() {
+    let i = Interval::new(0.0, 24.0);
+    let plane = Plane::new(Domain { u: i, v: i });
+    let spec = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 2.0, length_mm: 50.0 };
+    let cutter = &Cutter::try_from(spec).unwrap();
+    let lean = Lean { lead_rad: 3f64.to_radians(), tilt_rad: 0.0 };
+    let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
+    let (face, progress) = ("F1", &|_| {});
+    let task = Task { surface: &plane, face, cutter, lean: lean.into(), tolerance, progress };
+    let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
+    let inside = |p: &Point3, pose: &Pose| {
+        let way = p - pose.tip;
+        let z = way.dot(&pose.axis);
+        let rho = (way.norm_squared() - z * z).max(0.0).sqrt();
+        z > 0.0 && rho < if z < 2.0 { 8.0 + (4.0 - (2.0 - z).powi(2)).sqrt() } else { 10.0 }
+    };
+    let mut poses: Vec<Pose> = Vec::new();
+    for w in passes.iter().flat_map(|p| p.points.windows(2)) {
+        let way = w[1].pose.tip - w[0].pose.tip;
+        let steps = (way.norm() / 0.02).ceil();
+        let at = |k: usize| Pose { tip: w[0].pose.tip + way * (k as f64 / steps), axis: w[0].pose.axis };
+        poses.extend((0..=steps as usize).map(at));
+    }
+    // No further than that takes.
+    for p in &passes {
+        let ends = [p.points[0].point.x, p.points[p.points.len() - 1].point.x];
+        let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        assert!(lo > -0.5 && hi < 24.5, "{ends:?}");
+    }
+    for x in [0.0, 24.0] {
+        let near: Vec<&Pose> = poses.iter().filter(|p| (p.tip.x - x).abs() < 12.0).collect();
+        let mut highest = 0.0f64;
+        for k in 0..=240 {
+            let y = 0.1 * f64::from(k);
+            let (mut cut, mut left) = (0.02, 0.0);
+            for _ in 0..12 {
+                let z = 0.5 * (cut + left);
+                let p = Point3::new(x, y, z);
+                if near.iter().any(|pose| inside(&p, pose)) { cut = z } else { left = z }
+            }
+            highest = highest.max(left);
+        }
+        assert!(highest > 0.0085 && highest <= 0.01, "{highest} at x = {x}");
     }
 }

@@ -5,9 +5,13 @@
 //! every column allows: the swept tool of that pass must still come down to the design height at the frontier. Both
 //! questions are asked of the true motion of the tool, so that the cusp between two passes is what they really leave,
 //! whatever the surface does between them.
+//!
+//! A tool reaches places beside its contact before or after it comes abreast of them. So a pass runs on until the tool has come
+//! deepest at all that it answers for, over the border of the face too, which is continued there ([`Extended`]).
 
 use super::columns::{Column, column_parameters, first_step, rough_columns, stretches};
 use super::cover::{across_range, union};
+use super::extended::Extended;
 use super::fits::fits;
 use super::lead::{LeadField, Leaning};
 use super::motion::PassMotion;
@@ -16,7 +20,7 @@ use super::seat::{Averaged, Seat};
 use super::walk::Walk;
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task, shorter};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Uv};
+use osculate_geom::{Axis, Diagnostic, Domain, Interval, Jet2, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
 use osculate_tools::{Contact, FeedLine};
 use rayon::prelude::*;
@@ -26,6 +30,12 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 const COVER_ROWS: i32 = 10;
 /// How far on a pass may lie is asked at every so many columns first.
 const ASKED_STRIDE: usize = 12;
+/// How far towards its neighbours a pass looks for the face, and how far what lies there is its own: the ridge between two passes
+/// is about halfway.
+const LOOKED: f64 = 0.75;
+const OWN: f64 = 0.55;
+/// A pass runs further than it must by this part of its strip's width: what it leaves grows with the square of what it lacks.
+const PAST: f64 = 0.05;
 /// Strip width is computed at every so many columns of a pass.
 const WIDTH_STRIDE: usize = 8;
 
@@ -56,11 +66,14 @@ struct Layout {
 /// deeper than `gouge_mm` beside its contact.
 pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
     task.check()?;
+    // Passes run out over the border: there too the lead must do.
+    let face = Extended::of(task, None);
+    let beyond = &Task { surface: &face, ..*task };
     if let Leaning::Local(local) = task.lean {
         let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
             let seat = Seat::new(task, axis);
             let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
-            let field = LeadField::find(task, local, (&feed, seat.rough()))?;
+            let field = LeadField::find(beyond, local, (&feed, seat.rough()))?;
             let lean = Leaning::Field(&field);
             let passes = isoparametric(&Task { lean, progress, ..*task }, Along::Fixed(axis))?;
             Ok(field.told(passes, task.face))
@@ -73,8 +86,9 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
             }
         };
     }
+    let task = beyond;
     let layout = match along {
-        Along::Fixed(axis) => lay_out(task, axis, &|f| (task.progress)(0.5 * f))?,
+        Along::Fixed(axis) => lay_out(task, face.own(), axis, &|f| (task.progress)(0.5 * f))?,
         Along::Auto => {
             // Both at a time: the progress is that of the one that is less far.
             let far = [0, 1].map(|_| AtomicU64::new(0));
@@ -84,7 +98,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
                 (task.progress)(0.5 * both[0].min(both[1]));
             };
             let one = |k: usize, axis: Axis| {
-                let made = lay_out(task, axis, &|f| at(k, f));
+                let made = lay_out(task, face.own(), axis, &|f| at(k, f));
                 at(k, 1.0);
                 made
             };
@@ -95,7 +109,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     let done = AtomicUsize::new(0);
     let total = layout.levels.len();
     let breaks = task.surface.breaks(layout.along);
-    let seat = Seat::new(task, layout.along);
+    let seat = Seat::new(task, layout.along).held_by(face.own());
     let built: Vec<Result<Vec<Pass>, LineError>> = layout
         .levels
         .par_iter()
@@ -117,6 +131,9 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
             why: "no isoparametric line crosses its inside; check the trim loops with inspect".to_owned(),
         });
     }
+    for p in out.passes.iter_mut().flat_map(|p| &mut p.points) {
+        p.uv = face.inner(p.uv);
+    }
     let axis = if layout.along == Axis::U { "u" } else { "v" };
     out.diagnostics.push(Diagnostic::note(
         task.face,
@@ -125,17 +142,25 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     Ok(out)
 }
 
-/// The levels of passes along a parameter; `progress` is told the share of the face that they cover so far.
-fn lay_out(task: &Task<'_>, along: Axis, progress: &(dyn Fn(f64) + Sync)) -> Result<Layout, PlanError> {
+/// The levels of passes along a parameter; `own` are the parameters of the face itself, and `progress` is told the share of the face that they cover so far.
+fn lay_out(
+    task: &Task<'_>,
+    own: Domain,
+    along: Axis,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Layout, PlanError> {
     let surface = task.surface;
     let nothing = || PlanError::Nothing {
         face: task.face.to_owned(),
         why: "its trim loops leave no inside; check them with inspect".to_owned(),
     };
-    let [lo, hi] = across_range(surface, along).ok_or_else(nothing)?;
+    let sides = own.get(along.other());
+    // The end of the inside is found to within rounding.
+    let range = across_range(surface, along).ok_or_else(nothing)?;
+    let [lo, hi] = range.map(|x| if sides.periodic { x } else { x.clamp(sides.lo, sides.hi) });
     let across = Interval::new(lo, hi);
     let slack = 1e-7 * (hi - lo);
-    let seat = Seat::new(task, along);
+    let seat = Seat::new(task, along).held_by(own);
     let parameters = column_parameters(&seat, along, across)?;
     let mut columns: Vec<Column> = (0..parameters.len())
         .into_par_iter()
@@ -321,7 +346,7 @@ fn measure(
     Ok((Level { fixed, reversed, widths }, length))
 }
 
-/// The passes of one level: stretches of inside, widened by what their strip reaches to both sides, resampled.
+/// The passes of one level: stretches of inside, as far as the tool must go for them, resampled.
 fn build(
     seat: &Seat<'_>,
     task: &Task<'_>,
@@ -332,39 +357,63 @@ fn build(
 ) -> Result<Vec<Pass>, LineError> {
     let surface = task.surface;
     let (along, domain) = (layout.along, surface.domain().get(layout.along));
+    let line = IsoLine { surface, along, fixed: level.fixed, reversed: level.reversed };
+    let averaged = Averaged { seat, line: &line };
+    let led: &dyn SurfaceLine = if seat.rough() { &averaged } else { &line };
+    let motion = PassMotion { task, line: &line, led };
+    let radius = task.cutter.radius_mm();
+    // Length of a mm along the pass, in its parameter.
+    let mm = |t: f64| {
+        let jet = surface.jet2(Uv::from_axis(along, t, level.fixed));
+        1.0 / if along == Axis::U { jet.du.norm() } else { jet.dv.norm() }.max(1e-12)
+    };
+    let width = |t: f64| Some(interpolate(&level.widths, t)).filter(|w| w.is_finite()).unwrap_or(0.0);
+    // How far the pass must go for the ends of a stretch of inside beside it.
+    let run_out = |row: f64, [lo, hi]: [f64; 2]| -> Result<[f64; 2], LineError> {
+        let abreast = |t: f64, sign: f64| -> Result<f64, LineError> {
+            let mm = mm(t);
+            let at = Uv::from_axis(along, t, row);
+            let reach = standoff(task.cutter, surface, at, &motion, t, 0.05 * radius * mm)?;
+            let past = sign * width(t) * mm;
+            let deepest = reach.map_or(t + 0.5 * past, |r| r.t + PAST * past);
+            // No further than a strip is wide: from there on it is another place that the tool comes down to.
+            let beside = [t, t + past];
+            Ok(deepest.clamp(beside[0].min(beside[1]), beside[0].max(beside[1])))
+        };
+        Ok([abreast(lo, -1.0)?.max(domain.lo), abreast(hi, 1.0)?.min(domain.hi)])
+    };
     let neighbour = |j: Option<usize>| j.and_then(|j| layout.levels.get(j)).map(|l| l.fixed);
-    // Towards a neighbour three quarters of the way; at the first and last pass the whole way to the end of the face.
-    let below =
-        neighbour(k.checked_sub(1)).map_or(layout.across[0], |b| level.fixed - 0.75 * (level.fixed - b));
-    let above = neighbour(Some(k + 1)).map_or(layout.across[1], |a| level.fixed + 0.75 * (a - level.fixed));
+    // Towards a neighbour some way past the ridge between them; at the first and last pass the whole way to the end of the face.
+    let to = |next: Option<f64>, end: f64, share: f64| {
+        next.map_or(end, |next| level.fixed + share * (next - level.fixed))
+    };
+    let [before, after] = [neighbour(k.checked_sub(1)), neighbour(Some(k + 1))];
+    let within = |share: f64| [to(before, layout.across[0], share), to(after, layout.across[1], share)];
+    let [below, above] = within(LOOKED);
+    let own = within(OWN);
+    // Beyond what is its own a pass only goes as far as the face does.
+    let stretch = |row: f64, s: [f64; 2]| if row >= own[0] && row <= own[1] { run_out(row, s) } else { Ok(s) };
     let mut stretches = Vec::new();
     for k in -COVER_ROWS..=COVER_ROWS {
         let f = f64::from(k) / f64::from(COVER_ROWS);
-        let reach = if k < 0 { level.fixed - below } else { above - level.fixed };
-        stretches.extend(surface.spans(along, level.fixed + f * reach).iter().map(|s| [s.lo, s.hi]));
+        let row = level.fixed + f * if k < 0 { level.fixed - below } else { above - level.fixed };
+        for s in surface.spans(along, row) {
+            stretches.push(stretch(row, [s.lo, s.hi])?);
+        }
     }
     for at in surface.turns() {
         let x = surface.domain().get(along.other()).bring(at.get(along.other()));
         if x >= below && x <= above {
             let t = domain.bring(at.get(along));
-            stretches.push([t, t]);
+            stretches.push(stretch(x, [t, t])?);
         }
     }
-    // Lines that meet a trim at a slant come nearest to the places between passes beyond it.
-    for s in &mut stretches {
-        let over = |t: f64| {
-            let jet = surface.jet2(Uv::from_axis(along, t, level.fixed));
-            let speed = if along == Axis::U { jet.du.norm() } else { jet.dv.norm() };
-            let width = interpolate(&level.widths, t);
-            if width.is_finite() { 0.5 * width / speed.max(1e-12) } else { 0.0 }
-        };
-        *s = [(s[0] - over(s[0])).max(domain.lo), (s[1] + over(s[1])).min(domain.hi)];
-    }
-    let mut stretches = union(stretches, 1e-3 * domain.length());
+    // A gap narrower than the strip is not worth lifting for.
+    let gap = stretches.iter().map(|s| width(s[1]) * mm(s[1])).fold(1e-3 * domain.length(), f64::max);
+    let mut stretches = union(stretches, gap);
     if level.reversed {
         stretches.reverse();
     }
-    let line = IsoLine { surface, along, fixed: level.fixed, reversed: level.reversed };
     let mut out = Vec::new();
     for s in stretches {
         if s[1] - s[0] <= 1e-9 * domain.length() {

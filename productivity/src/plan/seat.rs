@@ -9,7 +9,7 @@
 use super::Task;
 use super::line::{PassLine, Rectangle};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Darboux, Unit3, Uv, Vec3};
+use osculate_geom::{Axis, Darboux, Domain, Unit3, Uv, Vec3};
 use osculate_tools::Pose;
 use rayon::prelude::*;
 
@@ -63,6 +63,8 @@ pub(super) struct Seat<'a> {
     rough: bool,
     /// The face's parameters and where it meets itself.
     pub(super) rectangle: Rectangle,
+    /// The parameters of what holds the tool.
+    holds: Domain,
 }
 
 impl<'a> Seat<'a> {
@@ -82,7 +84,15 @@ impl<'a> Seat<'a> {
 
     fn smooth(task: &'a Task<'a>) -> Self {
         let breaks = [task.surface.breaks(Axis::U), task.surface.breaks(Axis::V)];
-        Self { task, breaks, rough: false, rectangle: Rectangle::of(task.surface) }
+        let rectangle = Rectangle::of(task.surface);
+        Self { task, breaks, rough: false, holds: rectangle.domain, rectangle }
+    }
+
+    /// Where a face goes on over its border it is the face itself alone, of these parameters, that holds the tool, and the
+    /// contact.
+    pub(super) const fn held_by(mut self, own: Domain) -> Self {
+        self.holds = own;
+        self
     }
 
     fn is_rough_along(&self, along: Axis) -> bool {
@@ -189,7 +199,10 @@ impl<'a> Seat<'a> {
         for i in -nu..=nu {
             for j in -nv..=nv {
                 let p = Uv { u: at.u + du * f64::from(i), v: at.v + dv * f64::from(j) };
-                points.extend(self.rectangle.bring(p).map(|p| surface.point(p)));
+                // Beyond the border the tool goes on at the height of its contact.
+                let holds = |p: &Uv| (i == 0 && j == 0) || self.holds.contains(*p);
+                let on = self.rectangle.bring(p).filter(holds);
+                points.extend(on.map(|p| surface.point(p)));
             }
         }
         let mut seated = pose;

@@ -34,7 +34,7 @@ const BENT: u32 = 18;
 const MOST_LOST: f64 = 0.1;
 
 /// Axes in the order of their index.
-pub(super) const AXES: [Axis; 2] = [Axis::U, Axis::V];
+pub(in crate::plan) const AXES: [Axis; 2] = [Axis::U, Axis::V];
 
 /// One cell.
 #[derive(Clone, Copy, Debug, PartialEq)]

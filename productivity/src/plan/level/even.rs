@@ -194,7 +194,7 @@ fn spans(task: &Task<'_>, rectangle: &Rectangle) -> [usize; 2] {
 }
 
 /// The widest strip at a few places of a face, mm: how far passes must be able to run out over its border.
-pub(super) fn widest_mm(task: &Task<'_>) -> f64 {
+pub(in crate::plan) fn widest_mm(task: &Task<'_>) -> f64 {
     const LOOKS: usize = 6;
     let domain = task.surface.domain();
     let look = |k: usize| {

@@ -8,7 +8,6 @@ mod band;
 mod cells;
 mod correct;
 mod even;
-mod extended;
 mod field;
 mod fit;
 mod meet;
@@ -18,23 +17,21 @@ mod spline;
 mod trace;
 mod ways;
 
+use super::extended::Extended;
 use super::lead::{LeadField, Leaning, LocalLead};
 use super::line::Rectangle;
 use super::seat::Seat;
 use super::{Passes, PlanError, Task, Tolerance, shorter};
 use cells::Cells;
-pub(super) use cells::lengths;
+pub(super) use cells::{AXES, lengths};
+pub(super) use even::widest_mm;
 use even::{Even, Wish, Wishes, even};
-use extended::Extended;
 use field::{Face, Height, ScalarField};
 use fit::Place;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv};
 use rayon::prelude::*;
 pub(super) use spline::Spline;
 use std::f64::consts::PI;
-
-/// Strip widths that passes can run out over the border.
-const RUN_OUT: f64 = 1.0;
 
 /// Rounds of leads along the passes and passes for these leads, before widths are corrected.
 const LEADS: u32 = 2;
@@ -44,11 +41,6 @@ const CHORD: f64 = 0.03;
 
 /// How often a field is made again with widths that exact strips corrected.
 const CORRECTIONS: u32 = 2;
-
-/// The face continued over its border, for a field that does not close across the seam of the axis `cut`.
-fn continued<'a>(task: &Task<'a>, cut: Option<Axis>) -> Extended<'a> {
-    Extended::new(task.surface, RUN_OUT * even::widest_mm(task), cut, Seat::any(task).rough())
-}
 
 /// The task on the continued face, with chords that leave the scallop to the passes: points cost less than passes.
 fn continued_task<'a>(task: &Task<'a>, face: &'a Extended<'_>) -> Task<'a> {
@@ -107,20 +99,20 @@ pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
     if let Leaning::Local(local) = task.lean {
         let feed = |_: Uv, jet: &Jet2| jet.normal().ok().map(|n| n.cross(&normal));
         // Passes run out over the border: there too the lead must do.
-        let face = continued(task, None);
+        let face = Extended::of(task, None);
         let task_beyond = Task { surface: &face, ..*task };
         let field = LeadField::find(&task_beyond, local, (&feed, Seat::any(task).rough()))?;
         let passes = isoplanar(&Task { lean: Leaning::Field(&field), ..*task }, normal)?;
         return Ok(field.told(passes, task.face));
     }
-    level_passes(task, &continued(task, None), &Height(normal), "isoplanar", None)
+    level_passes(task, &Extended::of(task, None), &Height(normal), "isoplanar", None)
 }
 
 /// Passes along the level lines of the even field with the shorter predicted path of those that start along u and along v.
 fn even_passes(task: &Task<'_>, name: &str, wishes: Wishes<'_>) -> Result<Passes, PlanError> {
     let given = task.lean;
     let along = |grows: Axis| {
-        let face = continued(task, Some(grows));
+        let face = Extended::of(task, Some(grows));
         let even = even(&Task { surface: &face, ..*task }, grows, wishes, &|_| None)?;
         Ok((face, even, grows))
     };

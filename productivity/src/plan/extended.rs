@@ -4,9 +4,14 @@
 //! continued by its Taylor polynomial of third order there: what it does there decides only where the tool leaves. What lies inside
 //! ([`Surface::contains`]) stays what it was. Across a seam at which a field is cut the face itself goes on.
 
-use super::cells::AXES;
-use crate::plan::line::meets_itself;
+use super::Task;
+use super::level::{AXES, widest_mm};
+use super::line::meets_itself;
+use super::seat::Seat;
 use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Surface, Taylor, Uv, Vec3};
+
+/// Strip widths that passes can run out over the border.
+const RUN_OUT: f64 = 1.0;
 
 /// A border is not gone over where the face is thinner there than this share of its thickest.
 const THIN: f64 = 0.02;
@@ -30,8 +35,14 @@ pub(super) struct Extended<'a> {
 }
 
 impl<'a> Extended<'a> {
+    /// The face of a task as far as its passes may run out over the border, for a field that does not close across the seam of the
+    /// axis `cut`.
+    pub fn of(task: &Task<'a>, cut: Option<Axis>) -> Self {
+        Self::new(task.surface, RUN_OUT * widest_mm(task), cut, Seat::any(task).rough())
+    }
+
     /// Continued by `margin_mm`, but not where the face closes, unless a field is cut there, nor at poles.
-    pub fn new(base: &'a dyn Surface, margin_mm: f64, cut: Option<Axis>, rough: bool) -> Self {
+    fn new(base: &'a dyn Surface, margin_mm: f64, cut: Option<Axis>, rough: bool) -> Self {
         let inner = base.domain();
         let closes = AXES.map(|axis| meets_itself(base, axis));
         let mut wraps = [false; 2];
@@ -52,6 +63,12 @@ impl<'a> Extended<'a> {
             }
         }
         Self { base, inner, outer, wraps, rough, straight }
+    }
+
+    /// The parameters of the face itself, on its other side of a seam too.
+    pub fn own(&self) -> Domain {
+        let of = |k: usize, axis: Axis| if self.wraps[k] { self.outer } else { self.inner }.get(axis);
+        Domain { u: of(0, Axis::U), v: of(1, Axis::V) }
     }
 
     /// The place of the face itself that stands for one of the continuation: the nearest of the border.
