@@ -392,7 +392,8 @@ fn build(
     let [below, above] = within(LOOKED);
     let own = within(OWN);
     // Beyond what is its own a pass only goes as far as the face does.
-    let stretch = |row: f64, s: [f64; 2]| if row >= own[0] && row <= own[1] { run_out(row, s) } else { Ok(s) };
+    let stretch =
+        |row: f64, s: [f64; 2]| if row >= own[0] && row <= own[1] { run_out(row, s) } else { Ok(s) };
     let mut stretches = Vec::new();
     for k in -COVER_ROWS..=COVER_ROWS {
         let f = f64::from(k) / f64::from(COVER_ROWS);
