@@ -253,7 +253,7 @@ pub fn run(
     verdict.hidden = refined.hidden;
     if holds && refined.left_out > 0 {
         let text = format!(
-            "limits may be exceeded at {} places between samples more than were looked at: set [verification] spacing_mm \
+            "limits may be exceeded at {} or more places between samples that were not looked at: set [verification] spacing_mm \
              below {:.4}, and max_samples above {max} where it is reached",
             refined.left_out, density.spacing_mm
         );

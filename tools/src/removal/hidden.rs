@@ -78,20 +78,46 @@ pub fn hidden(
     let seen = world.seen;
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
     let gouge_mm = cells.iter().map(|c| c.level_mm).fold(0.0, f64::max);
+    let highest = highest(&cells, seen, wanted.enough_mm, 0, &mut Vec::new());
+    Ok(Hidden { scallop_mm: highest - seen, gouge_mm })
+}
+
+/// What nothing in the cells stands above: at least what was seen, and no sharper than `enough_mm`. Parts of cells whose bounds are
+/// above `enough_mm` are put into `places`, up to `room` and a little more, with their share of it.
+fn highest(
+    cells: &[Bounded<'_>],
+    seen: f64,
+    enough_mm: f64,
+    room: usize,
+    places: &mut Vec<(usize, Patch, f64)>,
+) -> f64 {
     // The highest first: what they come to need not be undercut by the others.
     let mut order: Vec<&Bounded<'_>> = cells.iter().collect();
     order.sort_by(|a, b| b.height_mm.total_cmp(&a.height_mm));
     let mut highest = seen;
     for group in order.chunks(TOGETHER) {
-        let (first, enough) = (group[0].height_mm, highest.max(wanted.enough_mm));
+        let collects = places.len() < room;
+        let enough = if collects { enough_mm } else { highest.max(enough_mm) };
+        let first = group[0].height_mm;
         if first <= enough {
-            highest = highest.max(first);
-            break;
+            return highest.max(first);
         }
-        let bounds = group.par_iter().map(|c| c.cell.bound(enough, DIVISIONS, &mut Vec::new()).0);
-        highest = bounds.reduce(|| highest, f64::max);
+        let bounds: Vec<(f64, Vec<_>)> = group
+            .par_iter()
+            .map(|c| {
+                let mut parts = Vec::new();
+                let height = c.cell.bound(enough, DIVISIONS, &mut parts).0;
+                (height, parts.into_iter().map(|(part, bound)| (c.sample, part, bound / enough_mm)).collect())
+            })
+            .collect();
+        for (height, parts) in bounds {
+            highest = highest.max(height);
+            if collects {
+                places.extend::<Vec<_>>(parts);
+            }
+        }
     }
-    Ok(Hidden { scallop_mm: highest - seen, gouge_mm })
+    highest
 }
 
 /// Bounds over the cells of samples, and where these are above limits.
@@ -105,43 +131,33 @@ pub(super) struct Doubts {
     pub places: Vec<(usize, Patch, f64)>,
 }
 
-/// Where gouges deeper than `gouge_mm` or heights above [`Wanted::enough_mm`] may hide.
+/// Where gouges deeper than `gouge_mm` or heights above [`Wanted::enough_mm`] may hide: a little more than `room` such places at
+/// most, those with the highest bounds.
 pub(super) fn doubts(
     surfaces: &[&dyn Surface],
     job: &Job<'_>,
     (patches, cuts): (&[Option<Patch>], &[Cut]),
     wanted: Wanted,
-    gouge_mm: f64,
+    (gouge_mm, room): (f64, usize),
 ) -> Result<Doubts, JobError> {
     let world = World::new(job, cuts, wanted.uncut_mm)?;
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
-    let enough = wanted.enough_mm;
-    let found: Vec<(f64, f64, Vec<(usize, Patch, f64)>)> = cells
-        .par_iter()
-        .map(|c| {
-            let depth = c.level_mm - cuts[c.sample].standoff_mm;
-            let (mut height, mut parts) = (c.height_mm, Vec::new());
-            if height > enough {
-                height = c.cell.bound(enough, DIVISIONS, &mut parts).0;
-            }
-            let mut places: Vec<_> =
-                parts.into_iter().map(|(part, bound)| (c.sample, part, bound / enough)).collect();
-            // Gouges are wide: the cell is divided evenly, and what stands too high there is found in the parts.
-            if depth > gouge_mm {
-                let share = depth / gouge_mm.max(f64::MIN_POSITIVE);
-                let parts = c.cell.patch.parts().into_iter().flat_map(|p| p.parts());
-                places = parts.filter(|p| c.cell.on_face(p)).map(|p| (c.sample, p, share)).collect();
-            }
-            (height, depth, places)
-        })
-        .collect();
-    let mut out = Doubts { height_mm: world.seen, depth_mm: 0.0, places: Vec::new() };
-    for (height, depth, places) in found {
-        out.height_mm = out.height_mm.max(height);
-        out.depth_mm = out.depth_mm.max(depth);
-        out.places.extend(places);
+    let mut places = Vec::new();
+    let height_mm = highest(&cells, world.seen, wanted.enough_mm, room, &mut places);
+    let depth = |c: &Bounded<'_>| c.level_mm - cuts[c.sample].standoff_mm;
+    let depth_mm = cells.iter().map(depth).fold(0.0, f64::max);
+    let mut deep: Vec<&Bounded<'_>> = cells.iter().filter(|c| depth(c) > gouge_mm).collect();
+    deep.sort_by_key(|c| c.sample);
+    // Gouges are wide: the cell is divided evenly, and what stands too high there is found in the parts.
+    places.retain(|(k, _, _)| deep.binary_search_by_key(k, |c| c.sample).is_err());
+    for c in deep {
+        let share = depth(c) / gouge_mm.max(f64::MIN_POSITIVE);
+        let parts = c.cell.patch.parts().into_iter().flat_map(|p| p.parts());
+        places.extend(parts.filter(|p| c.cell.on_face(p)).map(|p| (c.sample, p, share)));
     }
-    Ok(out)
+    // In the order of the samples, the parts of one together.
+    places.sort_by_key(|p| p.0);
+    Ok(Doubts { height_mm, depth_mm, places })
 }
 
 /// A cell that is not divided, with its bounds.

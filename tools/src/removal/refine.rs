@@ -33,7 +33,7 @@ pub struct Refined {
     pub hidden: Hidden,
     /// Samples added.
     pub added: usize,
-    /// Places that would have needed a sample but for the limit on their number.
+    /// Places that would have needed a sample but for the limit on their number, of those that were found.
     pub left_out: usize,
 }
 
@@ -86,14 +86,14 @@ pub fn refine(
     for round in 0..=ROUNDS {
         let part = &measured.samples[from..];
         let here = (&measured.patches[from..], &measured.cuts[from..]);
+        let room = most.saturating_sub(measured.samples.len() - even);
         let Doubts { height_mm, depth_mm, mut places } =
-            doubts(surfaces, &Job { samples: part, ..*job }, here, wanted, gouge_mm)?;
+            doubts(surfaces, &Job { samples: part, ..*job }, here, wanted, (gouge_mm, room + 1))?;
         if places.is_empty() || round == ROUNDS {
             height = height.max(height_mm);
             depth = depth.max(depth_mm);
             break;
         }
-        let room = most.saturating_sub(measured.samples.len() - even);
         let all = places.len() <= room;
         if !all {
             out.left_out = places.len() - room;
