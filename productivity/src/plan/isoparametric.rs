@@ -14,7 +14,6 @@ use super::cover::{across_range, union};
 use super::extended::Extended;
 use super::fits::fits;
 use super::lead::{LeadField, Leaning};
-use super::level::continued_task;
 use super::motion::PassMotion;
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
@@ -69,7 +68,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     task.check()?;
     // Passes run out over the border: there too the lead must do.
     let face = Extended::of(task, None);
-    let beyond = &continued_task(task, &face);
+    let beyond = &Task { surface: &face, ..*task };
     if let Leaning::Local(local) = task.lean {
         let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
             let seat = Seat::new(task, axis);

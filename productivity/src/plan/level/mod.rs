@@ -43,7 +43,7 @@ const CHORD: f64 = 0.03;
 const CORRECTIONS: u32 = 2;
 
 /// The task on the continued face, with chords that leave the scallop to the passes: points cost less than passes.
-pub(super) fn continued_task<'a>(task: &Task<'a>, face: &'a Extended<'_>) -> Task<'a> {
+fn continued_task<'a>(task: &Task<'a>, face: &'a Extended<'_>) -> Task<'a> {
     let chord_mm = task.tolerance.chord_mm.min(CHORD * task.tolerance.scallop_mm);
     Task { surface: face, tolerance: Tolerance { chord_mm, ..task.tolerance }, ..*task }
 }
