@@ -198,9 +198,10 @@ fn compare_ranks_and_gives_reasons() {
         let [low, high] = [0, 1].map(|k| m["instantaneous_mm2_min"][k].as_f64().unwrap());
         let regional = number(m, &["regional_mm2_min"]);
         assert!(low <= regional && regional <= high && number(m, &["global_mm2_min"]) < regional, "{m}");
-        // Strips at places are a fair prediction of the passes of so small a face, which overlap at its borders.
+        // Strips at places are a fair prediction of the passes of so small a face: two passes or three, which overlap at its borders
+        // where they may not run out over them.
         let ratio = number(r, &["predicted_length_mm"]) / number(r, &["cutting_length_mm"]);
-        assert!(ratio > 0.4 && ratio < 1.1, "{ratio} {r}");
+        assert!(ratio > 0.4 && ratio < 1.25, "{ratio} {r}");
         assert!(number(r, &["pointwise_min"]) < number(r, &["time_min"]), "{r}");
     }
     // Hollow with a radius of 100 mm at the middle: a ball of 300 mm is too large, one of 200 mm fits.
