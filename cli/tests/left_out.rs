@@ -16,13 +16,14 @@ fn trough(strategy: &str) -> String {
 fn plan(scratch: &Scratch, name: &str, text: &str) -> (i32, Value, String) {
     let job = scratch.write(&format!("{name}.toml"), text);
     let out = scratch.path(name);
-    let run = osculate(&["plan", job.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
-    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    let run =
+        osculate(&["plan", job.to_str().expect("UTF-8"), "--out", out.to_str().expect("UTF-8"), "--json"]);
+    let page = std::fs::read_to_string(out.join("report.html")).expect("a report");
     (run.code, run.json(), page)
 }
 
 fn figure(v: &Value, key: &str) -> f64 {
-    v["verification"][key].as_f64().unwrap()
+    v["verification"][key].as_f64().expect("a number")
 }
 
 #[test]
@@ -67,7 +68,8 @@ fn keys_that_say_nothing_are_refused() {
         let text = job(|t| t.replace("kind = \"isoparametric\"\n", lines));
         let job = scratch.write("job.toml", &text);
         let out = scratch.path("out");
-        osculate(&["plan", job.to_str().unwrap(), "--out", out.to_str().unwrap()]).refused(words);
+        osculate(&["plan", job.to_str().expect("UTF-8"), "--out", out.to_str().expect("UTF-8")])
+            .refused(words);
     };
     refused("kind = \"auto\"\ngouges = \"leave_out\"\n", &["leave_out", "by name"]);
     refused("kind = \"z_level\"\ngouges = \"leave_out\"\n", &["leave_out", "z_level"]);

@@ -84,13 +84,7 @@ pub fn hidden(
 
 /// What nothing in the cells stands above: at least what was seen, and no sharper than `enough_mm`. Parts of cells whose bounds are
 /// above `enough_mm` are put into `places`, up to `room` and a little more, with their share of it.
-fn highest(
-    cells: &[Bounded<'_>],
-    seen: f64,
-    enough_mm: f64,
-    room: usize,
-    places: &mut Vec<(usize, Patch, f64)>,
-) -> f64 {
+fn highest(cells: &[Bounded<'_>], seen: f64, enough_mm: f64, room: usize, places: &mut Vec<Place>) -> f64 {
     // The highest first: what they come to need not be undercut by the others.
     let mut order: Vec<&Bounded<'_>> = cells.iter().collect();
     order.sort_by(|a, b| b.height_mm.total_cmp(&a.height_mm));
@@ -120,15 +114,17 @@ fn highest(
     highest
 }
 
+/// A sample, a part of its cell that may hold more than a limit, and the bound over that limit.
+pub(super) type Place = (usize, Patch, f64);
+
 /// Bounds over the cells of samples, and where these are above limits.
 pub(super) struct Doubts {
     /// What nothing in the cells stands above, mm, or [`Wanted::enough_mm`] where that is higher.
     pub height_mm: f64,
     /// What no gouge in the cells is deeper than, mm.
     pub depth_mm: f64,
-    /// Samples whose cells may hold more than the limits, with the parts that do and the greater of the two bounds' shares
-    /// of its limit.
-    pub places: Vec<(usize, Patch, f64)>,
+    /// Parts of cells that may hold more than the limits.
+    pub places: Vec<Place>,
 }
 
 /// Where gouges deeper than `gouge_mm` or heights above [`Wanted::enough_mm`] may hide: a little more than `room` such places at

@@ -83,7 +83,7 @@ pub fn run(program: &Path, root: &Path) -> Result<(), Failure> {
     }
     one("plane, auto over five tools", &job(PLANE, FIVE, "auto", "scallop_mm = 0.005"), program, &place)?;
     for (part, scallop_mm) in [("a quarter", 0.032), ("half", 0.008), ("a million points", 0.002)] {
-        let tolerance = format!("scallop_mm = {scallop_mm}\ngouge_mm = 0.001\nchord_mm = 0.00001");
+        let tolerance = format!("scallop_mm = {scallop_mm}\ngouge_mm = 0.001\nchord_mm = 0.000005");
         one(&format!("dish, {part}"), &job(DISH, BALL, "isoparametric", &tolerance), program, &place)?;
     }
     Ok(())

@@ -10,11 +10,14 @@ const ROUNDS: usize = 5;
 /// A pass within this part of a place's reach runs right over it.
 const RIGHT_OVER: f64 = 0.05;
 
+/// For each place how far it is off the nearest of some passes, as a share of its reach.
+pub(super) type Shares<'a> = Box<dyn Fn(&[Want]) -> Vec<f64> + 'a>;
+
 /// The passes of a round.
 pub(super) struct Round<'a> {
     pub passes: Vec<Pass>,
-    /// For each place how far it is off the nearest of them, as a share of its reach.
-    pub shares: Box<dyn Fn(&[Want]) -> Vec<f64> + 'a>,
+    /// How far places are off them.
+    pub shares: Shares<'a>,
 }
 
 /// Places at which what is left is measured, and what each of them wants.
