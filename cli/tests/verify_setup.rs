@@ -33,7 +33,7 @@ fn rows() -> String {
 fn setup_findings(v: &Value) -> Vec<&str> {
     v["diagnostics"]
         .as_array()
-        .unwrap()
+        .expect("a list")
         .iter()
         .filter_map(Value::as_str)
         .filter(|d| d.contains("setup"))
@@ -41,7 +41,7 @@ fn setup_findings(v: &Value) -> Vec<&str> {
 }
 
 fn figure(v: &Value, key: &str) -> f64 {
-    v[key].as_f64().unwrap()
+    v[key].as_f64().expect("a number")
 }
 
 #[test]
