@@ -43,7 +43,7 @@ fn rows() -> Passes {
     let count = (2.0 * SIDE / APART) as usize;
     let one = |k: usize| {
         let y = k as f64 * APART - SIDE;
-        let x = if k % 2 == 0 { SIDE } else { -SIDE };
+        let x = if k.is_multiple_of(2) { SIDE } else { -SIDE };
         Pass { points: vec![contact(-x, y), contact(x, y)], closed: false }
     };
     Passes { passes: (0..=count).map(one).collect(), diagnostics: Vec::new() }
@@ -80,7 +80,7 @@ fn passes_end_before_a_wall() {
     // Half the gouge tolerance ends a stretch; between samples of the wall the tool's side is no nearer than at them, but for a
     // twentieth of it.
     let near = nearest(&left.passes);
-    assert!(near >= RADIUS - 0.6 * GOUGE && near <= RADIUS + STEP, "{near}");
+    assert!((RADIUS - 0.6 * GOUGE..=RADIUS + STEP).contains(&near), "{near}");
     // Every row that the wall is in the way of, by more than the tolerance, is two now, and ends no further off it than a step.
     let blocked = |p: &Pass| p.points[0].point.y.abs() < WALL + (RADIUS - GOUGE);
     assert_eq!(left.touched, whole.passes.iter().filter(|p| blocked(p)).count());
@@ -108,7 +108,7 @@ fn passes_end_before_a_wall() {
     // With a distance to keep.
     let kept = leave_out(&whole, &Guard { keep_off_mm: 0.5, ..guard }).unwrap();
     let near = nearest(&kept.passes);
-    assert!(near >= RADIUS + 0.5 && near < RADIUS + 0.6 + STEP, "{near}");
+    assert!((RADIUS + 0.5..RADIUS + 0.6 + STEP).contains(&near), "{near}");
     let bad = leave_out(&whole, &Guard { keep_off_mm: -1.0, ..guard });
     assert!(matches!(bad, Err(LeaveOutError::KeepOff { got }) if got == -1.0));
 }
@@ -127,7 +127,7 @@ fn only_the_holder_is_in_the_way() {
     let holder = Cutter::cylinder(2.0 * HOLDER, 20.0).unwrap();
     let with = leave_out(&whole, &Guard { holder: Some(&holder), ..guard }).unwrap();
     let near = nearest(&with.passes);
-    assert!(near >= HOLDER - 0.6 * GOUGE && near <= HOLDER + STEP, "{near}");
+    assert!((HOLDER - 0.6 * GOUGE..=HOLDER + STEP).contains(&near), "{near}");
 }
 
 #[test]
