@@ -132,7 +132,7 @@ fn tips_of_trims_are_looked_at() {
     // Half the spacing apart at most, all the way round.
     let way: f64 = edge.windows(2).map(|p| (p[1].point - p[0].point).norm()).fold(0.0, f64::max);
     assert!(way <= 0.1 + 1e-12 && edge.len() >= 160, "{way} {}", edge.len());
-    let highest = |samples: &[osculate_tools::removal::Sample]| {
+    let highest = |samples: &[Sample]| {
         let job =
             Job { cutter: &cutter, holder: None, motions: &motions, samples, stock_mm: 0.5, depth_mm: 1.0 };
         let cuts = cut(&job, &|_| ()).unwrap();
@@ -150,7 +150,7 @@ fn refined(
     (scallop, gouge): (f64, f64),
     most: usize,
 ) -> (Measured, Refined) {
-    let sampling = sample_surface(surface, 0, spacing, 1_000_000).unwrap();
+    let sampling = sample_surface(surface, 0, spacing, 1_000_000).expect("a good face");
     let job = Job { cutter, holder: None, motions, samples: &sampling.samples, stock_mm: 0.5, depth_mm: 1.0 };
     let patches = sampling.patches.iter().copied().map(Some).collect();
     let cuts = cut(&job, &|_| ()).expect("a good job");
