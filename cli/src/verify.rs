@@ -75,6 +75,17 @@ pub struct HistogramBin {
 }
 
 impl Verification {
+    /// The verdict.
+    pub const fn words(&self) -> &'static str {
+        if self.certain {
+            "within tolerance, with all that may hide between samples"
+        } else if self.within_tolerance {
+            "within tolerance at the samples; more may hide between them"
+        } else {
+            "NOT within tolerance"
+        }
+    }
+
     /// What the figures are worth, in a sentence.
     pub fn confidence(&self) -> String {
         let bend = self.smallest_radius_mm.map_or_else(

@@ -329,11 +329,11 @@ fn describe(s: &Summary, v: &Verified, diagnostics: &[Diagnostic], out: &Path, c
     row("uncut area", format!("{:.3}", f.uncut_area_mm2), "mm2");
     text.push_str(&t.render());
     if f.within_tolerance {
-        text.push_str("\n  within tolerance\n");
+        text.push_str(&format!("\n  {}\n", f.words()));
     } else {
         let red = std::io::IsTerminal::is_terminal(&std::io::stdout());
         let (on, off) = if red { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
-        text.push_str(&format!("\n  {on}NOT within tolerance{off}\n"));
+        text.push_str(&format!("\n  {on}{}{off}\n", f.words()));
         for w in v.worst.iter().take(5) {
             text.push_str(&format!(
                 "  {} {} mm at ({:.3}, {:.3}, {:.3}) on {}, block {}\n",

@@ -186,14 +186,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         );
         row("uncut area", format!("{:.3}", s.uncut_area_mm2), "mm2");
         row("wall time", format!("{wall:.2}"), "s");
-        let word = if s.certain {
-            "within tolerance, with all that may hide between samples"
-        } else if s.within_tolerance {
-            "within tolerance"
-        } else {
-            "NOT within tolerance"
-        };
-        render::text(&format!("\n{}\n  {word}\n  {}\n", t.render(), s.confidence()));
+        render::text(&format!("\n{}\n  {}\n  {}\n", t.render(), s.words(), s.confidence()));
         render::text(&format!("\n{}", histogram_text(&v.histogram)));
         if !v.worst.is_empty() {
             let mut t = Table::new(["worst", "mm", "x", "y", "z", "face", "block"]);
