@@ -248,7 +248,8 @@ impl<'a> Choice<'a> {
     }
 
     /// The rank of leads found place by place with another tool than the one that holds: along the lines on which that tool was the
-    /// quickest so far, then along those on which it was not planned yet; None for others.
+    /// quickest so far, if it was planned along any that keep theirs, then along those on which it was not planned yet; None for
+    /// others.
     fn with_another(&self, entry: &Entry) -> Option<(usize, f64, f64)> {
         let c = &entry.candidate;
         let planned: Vec<&Entry> =
@@ -259,8 +260,8 @@ impl<'a> Choice<'a> {
         let quickest = planned
             .iter()
             .filter(|e| e.figures.is_some() && keeps_lines(&e.candidate.strategy))
-            .min_by(|a, b| Self::least_min(a).total_cmp(&Self::least_min(b)))?;
-        if quickest.candidate.strategy == c.strategy {
+            .min_by(|a, b| Self::least_min(a).total_cmp(&Self::least_min(b)));
+        if let Some(quickest) = quickest.filter(|q| q.candidate.strategy == c.strategy) {
             return Some((5, 0.0, Self::least_min(quickest)));
         }
         let new = planned.iter().all(|e| e.candidate.strategy != c.strategy);
@@ -276,10 +277,10 @@ impl<'a> Choice<'a> {
         matches!(entry.state, State::Open | State::Planned(_) | State::Posted(_))
     }
 
-    /// The candidate to go on with that may take less time than one that holds: first what is planned already, whatever its
-    /// tool; then with the tool that holds leads found place by place, along parameter lines and lines of curvature first, as
-    /// these keep their lines whatever the lead; then of its strategy the nearest leads; then other strategies, each with its
-    /// nearest lead and the quickest first; then leads found place by place with other tools.
+    /// The candidate to go on with that may take less time than one that holds: first what is planned already or to be laid out
+    /// for less, whatever its tool; then with the tool that holds leads found place by place, along parameter lines and lines of
+    /// curvature first, as these keep their lines whatever the lead; then of its strategy the nearest leads; then other
+    /// strategies, each with its nearest lead and the quickest first; then leads found place by place with other tools.
     fn first_around(&self, holder: &Holder) -> Option<usize> {
         let held = self.entries[holder.entry].candidate;
         let made_local = self.locals().filter(|e| e.candidate.tool == held.tool).count();
@@ -290,7 +291,8 @@ impl<'a> Choice<'a> {
             if !Self::waiting(e) || Self::least_min(e) >= holder.time_min {
                 return None;
             }
-            if e.figures.is_some() {
+            // What is open and was tried left a little too much, and is laid out for less.
+            if e.figures.is_some() || e.tried {
                 return Some((0, 0.0, Self::least_min(e)));
             }
             if c.tool != held.tool {
