@@ -39,6 +39,9 @@ const PAST: f64 = 0.05;
 /// Strip width is computed at every so many columns of a pass.
 const WIDTH_STRIDE: usize = 8;
 
+/// The share of the progress that passes take with the leads of the face alone.
+const FIRST: f64 = 0.6;
+
 /// One pass to be: the fixed parameter, its direction, and what is known along it.
 struct Level {
     fixed: f64,
@@ -66,16 +69,27 @@ struct Layout {
 /// deeper than `gouge_mm` beside its contact.
 pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
     task.check()?;
-    // Passes run out over the border: there too the lead must do.
+    // Passes run out over the border.
     let face = Extended::of(task, None);
     let beyond = &Task { surface: &face, ..*task };
     if let Leaning::Local(local) = task.lean {
         let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
             let seat = Seat::new(task, axis);
             let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
+            let lay = |field: &LeadField, progress: &(dyn Fn(f64) + Sync)| {
+                let lean = Leaning::Field(field);
+                isoparametric(&Task { lean, progress, ..*task }, Along::Fixed(axis))
+            };
+            // Beyond the border the leads of the border do at first. Where the face goes on bent there the tool could dig in behind:
+            // then leads are found that do there too, which are greater on the face itself.
+            let of_face = LeadField::find(task, local, (&feed, seat.rough()))?;
+            let passes = lay(&of_face, &|f| progress(FIRST * f))?;
+            if !LeadField::digs_in(task, local, seat.rough(), &passes) {
+                progress(1.0);
+                return Ok(of_face.told(passes, task.face));
+            }
             let field = LeadField::find(beyond, local, (&feed, seat.rough()))?;
-            let lean = Leaning::Field(&field);
-            let passes = isoparametric(&Task { lean, progress, ..*task }, Along::Fixed(axis))?;
+            let passes = lay(&field, &|f| progress(FIRST + (1.0 - FIRST) * f))?;
             Ok(field.told(passes, task.face))
         };
         return match along {

@@ -10,9 +10,9 @@
 //! the last word.
 
 use super::LocalLead;
-use crate::plan::Task;
 use crate::plan::level::lengths;
 use crate::plan::line::Rectangle;
+use crate::plan::{CcPoint, Task};
 use osculate_geom::{Axis, Darboux, Point3, Unit3, Uv, Vec3};
 use osculate_tools::{Cutter, Lean, Pose};
 use rayon::prelude::*;
@@ -127,6 +127,15 @@ impl<'a> Clearance<'a> {
 
     fn pose(&self, stand: &Stand, lead_rad: f64) -> Pose {
         Lean { lead_rad, tilt_rad: self.local.tilt_rad }.pose(self.task.cutter, &stand.frame, 0.0)
+    }
+
+    /// Whether the tool goes deeper into the part than its gouges may at a point of a pass, beyond a border of the face too.
+    pub fn digs_in(&self, point: &CcPoint) -> bool {
+        let way = self.task.surface.jet2(point.uv).du;
+        let most_mm = self.task.tolerance.gouge_mm;
+        self.stand(point.uv, &way).is_some_and(|s| {
+            self.near_mm(&s, &point.pose, most_mm) > most_mm || self.far_mm(&s, &point.pose) > most_mm
+        })
     }
 
     /// Whether the tool goes no deeper than `most_mm` into the part at a contact.
