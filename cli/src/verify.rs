@@ -246,17 +246,17 @@ pub fn run(
         uncut_mm: limits.uncut_mm,
         // What a roughing leaves above its allowance is told, not judged.
         enough_mm: if rough::is(job) { f64::INFINITY } else { limits.scallop_mm },
-        tool_radius_mm: effective,
+        gouge_mm: limits.gouge_mm,
     };
     let even = samples.len();
-    let mut measured = Measured { samples: samples.clone(), patches, cuts };
-    let mut verdict =
-        removal::judge(&samples, &measured.cuts, &limits, &density, effective).map_err(Failure::job)?;
+    let mut verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;
+    let mut measured = Measured { samples, patches, cuts };
+    // The same without samples of its own.
+    let work = to_cut((&cutter, holder.as_ref()), motions, &[], tolerance.scallop_mm);
     // Between samples of a path that fails already nothing is left to be found out.
     let holds = verdict.within || rough::is(job);
     let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
-    let refined = removal::refine(&surfaces, &work, &mut measured, (wanted, limits.gouge_mm), most)
-        .map_err(Failure::job)?;
+    let refined = removal::refine(&surfaces, &work, &mut measured, wanted, most).map_err(Failure::job)?;
     let Measured { samples, patches, cuts } = measured;
     if refined.added > 0 {
         verdict = removal::judge(&samples, &cuts, &limits, &density, effective).map_err(Failure::job)?;

@@ -154,7 +154,7 @@ impl Case {
         let cuts = cut(&job, &|_| ())?;
         let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
         let patches: Vec<Option<Patch>> = patches.into_iter().map(Some).collect();
-        let wanted = Wanted { uncut_mm: STOCK_MM, enough_mm: 0.0, tool_radius_mm: self.radius_mm };
+        let wanted = Wanted { uncut_mm: STOCK_MM, enough_mm: 0.0, gouge_mm: GOUGE_MM };
         let more = hidden(&[&*self.surface], &job, (&patches, &cuts), wanted)?;
         Ok((samples.len(), seen, seen + more.scallop_mm))
     }
@@ -165,6 +165,8 @@ fn job<'a>(cutter: &'a Cutter, motions: &'a [Swept], samples: &'a [Sample]) -> J
 }
 
 const STOCK_MM: f64 = 1.0;
+/// Depth of gouges that is asked for, which these paths do not reach.
+const GOUGE_MM: f64 = 0.01;
 const MOST_SAMPLES: usize = 3_000_000;
 const HALVINGS: u32 = 4;
 /// Searches for the highest place, rounds of each, places looked at each way, and by how much smaller the next round is.

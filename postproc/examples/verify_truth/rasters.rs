@@ -237,7 +237,7 @@ pub fn spacing() -> bool {
         let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
         let patches: Vec<Option<osculate_tools::removal::Patch>> =
             sampling.patches.iter().copied().map(Some).collect();
-        let wanted = Wanted { uncut_mm: 0.4, enough_mm: 0.0, tool_radius_mm: tool };
+        let wanted = Wanted { uncut_mm: 0.4, enough_mm: 0.0, gouge_mm: 0.01 };
         let more = hidden(&[&surface], &job, (&patches, &cuts), wanted).expect("a good job").scallop_mm;
         let bound = seen + more;
         let over = bound - truth;

@@ -21,13 +21,13 @@
 //! are of second order and within `1 / (1 - 3 a^2)`. The whole therefore closes in with the square of the spacing. It holds
 //! to leading order in the curvature's change over a cell and in the sagitta of turning motions.
 //!
-//! *Gouges.* At the bottom of a gouge the standoff is level: a sample r away is deeper by less than `K r^2 / 2` only, K the
-//! relative curvature, with the curvature at each sample and the size of its own cell.
+//! *Gouges* are looked for in [`digs`](super::digs).
 
 use super::body::Body;
 use super::cluster::clusters;
 use super::deepest::Passage;
 use super::density::Hidden;
+use super::digs::{Depth, Digs};
 use super::job::{Cut, Job, JobError};
 use super::piece::{Approach, Passes, Piece, pieces};
 use super::sampling::Patch;
@@ -36,6 +36,7 @@ use super::tree::{Tree, Which};
 use crate::cutter::Line;
 use osculate_geom::{Point3, Surface, Unit3, uv};
 use rayon::prelude::*;
+use std::collections::HashSet;
 
 /// How often a cell is halved in both directions.
 pub const DIVISIONS: u32 = 3;
@@ -47,6 +48,8 @@ const MOST_SEEN: f64 = 3.0;
 const TOGETHER: usize = 256;
 /// Height at which a motion counts as met, mm: bounds are above the truth by more.
 const MET: f64 = 1e-9;
+/// Depth that is asked for at least, mm: a path that is to dig in nowhere touches the part.
+const LEAST_DEPTH: f64 = 1e-6;
 /// Accuracy of the instant, of the motion: an instant that is off gives a bound that is higher.
 const INSTANT: f64 = 1e-7;
 
@@ -57,17 +60,19 @@ pub struct Wanted {
     pub uncut_mm: f64,
     /// Bounds on the height that are no higher need not be sharper, such as the tolerance; 0 for the sharpest.
     pub enough_mm: f64,
-    /// The tool's effective radius for the gouge bound, see [`Density::bound`](super::Density::bound).
-    pub tool_radius_mm: f64,
+    /// Bounds on the depth of gouges, of what holder and rapids do to the part, and of what anything does to faces that are only
+    /// checked, need not be sharper than this, such as their tolerance.
+    pub gouge_mm: f64,
 }
 
 /// Bounds on what may hide between samples on the faces of a job, in the order of the samples.
 ///
 /// `surfaces` are the faces by number, `patches` the cells of the job's samples; samples without a cell (on a trim) have
-/// none of their own and are left aside, as are those that nothing cut and those above what counts as uncut.
+/// none of their own and are left aside. Those that nothing cut and those above what counts as uncut are left aside where heights
+/// are asked for. A gouge may be as deep as the job follows it where one deeper than [`Wanted::gouge_mm`] cannot be ruled out.
 ///
 /// # Errors
-/// [`JobError`] for samples that are not finite.
+/// [`JobError`] for samples that are not finite, and for a [`Wanted::gouge_mm`] that is negative or not finite.
 pub fn hidden(
     surfaces: &[&dyn Surface],
     job: &Job<'_>,
@@ -77,9 +82,11 @@ pub fn hidden(
     let world = World::new(job, cuts, wanted.uncut_mm)?;
     let seen = world.seen;
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
-    let gouge_mm = cells.iter().map(|c| c.level_mm).fold(0.0, f64::max);
     let highest = highest(&cells, seen, wanted.enough_mm, 0, &mut Vec::new());
-    Ok(Hidden { scallop_mm: highest - seen, gouge_mm })
+    let depths = world.digs(wanted.gouge_mm)?.depths(surfaces, (patches, cuts))?;
+    let dug = cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max);
+    let deepest = depths.iter().map(|d| d.most_mm).fold(dug, f64::max);
+    Ok(Hidden { scallop_mm: highest - seen, gouge_mm: deepest - dug })
 }
 
 /// What nothing in the cells stands above: at least what was seen, and no sharper than `enough_mm`. Parts of cells whose bounds are
@@ -100,7 +107,7 @@ fn highest(cells: &[Bounded<'_>], seen: f64, enough_mm: f64, room: usize, places
             .par_iter()
             .map(|c| {
                 let mut parts = Vec::new();
-                let height = c.cell.bound(enough, DIVISIONS, &mut parts).0;
+                let height = c.cell.bound(enough, DIVISIONS, &mut parts);
                 (height, parts.into_iter().map(|(part, bound)| (c.sample, part, bound / enough_mm)).collect())
             })
             .collect();
@@ -127,29 +134,28 @@ pub(super) struct Doubts {
     pub places: Vec<Place>,
 }
 
-/// Where gouges deeper than `gouge_mm` or heights above [`Wanted::enough_mm`] may hide: a little more than `room` such places at
-/// most, those with the highest bounds.
+/// Where gouges deeper than [`Wanted::gouge_mm`] or heights above [`Wanted::enough_mm`] may hide: of the latter a little more than
+/// `room` at most, those with the highest bounds.
 pub(super) fn doubts(
     surfaces: &[&dyn Surface],
     job: &Job<'_>,
     (patches, cuts): (&[Option<Patch>], &[Cut]),
     wanted: Wanted,
-    (gouge_mm, room): (f64, usize),
+    room: usize,
 ) -> Result<Doubts, JobError> {
     let world = World::new(job, cuts, wanted.uncut_mm)?;
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
     let mut places = Vec::new();
     let height_mm = highest(&cells, world.seen, wanted.enough_mm, room, &mut places);
-    let depth = |c: &Bounded<'_>| c.level_mm - cuts[c.sample].standoff_mm;
-    let depth_mm = cells.iter().map(depth).fold(0.0, f64::max);
-    let mut deep: Vec<&Bounded<'_>> = cells.iter().filter(|c| depth(c) > gouge_mm).collect();
-    deep.sort_by_key(|c| c.sample);
-    // Gouges are wide: the cell is divided evenly, and what stands too high there is found in the parts.
-    places.retain(|(k, _, _)| deep.binary_search_by_key(k, |c| c.sample).is_err());
-    for c in deep {
-        let share = depth(c) / gouge_mm.max(f64::MIN_POSITIVE);
-        let parts = c.cell.patch.parts().into_iter().flat_map(|p| p.parts());
-        places.extend(parts.filter(|p| c.cell.on_face(p)).map(|p| (c.sample, p, share)));
+    let depths = world.digs(wanted.gouge_mm)?.depths(surfaces, (patches, cuts))?;
+    let depth_mm = depths.iter().map(|d| d.most_mm).fold(0.0, f64::max);
+    // Where both may hide there is one sample for both.
+    let key = |k: usize, p: &Patch| (k, p.u.map(f64::to_bits), p.v.map(f64::to_bits));
+    let known: HashSet<_> = places.iter().map(|p| key(p.0, &p.1)).collect();
+    for Depth { sample, most_mm, parts } in depths {
+        let share = most_mm / wanted.gouge_mm;
+        let new = parts.into_iter().filter(|part| !known.contains(&key(sample, part)));
+        places.extend(new.map(|part| (sample, part, share)));
     }
     // In the order of the samples, the parts of one together.
     places.sort_by_key(|p| p.0);
@@ -162,8 +168,6 @@ struct Bounded<'a> {
     sample: usize,
     /// What nothing in it stands above, mm.
     height_mm: f64,
-    /// By how much a gouge may be deeper than at the sample, mm.
-    level_mm: f64,
 }
 
 /// Whether a sample is judged by the height that was left: one that something cut, of a machined face.
@@ -192,6 +196,19 @@ impl<'a> World<'a> {
         Ok(World { job, body: Body { cutter: job.cutter, above_mm: 0.0 }, tree, pieces, seen })
     }
 
+    /// What looks for gouges deeper than this.
+    fn digs(&'a self, depth_mm: f64) -> Result<Digs<'a>, JobError> {
+        if !(depth_mm >= 0.0 && depth_mm.is_finite()) {
+            return Err(JobError::Depth { got: depth_mm });
+        }
+        Ok(Digs {
+            job: self.job,
+            tree: &self.tree,
+            pieces: &self.pieces,
+            depth_mm: depth_mm.max(LEAST_DEPTH),
+        })
+    }
+
     /// The cells of the samples that are judged.
     fn cells(
         &'a self,
@@ -205,9 +222,8 @@ impl<'a> World<'a> {
             let surface = surfaces[self.job.samples[k].face as usize];
             let own = cuts[k].by.map_or(0, |by| by.motion);
             let cell = Cell { surface, world: self, patch, own, beside: self.beside(k, members, cuts) };
-            let (height_mm, radius) = cell.bound(self.seen, 0, &mut Vec::new());
-            let level_mm = 0.5 * (1.0 / wanted.tool_radius_mm + patch.convex_per_mm) * radius * radius;
-            Some(Bounded { cell, sample: k, height_mm, level_mm })
+            let height_mm = cell.bound(self.seen, 0, &mut Vec::new());
+            Some(Bounded { cell, sample: k, height_mm })
         };
         let of =
             |members: &[u32]| members.iter().filter_map(|k| cell(*k as usize, members)).collect::<Vec<_>>();
@@ -266,7 +282,6 @@ struct Level {
     points: [Point3; 4],
     middle: Point3,
     normal: Unit3,
-    radius: f64,
     /// Corners of the patch that is wider by what turning normals need.
     wide: [Point3; 4],
     slack: f64,
@@ -281,23 +296,22 @@ struct Level {
 }
 
 impl Level {
-    /// Nothing tried yet; the radius alone where the patch has no tangent plane in its middle.
-    fn new(cell: &Cell<'_>, patch: &Patch) -> Result<Self, f64> {
+    /// Nothing tried yet; none where the patch has no tangent plane in its middle.
+    fn new(cell: &Cell<'_>, patch: &Patch) -> Option<Self> {
         let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
         let jet = cell.surface.jet2(patch.middle());
         let points = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)].map(|c| cell.surface.point(c));
         let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
-        let normal = jet.normal().map_err(|_| radius)?;
+        let normal = jet.normal().ok()?;
         let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
         // Nothing stands higher than the stock, and what does stand higher than this gets the allowance of first order.
         let most = (MOST_SEEN * cell.world.seen).min(cell.world.job.stock_mm);
         let wide = stretched(points, jet.point, most * bend);
         let radius_wide = wide.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
-        Ok(Self {
+        Some(Self {
             points,
             middle: jet.point,
             normal,
-            radius,
             wide,
             slack: 0.5 * patch.concave_per_mm * radius_wide * radius_wide,
             most,
@@ -360,9 +374,8 @@ impl Level {
 }
 
 impl Cell<'_> {
-    /// Bound on the heights over the cell, divided so often, and the cell's radius, mm; a bound that is not above
-    /// `enough` need not be sharper. The last parts whose own bounds are above it are put into `above`.
-    fn bound(&self, enough: f64, divisions: u32, above: &mut Vec<(Patch, f64)>) -> (f64, f64) {
+    /// Bound on the heights over the cell, divided so often; a bound that is not above `enough` need not be sharper. The last parts whose own bounds are above it are put into `above`.
+    fn bound(&self, enough: f64, divisions: u32, above: &mut Vec<(Patch, f64)>) -> f64 {
         self.bound_of(&self.patch, None, enough, (divisions, above))
     }
 
@@ -373,28 +386,24 @@ impl Cell<'_> {
         motions: Option<&[u32]>,
         enough: f64,
         (divisions, above): (u32, &mut Vec<(Patch, f64)>),
-    ) -> (f64, f64) {
-        let mut level = match Level::new(self, patch) {
-            Ok(level) => level,
-            Err(radius) => return (enough, radius),
-        };
-        let radius = level.radius;
+    ) -> f64 {
+        let Some(mut level) = Level::new(self, patch) else { return enough };
         let holds = self.try_all(&mut level, motions, enough);
         if holds || divisions == 0 {
             if !holds {
                 above.push((*patch, level.best));
             }
-            return (level.best, radius);
+            return level.best;
         }
         let likely = level.likely();
         let mut divided = 0.0f64;
         for part in patch.parts() {
             if self.on_face(&part) {
                 let below = (divisions - 1, &mut *above);
-                divided = divided.max(self.bound_of(&part, Some(&likely), enough, below).0);
+                divided = divided.max(self.bound_of(&part, Some(&likely), enough, below));
             }
         }
-        (level.best.min(divided), radius)
+        level.best.min(divided)
     }
 
     /// Whether the motions, tried one after the other, bring the bound down to `enough`.

@@ -48,6 +48,7 @@ mod crest;
 mod cut;
 mod deepest;
 mod density;
+mod digs;
 mod grid;
 mod hidden;
 mod job;

@@ -65,7 +65,8 @@ impl Measured {
 }
 
 /// Adds samples where more than the limits may hide between those there are: heights above `wanted.enough_mm`, gouges deeper
-/// than `gouge_mm`; none once one of them shows that a limit is exceeded. No more than `most` are added. The areas of samples that share their cells with new ones are shared too.
+/// than `wanted.gouge_mm`; none once one of them shows that a limit is exceeded. No more than `most` are added. The areas of
+/// samples that share their cells with new ones are shared too.
 ///
 /// `surfaces` are the faces by number; the job's own samples are not looked at.
 ///
@@ -75,7 +76,7 @@ pub fn refine(
     surfaces: &[&dyn Surface],
     job: &Job<'_>,
     measured: &mut Measured,
-    (wanted, gouge_mm): (Wanted, f64),
+    wanted: Wanted,
     most: usize,
 ) -> Result<Refined, JobError> {
     let even = measured.samples.len();
@@ -88,7 +89,7 @@ pub fn refine(
         let here = (&measured.patches[from..], &measured.cuts[from..]);
         let room = most.saturating_sub(measured.samples.len() - even);
         let Doubts { height_mm, depth_mm, mut places } =
-            doubts(surfaces, &Job { samples: part, ..*job }, here, wanted, (gouge_mm, room + 1))?;
+            doubts(surfaces, &Job { samples: part, ..*job }, here, wanted, room + 1)?;
         if places.is_empty() || round == ROUNDS {
             height = height.max(height_mm);
             depth = depth.max(depth_mm);
@@ -108,6 +109,7 @@ pub fn refine(
         let samples = &measured.samples[first..];
         measured.cuts.extend(cut(&Job { samples, ..*job }, &|_| ())?);
         let new = first..measured.samples.len();
+        let gouge_mm = wanted.gouge_mm;
         let exceeds = |c: &Cut| c.standoff_mm > wanted.enough_mm || -c.standoff_mm > gouge_mm;
         if !all || measured.cuts[new].iter().any(exceeds) {
             // There are to be no more of them, or the verdict is known.
@@ -123,9 +125,11 @@ pub fn refine(
     out.added = measured.samples.len() - even;
     let (mut seen, mut dug) = (0.0f64, 0.0f64);
     let all = Job { samples: &measured.samples, ..*job };
-    for k in (0..measured.cuts.len()).filter(|k| judged(&all, &measured.cuts, wanted.uncut_mm, *k)) {
-        seen = seen.max(measured.cuts[k].standoff_mm);
-        dug = dug.max(-measured.cuts[k].standoff_mm);
+    for (k, cut) in measured.cuts.iter().enumerate() {
+        dug = dug.max(-cut.standoff_mm);
+        if judged(&all, &measured.cuts, wanted.uncut_mm, k) {
+            seen = seen.max(cut.standoff_mm);
+        }
     }
     out.hidden = Hidden { scallop_mm: (height - seen).max(0.0), gouge_mm: (depth - dug).max(0.0) };
     Ok(out)

@@ -35,6 +35,15 @@ impl Target {
 
     /// The smallest box around the points with one axis along `normal` and the other two as they come.
     pub fn around(points: impl Iterator<Item = Point3> + Clone, normal: &Unit3) -> Self {
+        Self::wider(points, normal, [0.0; 2])
+    }
+
+    /// The same with so much more on either end of the axis along `normal`, and of the other two, mm.
+    pub fn wider(
+        points: impl Iterator<Item = Point3> + Clone,
+        normal: &Unit3,
+        [along, across]: [f64; 2],
+    ) -> Self {
         let t = osculate_geom::any_perpendicular(normal);
         let axes = [normal.into_inner(), t.into_inner(), normal.cross(&t)];
         let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
@@ -46,9 +55,19 @@ impl Target {
         }
         let middle = |r: &[f64; 2]| 0.5 * (r[0] + r[1]);
         let centre = Point3::from(axes.iter().zip(&range).map(|(a, r)| a * middle(r)).sum::<Vec3>());
-        let radius = points.map(|p| (p - centre).norm()).fold(0.0, f64::max);
-        let half_axes = std::array::from_fn(|k| axes[k] * (0.5 * (range[k][1] - range[k][0])));
+        let radius = points.map(|p| (p - centre).norm()).fold(0.0, f64::max) + along + 2.0 * across;
+        let more = [along, across, across];
+        let half_axes = std::array::from_fn(|k| axes[k] * (0.5 * (range[k][1] - range[k][0]) + more[k]));
         Self { centre, half_axes, radius }
+    }
+
+    /// Its corners.
+    pub fn corners(&self) -> [Point3; 8] {
+        let [a, b, c] = self.half_axes;
+        std::array::from_fn(|k| {
+            let side = |bit: usize| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            self.centre + a * side(0) + b * side(1) + c * side(2)
+        })
     }
 
     /// By how much a convex function with gradient `g` at the centre may be lower elsewhere in the box.

@@ -21,7 +21,7 @@ fn look(surface: &dyn Surface, sampling: &Sampling, cutter: &Cutter, motions: &[
     let patches: Vec<Option<Patch>> = sampling.patches.iter().copied().map(Some).collect();
     let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
     let bound = |enough_mm: f64| {
-        let wanted = Wanted { uncut_mm: 0.4, enough_mm, tool_radius_mm: cutter.radius_mm() };
+        let wanted = Wanted { uncut_mm: 0.4, enough_mm, gouge_mm: 0.01 };
         seen + hidden(&[surface], &job, (&patches, &cuts), wanted).expect("a good job").scallop_mm
     };
     let sharpest = bound(0.0);
@@ -155,8 +155,8 @@ fn refined(
     let patches = sampling.patches.iter().copied().map(Some).collect();
     let cuts = cut(&job, &|_| ()).expect("a good job");
     let mut measured = Measured { samples: sampling.samples.clone(), patches, cuts };
-    let wanted = Wanted { uncut_mm: 0.4, enough_mm: scallop, tool_radius_mm: cutter.radius_mm() };
-    let refined = refine(&[surface], &job, &mut measured, (wanted, gouge), most).expect("a good job");
+    let wanted = Wanted { uncut_mm: 0.4, enough_mm: scallop, gouge_mm: gouge };
+    let refined = refine(&[surface], &job, &mut measured, wanted, most).expect("a good job");
     let area = |s: &[Sample]| s.iter().map(|s| s.area_mm2).sum::<f64>();
     assert!((area(&measured.samples) - sampling.area_mm2).abs() < 1e-9 * sampling.area_mm2);
     assert!(measured.samples.iter().all(|s| s.area_mm2 >= 0.0));
@@ -210,4 +210,72 @@ fn a_gouge_between_samples_is_found_by_samples_added_there() {
     let (under, kept) = measure(1.0005 * depth, 1_000_000);
     assert!(deepest(&under) + kept.hidden.gouge_mm <= 1.0005 * depth, "{kept:?}");
     assert!(deepest(&under) + kept.hidden.gouge_mm >= depth - 1e-12);
+}
+
+/// Poses along x of a tool that leans aside, its lowest point on a line a little across the rows of samples.
+fn aside(cutter: &Cutter, tilt: f64, depth: f64) -> [Pose; 2] {
+    let axis = Vec3::new(0.0, tilt.sin(), tilt.cos());
+    let down = Vec3::new(0.0, tilt.cos(), -tilt.sin());
+    // From the tip to the lowest point: to the middle of the corner's circle, then straight down.
+    let low = down * cutter.core_mm() + axis * cutter.corner_mm() - Vec3::z() * cutter.corner_mm();
+    [(-20.0, 1.43), (25.0, 1.6)]
+        .map(|(x, y)| Pose { tip: Point3::new(x, y, -depth) - low, axis: Unit3::new_normalize(axis) })
+}
+
+#[test]
+fn gouges_as_sharp_as_a_corner_are_found() {
+    let (surface, depth) = (square(3.0), 0.02);
+    for (corner, tilt) in [(0.3, 0.2), (0.05, 0.2), (0.0, 0.1), (0.0, 0.5)] {
+        let cutter = toroidal(10.0, corner);
+        let [from, to] = aside(&cutter, tilt, depth);
+        let motions = [Swept { from, to, rapid: false, block: 1 }];
+        let deepest = |m: &Measured| m.cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max);
+        let measure = |limit: f64, most: usize| {
+            refined(&surface, 0.15, (&cutter, &motions), (f64::INFINITY, limit), most)
+        };
+        let (before, none) = measure(0.6 * depth, 0);
+        assert!(deepest(&before) + none.hidden.gouge_mm >= depth - 1e-12, "{corner} {tilt}: {none:?}");
+        let (over, some) = measure(0.98 * depth, 1_000_000);
+        assert!(deepest(&over) > 0.98 * depth && deepest(&over) <= depth + 1e-12, "{corner}: {some:?}");
+        assert!(deepest(&before) < deepest(&over) && some.added > 0);
+        let (under, kept) = measure(1.02 * depth, 1_000_000);
+        assert!(deepest(&under) + kept.hidden.gouge_mm <= 1.02 * depth + 1e-15, "{corner}: {kept:?}");
+        assert!(deepest(&under) + kept.hidden.gouge_mm >= depth - 1e-12);
+    }
+}
+
+/// Between the samples of a face that is only checked, and by a rapid or by a holder.
+#[test]
+fn gouges_of_rapids_and_holders_are_found_on_check_faces() {
+    let (surface, depth, limit) = (square(3.0), 0.02, 0.005);
+    let holder = toroidal(10.0, 0.0);
+    // The holder begins where the cutter ends: its own tip is so much higher up the axis.
+    let short = toroidal(2.0, 0.5);
+    let [from, to] = aside(&holder, 0.3, depth)
+        .map(|p| Pose { tip: p.tip - p.axis.into_inner() * short.length_mm(), axis: p.axis });
+    let held = [Swept { from, to, rapid: false, block: 1 }];
+    let [from, to] = aside(&holder, 0.3, depth);
+    let rapid = [Swept { from, to, rapid: true, block: 1 }];
+    for (cutter, holder, motions) in [(&short, Some(&holder), &held), (&holder, None, &rapid)] {
+        let mut sampling = sample_surface(&surface, 0, 0.3, 1_000_000).unwrap();
+        for sample in &mut sampling.samples {
+            sample.check_only = true;
+        }
+        let samples = &sampling.samples;
+        let job = Job { cutter, holder, motions, samples, stock_mm: 0.5, depth_mm: 1.0 };
+        let patches = sampling.patches.iter().copied().map(Some).collect();
+        let mut measured = Measured { samples: samples.clone(), patches, cuts: cut(&job, &|_| ()).unwrap() };
+        let deepest = |m: &Measured| m.cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max);
+        let wanted = |gouge_mm: f64| Wanted { uncut_mm: 0.4, enough_mm: 0.01, gouge_mm };
+        let seen = deepest(&measured);
+        let refine =
+            |m: &mut Measured, gouge: f64, most| refine(&[&surface], &job, m, wanted(gouge), most).unwrap();
+        let none = refine(&mut measured.clone(), limit, 0);
+        assert!(seen + none.hidden.gouge_mm >= depth - 1e-12 && seen < 0.9 * depth, "{seen} {none:?}");
+        let kept = refine(&mut measured.clone(), 1.1 * depth, 1_000_000);
+        assert!(kept.hidden.gouge_mm + seen <= 1.1 * depth + 1e-15, "{kept:?}");
+        let found = refine(&mut measured, 0.95 * depth, 1_000_000);
+        assert!(deepest(&measured) > 0.95 * depth && found.added > 0, "{seen} {found:?}");
+        assert!(deepest(&measured) <= depth + 1e-12);
+    }
 }

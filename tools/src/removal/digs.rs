@@ -1,0 +1,224 @@
+//! How deep anything may go into the part between samples, cell by cell.
+//!
+//! Two bounds. At the bottom of a gouge the standoff is level, so that a sample r away from it stands higher by at most
+//! `K r^2 / 2`, K the relative curvature of cutter and part: quick, and near enough for a ball. The bottom of a toroidal end
+//! is as sharp as its corner, wherever on the tool its strip comes from, and that of a flat end or of a holder has no curvature
+//! at all. Cells of which this says too little are looked at themselves: a gouge deeper than h is a body that meets the
+//! face set back by h, and where no motion brings a body to a box around a cell set back so, there is none. What comes near
+//! has the cell divided, up to [`DIVISIONS`] times: a convex body that keeps off the face itself leaves the box by the square
+//! of its size.
+//!
+//! Samples of check faces have cells too, and holder and rapids are bodies as the cutter is.
+
+use super::body::Body;
+use super::cluster::{Cluster, clusters};
+use super::hidden::DIVISIONS;
+use super::job::{Cut, Job, JobError};
+use super::piece::{Approach, Passes, Piece};
+use super::sampling::Patch;
+use super::target::Target;
+use super::tree::{Tree, Which};
+use osculate_geom::{Surface, uv};
+use rayon::prelude::*;
+
+/// Pieces of motions are halved until they stray from straight ones by no more than this share of the depth that is asked for.
+const STRAY: f64 = 0.1;
+/// Halvings of a piece at most, each to a quarter of what it strays by.
+const HALVINGS: u32 = 6;
+/// Turn of the relative curvature over a cell, rad, up to which the quick bound is of second order.
+const MOST_TURN: f64 = 0.5;
+
+/// What is known of the depth in one cell.
+pub(super) struct Depth {
+    /// The sample whose cell it is.
+    pub sample: usize,
+    /// Nothing in the cell is deeper, mm.
+    pub most_mm: f64,
+    /// Parts of the cell in which there may be something deeper than asked for; none where `most_mm` is no more than that.
+    pub parts: Vec<Patch>,
+}
+
+/// Motions and the bodies that they carry.
+#[derive(Clone, Copy)]
+pub(super) struct Digs<'a> {
+    pub job: &'a Job<'a>,
+    pub tree: &'a Tree,
+    pub pieces: &'a [Piece],
+    /// The depth that is asked for, mm.
+    pub depth_mm: f64,
+}
+
+/// A motion that brings a body near.
+#[derive(Clone, Copy)]
+struct Comer<'a> {
+    body: Body<'a>,
+    approach: Approach,
+}
+
+/// A cell set back.
+struct Back {
+    target: Target,
+    /// From its middle to its farthest corner, mm.
+    radius: f64,
+}
+
+impl<'a> Digs<'a> {
+    /// The depths of all cells, in the order of groups of samples.
+    pub fn depths(
+        &self,
+        surfaces: &[&dyn Surface],
+        (patches, cuts): (&[Option<Patch>], &[Cut]),
+    ) -> Result<Vec<Depth>, JobError> {
+        let of = |group: &Cluster| self.of_group(group, surfaces, (patches, cuts));
+        Ok(clusters(self.job.samples)?.par_iter().flat_map_iter(of).collect())
+    }
+
+    fn bodies(&self) -> Vec<Body<'a>> {
+        let mut bodies = vec![Body { cutter: self.job.cutter, above_mm: 0.0 }];
+        bodies.extend(self.job.holder.map(|cutter| Body { cutter, above_mm: self.job.cutter.length_mm() }));
+        bodies
+    }
+
+    fn of_group(
+        &self,
+        group: &Cluster,
+        surfaces: &[&dyn Surface],
+        (patches, cuts): (&[Option<Patch>], &[Cut]),
+    ) -> Vec<Depth> {
+        let bodies = self.bodies();
+        let cells: Vec<(usize, Patch, Back)> = group
+            .members
+            .iter()
+            .map(|k| *k as usize)
+            .filter_map(|k| patches[k].map(|patch| (k, patch, self.back(surfaces, k, &patch))))
+            .collect();
+        let normal = |k: usize| self.job.samples[k].normal;
+        let Some(first) = cells.first() else { return Vec::new() };
+        let corners = cells.iter().flat_map(|(_, _, back)| back.target.corners());
+        let whole = Target::around(corners, &normal(first.0));
+        // Mostly none, and what the cutter is known not to do need not be asked then.
+        let intrudes = !self.near(&bodies, &whole, Which::Intruding).is_empty();
+        let depth = |(sample, patch, back): &(usize, Patch, Back)| {
+            let level = self.level(patch, back.radius) - cuts[*sample].standoff_mm;
+            let which = match (level <= self.depth_mm, intrudes) {
+                (true, false) => return Depth { sample: *sample, most_mm: level, parts: Vec::new() },
+                (true, true) => Which::Intruding,
+                (false, _) => Which::All,
+            };
+            let comers = self.near(&bodies, &back.target, which);
+            let mut parts = Vec::new();
+            self.divide(surfaces, *sample, patch, &comers, (DIVISIONS, &mut parts));
+            let known =
+                if parts.is_empty() { self.depth_mm } else { self.known(&bodies, surfaces, *sample, &parts) };
+            // The quick bound is one on the cutter's own gouges.
+            let most_mm = if intrudes { known } else { level.min(known) };
+            Depth { sample: *sample, most_mm, parts }
+        };
+        cells.iter().map(depth).collect()
+    }
+
+    /// A depth that nothing in these parts of a cell goes beyond: doubled until this is so, or until gouges are not followed.
+    fn known(&self, bodies: &[Body<'a>], surfaces: &[&dyn Surface], sample: usize, parts: &[Patch]) -> f64 {
+        let mut depth_mm = self.depth_mm;
+        while depth_mm < self.job.depth_mm {
+            depth_mm *= 2.0;
+            let deeper = Self { depth_mm, ..*self };
+            let target = |part: &Patch| deeper.back(surfaces, sample, part).target;
+            if parts.iter().all(|p| deeper.near(bodies, &target(p), Which::All).is_empty()) {
+                return depth_mm;
+            }
+        }
+        depth_mm
+    }
+
+    /// By how much a gouge of the cutter may be deeper than a sample so far away shows.
+    fn level(&self, patch: &Patch, radius: f64) -> f64 {
+        let cutter = self.job.cutter;
+        // Cutters with a meridian of their own may have edges anywhere.
+        let corner = if cutter.is_end_mill() { cutter.corner_mm() } else { 0.0 };
+        let relative = 1.0 / corner + patch.convex_per_mm;
+        if relative * radius <= MOST_TURN { 0.5 * relative * radius * radius } else { f64::INFINITY }
+    }
+
+    /// A patch of the cell of sample `k`, set back into the part.
+    fn back(&self, surfaces: &[&dyn Surface], k: usize, patch: &Patch) -> Back {
+        let sample = &self.job.samples[k];
+        let surface = surfaces[sample.face as usize];
+        let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
+        let jet = surface.jet2(patch.middle());
+        // Without a tangent plane in the middle that of the sample stands for it: what counts is a box, whichever way it lies.
+        let normal = jet.normal().unwrap_or(sample.normal);
+        let points = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)].map(|c| surface.point(c));
+        let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
+        let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
+        let set = normal.into_inner() * self.depth_mm;
+        let all = points.into_iter().chain([jet.point]).map(move |p| p - set);
+        // The face leaves the plane of the middle by half the bend of the radius, and so do places set back along normals that
+        // turn; these leave it sideways by the bend of the depth.
+        let more = [0.5 * bend * (radius + bend * self.depth_mm), bend * self.depth_mm];
+        let target = Target::wider(all, &normal, more);
+        Back { target, radius }
+    }
+
+    fn near(&self, bodies: &[Body<'a>], target: &Target, which: Which) -> Vec<Comer<'a>> {
+        let mut found = Vec::new();
+        self.tree.near(bodies, target, which, |k, body, index| {
+            let piece = self.pieces[k as usize];
+            let rapid = self.job.motions[piece.motion as usize].rapid;
+            if which == Which::Intruding && index == 0 && !rapid {
+                return;
+            }
+            self.comers(*body, piece, target, HALVINGS, &mut found);
+        });
+        found
+    }
+
+    /// The parts of a piece that may bring a body to the target.
+    fn comers(
+        &self,
+        body: Body<'a>,
+        piece: Piece,
+        target: &Target,
+        halvings: u32,
+        found: &mut Vec<Comer<'a>>,
+    ) {
+        let approach = Approach::new(&self.job.motions[piece.motion as usize], &piece);
+        match approach.passes(&body, target, 0.0) {
+            Passes::Clear => {}
+            Passes::Near { sagitta, .. } if sagitta > STRAY * self.depth_mm && halvings > 0 => {
+                for half in piece.halves() {
+                    self.comers(body, half, target, halvings - 1, found);
+                }
+            }
+            Passes::Near { .. } => found.push(Comer { body, approach }),
+        }
+    }
+
+    /// Divides a patch that `comers` come near, and keeps the parts that some come near still.
+    fn divide(
+        &self,
+        surfaces: &[&dyn Surface],
+        sample: usize,
+        patch: &Patch,
+        comers: &[Comer<'a>],
+        (divisions, parts): (u32, &mut Vec<Patch>),
+    ) {
+        if comers.is_empty() {
+            return;
+        }
+        if divisions == 0 {
+            parts.push(*patch);
+            return;
+        }
+        let surface = surfaces[self.job.samples[sample].face as usize];
+        for part in patch.parts() {
+            if !part.raster().any(|place| surface.contains(place)) {
+                continue;
+            }
+            let target = self.back(surfaces, sample, &part).target;
+            let comes = |c: &&Comer<'a>| c.approach.passes(&c.body, &target, 0.0) != Passes::Clear;
+            let near: Vec<Comer<'a>> = comers.iter().filter(comes).copied().collect();
+            self.divide(surfaces, sample, &part, &near, (divisions - 1, &mut *parts));
+        }
+    }
+}
