@@ -14,11 +14,17 @@
 //! of `min over t of max(D(t, -h), D(t, h))`. For a motion that does not turn both are convex, and Newton's
 //! method on a convex function from outside is monotone: the entry is approached from below, and a motion
 //! that cannot cut lower than what is already cut is given up as soon as the iterate passes that height.
+//!
+//! Such a motion moves the line's point straight past the body, so that D_tt is known in closed form as well: with c the
+//! corner radius, `(D + c)^2` is convex where D + c > 0 and least where D is, and Newton's method on its derivative meets the deepest instant
+//! under a ball in one step, elsewhere in a few. What convexity leaves below an instant, `|D_t|` times the room towards the
+//! minimum, tells that it is met; where it is not, at kinks, the derivative's sign is bracketed.
 
 use super::Swept;
 use super::body::Body;
 use super::piece::{Piece, moving};
 use crate::cutter::Line;
+use osculate_geom::Vec3;
 use osculate_geom::roots::{End, bracketed};
 
 /// Height of the body's boundary above the sample that counts as touching, mm, per mm of coordinates: the
@@ -29,6 +35,10 @@ const TOUCH: f64 = 1e-14;
 pub(super) const EXACT: f64 = 1e-12;
 /// Newton steps on f: quadratic at a crossing, halving at a grazing double root (from 1 mm to TOUCH in 25).
 const MAX_STEPS: u32 = 60;
+/// Newton steps towards the deepest instant before its bracket is closed by other means.
+const MOST_NEWTON: u32 = 8;
+/// An instant is the deepest where nothing is deeper by this part of the distance that counts as touching.
+const DEEPEST: f64 = 0.5;
 
 /// One body on one piece of a motion, seen from one line.
 pub(super) struct Passage<'a> {
@@ -84,8 +94,91 @@ impl Passage<'_> {
         }
     }
 
-    /// f and f' at height or depth `s`.
-    fn lowest(&self, probe: Probe, s: f64) -> Lowest {
+    /// f and f' at height or depth `s`; the search begins at the instant `guess` and leaves there the deepest one.
+    fn lowest(&self, probe: Probe, s: f64, guess: &mut f64) -> Lowest {
+        if self.swept.from.axis == self.swept.to.axis {
+            let found = match probe {
+                Probe::Height => self.straight(s, guess),
+                Probe::Gouge => self.straight_gouge(s, guess),
+            };
+            if let Some(found) = found {
+                return found;
+            }
+        }
+        self.bracketed(probe, s)
+    }
+
+    /// Height that counts as touching, mm.
+    fn touch(&self) -> f64 {
+        let size = self.line.origin.coords.amax() + self.swept.from.tip.coords.amax() + self.body.above_mm;
+        (TOUCH * (1.0 + size)).max(self.met)
+    }
+
+    /// D and f' at height `s` and instant `t` of a motion that does not turn, D_t, and Newton's step towards the least D.
+    fn glance(&self, s: f64, t: f64, rate: &Vec3) -> (Lowest, f64, f64) {
+        let (from, way) = (&self.swept.from, self.line.direction);
+        let w = self.line.point(s) - (from.tip + rate * t);
+        let along = w.dot(&from.axis);
+        let radial = w - from.axis.into_inner() * along;
+        let square = radial.norm_squared();
+        let local = self.body.local(square.sqrt(), along);
+        // Components of the rate: out from the axis, times the radius, and up it.
+        let (out, up) = (radial.dot(rate), rate.dot(&from.axis));
+        let by_t = -(local.outwards * out + local.by_z * up);
+        let slope = local.outwards * radial.dot(&way) + local.by_z * from.axis.dot(&way);
+        // The meridian's curvature along it, and the circle's around the axis.
+        let bend = if square > 0.0 {
+            let flat = rate.norm_squared() - up * up;
+            let tangential = local.outwards * square * up - local.by_z * out;
+            local.outwards * (flat - out * out / square) + local.bend * tangential * tangential / square
+        } else {
+            0.0
+        };
+        let lift = local.distance + self.body.cutter.corner_mm();
+        let step = if lift > 0.0 { by_t * lift / (by_t * by_t + lift * bend) } else { by_t / bend };
+        (Lowest { value: local.distance, slope }, by_t, step)
+    }
+
+    /// f and f' at height `s` of a motion that does not turn; None where Newton's steps do not meet the deepest instant.
+    fn straight(&self, s: f64, guess: &mut f64) -> Option<Lowest> {
+        let rate = self.swept.to.tip - self.swept.from.tip;
+        let enough = DEEPEST * self.touch();
+        let [mut lo, mut hi] = self.piece.range;
+        let mut t = guess.clamp(lo, hi);
+        for _ in 0..MOST_NEWTON {
+            let (here, by_t, step) = self.glance(s, t, &rate);
+            // The least D lies on the side to which D falls; at an end of the piece there is no room for it.
+            let room = if by_t > 0.0 { t - lo } else { hi - t };
+            if by_t.abs() * room <= enough {
+                *guess = t;
+                return Some(here);
+            }
+            if by_t > 0.0 {
+                hi = t;
+            } else {
+                lo = t;
+            }
+            t = (t - step).clamp(lo, hi);
+        }
+        None
+    }
+
+    /// The same for the depth `h` of a gouge, where one of its two ends is the outer one at that end's deepest instant.
+    fn straight_gouge(&self, h: f64, guess: &mut f64) -> Option<Lowest> {
+        let rate = self.swept.to.tip - self.swept.from.tip;
+        for (end, sign) in [(-h, -1.0), (h, 1.0)] {
+            let mut t = *guess;
+            let here = self.straight(end, &mut t)?;
+            if self.glance(-end, t, &rate).0.value <= here.value {
+                *guess = t;
+                return Some(Lowest { slope: sign * here.slope, ..here });
+            }
+        }
+        None
+    }
+
+    /// f and f' at height or depth `s`, from a bracket of the deepest instant.
+    fn bracketed(&self, probe: Probe, s: f64) -> Lowest {
         let at = |i: Instant| Lowest { value: i.distance, slope: i.by_s };
         let [lo, hi] = self.piece.range;
         let mut falling = self.instant(probe, lo, s);
@@ -123,18 +216,25 @@ impl Passage<'_> {
     /// The height that this passage leaves above the sample, mm, where it is lower than `current`; negative
     /// is a gouge, followed down to `-depth`.
     pub fn height(&self, current: f64, depth: f64) -> Option<f64> {
-        let size = self.line.origin.coords.amax() + self.swept.from.tip.coords.amax() + self.body.above_mm;
-        let touch = (TOUCH * (1.0 + size)).max(self.met);
-        let here = self.lowest(Probe::Height, 0.0);
+        let touch = self.touch();
+        let mut instant = self.abreast();
+        let here = self.lowest(Probe::Height, 0.0, &mut instant);
         if here.value > touch {
-            return self.entry(here, current, touch);
+            return self.entry(here, current, touch, &mut instant);
         }
-        let height = -self.gouge(depth, touch);
+        let height = -self.gouge(depth, touch, &mut instant);
         (height < current).then_some(height)
     }
 
+    /// The instant at which the tip of a motion that does not turn is next to the sample, where the search for the deepest begins.
+    fn abreast(&self) -> f64 {
+        let rate = self.swept.to.tip - self.swept.from.tip;
+        let square = rate.norm_squared();
+        if square > 0.0 { (self.line.origin - self.swept.from.tip).dot(&rate) / square } else { 0.0 }
+    }
+
     /// The entry above the sample, from f at the sample; None where there is none below `current`.
-    fn entry(&self, sample: Lowest, current: f64, touch: f64) -> Option<f64> {
+    fn entry(&self, sample: Lowest, current: f64, touch: f64, instant: &mut f64) -> Option<f64> {
         let turns = self.swept.from.axis != self.swept.to.axis;
         let (mut s, mut here, mut outside) = (0.0, sample, 0.0);
         for _ in 0..MAX_STEPS {
@@ -152,7 +252,7 @@ impl Passage<'_> {
                 }
                 s = current;
             }
-            here = self.lowest(Probe::Height, s);
+            here = self.lowest(Probe::Height, s, instant);
             if s == current && here.value >= -touch {
                 return None;
             }
@@ -164,8 +264,8 @@ impl Passage<'_> {
     }
 
     /// Depth of the gouge at a sample that is inside.
-    fn gouge(&self, depth: f64, touch: f64) -> f64 {
-        let (mut h, mut here) = (depth, self.lowest(Probe::Gouge, depth));
+    fn gouge(&self, depth: f64, touch: f64, instant: &mut f64) -> f64 {
+        let (mut h, mut here) = (depth, self.lowest(Probe::Gouge, depth, instant));
         if here.value <= 0.0 {
             return depth;
         }
@@ -177,8 +277,62 @@ impl Passage<'_> {
             if h <= 0.0 {
                 return 0.0;
             }
-            here = self.lowest(Probe::Gouge, h);
+            here = self.lowest(Probe::Gouge, h, instant);
         }
         h
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cutter, CutterSpec, Pose};
+    use osculate_geom::{Point3, Unit3};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+        /// Newton's steps and the bracket of D_t find the same least distance.
+        #[test]
+        fn steps_and_bracket_agree(
+            kind in 0usize..4,
+            r in 0.0..=1.0f64,
+            [from, to, p] in prop::array::uniform3(prop::array::uniform3(-8.0..8.0f64)),
+            [a, n] in prop::array::uniform2(prop::array::uniform3(-1.0..1.0f64)),
+            s in -3.0..3.0f64
+        ) {
+            let axes = [a, n].map(|v| Unit3::try_new(Vec3::from(v), 0.1));
+            let [Some(axis), Some(direction)] = axes else { return Ok(()) };
+            let (diameter_mm, length_mm) = (10.0, 12.0);
+            let spec = match kind {
+                0 => CutterSpec::Ball { diameter_mm, length_mm },
+                1 => CutterSpec::Flat { diameter_mm, length_mm },
+                2 => CutterSpec::Toroidal { diameter_mm, corner_radius_mm: 4.0 * r + 0.5, length_mm },
+                _ => CutterSpec::Barrel {
+                    diameter_mm,
+                    barrel_radius_mm: 10.0 + 2.0 * r,
+                    corner_radius_mm: 1.0 + 3.0 * r,
+                    length_mm,
+                },
+            };
+            let cutter = Cutter::try_from(spec).unwrap();
+            let pose = |tip: [f64; 3]| Pose { tip: Point3::from(tip), axis };
+            let swept = Swept { from: pose(from), to: pose(to), rapid: false, block: 0 };
+            let passage = Passage {
+                body: Body { cutter: &cutter, above_mm: 0.0 },
+                swept: &swept,
+                piece: Piece { motion: 0, range: [0.0, 1.0] },
+                line: Line { origin: Point3::from(p), direction },
+                instant: EXACT,
+                met: 0.0,
+            };
+            for (probe, s) in [(Probe::Height, s), (Probe::Gouge, s.abs())] {
+                let mut instant = passage.abreast();
+                let here = passage.lowest(probe, s, &mut instant).value;
+                // What counts as touching, and what an instant that is off by EXACT of 28 mm leaves at a rim.
+                let apart = (here - passage.bracketed(probe, s).value).abs();
+                prop_assert!(apart <= passage.touch() + 28.0 * EXACT, "{apart:e}");
+            }
+        }
     }
 }

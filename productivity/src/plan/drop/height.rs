@@ -9,13 +9,19 @@ use super::circle::{Circle, highest};
 use super::frame::Frame;
 use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
 use osculate_tools::{Cutter, Line, Pose};
+use std::ops::Range;
 
 /// Samples to a bin side: a bin holds few, and a cutter's disc covers many bins.
 const BINS_PER_RADIUS: f64 = 4.0;
 /// Bins along one side, at most.
 const MOST_BINS: usize = 4096;
+/// Bins along one side of a block: a disc covers few blocks, and most of them are seen to be lower as a whole.
+const BLOCK: usize = 4;
 /// Places from which a climb starts, at most.
 const CLIMBS: usize = 4;
+/// The highest of the seeds around a top is nearer to it than this many of their distances: half their diagonal, and as much
+/// again for parts that are hollow below a flat end.
+const NEAR: f64 = 1.5;
 /// Steps of one climb.
 const STEPS: usize = 16;
 /// Entries of the table of the cutter's lower side.
@@ -70,6 +76,8 @@ pub(super) struct Drops<'a> {
     first: Vec<u32>,
     /// Highest place of the seeds of each bin, and how far pieces of rims that begin in it reach.
     top: Vec<[f64; 2]>,
+    /// The same of blocks of bins.
+    top_of_blocks: Vec<[f64; 2]>,
     lo: [f64; 2],
     cell: f64,
     n: [usize; 2],
@@ -80,12 +88,32 @@ pub(super) struct Drops<'a> {
 
 /// Height of the cutter's lower side at a place beside its axis, and its slopes in the plane; None outside its radius.
 fn lower_side(cutter: &Cutter, dx: f64, dy: f64) -> Option<(f64, [f64; 2])> {
+    if cutter.is_end_mill() {
+        let (rho, corner) = ((dx * dx + dy * dy).sqrt(), cutter.corner_mm());
+        if rho > cutter.radius_mm() {
+            return None;
+        }
+        let x = rho - cutter.core_mm();
+        if x <= 0.0 || corner == 0.0 {
+            return Some((0.0, [0.0; 2]));
+        }
+        // Height of the corner's centre over the side; none is left at the wall.
+        let y = (corner * corner - x * x).max(0.0).sqrt();
+        let slope = x / (y * rho);
+        return (y > 0.0).then(|| (x * x / (corner + y), [slope * dx, slope * dy]));
+    }
     let axis = osculate_geom::Vec3::z_axis();
     let pose = Pose { tip: Point3::origin(), axis };
     let entry = cutter.entry(&pose, &Line { origin: Point3::new(dx, dy, 0.0), direction: axis })?;
     let normal = cutter.normal_at(&pose, &Point3::new(dx, dy, entry.at_mm), entry.part);
     // The side of a cylinder has no height over the tip: its contact is a wall.
     (normal.z < 0.0).then(|| (entry.at_mm, [-normal.x / normal.z, -normal.y / normal.z]))
+}
+
+/// A range of bins parted where blocks begin.
+fn in_blocks(bins: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    (bins.start / BLOCK..bins.end.div_ceil(BLOCK))
+        .map(move |b| (b * BLOCK).max(bins.start)..((b + 1) * BLOCK).min(bins.end))
 }
 
 impl<'a> Drops<'a> {
@@ -126,6 +154,12 @@ impl<'a> Drops<'a> {
             *high = high.max(s.at[2]).max(s.at[2] + s.along[2]);
             *long = long.max(s.along[0].hypot(s.along[1]));
         }
+        let across = n[0].div_ceil(BLOCK);
+        let mut top_of_blocks = vec![[f64::NEG_INFINITY, 0.0]; across * n[1].div_ceil(BLOCK)];
+        for (k, [high, long]) in top.iter().enumerate() {
+            let block = &mut top_of_blocks[k / n[0] / BLOCK * across + k % n[0] / BLOCK];
+            *block = [block[0].max(*high), block[1].max(*long)];
+        }
         let mut next = first.clone();
         let mut order = vec![0_u32; seeds.len()];
         for (k, s) in (0_u32..).zip(&seeds) {
@@ -138,11 +172,11 @@ impl<'a> Drops<'a> {
         let lower = (0..=TABLE)
             .map(|k| lower_side(cutter, radius * k as f64 / TABLE as f64, 0.0).map_or(f64::INFINITY, |l| l.0))
             .collect();
-        Self { surfaces, cutter, frame, seeds, first, top, lo, cell, n, lower, spacing: spacing_mm }
+        Self { surfaces, cutter, frame, seeds, first, top, top_of_blocks, lo, cell, n, lower, spacing: spacing_mm }
     }
 
     /// Bins along one side that a disc around `x` touches.
-    fn bins(&self, side: usize, x: f64) -> std::ops::Range<usize> {
+    fn bins(&self, side: usize, x: f64) -> Range<usize> {
         let radius = self.cutter.radius_mm();
         let k = |t: f64| ((t - self.lo[side]) / self.cell).floor();
         let last = k(x + radius);
@@ -162,7 +196,8 @@ impl<'a> Drops<'a> {
         if q >= TABLE as f64 {
             return f64::NEG_INFINITY;
         }
-        let (k, f) = (q as usize, q.fract());
+        let k = q as usize;
+        let f = q - k as f64;
         let (a, b) = (self.lower[k], self.lower[k + 1]);
         at[2] - if b.is_finite() { a + (b - a) * f } else { a }
     }
@@ -193,20 +228,19 @@ impl<'a> Drops<'a> {
     }
 
     /// The seeds of neighbouring bins of a row.
-    fn of_row(&self, j: usize, across: std::ops::Range<usize>) -> &[Seed] {
+    fn of_row(&self, j: usize, across: Range<usize>) -> &[Seed] {
         let row = j * self.n[0];
         &self.seeds[self.first[row + across.start] as usize..self.first[row + across.end] as usize]
     }
 
-    /// How far a bin lies beside `x`.
-    fn beside(&self, side: usize, bin: usize, x: f64) -> f64 {
-        let from = self.lo[side] + bin as f64 * self.cell;
-        (from - x).max(x - from - self.cell).max(0.0)
+    /// How far bins lie beside `x`.
+    fn beside(&self, side: usize, bins: &Range<usize>, x: f64) -> f64 {
+        let [from, to] = [bins.start, bins.end].map(|k| self.lo[side] + k as f64 * self.cell);
+        (from - x).max(x - to).max(0.0)
     }
 
-    /// No seed of a bin so far away holds the tip higher than this.
-    fn at_most(&self, bin: usize, [dx, dy]: [f64; 2]) -> f64 {
-        let [high, long] = self.top[bin];
+    /// No seed of bins so far away, with this top, holds the tip higher than this.
+    fn at_most(&self, [high, long]: [f64; 2], [dx, dy]: [f64; 2]) -> f64 {
         let near = ((dx * dx + dy * dy).sqrt() - long).max(0.0);
         let q = (near / self.cutter.radius_mm() * TABLE as f64) as usize;
         high - self.lower.get(q).copied().unwrap_or(f64::INFINITY)
@@ -214,12 +248,23 @@ impl<'a> Drops<'a> {
 
     /// Every seed that may hold the tip over `c` higher than `floor`, which may rise on the way.
     fn each<'s>(&'s self, c: [f64; 2], floor: &mut f64, mut f: impl FnMut(&'s Seed, &mut f64)) {
-        let across = self.bins(0, c[0]);
-        for j in self.bins(1, c[1]) {
-            let dy = self.beside(1, j, c[1]);
-            for i in across.clone() {
-                if self.at_most(j * self.n[0] + i, [self.beside(0, i, c[0]), dy]) >= *floor {
-                    self.of_row(j, i..i + 1).iter().for_each(|s| f(s, floor));
+        let (across, rows) = (self.bins(0, c[0]), self.bins(1, c[1]));
+        let blocks = self.n[0].div_ceil(BLOCK);
+        for rows in in_blocks(rows) {
+            let dy = self.beside(1, &rows, c[1]);
+            for bins in in_blocks(across.clone()) {
+                let top = self.top_of_blocks[rows.start / BLOCK * blocks + bins.start / BLOCK];
+                if self.at_most(top, [self.beside(0, &bins, c[0]), dy]) < *floor {
+                    continue;
+                }
+                for j in rows.clone() {
+                    let dy = self.beside(1, &(j..j + 1), c[1]);
+                    for i in bins.clone() {
+                        let top = self.top[j * self.n[0] + i];
+                        if self.at_most(top, [self.beside(0, &(i..i + 1), c[0]), dy]) >= *floor {
+                            self.of_row(j, i..i + 1).iter().for_each(|s| f(s, floor));
+                        }
+                    }
                 }
             }
         }
@@ -230,7 +275,7 @@ impl<'a> Drops<'a> {
         // Places that may still win once climbed: within what a seed can be off by half its spacing up a slope of one.
         let slack = self.spacing;
         let mut best = self.below_axis(c);
-        let mut near: Vec<(f64, &Seed)> = Vec::new();
+        let mut near: Vec<(f64, &Seed)> = Vec::with_capacity(128);
         self.each(c, &mut (best - slack), |s, least| {
             let h = self.held(s, c);
             if h >= *least && h > f64::NEG_INFINITY {
@@ -245,30 +290,34 @@ impl<'a> Drops<'a> {
             // The first of the highest.
             let highest = near.iter().copied().reduce(|a, b| if b.0 > a.0 { b } else { a });
             let Some((_, s)) = highest else { break };
-            let rest = if s.is_rim() { self.on_rim(s, c) } else { self.climb(s, c) };
-            if won.is_none_or(|w| rest.tip >= w.tip) {
+            let beaten = won.map_or(f64::NEG_INFINITY, |w| w.tip);
+            let rest = if s.is_rim() { self.on_rim(s, c) } else { self.climb(s, c, beaten) };
+            if let Some(rest) = rest
+                && won.is_none_or(|w| rest.tip >= w.tip)
+            {
                 won = Some(rest);
             }
             // A rim may hold the tool where the face beside it does not.
             near.retain(|(_, o)| {
                 o.face != s.face
                     || o.is_rim() != s.is_rim()
-                    || (o.at[0] - s.at[0]).hypot(o.at[1] - s.at[1]) > 4.0 * self.spacing
+                    || (o.at[0] - s.at[0]).powi(2) + (o.at[1] - s.at[1]).powi(2)
+                        > (4.0 * self.spacing).powi(2)
             });
         }
         won
     }
 
     /// The tool on the nearest place of a rim's piece, or higher up on the face beside it.
-    fn on_rim(&self, s: &Seed, c: [f64; 2]) -> Rest {
+    fn on_rim(&self, s: &Seed, c: [f64; 2]) -> Option<Rest> {
         let at = s.nearest(c);
-        let inside = self.climb(s, c);
-        match lower_side(self.cutter, at[0] - c[0], at[1] - c[1]) {
+        let inside = self.climb(s, c, f64::NEG_INFINITY)?;
+        Some(match lower_side(self.cutter, at[0] - c[0], at[1] - c[1]) {
             Some((g, _)) if at[2] - g > inside.tip => {
                 Rest { tip: at[2] - g, point: self.frame.point(at), ..inside }
             }
             _ => inside,
-        }
+        })
     }
 
     /// F and its gradient along S_u and S_v at a place of a face.
@@ -284,17 +333,22 @@ impl<'a> Drops<'a> {
         Some((z - g, [along(&jet.du), along(&jet.dv)], [jet.du.norm(), jet.dv.norm()]))
     }
 
-    /// Climbs F from a seed by quasi-Newton steps in mm along S_u and S_v.
-    fn climb(&self, s: &Seed, c: [f64; 2]) -> Rest {
+    /// Climbs F from a seed by quasi-Newton steps in mm along S_u and S_v. None where the top near the seed is seen from there
+    /// to be lower than `beaten`.
+    fn climb(&self, s: &Seed, c: [f64; 2], beaten: f64) -> Option<Rest> {
         let surface = self.surfaces[s.face as usize];
         let domain = surface.domain();
         let rest = |tip: f64, at: Uv| Rest { tip, uv: at, face: s.face, point: surface.point(at) };
         let Some((mut f, mut by, speed)) = self.value(s.face, s.uv, c) else {
-            return rest(self.held(s, c), s.uv);
+            return Some(rest(self.held(s, c), s.uv));
         };
         let scale = speed.map(|v| 1.0 / v.max(f64::MIN_POSITIVE));
         if scale.iter().any(|k| *k > 1e300) {
-            return rest(f, s.uv);
+            return Some(rest(f, s.uv));
+        }
+        // Where the tool is more curved than the part F is below its tangents.
+        if f + NEAR * self.spacing * (by[0] * scale[0]).hypot(by[1] * scale[1]) < beaten {
+            return None;
         }
         let mut at = s.uv;
         // The inverse of minus the Hessian: a curvature like the tool's to begin with.
@@ -344,9 +398,9 @@ impl<'a> Drops<'a> {
             && let Some((on, tip)) = highest(surface, &self.frame, &circle, at)
             && tip > f
         {
-            return rest(tip, on);
+            return Some(rest(tip, on));
         }
-        rest(f, at)
+        Some(rest(f, at))
     }
 
     /// Normal of a face at a resting place, if it has one.

@@ -9,6 +9,10 @@ use rayon::prelude::*;
 const ROUNDS: usize = 5;
 /// A pass within this part of a place's reach runs right over it.
 const RIGHT_OVER: f64 = 0.05;
+/// Material over the places, of the scallop: its lowest layer, which is cut first and by fewer motions, is then as high as that.
+const STOCK: f64 = 16.0;
+/// What stands higher than this, of the scallop, is no measure of how much closer passes must be.
+const FURTHEST: f64 = 4.0;
 
 /// For each place how far it is off the nearest of some passes, as a share of its reach.
 pub(super) type Shares<'a> = Box<dyn Fn(&[Want]) -> Vec<f64> + 'a>;
@@ -103,7 +107,7 @@ fn measure(
         holder: None,
         motions: &motions,
         samples: &samples,
-        stock_mm: 4.0 * limit,
+        stock_mm: STOCK * limit,
         depth_mm: limit,
     };
     let cuts = removal::cut(&job, &|_| ()).map_err(|e| nothing(task, &e.to_string()))?;
@@ -122,7 +126,8 @@ fn measure(
             unmet.area_mm2 += w.area;
             continue;
         }
-        w.reach *= share.min(1.0) * (DESIGN * limit / c.standoff_mm).sqrt().min(0.95);
+        let standoff_mm = c.standoff_mm.min(FURTHEST * limit);
+        w.reach *= share.min(1.0) * (DESIGN * limit / standoff_mm).sqrt().min(0.95);
         unmet.mended += 1;
         more.push(w);
     }
