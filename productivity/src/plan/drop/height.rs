@@ -172,7 +172,20 @@ impl<'a> Drops<'a> {
         let lower = (0..=TABLE)
             .map(|k| lower_side(cutter, radius * k as f64 / TABLE as f64, 0.0).map_or(f64::INFINITY, |l| l.0))
             .collect();
-        Self { surfaces, cutter, frame, seeds, first, top, top_of_blocks, lo, cell, n, lower, spacing: spacing_mm }
+        Self {
+            surfaces,
+            cutter,
+            frame,
+            seeds,
+            first,
+            top,
+            top_of_blocks,
+            lo,
+            cell,
+            n,
+            lower,
+            spacing: spacing_mm,
+        }
     }
 
     /// Bins along one side that a disc around `x` touches.
