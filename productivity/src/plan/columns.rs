@@ -72,7 +72,7 @@ pub(super) fn column_parameters(
 ) -> Result<Vec<f64>, PlanError> {
     let task = seat.task();
     let surface = task.surface;
-    let i = surface.domain().get(along);
+    let i = seat.holds().get(along);
     let breaks = surface.breaks(along);
     let mut all: Vec<f64> = (0..=COLUMNS[0]).map(|k| i.at(k as f64 / COLUMNS[0] as f64)).collect();
     for f in [0.02, 0.5, 0.98] {

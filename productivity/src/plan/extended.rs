@@ -71,6 +71,11 @@ impl<'a> Extended<'a> {
         Domain { u: of(0, Axis::U), v: of(1, Axis::V) }
     }
 
+    /// The parameters of the continued face.
+    pub const fn outer(&self) -> Domain {
+        self.outer
+    }
+
     /// The place of the face itself that stands for one of the continuation: the nearest of the border.
     pub fn inner(&self, at: Uv) -> Uv {
         let held = |axis: Axis| {

@@ -11,16 +11,17 @@
 
 use super::columns::{Column, column_parameters, first_step, rough_columns, stretches};
 use super::cover::{across_range, union};
+use super::ends::{Ended, Ends};
 use super::extended::Extended;
 use super::fits::fits;
-use super::lead::{LeadField, Leaning};
+use super::lead::{Clearance, LeadField, Leaning};
 use super::motion::PassMotion;
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
 use super::walk::Walk;
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task, shorter};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Diagnostic, Domain, Interval, Jet2, Uv};
+use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
 use osculate_tools::{Contact, FeedLine};
 use rayon::prelude::*;
@@ -52,7 +53,7 @@ struct Level {
 
 /// A covering of the face by levels.
 struct Layout {
-    along: Axis,
+    ends: Ends,
     /// Range of the fixed parameter that the face covers.
     across: [f64; 2],
     levels: Vec<Level>,
@@ -69,27 +70,30 @@ struct Layout {
 /// deeper than `gouge_mm` beside its contact.
 pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
     task.check()?;
-    // Passes run out over the border.
-    let face = Extended::of(task, None);
-    let beyond = &Task { surface: &face, ..*task };
     if let Leaning::Local(local) = task.lean {
         let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
-            let seat = Seat::new(task, axis);
+            let rough = Seat::new(task, axis).rough();
             let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
-            let lay = |field: &LeadField, progress: &(dyn Fn(f64) + Sync)| {
-                let lean = Leaning::Field(field);
-                isoparametric(&Task { lean, progress, ..*task }, Along::Fixed(axis))
+            // Beyond the border the leads of the border do as a rule.
+            let field = LeadField::find(task, local, (&feed, rough))?;
+            let led = &Task { lean: Leaning::Field(&field), ..*task };
+            let face = Extended::of(led, None);
+            let beyond = &Task { surface: &face, ..*led };
+            let lay = |ends: Ends, progress: &(dyn Fn(f64) + Sync)| {
+                let task = &Task { progress, ..*beyond };
+                built(task, &face, lay_out(task, ends, &|f| progress(0.5 * f))?)
             };
-            // Beyond the border the leads of the border do at first. Where the face goes on bent there the tool could dig in behind:
-            // then leads are found that do there too, which are greater on the face itself.
-            let of_face = LeadField::find(task, local, (&feed, seat.rough()))?;
-            let passes = lay(&of_face, &|f| progress(FIRST * f))?;
-            if !LeadField::digs_in(task, local, seat.rough(), &passes) {
-                progress(1.0);
-                return Ok(of_face.told(passes, task.face));
-            }
-            let field = LeadField::find(beyond, local, (&feed, seat.rough()))?;
-            let passes = lay(&field, &|f| progress(FIRST + (1.0 - FIRST) * f))?;
+            let passes = lay(Ends::whole(&face, axis), &|f| progress(FIRST * f))?;
+            let clearance = Clearance::new(task, local, rough);
+            let own = face.own().get(axis);
+            let out = passes.passes.par_iter().flat_map(|p| &p.points);
+            let out = out.filter(|p| p.uv.get(axis) <= own.lo || p.uv.get(axis) >= own.hi);
+            let passes = if out.any(|p| clearance.digs_in(p.uv, &p.pose)) {
+                lay(Ends::clear(beyond, &face, axis, &clearance), &|f| progress(FIRST + (1.0 - FIRST) * f))?
+            } else {
+                passes
+            };
+            progress(1.0);
             Ok(field.told(passes, task.face))
         };
         return match along {
@@ -100,9 +104,11 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
             }
         };
     }
-    let task = beyond;
+    // Passes run out over the border.
+    let face = Extended::of(task, None);
+    let task = &Task { surface: &face, ..*task };
     let layout = match along {
-        Along::Fixed(axis) => lay_out(task, face.own(), axis, &|f| (task.progress)(0.5 * f))?,
+        Along::Fixed(axis) => lay_out(task, Ends::whole(&face, axis), &|f| (task.progress)(0.5 * f))?,
         Along::Auto => {
             // Both at a time: the progress is that of the one that is less far.
             let far = [0, 1].map(|_| AtomicU64::new(0));
@@ -112,7 +118,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
                 (task.progress)(0.5 * both[0].min(both[1]));
             };
             let one = |k: usize, axis: Axis| {
-                let made = lay_out(task, face.own(), axis, &|f| at(k, f));
+                let made = lay_out(task, Ends::whole(&face, axis), &|f| at(k, f));
                 at(k, 1.0);
                 made
             };
@@ -120,10 +126,16 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
             shorter(u, v, |l| l.length_mm)?
         }
     };
+    built(task, &face, layout)
+}
+
+/// The passes of a layout over a continued face.
+fn built(task: &Task<'_>, face: &Extended<'_>, layout: Layout) -> Result<Passes, PlanError> {
     let done = AtomicUsize::new(0);
     let total = layout.levels.len();
-    let breaks = task.surface.breaks(layout.along);
-    let seat = Seat::new(task, layout.along).held_by(face.own());
+    let along = layout.ends.along;
+    let breaks = task.surface.breaks(along);
+    let seat = Seat::new(task, along).held_by(face.own());
     let built: Vec<Result<Vec<Pass>, LineError>> = layout
         .levels
         .par_iter()
@@ -148,7 +160,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     for p in out.passes.iter_mut().flat_map(|p| &mut p.points) {
         p.uv = face.inner(p.uv);
     }
-    let axis = if layout.along == Axis::U { "u" } else { "v" };
+    let axis = if along == Axis::U { "u" } else { "v" };
     out.diagnostics.push(Diagnostic::note(
         task.face,
         format!("{} isoparametric passes along {axis}, {:.0} mm", out.passes.len(), out.length_mm()),
@@ -156,13 +168,9 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     Ok(out)
 }
 
-/// The levels of passes along a parameter; `own` are the parameters of the face itself, and `progress` is told the share of the face that they cover so far.
-fn lay_out(
-    task: &Task<'_>,
-    own: Domain,
-    along: Axis,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<Layout, PlanError> {
+/// The levels of passes with given ends; `progress` is told the share of the face that they cover so far.
+fn lay_out(task: &Task<'_>, ends: Ends, progress: &(dyn Fn(f64) + Sync)) -> Result<Layout, PlanError> {
+    let (own, along) = (ends.own, ends.along);
     let surface = task.surface;
     let nothing = || PlanError::Nothing {
         face: task.face.to_owned(),
@@ -202,7 +210,7 @@ fn lay_out(
             });
         }
         let reversed = !closed && levels.len() % 2 == 1;
-        let cover = Cover { seat: &seat, task, along, reversed, hi, guess };
+        let cover = Cover { seat: &seat, task, ends: &ends, reversed, hi, guess };
         let next = cover.next(&columns).map_err(|e| task.contact(e.into()))?;
         let reached = columns
             .par_iter()
@@ -241,14 +249,14 @@ fn lay_out(
         let open = columns.iter().filter_map(|c| c.frontier).fold(hi, f64::min);
         progress((open - lo) / (hi - lo));
     }
-    Ok(Layout { along, across: [lo, hi], levels, length_mm })
+    Ok(Layout { ends, across: [lo, hi], levels, length_mm })
 }
 
 /// The two questions of the frontier, for one pass direction.
 struct Cover<'a> {
     seat: &'a Seat<'a>,
     task: &'a Task<'a>,
-    along: Axis,
+    ends: &'a Ends,
     reversed: bool,
     hi: f64,
     guess: f64,
@@ -257,17 +265,18 @@ struct Cover<'a> {
 impl Cover<'_> {
     /// Standoff above the design height at column `t`, parameter `point`, of the pass at `pass`.
     fn excess(&self, column: &Column, point: f64, pass: f64) -> Result<f64, LineError> {
-        let (task, t) = (self.task, column.t);
-        let line = IsoLine { surface: task.surface, along: self.along, fixed: pass, reversed: self.reversed };
+        let (task, along, t) = (self.task, self.ends.along, column.t);
+        let line = IsoLine { surface: task.surface, along, fixed: pass, reversed: self.reversed };
         let (frame, speed) = line.frame(t)?;
         // The frame turns forward about b at the normal curvature along the feed.
         let h = task.design_scallop_mm(frame.turn.dot(&frame.left), column.left);
         let averaged = Averaged { seat: self.seat, line: &line };
         let led: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &line };
-        let motion = PassMotion { task, line: &line, led };
+        let ends = self.ends.of(pass, self.reversed);
+        let motion = Ended { motion: PassMotion { task, line: &line, led }, ends };
         let step = 0.05 * task.cutter.radius_mm() / speed.abs().max(1e-12);
-        let at = Uv::from_axis(self.along, t, point);
-        let reach = standoff(task.cutter, task.surface, at, &motion, t, step)?;
+        let at = Uv::from_axis(along, t, point);
+        let reach = standoff(task.cutter, task.surface, at, &motion, t.clamp(ends[0], ends[1]), step)?;
         Ok(reach.map_or(task.cutter.radius_mm(), |r| r.at_mm - h))
     }
 
@@ -370,11 +379,13 @@ fn build(
     breaks: &[f64],
 ) -> Result<Vec<Pass>, LineError> {
     let surface = task.surface;
-    let (along, domain) = (layout.along, surface.domain().get(layout.along));
+    let along = layout.ends.along;
+    let domain = surface.domain().get(along);
+    let ends = layout.ends.of(level.fixed, level.reversed);
     let line = IsoLine { surface, along, fixed: level.fixed, reversed: level.reversed };
     let averaged = Averaged { seat, line: &line };
     let led: &dyn SurfaceLine = if seat.rough() { &averaged } else { &line };
-    let motion = PassMotion { task, line: &line, led };
+    let motion = Ended { motion: PassMotion { task, line: &line, led }, ends };
     let radius = task.cutter.radius_mm();
     // Length of a mm along the pass, in its parameter.
     let mm = |t: f64| {
@@ -387,14 +398,15 @@ fn build(
         let abreast = |t: f64, sign: f64| -> Result<f64, LineError> {
             let mm = mm(t);
             let at = Uv::from_axis(along, t, row);
-            let reach = standoff(task.cutter, surface, at, &motion, t, 0.05 * radius * mm)?;
+            let from = t.clamp(ends[0], ends[1]);
+            let reach = standoff(task.cutter, surface, at, &motion, from, 0.05 * radius * mm)?;
             let past = sign * width(t) * mm;
             let deepest = reach.map_or(t + 0.5 * past, |r| r.t + PAST * past);
             // No further than a strip is wide: from there on it is another place that the tool comes down to.
             let beside = [t, t + past];
             Ok(deepest.clamp(beside[0].min(beside[1]), beside[0].max(beside[1])))
         };
-        Ok([abreast(lo, -1.0)?.max(domain.lo), abreast(hi, 1.0)?.min(domain.hi)])
+        Ok([abreast(lo, -1.0)?.max(ends[0]), abreast(hi, 1.0)?.min(ends[1])])
     };
     let neighbour = |j: Option<usize>| j.and_then(|j| layout.levels.get(j)).map(|l| l.fixed);
     // Towards a neighbour some way past the ridge between them; at the first and last pass the whole way to the end of the face.

@@ -8,6 +8,7 @@ mod columns;
 mod contour;
 mod cover;
 mod drop;
+mod ends;
 mod extended;
 mod fits;
 mod isoparametric;

@@ -95,6 +95,11 @@ impl<'a> Seat<'a> {
         self
     }
 
+    /// The parameters of the face itself.
+    pub(super) const fn holds(&self) -> Domain {
+        self.holds
+    }
+
     fn is_rough_along(&self, along: Axis) -> bool {
         let surface = self.task.surface;
         let knots = &self.breaks[usize::from(along == Axis::V)];

@@ -157,17 +157,6 @@ impl LeadField {
         Ok(Self { spline, rectangle, tilt_rad: local.tilt_rad, unmet })
     }
 
-    /// Whether the tool goes deeper into the part than its gouges may at a point of passes.
-    pub(in crate::plan) fn digs_in(
-        task: &Task<'_>,
-        local: &LocalLead<'_>,
-        rough: bool,
-        passes: &Passes,
-    ) -> bool {
-        let clearance = Clearance::new(task, local, rough);
-        passes.passes.par_iter().flat_map(|p| &p.points).any(|p| clearance.digs_in(p))
-    }
-
     /// Passes with a word about the places that no lead clears.
     pub(in crate::plan) fn told(&self, mut passes: Passes, face: &str) -> Passes {
         let [places, all] = self.unmet;

@@ -11,6 +11,7 @@ mod field;
 mod need;
 
 pub use field::LeadField;
+pub(super) use need::Clearance;
 
 use super::line::PassLine;
 use crate::compare::Around;

@@ -12,7 +12,7 @@
 use super::LocalLead;
 use crate::plan::level::lengths;
 use crate::plan::line::Rectangle;
-use crate::plan::{CcPoint, Task};
+use crate::plan::Task;
 use osculate_geom::{Axis, Darboux, Point3, Unit3, Uv, Vec3};
 use osculate_tools::{Cutter, Lean, Pose};
 use rayon::prelude::*;
@@ -29,6 +29,8 @@ const BLOCK: usize = 4;
 const GROUP: usize = 30;
 /// Depth accepted, of the tolerance: what else goes too deep, chords above all, needs the rest.
 const ACCEPTED: f64 = 0.15;
+/// Depth accepted of a pose beyond the border, of the tolerance: no lead was found for it.
+const DUG: f64 = 0.5;
 /// Quotient of leads that are tried one after the other, and halvings between the last two.
 const STEP: f64 = 1.25;
 const HALVINGS: u32 = 10;
@@ -43,7 +45,7 @@ const PATTERN: u32 = 10;
 const AVERAGE: f64 = 0.04;
 
 /// The points of a face against which a tool is held.
-pub(super) struct Clearance<'a> {
+pub(in crate::plan) struct Clearance<'a> {
     task: &'a Task<'a>,
     local: &'a LocalLead<'a>,
     rectangle: Rectangle,
@@ -60,7 +62,7 @@ pub(super) struct Clearance<'a> {
 }
 
 /// A contact with one direction of feed.
-pub(super) struct Stand {
+pub(in crate::plan) struct Stand {
     at: Uv,
     frame: Darboux,
 }
@@ -129,13 +131,12 @@ impl<'a> Clearance<'a> {
         Lean { lead_rad, tilt_rad: self.local.tilt_rad }.pose(self.task.cutter, &stand.frame, 0.0)
     }
 
-    /// Whether the tool goes deeper into the part than its gouges may at a point of a pass, beyond a border of the face too.
-    pub fn digs_in(&self, point: &CcPoint) -> bool {
-        let way = self.task.surface.jet2(point.uv).du;
-        let most_mm = self.task.tolerance.gouge_mm;
-        self.stand(point.uv, &way).is_some_and(|s| {
-            self.near_mm(&s, &point.pose, most_mm) > most_mm || self.far_mm(&s, &point.pose) > most_mm
-        })
+    /// Whether a pose of a pass at a place, or nearest to it beyond a border, goes deeper into the part than it may.
+    pub fn digs_in(&self, at: Uv, pose: &Pose) -> bool {
+        let way = self.task.surface.jet2(at).du;
+        let most_mm = DUG * self.task.tolerance.gouge_mm;
+        self.stand(at, &way)
+            .is_some_and(|s| self.near_mm(&s, pose, most_mm) > most_mm || self.far_mm(&s, pose) > most_mm)
     }
 
     /// Whether the tool goes no deeper than `most_mm` into the part at a contact.
