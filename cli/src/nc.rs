@@ -9,7 +9,7 @@ use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
-use osculate_postproc::{Machine, PostOptions, Posted, Setup, built_in_names, suggest};
+use osculate_postproc::{Machine, PostOptions, Setup, built_in_names, suggest};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::Swept;
 use std::path::Path;
@@ -114,6 +114,9 @@ pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
 /// What a job without a machine is posted for: name, dialect, feed.
 const DEFAULT: [&str; 3] = ["trunnion-ac", "sinumerik", "tcp"];
 
+/// Half the last place of a coordinate, mm.
+const LEAST_TIP_MM: f64 = 0.5e-4;
+
 /// The control of a job, with a finding where the job leaves it to the program.
 pub fn control(job: &Job) -> Result<(Control, Vec<Diagnostic>), Failure> {
     let here = |f: Failure| Failure::file(&job.path, format!("[machine] {}", f.message()));
@@ -207,15 +210,18 @@ pub fn cl_text(path: &ClPath, part_name: &str) -> Result<String, String> {
     cldata::write(path, &options).map_err(|e| e.to_string())
 }
 
-/// NC code for a path.
-pub fn post(path: &ClPath, control: &Control, setup: &Setup, name: &str) -> Result<Posted, Failure> {
-    let options = post_options(control, name);
-    osculate_postproc::post(path, &control.machine, setup, &options).map_err(Failure::job)
-}
-
 /// The options of a post for this control.
 pub fn post_options(control: &Control, name: &str) -> PostOptions {
     PostOptions { program_name: name.to_owned(), ..PostOptions::new(control.dialect, control.feed) }
+}
+
+/// The options of a post of a job's path. What the control's interpolation leaves or digs comes on top of what passes do: it keeps
+/// to a quarter of the chords, but not below what a program can say.
+pub fn job_options(job: &Job, control: &Control, name: &str) -> Result<PostOptions, Failure> {
+    let mut options = post_options(control, name);
+    let solve = &mut options.solve;
+    solve.tip_tol_mm = (0.25 * job.tolerance()?.chord_mm).clamp(LEAST_TIP_MM, solve.tip_tol_mm);
+    Ok(options)
 }
 
 /// What an NC program does, in the part's frame.

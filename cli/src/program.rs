@@ -77,7 +77,9 @@ impl Posted {
             let text = cl_text.clone();
             passes::keep_partial(out, move || Ok(text), "the whole path".to_owned());
         }
-        let program = nc::post(&cl, &control, &setup, &title)?;
+        let options = nc::job_options(job, &control, &title)?;
+        let program =
+            osculate_postproc::post(&cl, &control.machine, &setup, &options).map_err(Failure::job)?;
         stage.at(0.6);
         let read = nc::read_back(&program.text, &control, &setup, false)
             .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
