@@ -10,7 +10,7 @@ use osculate_geom::line::{IsoLine, SurfaceLine};
 use osculate_geom::{Axis, Point3, Surface, Vec3};
 use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
-    Along, Leaning, LocalLead, Passes, PlanError, Strategy, Task, Tolerance, run,
+    Along, CcPoint, Leaning, LocalLead, Passes, PlanError, Strategy, Task, Tolerance, run,
 };
 use osculate_surfaces::{Net, NurbsSurface};
 use osculate_tools::{Cutter, CutterSpec, Lean};
@@ -24,16 +24,22 @@ const RATE_DEG_PER_MM: f64 = 0.8;
 
 /// `z = c x^3` over `|x| <= 15` and `0 <= y <= 30`, material below: hollow by `6 c x`, about.
 fn bend() -> NurbsSurface {
+    sheared(3, 0.0)
+}
+
+/// `z = c x^n` for an odd n, hollow by as much at its end, each line of constant y moved along x by a share of y.
+fn sheared(n: usize, share: f64) -> NurbsSurface {
     let half = 0.5 * SIZE_MM;
-    let c = BENT_PER_MM / (6.0 * half);
-    // Poles of x^3 over [-half, half] as a Bezier polynomial.
-    let cubes = [-1.0, 1.0, -1.0, 1.0].map(|s| s * c * half.powi(3));
-    let points = (0..4)
-        .flat_map(|i| (0..2).map(move |j| (i, j)))
-        .map(|(i, j)| Point3::new(-half + SIZE_MM * i as f64 / 3.0, SIZE_MM * f64::from(j), cubes[i]))
+    // Poles of (x / half)^n as a Bezier polynomial: its blossom, the product, at ends of either sign.
+    let height = BENT_PER_MM * half * half / (n * (n - 1)) as f64;
+    let pole = |i: usize| if (n - i).is_multiple_of(2) { height } else { -height };
+    let points = (0..=n)
+        .flat_map(|i| (0..2).map(move |j| (i, SIZE_MM * f64::from(j))))
+        .map(|(i, y)| Point3::new(-half + SIZE_MM * i as f64 / n as f64 + share * y, y, pole(i)))
         .collect();
-    let knots = [vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
-    NurbsSurface::new([3, 1], knots, Net { count: [4, 2], points, weights: None }).unwrap()
+    let u = [vec![0.0; n + 1], vec![1.0; n + 1]].concat();
+    let knots = [u, vec![0.0, 0.0, 1.0, 1.0]];
+    NurbsSurface::new([n, 1], knots, Net { count: [n + 1, 2], points, weights: None }).unwrap()
 }
 
 fn cutter() -> Cutter {
@@ -149,6 +155,33 @@ fn the_lead_changes_no_faster_than_the_rate_and_clears_everywhere() {
     // Chords are shorter than the way, by less than a thousandth.
     let limit = RATE_DEG_PER_MM.to_radians();
     assert!(fastest <= 1.001 * limit && fastest > 0.1 * limit, "{} deg/mm", fastest.to_degrees());
+}
+
+/// Passes run out over an end that they meet at a slant. Where the face goes on ever more hollow there the tool with the lead of the
+/// border would dig in behind itself: a pass that leaves the face ends before that. What it has not come down to is left to the
+/// others, and no lead is greater than the border wants: `R k`, where half a strip further on k is a quarter more.
+#[test]
+fn passes_end_before_the_tool_digs_in_beyond_a_border() {
+    let (face, cutter) = (sheared(7, 1.0), cutter());
+    let lean = Leaning::Local(&local());
+    let task =
+        Task { surface: &face, face: "F1", cutter: &cutter, lean, tolerance: TOLERANCE, progress: &|_| {} };
+    let passes = run(&task, &Strategy::Isoparametric { along: Along::Fixed(Axis::U) }).unwrap();
+    let moves = motions(&face, &passes.passes, &cutter);
+    let v = verdict(&face, &moves, &cutter, TOLERANCE, 0.25);
+    let within = v.scallop_max_mm <= TOLERANCE.scallop_mm && v.gouge_max_mm <= TOLERANCE.gouge_mm;
+    assert!(within && v.uncut_samples == 0, "left {} mm, dug {} mm", v.scallop_max_mm, v.gouge_max_mm);
+    let want = (4.0 * BENT_PER_MM).asin();
+    let [_, _, most] = passes.inclination_rad().unwrap();
+    assert!(most < 1.12 * want, "{most} against {want}");
+    // How far beyond the hollow end passes begin there, and how far they end.
+    let beyond = |p: &CcPoint| (p.point - face.point(p.uv)).norm();
+    let [mut begin, mut end] = [0.0f64; 2];
+    for points in passes.passes[1..passes.passes.len() - 1].iter().map(|p| &p.points) {
+        let (first, last) = (&points[0], &points[points.len() - 1]);
+        if first.uv.u > last.uv.u { begin = begin.max(beyond(first)) } else { end = end.max(beyond(last)) }
+    }
+    assert!(end > 0.1 && end < 0.8 * begin && begin < 1.0, "{begin} {end}");
 }
 
 /// The rates of a pose whose lead changes are those of its differences.

@@ -10,9 +10,9 @@
 //! the last word.
 
 use super::LocalLead;
+use crate::plan::Task;
 use crate::plan::level::lengths;
 use crate::plan::line::Rectangle;
-use crate::plan::Task;
 use osculate_geom::{Axis, Darboux, Point3, Unit3, Uv, Vec3};
 use osculate_tools::{Cutter, Lean, Pose};
 use rayon::prelude::*;
