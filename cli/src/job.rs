@@ -265,6 +265,8 @@ pub struct SetupTable {
     pub clearance_mm: Option<f64>,
     /// Distance from the surface at which rapid moves end.
     pub approach_mm: Option<f64>,
+    /// The least lift in hops from pass to pass.
+    pub hop_mm: Option<f64>,
     /// What the tool keeps from check faces in hops from pass to pass.
     pub check_clearance_mm: Option<f64>,
 }

@@ -8,6 +8,7 @@ use crate::look::Look;
 use crate::nc;
 use crate::output;
 use crate::part::{self, JobFaces, LoadedFace};
+use crate::rough;
 use osculate_geom::{Box3, Diagnostic, Surface};
 use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
@@ -38,6 +39,7 @@ pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Result<Links, Fail
         obstacles,
         clearance_mm: length(job, "clearance_mm", job.setup.clearance_mm)?.unwrap_or(10.0),
         approach_mm: approach_mm(job)?,
+        hop_mm: hop_mm(job)?,
         cutter: *cutter,
         holder: job.holder()?,
         feed_mm_min,
@@ -57,6 +59,22 @@ fn length(job: &Job, key: &str, given: Option<f64>) -> Result<Option<f64>, Failu
 
 fn approach_mm(job: &Job) -> Result<f64, Failure> {
     Ok(length(job, "approach_mm", job.setup.approach_mm)?.unwrap_or(2.0))
+}
+
+/// The lift of the lowest hops, of `approach_mm`, where the job does not say it.
+const HOP_SHARE: f64 = 0.125;
+
+fn hop_mm(job: &Job) -> Result<f64, Failure> {
+    let approach = approach_mm(job)?;
+    let own = if rough::is(job) { approach } else { HOP_SHARE * approach };
+    let hop = length(job, "hop_mm", job.setup.hop_mm)?.unwrap_or(own);
+    if hop > approach {
+        let why = format!(
+            "[setup] hop_mm = {hop} is more than approach_mm = {approach}: hops rise by no more than that"
+        );
+        return Err(Failure::file(&job.path, why));
+    }
+    Ok(hop)
 }
 
 /// Faces as hops see them.

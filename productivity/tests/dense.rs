@@ -199,6 +199,7 @@ fn roughing_keeps_its_allowance() {
         obstacles: blank,
         clearance_mm: 5.0,
         approach_mm: 1.0,
+        hop_mm: 0.125,
         cutter: TOROIDAL.cutter(),
         holder: None,
         feed_mm_min: 1000.0,

@@ -22,6 +22,7 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         obstacles: blank,
         clearance_mm: 5.0,
         approach_mm: 1.0,
+        hop_mm: 1.0,
         cutter: *cutter,
         holder: None,
         feed_mm_min: 1000.0,

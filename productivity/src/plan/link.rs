@@ -4,9 +4,9 @@
 //! sphere (grown by the clearance) on the side the axis points to; there nothing of the part can meet the tool,
 //! whose body lies beyond the tip. From the pole of that plane the axis swings over the sphere, always pointing
 //! outward, to the pole of the next pass and down again. Passes that begin near the end of the one before are
-//! joined by a hop instead: up along the normal, across, and down; where cutter or holder would meet another wall of the part
-//! on that way, or come too near to a face that is not machined, up and down along the axis; where they would there too,
-//! by a retract.
+//! joined by a hop instead: up along the normal, across, and down, as low as keeps cutter and holder off other walls of the part
+//! on that way, and far enough from faces that are not machined; where the highest does not, up and down along the axis; where
+//! that does not either, by a retract.
 
 use super::around::Cloud;
 use super::walls::Walls;
@@ -25,6 +25,8 @@ pub struct Links {
     pub clearance_mm: f64,
     /// Distance from the surface at which a rapid approach changes to feed.
     pub approach_mm: f64,
+    /// The least lift of a hop; one that is not clear is doubled until it is, up to `approach_mm`.
+    pub hop_mm: f64,
     /// The cutter.
     pub cutter: Cutter,
     /// The holder, a body whose lower end sits where the cutter's length ends.
@@ -57,6 +59,8 @@ const NEAR_POINTS: f64 = 0.25;
 /// The tool may lie by this part of its radius deeper in the points on its way than at the contacts: chords between points
 /// of a bent pass, and rounding.
 const SLACK: f64 = 1e-4;
+/// Share of its lift that a low hop may lose and be clear still: the part is known at points only.
+const SPARE: f64 = 0.5;
 /// Poses of one piece of a hop at which the tool is held against the part.
 const LOOKS: u32 = 6;
 
@@ -139,8 +143,8 @@ impl Builder<'_> {
 
     /// The poses above both ends of a hop on a way that is clear of the part, if there is one.
     fn hop_over(&self, from: &CcPoint, to: &CcPoint) -> Option<[Pose; 2]> {
-        let height = self.links.approach_mm;
-        let lift = |p: &CcPoint| Pose { tip: p.pose.tip + p.normal.into_inner() * height, axis: p.pose.axis };
+        let lift =
+            |p: &CcPoint, mm: f64| Pose { tip: p.pose.tip + p.normal.into_inner() * mm, axis: p.pose.axis };
         let ends = [from.pose, to.pose];
         let slack_mm = SLACK * self.links.cutter.radius_mm();
         let cutter = (&self.links.cutter, 0.0);
@@ -169,8 +173,18 @@ impl Builder<'_> {
                 })
             })
         };
-        let along_axes = [from, to].map(|p| p.pose.retracted(height));
-        [[lift(from), lift(to)], along_axes].into_iter().find(clear)
+        let highest = self.links.approach_mm;
+        let lifted = |mm: f64| [lift(from, mm), lift(to, mm)];
+        let mut low = self.links.hop_mm.min(highest);
+        while low > 0.0 && low < highest {
+            let hop = lifted(low);
+            if clear(&hop) && clear(&lifted((1.0 - SPARE) * low)) {
+                return Some(hop);
+            }
+            low *= 2.0;
+        }
+        let along_axes = [from, to].map(|p| p.pose.retracted(highest));
+        [lifted(highest), along_axes].into_iter().find(clear)
     }
 
     fn hop(&mut self, [up, over]: [Pose; 2], to: &CcPoint) {
@@ -269,6 +283,7 @@ mod tests {
             obstacles,
             clearance_mm: 5.0,
             approach_mm: 4.0 * (TROUGH_MM - BALL_MM),
+            hop_mm: 4.0 * (TROUGH_MM - BALL_MM),
             cutter,
             holder: None,
             feed_mm_min: 1000.0,
@@ -310,6 +325,43 @@ mod tests {
     }
 
     #[test]
+    fn a_hop_rises_by_no_more_than_is_clear() {
+        let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 30.0 }).unwrap();
+        let links = |hop_mm: f64| Links {
+            obstacles: Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
+            clearance_mm: 5.0,
+            approach_mm: 2.0,
+            hop_mm,
+            cutter,
+            holder: None,
+            feed_mm_min: 1000.0,
+            plunge_mm_min: 500.0,
+        };
+        let top = |linked: &Linked| {
+            let hops = linked.path.moves.iter().zip(&linked.pass_of_move).skip(3);
+            let hops = hops.filter(|(m, pass)| pass.is_none() && m.motion != Motion::Rapid);
+            // The last one is the retract.
+            let heights: Vec<f64> = hops.map(|(m, _)| m.pose.tip.z).collect();
+            heights[..heights.len() - 1].iter().copied().fold(0.0, f64::max)
+        };
+        let flat = over_plane(4.0, 3.0);
+        let low = link(&flat, &links(0.125), &Walls::default());
+        let high = link(&flat, &links(2.0), &Walls::default());
+        assert_eq!([top(&low), top(&high)], [0.125, 2.0]);
+        // Two hops, up and down by so much less each.
+        assert!((high.air_length_mm - low.air_length_mm - 4.0 * 1.875).abs() < 1e-12);
+        // A rib along the middle of the first hop, machined by a later pass: half of the lift must be spare.
+        for (rib, lift) in [(0.1, 0.25), (0.2, 0.5), (0.4, 1.0), (0.7, 2.0)] {
+            let mut passes = over_plane(4.0, 3.0);
+            for p in &mut passes[2].points {
+                p.point = Point3::new(0.0, p.point.y, rib);
+            }
+            let linked = link(&passes[..3], &links(0.125), &Walls::default());
+            assert_eq!(top(&linked), lift, "{rib}");
+        }
+    }
+
+    #[test]
     fn a_hop_keeps_off_a_wall_that_is_not_machined() {
         const RADIUS: f64 = 6.0;
         const APART: f64 = 8.8;
@@ -318,6 +370,7 @@ mod tests {
             obstacles: Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
             clearance_mm: 5.0,
             approach_mm: 1.2,
+            hop_mm: 1.2,
             cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 })
                 .unwrap(),
             holder: None,
@@ -369,6 +422,7 @@ mod tests {
             obstacles: Box3 { min: Point3::new(-3.0, 0.0, 0.0), max: Point3::new(9.0, 12.2, 20.0) },
             clearance_mm: 5.0,
             approach_mm: 1.2,
+            hop_mm: 1.2,
             cutter: ball,
             holder,
             feed_mm_min: 1000.0,

@@ -18,6 +18,7 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         obstacles,
         clearance_mm: 5.0,
         approach_mm: 2.0,
+        hop_mm: 0.25,
         cutter: *cutter,
         holder: None,
         feed_mm_min: 1000.0,
