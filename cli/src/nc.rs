@@ -4,12 +4,12 @@ use crate::failure::{Failure, beside, read_text};
 use crate::job::Job;
 use crate::part::{self, JobFaces};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
-use osculate_geom::{Diagnostic, Unit3, Vec3};
+use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
-use osculate_postproc::{Machine, PostOptions, Setup, built_in_names, suggest};
+use osculate_postproc::{Machine, PostOptions, Setup, built_in_names, quicker_turns, suggest};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::Swept;
 use std::path::Path;
@@ -202,6 +202,44 @@ pub fn setup(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<
         ));
     }
     Ok((setup, notes))
+}
+
+/// Turned parts that are posted beside the one that stands as suggested.
+const MOST_TURNS: usize = 2;
+/// Share of the time that a turn must seem to save to be posted, and save to be taken.
+pub const WORTH_A_TURN: f64 = 0.03;
+
+/// Setups with the part turned so that the joints seem to hold the path up less than in `setup`; none where the job says where
+/// the part is.
+pub fn turned(job: &Job, faces: &JobFaces, path: &ClPath, control: &Control, setup: &Setup) -> Vec<Setup> {
+    if job.setup.rotate_deg.is_some() || job.setup.part_zero_mm.is_some() {
+        return Vec::new();
+    }
+    let points: Vec<Point3> =
+        faces.faces.iter().flat_map(|f| part::grid(&*f.surface, 24)).map(|(_, p, _)| p).collect();
+    let turns = quicker_turns(path, &control.machine, setup, WORTH_A_TURN);
+    turns
+        .into_iter()
+        .take(MOST_TURNS)
+        .map(|rotation| {
+            let there: Vec<_> = points.iter().map(|p| rotation * p).collect();
+            let place = suggest(&[], &there, setup.gauge_length_mm).setup.part_zero.translation;
+            Setup { part_zero: Isometry3::from_parts(place, rotation), ..*setup }
+        })
+        .collect()
+}
+
+/// What is said of a turned part.
+pub fn turned_notes(setup: &Setup, [before_min, now_min]: [f64; 2]) -> Vec<Diagnostic> {
+    let (x, y, z) = setup.part_zero.rotation.euler_angles();
+    let [x, y, z] = [x, y, z].map(f64::to_degrees);
+    let t = setup.part_zero.translation.vector;
+    let turn = format!(
+        "the part is turned so that the joints hold the path up less ({now_min:.2} min instead of {before_min:.2}): \
+         rotate_deg = [{x:.3}, {y:.3}, {z:.3}]"
+    );
+    let place = format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces", t.x, t.y, t.z);
+    [turn, place].map(|text| Diagnostic::note("setup", text)).to_vec()
 }
 
 /// CL data as text.

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::nc::{self, Control};
+use crate::nc::{self, Control, Motions};
 use crate::part::JobFaces;
 use crate::passes;
 use crate::progress::Stage;
@@ -10,6 +10,7 @@ use crate::report_fill::Extras;
 use crate::rough;
 use crate::verify::{self, Verified};
 use osculate_geom::{Diagnostic, Unit3};
+use osculate_postproc::{self as post, Setup};
 use osculate_productivity::plan::{Linked, Passes};
 use osculate_tools::Lean;
 use serde::Serialize;
@@ -51,9 +52,9 @@ pub struct Posted {
     /// The control it is posted for.
     pub control: Control,
     /// The program.
-    pub program: osculate_postproc::Posted,
+    pub program: post::Posted,
     /// What the program does.
-    pub read: nc::Motions,
+    pub read: Motions,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -69,7 +70,7 @@ impl Posted {
     ) -> Result<Self, Failure> {
         let (control, control_notes) = nc::control(job)?;
         let stage = Stage::begin("post");
-        let (setup, setup_notes) = nc::setup(job, faces, &axes_of(planned))?;
+        let (setup, mut setup_notes) = nc::setup(job, faces, &axes_of(planned))?;
         let cl = passes::cl_path(job, &planned.linked)?;
         let title = passes::title(job);
         let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
@@ -78,11 +79,23 @@ impl Posted {
             passes::keep_partial(out, move || Ok(text), "the whole path".to_owned());
         }
         let options = nc::job_options(job, &control, &title)?;
-        let program =
-            osculate_postproc::post(&cl, &control.machine, &setup, &options).map_err(Failure::job)?;
+        let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
+            let program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
+            let read = nc::read_back(&program.text, &control, setup, false)
+                .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
+            Ok((program, read))
+        };
+        let (mut program, mut read) = written(&setup)?;
         stage.at(0.6);
-        let read = nc::read_back(&program.text, &control, &setup, false)
-            .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
+        let first_min = read.time_min;
+        for turned in nc::turned(job, faces, &cl, &control, &setup) {
+            // A turn that no program can be written for is none.
+            let Ok(other) = written(&turned) else { continue };
+            if other.1.time_min < read.time_min.min((1.0 - nc::WORTH_A_TURN) * first_min) {
+                setup_notes = nc::turned_notes(&turned, [first_min, other.1.time_min]);
+                (program, read) = other;
+            }
+        }
         wall_s.post += stage.end();
         let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
         let diagnostics = notes.into_iter().flatten().cloned().collect();

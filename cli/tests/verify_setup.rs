@@ -123,3 +123,31 @@ fn a_turn_of_the_part_comes_back_too() {
     assert!(run.code == 0 && figure(&v, "uncut_area_mm2") == 0.0, "{v}");
     assert!(setup_findings(&v)[0].contains("rotate_deg = [10.0000, -20.0000, 33.0000]"), "{v}");
 }
+
+/// A small bowl around the pole of the table: its joints hold the path up where it stands, and less where it is tilted.
+#[test]
+fn a_part_is_tilted_where_its_program_is_quicker_so() {
+    let scratch = Scratch::new();
+    let text = "format = 1\n[part]\nbuiltin = { kind = \"paraboloid\", a_per_mm = 0.05, b_per_mm = 0.05, half_size_mm = 3 }\n\
+        [tool]\nkind = \"toroidal\"\ndiameter_mm = 4\ncorner_radius_mm = 1\nlength_mm = 40\n\
+        [tolerance]\nscallop_mm = 0.02\ngouge_mm = 0.02\n[strategy]\nkind = \"isoparametric\"\nlead_deg = 10\n\
+        [cutting]\nspindle_rpm = 12000\nfeed_mm_min = 3000\n\
+        [machine]\nname = \"trunnion-ac\"\ndialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n";
+    let plan = |name: &str, setup: &str| {
+        let job = scratch.write(&format!("{name}.toml"), &format!("{text}{setup}"));
+        let out = scratch.path(name);
+        let run = osculate(&["plan", job.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+        assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+        (run.json(), job, out.join("program.ngc"))
+    };
+    let (stands, ..) = plan("stands", "[setup]\nrotate_deg = [0, 0, 0]\n");
+    let (tilted, job, program) = plan("tilted", "");
+    let said = setup_findings(&tilted).join("\n");
+    assert!(said.contains("turned so that the joints hold the path up less"), "{said}");
+    let [before, now] = [&stands, &tilted].map(|v| figure(v, "time_min"));
+    assert!(now < 0.97 * before, "{now} {before}");
+    // The program says how the part sits, and verification finds the same there.
+    let run = osculate(&["verify", program.to_str().unwrap(), "--job", job.to_str().unwrap(), "--json"]);
+    let [again, planned] = [run.json(), tilted["verification"].clone()].map(|v| figure(&v, "gouge_max_mm"));
+    assert!(run.code == 0 && (again - planned).abs() < 1e-3, "{again} {planned}");
+}

@@ -39,6 +39,7 @@ mod solve;
 mod solve_error;
 mod source;
 mod suggest;
+mod turn;
 
 pub use feed::{FeedMode, PathMetric};
 pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
@@ -52,3 +53,4 @@ pub use solve::SolveOptions;
 pub use solve_error::SolveError;
 pub use source::MoveSource;
 pub use suggest::{Suggestion, suggest};
+pub use turn::quicker_turns;
