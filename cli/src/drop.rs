@@ -1,5 +1,6 @@
 //! Three-axis passes by dropping the cutter: one plan over all faces of a job together.
 
+use crate::budget;
 use crate::failure::Failure;
 use crate::job::{Job, LeadKey};
 use crate::part::{self, JobFaces, LoadedFace};
@@ -18,7 +19,7 @@ pub fn passes(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> R
         cutter: &job.cutter()?,
         axis,
         feed,
-        tolerance: job.tolerance()?,
+        tolerance: budget::upright(job)?,
         progress,
     };
     let plan = if job.strategy.kind == "gradient_3c" { gradient_3c } else { drop_cutter };

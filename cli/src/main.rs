@@ -4,6 +4,7 @@
 //! and nothing else), messages and progress to stderr.
 
 mod args;
+mod budget;
 mod builtin;
 mod cancel;
 mod choice;

@@ -114,8 +114,6 @@ pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
 /// What a job without a machine is posted for: name, dialect, feed.
 const DEFAULT: [&str; 3] = ["trunnion-ac", "sinumerik", "tcp"];
 
-/// Half the last place of a coordinate, mm.
-const LEAST_TIP_MM: f64 = 0.5e-4;
 
 /// The control of a job, with a finding where the job leaves it to the program.
 pub fn control(job: &Job) -> Result<(Control, Vec<Diagnostic>), Failure> {
@@ -253,13 +251,9 @@ pub fn post_options(control: &Control, name: &str) -> PostOptions {
     PostOptions { program_name: name.to_owned(), ..PostOptions::new(control.dialect, control.feed) }
 }
 
-/// The options of a post of a job's path. What the control's interpolation leaves or digs comes on top of what passes do: it keeps
-/// to a quarter of the chords, but not below what a program can say.
+/// The options of a post of a job's path, as close to it as its tolerance wants.
 pub fn job_options(job: &Job, control: &Control, name: &str) -> Result<PostOptions, Failure> {
-    let mut options = post_options(control, name);
-    let solve = &mut options.solve;
-    solve.tip_tol_mm = (0.25 * job.tolerance()?.chord_mm).clamp(LEAST_TIP_MM, solve.tip_tol_mm);
-    Ok(options)
+    Ok(PostOptions { solve: crate::budget::solve(job)?, ..post_options(control, name) })
 }
 
 /// What an NC program does, in the part's frame.

@@ -1,5 +1,6 @@
 //! Passes over the faces of a job by one strategy, joined to a path; what is finished of them is saved when the run is stopped.
 
+use crate::budget;
 use crate::cancel;
 use crate::failure::Failure;
 use crate::job::{Job, LeadKey};
@@ -12,8 +13,8 @@ use crate::rough;
 use osculate_geom::{Box3, Diagnostic, Surface};
 use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
-    Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Tolerance, Walls, link,
-    predicted_length_mm, run as plan_face,
+    Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Walls, link, predicted_length_mm,
+    run as plan_face,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::{Cutter, Lean};
@@ -162,8 +163,7 @@ pub fn each_face(
     way: &Way<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
-    let given = job.tolerance()?;
-    let tolerance = Tolerance { scallop_mm: way.share * given.scallop_mm, ..given };
+    let tolerance = budget::leaning(job, way.share)?;
     let cutter = &job.cutter()?;
     let holder = job.holder()?;
     let all = faces.faces.iter().chain(&faces.check);

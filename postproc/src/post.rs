@@ -32,6 +32,8 @@ pub struct PostOptions {
     pub subprogram: bool,
     /// Tolerances and what else the kinematics need. Its `tcp` is not read: the feed mode says it.
     pub solve: SolveOptions,
+    /// How far the control may round corners, mm.
+    pub blend_mm: f64,
     /// Name of the program.
     pub program_name: String,
     /// Number of the tool.
@@ -52,6 +54,7 @@ impl PostOptions {
             orientation: Orientation::Joints,
             subprogram: false,
             solve: SolveOptions::default(),
+            blend_mm: SolveOptions::default().tip_tol_mm,
             program_name: "OSCULATE".into(),
             tool_number: 1,
             coolant: None,
@@ -240,7 +243,7 @@ where
         spindle_rpm,
         coolant: options.coolant,
         feed_word: feed_word(options, machine),
-        blend_mm: options.solve.tip_tol_mm,
+        blend_mm: options.blend_mm,
         linear_names: if tcp {
             ["X", "Y", "Z"].map(String::from)
         } else {
