@@ -114,7 +114,6 @@ pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
 /// What a job without a machine is posted for: name, dialect, feed.
 const DEFAULT: [&str; 3] = ["trunnion-ac", "sinumerik", "tcp"];
 
-
 /// The control of a job, with a finding where the job leaves it to the program.
 pub fn control(job: &Job) -> Result<(Control, Vec<Diagnostic>), Failure> {
     let here = |f: Failure| Failure::file(&job.path, format!("[machine] {}", f.message()));
