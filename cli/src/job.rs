@@ -7,8 +7,7 @@ use osculate_tools::{Cutter, CutterSpec, HolderSpec, Lean};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// Greatest change of a local lead where the job does not say it: at 2000 mm/min some 30 degrees a second, within what rotary
-/// axes do.
+/// Greatest change of a local lead where the job says none: at 2000 mm/min some 30 degrees a second, as rotary axes can.
 const LEAD_RATE_DEG_PER_MM: f64 = 1.0;
 /// The format that this version reads.
 const FORMAT: u32 = 1;
