@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, read_text};
 pub use crate::lead_key::LeadKey;
+use crate::setup::SetupTable;
 use osculate_geom::{Unit3, Vec3};
 use osculate_tools::{Cutter, CutterSpec, HolderSpec, Lean};
 use serde::Deserialize;
@@ -250,24 +251,6 @@ pub struct MachineTable {
     pub feed: Option<String>,
     /// Largest growth of the feed correction between blocks, for `kz`.
     pub kz_step: Option<f64>,
-}
-
-/// `[setup]`
-#[derive(Debug, Clone, Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub struct SetupTable {
-    /// Where the part's origin sits from the table's reference point; chosen from the part's box where not given.
-    pub part_zero_mm: Option<[f64; 3]>,
-    /// The part's axes turned on the table, about x, then y, then z; chosen from the faces' normals where not given.
-    pub rotate_deg: Option<[f64; 3]>,
-    /// Clearance of rapid moves over the sphere around the part.
-    pub clearance_mm: Option<f64>,
-    /// Distance from the surface at which rapid moves end.
-    pub approach_mm: Option<f64>,
-    /// The least lift in hops from pass to pass.
-    pub hop_mm: Option<f64>,
-    /// What the tool keeps from check faces in hops from pass to pass.
-    pub check_clearance_mm: Option<f64>,
 }
 
 /// `[contact]`

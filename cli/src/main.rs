@@ -31,6 +31,7 @@ mod render;
 mod report;
 mod report_fill;
 mod rough;
+mod setup;
 mod stock_keys;
 mod strategy;
 mod verify;

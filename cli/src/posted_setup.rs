@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::nc;
 use crate::part::JobFaces;
+use crate::setup;
 use nalgebra::Isometry3;
 use osculate_geom::Diagnostic;
 use osculate_postproc::Setup;
@@ -22,7 +22,7 @@ pub fn of_program(
     text: &str,
     dialect: Dialect,
 ) -> Result<(Setup, Vec<Diagnostic>), Failure> {
-    let (own, mut own_notes) = nc::setup(job, faces, &[])?;
+    let (own, mut own_notes) = setup::of(job, faces, &[])?;
     let posted = match Setup::of_program(text, dialect) {
         Ok(Some(posted)) => posted,
         Ok(None) => return Ok((own, own_notes)),

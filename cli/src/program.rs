@@ -8,6 +8,7 @@ use crate::passes;
 use crate::progress::Stage;
 use crate::report_fill::Extras;
 use crate::rough;
+use crate::setup;
 use crate::verify::{self, Verified};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
@@ -70,7 +71,7 @@ impl Posted {
     ) -> Result<Self, Failure> {
         let (control, control_notes) = nc::control(job)?;
         let stage = Stage::begin("post");
-        let (setup, mut setup_notes) = nc::setup(job, faces, &axes_of(planned))?;
+        let (base, mut setup_notes) = setup::of(job, faces, &axes_of(planned))?;
         let cl = passes::cl_path(job, &planned.linked)?;
         let title = passes::title(job);
         let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
@@ -85,14 +86,14 @@ impl Posted {
                 .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
             Ok((program, read))
         };
-        let (mut program, mut read) = written(&setup)?;
+        let (mut program, mut read) = written(&base)?;
         stage.at(0.6);
         let first_min = read.time_min;
-        for turned in nc::turned(job, faces, &cl, &control, &setup) {
+        for turned in setup::turned(job, faces, &cl, &control, &base) {
             // A turn that no program can be written for is none.
             let Ok(other) = written(&turned) else { continue };
-            if other.1.time_min < read.time_min.min((1.0 - nc::WORTH_A_TURN) * first_min) {
-                setup_notes = nc::turned_notes(&turned, [first_min, other.1.time_min]);
+            if other.1.time_min < read.time_min.min((1.0 - setup::WORTH_A_TURN) * first_min) {
+                setup_notes = setup::notes_of_turned(&turned, [first_min, other.1.time_min]);
                 (program, read) = other;
             }
         }
