@@ -232,12 +232,18 @@ fn furniture(out: &mut String, report: &Report, legends: &[&Scale], sheet: Sheet
     for (i, scale) in legends.iter().enumerate() {
         let x = width - LEGEND * (legends.len() - i) as f64;
         let unit = if scale.unit.is_empty() { String::new() } else { format!(", {}", scale.unit) };
+        let long = (height - 130.0).clamp(60.0, 320.0);
+        // Tool and holder may reach behind it.
         let _ = write!(
             out,
-            "<text x=\"{x}\" y=\"56\" font-weight=\"600\">{}{}</text><g transform=\"translate({x} 70)\">{}</g>",
+            "<rect x=\"{}\" y=\"40\" width=\"{}\" height=\"{}\" rx=\"6\" fill=\"#f7f9fa\" fill-opacity=\".88\"/>\
+             <text x=\"{x}\" y=\"56\" font-weight=\"600\">{}{}</text><g transform=\"translate({x} 70)\">{}</g>",
+            x - 8.0,
+            LEGEND + 4.0,
+            long + 44.0,
             escape(&scale.name),
             escape(&unit),
-            scale.bar((height - 130.0).clamp(60.0, 320.0))
+            scale.bar(long)
         );
     }
     let long = nice_step(60.0 / px_mm);
