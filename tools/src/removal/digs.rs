@@ -108,24 +108,30 @@ impl<'a> Digs<'a> {
             let comers = self.near(&bodies, &back.target, which);
             let mut parts = Vec::new();
             self.divide(surfaces, *sample, patch, &comers, (DIVISIONS, &mut parts));
-            let known =
-                if parts.is_empty() { self.depth_mm } else { self.known(&bodies, surfaces, *sample, &parts) };
             // The quick bound is one on the cutter's own gouges.
-            let most_mm = if intrudes { known } else { level.min(known) };
+            let quick = if intrudes { f64::INFINITY } else { level };
+            let known = if parts.is_empty() {
+                self.depth_mm
+            } else if quick.is_finite() {
+                quick
+            } else {
+                self.known(&bodies, surfaces, *sample, patch)
+            };
+            let most_mm = quick.min(known);
             Depth { sample: *sample, most_mm, parts }
         };
         cells.iter().map(depth).collect()
     }
 
-    /// A depth that nothing in these parts of a cell goes beyond: doubled until this is so, or until gouges are not followed.
-    fn known(&self, bodies: &[Body<'a>], surfaces: &[&dyn Surface], sample: usize, parts: &[Patch]) -> f64 {
+    /// A depth that nothing in a cell goes beyond: doubled until this is so, or until gouges are not followed.
+    fn known(&self, bodies: &[Body<'a>], surfaces: &[&dyn Surface], sample: usize, patch: &Patch) -> f64 {
         let mut depth_mm = self.depth_mm;
         while depth_mm < self.job.depth_mm {
             depth_mm *= 2.0;
             let deeper = Self { depth_mm, ..*self };
-            let target = |part: &Patch| deeper.back(surfaces, sample, part).target;
-            if parts.iter().all(|p| deeper.near(bodies, &target(p), Which::All).is_empty()) {
-                return depth_mm;
+            let target = deeper.back(surfaces, sample, patch).target;
+            if deeper.near(bodies, &target, Which::All).is_empty() {
+                break;
             }
         }
         depth_mm
@@ -217,7 +223,9 @@ impl<'a> Digs<'a> {
             }
             let target = self.back(surfaces, sample, &part).target;
             let comes = |c: &&Comer<'a>| c.approach.passes(&c.body, &target, 0.0) != Passes::Clear;
-            let near: Vec<Comer<'a>> = comers.iter().filter(comes).copied().collect();
+            // Of the last parts one that comes near says all there is to say.
+            let wanted = if divisions == 1 { 1 } else { comers.len() };
+            let near: Vec<Comer<'a>> = comers.iter().filter(comes).take(wanted).copied().collect();
             self.divide(surfaces, sample, &part, &near, (divisions - 1, &mut *parts));
         }
     }
