@@ -105,9 +105,15 @@ impl<'a> Digs<'a> {
                 (true, true) => Which::Intruding,
                 (false, _) => Which::All,
             };
-            let comers = self.near(&bodies, &back.target, which);
             let mut parts = Vec::new();
-            self.divide(surfaces, *sample, patch, &comers, (DIVISIONS, &mut parts));
+            if cuts[*sample].by.is_some() && level.is_finite() && self.is_coarse(level) {
+                let surface = surfaces[self.job.samples[*sample].face as usize];
+                let all = patch.parts().into_iter().flat_map(|p| p.parts());
+                parts.extend(all.filter(|p| p.raster().any(|place| surface.contains(place))));
+            } else {
+                let comers = self.near(&bodies, &back.target, which);
+                self.divide(surfaces, *sample, patch, &comers, (DIVISIONS, &mut parts));
+            }
             // The quick bound is one on the cutter's own gouges.
             let quick = if intrudes { f64::INFINITY } else { level };
             let known = if parts.is_empty() {
@@ -135,6 +141,12 @@ impl<'a> Digs<'a> {
             }
         }
         depth_mm
+    }
+
+    /// Whether a cell is so large that a ball would come near parts of it wherever it cuts, with no gouge at all: a ball is as sharp
+    /// everywhere as the quick bound has it, which falls with the square of the size.
+    fn is_coarse(&self, level_mm: f64) -> bool {
+        self.job.cutter.is_ball() && level_mm > 4f64.powi(DIVISIONS as i32) * self.depth_mm
     }
 
     /// By how much a gouge of the cutter may be deeper than a sample so far away shows.
