@@ -234,18 +234,30 @@ impl Passage<'_> {
     }
 
     /// The entry above the sample, from f at the sample; None where there is none below `current`.
+    ///
+    /// Over a turning motion f is not quite convex, and the least distance found may be one of several: Newton's steps are
+    /// kept between a height outside and one inside then, and where they do not converge the height inside, which the
+    /// body does reach, is the answer.
     fn entry(&self, sample: Lowest, current: f64, touch: f64, instant: &mut f64) -> Option<f64> {
         let turns = self.swept.from.axis != self.swept.to.axis;
         let (mut s, mut here, mut outside) = (0.0, sample, 0.0);
+        let mut inside = None;
         for _ in 0..MAX_STEPS {
             if here.value > 0.0 {
-                if here.slope >= 0.0 {
+                if here.slope >= 0.0 && inside.is_none() {
                     return None;
                 }
                 outside = s;
+            } else {
+                inside = Some(s);
             }
-            // Only a turning motion, over which f is not quite convex, leads inside with f not falling.
-            s = if here.slope < 0.0 { s - here.value / here.slope } else { 0.5 * (outside + s) };
+            let step = s - here.value / here.slope;
+            s = match inside {
+                Some(inside) if !(here.slope < 0.0 && step > outside && step < inside) => {
+                    0.5 * (outside + inside)
+                }
+                _ => step,
+            };
             if s >= current {
                 if !turns {
                     return None;
@@ -257,29 +269,37 @@ impl Passage<'_> {
                 return None;
             }
             if here.value.abs() <= touch {
-                break;
+                return Some(s);
             }
         }
-        Some(s)
+        inside.filter(|s| *s < current)
     }
 
-    /// Depth of the gouge at a sample that is inside.
+    /// Depth of the gouge at a sample that is inside, between a depth that is reached and one that is not.
     fn gouge(&self, depth: f64, touch: f64, instant: &mut f64) -> f64 {
         let (mut h, mut here) = (depth, self.lowest(Probe::Gouge, depth, instant));
         if here.value <= 0.0 {
             return depth;
         }
+        let (mut reached, mut beyond) = (0.0, depth);
         for _ in 0..MAX_STEPS {
-            if here.slope <= 0.0 || here.value.abs() <= touch {
-                break;
+            if here.value.abs() <= touch {
+                return h;
             }
-            h -= here.value / here.slope;
-            if h <= 0.0 {
-                return 0.0;
+            if here.value > 0.0 {
+                beyond = h;
+            } else {
+                reached = h;
             }
+            let step = h - here.value / here.slope;
+            h = if here.slope > 0.0 && step > reached && step < beyond {
+                step
+            } else {
+                0.5 * (reached + beyond)
+            };
             here = self.lowest(Probe::Gouge, h, instant);
         }
-        h
+        reached
     }
 }
 

@@ -112,6 +112,27 @@ proptest! {
     }
 }
 
+/// A flat end that turns, its bottom nearly along the sample's line: Newton's steps for the entry went round in a circle,
+/// and the height at which they were broken off was no place of the tool.
+#[test]
+fn steps_that_go_round_in_a_circle() {
+    let motion = through(&[
+        pose(
+            [-1.5652148873294407, -0.3294005312077431, -1.1151799384382867],
+            [-0.3718737479337894, -0.10079961349606471, 1.0],
+        ),
+        pose(
+            [0.7321162750199102, -1.4101821427388406, -0.7940869819760365],
+            [-0.19501372374950113, 0.14305029590709514, 1.0],
+        ),
+    ]);
+    let s = sample(
+        [1.0074857475204944, 1.2861467818645784, -0.34532134543321086],
+        [0.3447726448737095, -0.15177725159495606, 0.9263344370393817],
+    );
+    assert_eq!(check(&flat(5.0), &motion, &[s], 4000).unwrap(), 1);
+}
+
 /// The comparison above has something to compare.
 #[test]
 fn samples_of_the_comparison_are_touched() {
