@@ -13,6 +13,7 @@ pub fn of_job(job: &Job) -> Result<Strategy, Failure> {
     let table = &job.strategy;
     let strategy = match table.kind.as_str() {
         "auto" | "isoparametric" => Strategy::Isoparametric { along: along(job)? },
+        "regions" => Strategy::Regions { along: along(job)? },
         "contour_2cl" => Strategy::Contour2cl { axis: job.contour_axis()? },
         "isoplanar" => Strategy::Isoplanar { normal: normal(job)? },
         "isoscallop" => Strategy::Isoscallop,
@@ -22,8 +23,8 @@ pub fn of_job(job: &Job) -> Result<Strategy, Failure> {
             return Err(Failure::file(
                 &job.path,
                 format!(
-                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\", \"isoplanar\", \
-                     \"isoscallop\", \"streamline\", \"curvature_5c\", \"contour_2cl\", \"gradient_3c\", \
+                    "[strategy] kind = \"{other}\" is not available: use \"auto\", \"isoparametric\", \"regions\", \
+                     \"isoplanar\", \"isoscallop\", \"streamline\", \"curvature_5c\", \"contour_2cl\", \"gradient_3c\", \
                      \"isoplanar_3c\" or \"z_level\""
                 ),
             ));

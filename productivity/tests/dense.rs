@@ -11,7 +11,7 @@
 mod cutting;
 
 use osculate_geom::analytic::{Paraboloid, Sphere, Torus};
-use osculate_geom::{Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
+use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{
     Along, DropTask, Links, Named, Pass, Passes, PlanError, RoughTask, Sizes, Strategy, Task, Tolerance,
     drop_cutter, gradient_3c, run, z_level,
@@ -143,6 +143,7 @@ fn toroidal_cutters_in_a_groove() {
     let planes = Strategy::Isoplanar { normal: Unit3::new_normalize(Vec3::new(0.0, 0.1, 1.0)) };
     let all = [
         Strategy::Isoparametric { along: Along::Auto },
+        Strategy::Regions { along: Along::Fixed(Axis::V) },
         planes,
         Strategy::Isoscallop,
         Strategy::Streamline,

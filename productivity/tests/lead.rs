@@ -93,6 +93,19 @@ fn a_local_lead_holds_and_is_shorter_than_any_held() {
     assert!(passes.length_mm() < 0.9 * best, "{} against {best}", passes.length_mm());
 }
 
+/// Across the lines of constant curvature the hollow end needs more passes than the rest: regions are shorter, and hold.
+#[test]
+fn regions_with_a_local_lead_hold_and_are_shorter() {
+    let along = Along::Fixed(Axis::U);
+    let own = local();
+    let local = Leaning::Local(&own);
+    let whole = plan(local, &Strategy::Isoparametric { along }).unwrap();
+    let parts = plan(local, &Strategy::Regions { along }).unwrap();
+    let (within, gouge_mm) = holds(&parts);
+    assert!(within, "gouge {gouge_mm}");
+    assert!(parts.length_mm() < 0.9 * whole.length_mm(), "{} of {}", parts.length_mm(), whole.length_mm());
+}
+
 /// A wall beside the face that the tool touches at any lead: the passes say how many places that concerns.
 #[test]
 fn places_that_no_lead_clears_are_told() {

@@ -35,7 +35,10 @@ pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<
             if !fits {
                 continue;
             }
-            for (lean, local) in leans(job, cutter, strategy)? {
+            // Regions pay where leads, and with them strips, differ over the face.
+            let only_local = job.strategy.kind == "auto" && matches!(strategy, Strategy::Regions { .. });
+            let leans = leans(job, cutter, strategy)?;
+            for (lean, local) in leans.into_iter().filter(|(_, local)| *local || !only_local) {
                 out.push(Candidate { tool, strategy: *strategy, lean, local });
             }
         }
@@ -76,6 +79,7 @@ fn every(job: &Job, faces: &JobFaces) -> Result<Vec<Strategy>, Failure> {
     let [first, second] = plane_normals(faces);
     Ok(vec![
         Strategy::Isoparametric { along: Along::Auto },
+        Strategy::Regions { along: Along::Auto },
         Strategy::Isoplanar { normal: first },
         Strategy::Isoplanar { normal: second },
         Strategy::Isoscallop,
@@ -100,6 +104,9 @@ fn each_direction(strategy: Strategy) -> Vec<Strategy> {
         Strategy::Isoparametric { along: Along::Auto } => {
             [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) }).to_vec()
         }
+        Strategy::Regions { along: Along::Auto } => {
+            [Axis::U, Axis::V].map(|a| Strategy::Regions { along: Along::Fixed(a) }).to_vec()
+        }
         other => vec![other],
     }
 }
@@ -107,8 +114,8 @@ fn each_direction(strategy: Strategy) -> Vec<Strategy> {
 /// A strategy in words, with its direction.
 pub(super) fn words(strategy: &Strategy) -> String {
     match strategy {
-        Strategy::Isoparametric { along: Along::Fixed(a) } => {
-            format!("isoparametric {}", if *a == Axis::U { "u" } else { "v" })
+        Strategy::Isoparametric { along: Along::Fixed(a) } | Strategy::Regions { along: Along::Fixed(a) } => {
+            format!("{} {}", strategy.name(), if *a == Axis::U { "u" } else { "v" })
         }
         Strategy::Isoplanar { normal: n } => format!("isoplanar ({:.2}, {:.2}, {:.2})", n.x, n.y, n.z),
         other => other.name().to_owned(),

@@ -33,7 +33,7 @@ use std::path::Path;
 const MOST_PLANS: usize = 16;
 const MOST_IN_NEED: usize = 28;
 /// Plans around one that holds: with its tool and leads found place by place, with leads beside its own, and with other strategies.
-const MOST_LOCAL: usize = 4;
+const MOST_LOCAL: usize = 6;
 const MOST_BESIDE: usize = 3;
 const MOST_OTHERS: usize = 3;
 /// Plans with other tools then, and with one of them.
@@ -126,7 +126,7 @@ pub fn patches(faces: &JobFaces) -> Vec<Patch<'_>> {
 }
 
 const fn keeps_lines(strategy: &Strategy) -> bool {
-    matches!(strategy, Strategy::Isoparametric { .. } | Strategy::Curvature5c)
+    matches!(strategy, Strategy::Isoparametric { .. } | Strategy::Regions { .. } | Strategy::Curvature5c)
 }
 
 impl<'a> Choice<'a> {

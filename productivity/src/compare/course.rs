@@ -60,6 +60,10 @@ pub(super) fn courses(candidate: &Candidate, jet: &Jet2, forms: &Forms) -> Vec<C
         Strategy::Isoparametric { along: Along::Fixed(Axis::V) } => {
             vec![fixed(jet.dv, Some(jet.dv.norm() / element))]
         }
+        // In regions passes are spaced by what places near each other need.
+        Strategy::Regions { along: Along::Fixed(axis) } => {
+            vec![fixed(if axis == Axis::U { jet.du } else { jet.dv }, None)]
+        }
         Strategy::Isoplanar { normal } => {
             let direction = n.cross(&normal);
             let slope = direction.norm();

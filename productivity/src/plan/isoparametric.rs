@@ -19,7 +19,7 @@ use super::motion::PassMotion;
 use super::resample::{contact_points, resample};
 use super::seat::{Averaged, Seat};
 use super::walk::Walk;
-use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task, shorter};
+use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task, Tolerance, shorter};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Uv};
 use osculate_tools::strip::{self, StripError, standoff};
@@ -43,6 +43,15 @@ const WIDTH_STRIDE: usize = 8;
 /// The share of the progress that passes take with the leads of the face alone.
 const FIRST: f64 = 0.6;
 
+/// Most of the scallop that the chords of the path may take: points cost less than passes.
+const CHORD: f64 = 0.05;
+
+/// The tolerance of a task with chords that leave the scallop to the passes.
+pub(super) fn close_chords(task: &Task<'_>) -> Tolerance {
+    let t = task.tolerance;
+    Tolerance { chord_mm: t.chord_mm.min(CHORD * t.scallop_mm), ..t }
+}
+
 /// One pass to be: the fixed parameter, its direction, and what is known along it.
 struct Level {
     fixed: f64,
@@ -52,7 +61,7 @@ struct Level {
 }
 
 /// A covering of the face by levels.
-struct Layout {
+pub(super) struct Layout {
     ends: Ends,
     /// Range of the fixed parameter that the face covers.
     across: [f64; 2],
@@ -70,6 +79,7 @@ struct Layout {
 /// deeper than `gouge_mm` beside its contact.
 pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
     task.check()?;
+    let task = &Task { tolerance: close_chords(task), ..*task };
     if let Leaning::Local(local) = task.lean {
         let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
             let rough = Seat::new(task, axis).rough();
@@ -130,7 +140,7 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
 }
 
 /// The passes of a layout over a continued face.
-fn built(task: &Task<'_>, face: &Extended<'_>, layout: Layout) -> Result<Passes, PlanError> {
+pub(super) fn built(task: &Task<'_>, face: &Extended<'_>, layout: Layout) -> Result<Passes, PlanError> {
     let done = AtomicUsize::new(0);
     let total = layout.levels.len();
     let along = layout.ends.along;
@@ -168,18 +178,27 @@ fn built(task: &Task<'_>, face: &Extended<'_>, layout: Layout) -> Result<Passes,
     Ok(out)
 }
 
-/// The levels of passes with given ends; `progress` is told the share of the face that they cover so far.
-fn lay_out(task: &Task<'_>, ends: Ends, progress: &(dyn Fn(f64) + Sync)) -> Result<Layout, PlanError> {
-    let (own, along) = (ends.own, ends.along);
-    let surface = task.surface;
+/// The range of the fixed parameter over which a face has an inside.
+pub(super) fn inside_across(task: &Task<'_>, ends: &Ends) -> Result<[f64; 2], PlanError> {
     let nothing = || PlanError::Nothing {
         face: task.face.to_owned(),
         why: "its trim loops leave no inside; check them with inspect".to_owned(),
     };
-    let sides = own.get(along.other());
+    let sides = ends.own.get(ends.along.other());
     // The end of the inside is found to within rounding.
-    let range = across_range(surface, along).ok_or_else(nothing)?;
-    let [lo, hi] = range.map(|x| if sides.periodic { x } else { x.clamp(sides.lo, sides.hi) });
+    let range = across_range(task.surface, ends.along).ok_or_else(nothing)?;
+    Ok(range.map(|x| if sides.periodic { x } else { x.clamp(sides.lo, sides.hi) }))
+}
+
+/// The levels of passes with given ends; `progress` is told the share of the face that they cover so far.
+pub(super) fn lay_out(
+    task: &Task<'_>,
+    ends: Ends,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Layout, PlanError> {
+    let (own, along) = (ends.own, ends.along);
+    let surface = task.surface;
+    let [lo, hi] = inside_across(task, &ends)?;
     let across = Interval::new(lo, hi);
     let slack = 1e-7 * (hi - lo);
     let seat = Seat::new(task, along).held_by(own);
@@ -253,13 +272,13 @@ fn lay_out(task: &Task<'_>, ends: Ends, progress: &(dyn Fn(f64) + Sync)) -> Resu
 }
 
 /// The two questions of the frontier, for one pass direction.
-struct Cover<'a> {
-    seat: &'a Seat<'a>,
-    task: &'a Task<'a>,
-    ends: &'a Ends,
-    reversed: bool,
-    hi: f64,
-    guess: f64,
+pub(super) struct Cover<'a> {
+    pub seat: &'a Seat<'a>,
+    pub task: &'a Task<'a>,
+    pub ends: &'a Ends,
+    pub reversed: bool,
+    pub hi: f64,
+    pub guess: f64,
 }
 
 impl Cover<'_> {
@@ -305,12 +324,12 @@ impl Cover<'_> {
     }
 
     /// How far on a pass may lie that still covers the frontier of a column.
-    fn furthest_pass(&self, column: &Column, frontier: f64) -> Result<f64, LineError> {
+    pub fn furthest_pass(&self, column: &Column, frontier: f64) -> Result<f64, LineError> {
         self.walk(frontier).last_below_near(|pass| self.excess(column, frontier, pass))
     }
 
     /// How far the strip of a pass reaches at a column.
-    fn reached(&self, column: &Column, pass: f64) -> Result<f64, LineError> {
+    pub fn reached(&self, column: &Column, pass: f64) -> Result<f64, LineError> {
         self.walk(pass).last_below_near(|point| self.excess(column, point, pass))
     }
 }

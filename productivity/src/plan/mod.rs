@@ -20,6 +20,7 @@ mod link;
 mod march;
 mod motion;
 mod predict;
+mod regions;
 mod resample;
 mod seat;
 mod strategy;
@@ -34,6 +35,7 @@ pub use leave_out::{Guard, LeaveOutError, LeftOut, leave_out};
 pub use level::{curvature_5c, isoplanar, isoscallop, streamline};
 pub use link::{Linked, Links, link};
 pub use predict::predicted_length_mm;
+pub use regions::regions;
 pub use strategy::{Strategy, run};
 pub use walls::Walls;
 

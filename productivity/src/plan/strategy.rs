@@ -1,7 +1,7 @@
 //! The strategies by name, and the one call that plans by any of them.
 
 use super::{
-    Along, Passes, PlanError, Task, contour_2cl, curvature_5c, isoparametric, isoplanar, isoscallop,
+    Along, Passes, PlanError, Task, contour_2cl, curvature_5c, isoparametric, isoplanar, isoscallop, regions,
     streamline,
 };
 use osculate_geom::Unit3;
@@ -11,6 +11,11 @@ use osculate_geom::Unit3;
 pub enum Strategy {
     /// Along lines of constant parameter (5C).
     Isoparametric {
+        /// Which parameter varies along the passes.
+        along: Along,
+    },
+    /// Along lines of constant parameter, in regions with passes as far apart as each allows (5C).
+    Regions {
         /// Which parameter varies along the passes.
         along: Along,
     },
@@ -38,6 +43,7 @@ impl Strategy {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Isoparametric { .. } => "isoparametric",
+            Self::Regions { .. } => "regions",
             Self::Contour2cl { .. } => "contour_2cl",
             Self::Isoplanar { .. } => "isoplanar",
             Self::Isoscallop => "isoscallop",
@@ -52,6 +58,7 @@ impl Strategy {
         match self {
             Self::Contour2cl { axis } => Some(*axis),
             Self::Isoparametric { .. }
+            | Self::Regions { .. }
             | Self::Isoplanar { .. }
             | Self::Isoscallop
             | Self::Streamline
@@ -67,6 +74,7 @@ impl Strategy {
 pub fn run(task: &Task<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {
     match *strategy {
         Strategy::Isoparametric { along } => isoparametric(task, along),
+        Strategy::Regions { along } => regions(task, along),
         Strategy::Contour2cl { axis } => contour_2cl(task, axis),
         Strategy::Isoplanar { normal } => isoplanar(task, normal),
         Strategy::Isoscallop => isoscallop(task),
