@@ -3,6 +3,7 @@
 //! Both are convex bodies of revolution about the tool axis, so their signed distance is a convex function of
 //! the point with slope at most one. Every bound of this module rests on these two facts.
 
+use super::job::Job;
 use crate::cutter::Cutter;
 use osculate_geom::Vec3;
 
@@ -31,6 +32,15 @@ pub(super) struct Local {
     pub by_z: f64,
     /// Curvature of the curve of equal distance in the half plane, 1/mm.
     pub bend: f64,
+}
+
+impl<'a> Body<'a> {
+    /// The cutter of a job, and its holder where it has one.
+    pub fn all(job: &Job<'a>) -> Vec<Self> {
+        let mut bodies = vec![Self { cutter: job.cutter, above_mm: 0.0 }];
+        bodies.extend(job.holder.map(|cutter| Self { cutter, above_mm: job.cutter.length_mm() }));
+        bodies
+    }
 }
 
 impl Body<'_> {

@@ -4,9 +4,9 @@ use super::body::Body as Moved;
 use super::cluster::{Cluster, clusters};
 use super::deepest::{EXACT, Passage};
 use super::job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
-use super::piece::{Approach, FINE_MM, Passes, Piece, pieces};
+use super::piece::{Approach, FINE_MM, Passes, Piece};
 use super::target::Target;
-use super::tree::{Tree, Which};
+use super::tree::{Ways, Which};
 use crate::cutter::Line;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,15 +25,16 @@ pub fn cut(job: &Job<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Cut>, J
     if !(job.depth_mm > 0.0 && job.depth_mm.is_finite()) {
         return Err(JobError::Depth { got: job.depth_mm });
     }
-    let mut bodies = vec![Moved { cutter: job.cutter, above_mm: 0.0 }];
-    bodies.extend(job.holder.map(|cutter| Moved { cutter, above_mm: job.cutter.length_mm() }));
-    let reach = bodies
-        .iter()
-        .map(|b| (b.above_mm + b.cutter.length_mm()).hypot(b.cutter.radius_mm()))
-        .fold(0.0, f64::max);
-    let pieces = pieces(job.motions, reach)?;
-    let tree = Tree::new(job.motions, &pieces, job.cutter.radius_mm());
-    let world = World { job, bodies, tree, pieces };
+    cut_by(job, &Ways::of(job.motions, &Moved::all(job))?, progress)
+}
+
+/// The same by the ways of the job's motions.
+pub(super) fn cut_by(
+    job: &Job<'_>,
+    ways: &Ways,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Vec<Cut>, JobError> {
+    let world = World { job, bodies: Moved::all(job), ways };
     let groups = clusters(job.samples)?;
     let done = AtomicUsize::new(0);
     let cuts: Vec<Vec<Cut>> = groups
@@ -61,8 +62,7 @@ pub fn cut(job: &Job<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Cut>, J
 struct World<'a> {
     job: &'a Job<'a>,
     bodies: Vec<Moved<'a>>,
-    tree: Tree,
-    pieces: Vec<Piece>,
+    ways: &'a Ways,
 }
 
 /// A piece that comes near a group, with one body.
@@ -78,8 +78,8 @@ struct Candidate {
 impl World<'_> {
     fn candidates(&self, target: &Target, which: Which) -> Vec<Candidate> {
         let mut found = Vec::new();
-        self.tree.near(&self.bodies, target, which, |k, body, index| {
-            let piece = &self.pieces[k as usize];
+        self.ways.tree.near(&self.bodies, target, which, |k, body, index| {
+            let piece = &self.ways.pieces[k as usize];
             let swept = &self.job.motions[piece.motion as usize];
             match which {
                 Which::Cutting if swept.rapid => return,
@@ -113,7 +113,7 @@ impl World<'_> {
         if work.iter().any(|one| one.in_order) {
             let mut all = self.candidates(&target(&work), Which::All);
             // Within a motion, which may have several pieces, the cutter before the holder.
-            all.sort_unstable_by_key(|c| (self.pieces[c.piece as usize].motion, c.body, c.piece));
+            all.sort_unstable_by_key(|c| (self.ways.pieces[c.piece as usize].motion, c.body, c.piece));
             for one in work.iter_mut().filter(|one| one.in_order) {
                 for c in &all {
                     one.take(c);
@@ -189,7 +189,7 @@ impl<'a> Work<'a> {
 
     /// The height to which a candidate would cut, where that is lower than it is now.
     fn lowered_by(&self, c: &Candidate) -> Option<f64> {
-        let piece = self.world.pieces[c.piece as usize];
+        let piece = self.world.ways.pieces[c.piece as usize];
         self.lowered(&self.world.bodies[c.body], &piece, &c.approach, self.cut.standoff_mm)
     }
 
@@ -247,7 +247,7 @@ impl<'a> Work<'a> {
     /// Cuts by a candidate; whether that lowered the height.
     fn take(&mut self, c: &Candidate) -> bool {
         let Some(height) = self.lowered_by(c) else { return false };
-        let motion = self.world.pieces[c.piece as usize].motion;
+        let motion = self.world.ways.pieces[c.piece as usize].motion;
         let block = self.world.job.motions[motion as usize].block;
         let body = if c.body == 0 { Body::Cutter } else { Body::Holder };
         let touch = Touch { removed_mm: self.cut.standoff_mm - height, motion, block };

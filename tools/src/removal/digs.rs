@@ -17,7 +17,7 @@ use super::job::{Cut, Job, JobError};
 use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
 use super::target::Target;
-use super::tree::{Tree, Which};
+use super::tree::{Ways, Which};
 use osculate_geom::{Surface, uv};
 use rayon::prelude::*;
 
@@ -42,8 +42,7 @@ pub(super) struct Depth {
 #[derive(Clone, Copy)]
 pub(super) struct Digs<'a> {
     pub job: &'a Job<'a>,
-    pub tree: &'a Tree,
-    pub pieces: &'a [Piece],
+    pub ways: &'a Ways,
     /// The depth that is asked for, mm.
     pub depth_mm: f64,
 }
@@ -73,19 +72,13 @@ impl<'a> Digs<'a> {
         Ok(clusters(self.job.samples)?.par_iter().flat_map_iter(of).collect())
     }
 
-    fn bodies(&self) -> Vec<Body<'a>> {
-        let mut bodies = vec![Body { cutter: self.job.cutter, above_mm: 0.0 }];
-        bodies.extend(self.job.holder.map(|cutter| Body { cutter, above_mm: self.job.cutter.length_mm() }));
-        bodies
-    }
-
     fn of_group(
         &self,
         group: &Cluster,
         surfaces: &[&dyn Surface],
         (patches, cuts): (&[Option<Patch>], &[Cut]),
     ) -> Vec<Depth> {
-        let bodies = self.bodies();
+        let bodies = Body::all(self.job);
         let cells: Vec<(usize, Patch, Back)> = group
             .members
             .iter()
@@ -180,8 +173,8 @@ impl<'a> Digs<'a> {
 
     fn near(&self, bodies: &[Body<'a>], target: &Target, which: Which) -> Vec<Comer<'a>> {
         let mut found = Vec::new();
-        self.tree.near(bodies, target, which, |k, body, index| {
-            let piece = self.pieces[k as usize];
+        self.ways.tree.near(bodies, target, which, |k, body, index| {
+            let piece = self.ways.pieces[k as usize];
             let rapid = self.job.motions[piece.motion as usize].rapid;
             if which == Which::Intruding && index == 0 && !rapid {
                 return;

@@ -29,10 +29,10 @@ use super::deepest::Passage;
 use super::density::Hidden;
 use super::digs::{Depth, Digs};
 use super::job::{Cut, Job, JobError};
-use super::piece::{Approach, Passes, Piece, pieces};
+use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
 use super::target::Target;
-use super::tree::{Tree, Which};
+use super::tree::{Ways, Which};
 use crate::cutter::Line;
 use osculate_geom::{Point3, Surface, Unit3, uv};
 use rayon::prelude::*;
@@ -79,7 +79,8 @@ pub fn hidden(
     (patches, cuts): (&[Option<Patch>], &[Cut]),
     wanted: Wanted,
 ) -> Result<Hidden, JobError> {
-    let world = World::new(job, cuts, wanted.uncut_mm)?;
+    let ways = Ways::of(job.motions, &Body::all(job))?;
+    let world = World::new(job, &ways, cuts, wanted.uncut_mm);
     let seen = world.seen;
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
     let highest = highest(&cells, seen, wanted.enough_mm, 0, &mut Vec::new());
@@ -138,12 +139,12 @@ pub(super) struct Doubts {
 /// `room` at most, those with the highest bounds.
 pub(super) fn doubts(
     surfaces: &[&dyn Surface],
-    job: &Job<'_>,
+    (job, ways): (&Job<'_>, &Ways),
     (patches, cuts): (&[Option<Patch>], &[Cut]),
     wanted: Wanted,
     room: usize,
 ) -> Result<Doubts, JobError> {
-    let world = World::new(job, cuts, wanted.uncut_mm)?;
+    let world = World::new(job, ways, cuts, wanted.uncut_mm);
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
     let mut places = Vec::new();
     let height_mm = highest(&cells, world.seen, wanted.enough_mm, room, &mut places);
@@ -178,8 +179,7 @@ pub(super) fn judged(job: &Job<'_>, cuts: &[Cut], uncut_mm: f64, k: usize) -> bo
 struct World<'a> {
     job: &'a Job<'a>,
     body: Body<'a>,
-    tree: Tree,
-    pieces: Vec<Piece>,
+    ways: &'a Ways,
     /// The highest standoff at a sample: bounds below need not be sharper.
     seen: f64,
 }
@@ -188,12 +188,10 @@ struct World<'a> {
 const BESIDE: usize = 10;
 
 impl<'a> World<'a> {
-    fn new(job: &'a Job<'a>, cuts: &[Cut], uncut_mm: f64) -> Result<Self, JobError> {
-        let pieces = pieces(job.motions, job.cutter.length_mm().hypot(job.cutter.radius_mm()))?;
-        let tree = Tree::new(job.motions, &pieces, job.cutter.radius_mm());
+    fn new(job: &'a Job<'a>, ways: &'a Ways, cuts: &[Cut], uncut_mm: f64) -> Self {
         let judged = (0..cuts.len()).filter(|k| judged(job, cuts, uncut_mm, *k));
         let seen = judged.map(|k| cuts[k].standoff_mm).fold(0.0, f64::max);
-        Ok(World { job, body: Body { cutter: job.cutter, above_mm: 0.0 }, tree, pieces, seen })
+        World { job, body: Body { cutter: job.cutter, above_mm: 0.0 }, ways, seen }
     }
 
     /// What looks for gouges deeper than this.
@@ -201,12 +199,7 @@ impl<'a> World<'a> {
         if !(depth_mm >= 0.0 && depth_mm.is_finite()) {
             return Err(JobError::Depth { got: depth_mm });
         }
-        Ok(Digs {
-            job: self.job,
-            tree: &self.tree,
-            pieces: &self.pieces,
-            depth_mm: depth_mm.max(LEAST_DEPTH),
-        })
+        Ok(Digs { job: self.job, ways: self.ways, depth_mm: depth_mm.max(LEAST_DEPTH) })
     }
 
     /// The cells of the samples that are judged.
@@ -430,7 +423,7 @@ impl Cell<'_> {
     /// The motions of the cutter that leave least above the middle of a cell, of those that come near what is up to
     /// `height` above it.
     fn around(&self, corners: [Point3; 4], middle: Point3, normal: Unit3, height: f64) -> Vec<u32> {
-        let World { job, body, tree, pieces, .. } = self.world;
+        let World { job, body, ways: Ways { pieces, tree }, .. } = self.world;
         let raised = normal.into_inner() * height;
         let target = Target::around(corners.into_iter().flat_map(|p| [p, p + raised]), &normal);
         let mut found = Vec::new();

@@ -5,11 +5,13 @@
 //! limit: an eighth of a cell wide. Samples in their middles show what is there, and have cells of their own, whose bounds
 //! are 64 times as near.
 
-use super::cut::cut;
+use super::body::Body;
+use super::cut::cut_by;
 use super::density::Hidden;
 use super::hidden::{Doubts, Wanted, doubts, judged};
 use super::job::{Cut, Job, JobError, Sample};
 use super::sampling::Patch;
+use super::tree::Ways;
 use osculate_geom::Surface;
 
 /// Rounds at most: cells of the last are 8^3 times as small as the first.
@@ -80,6 +82,8 @@ pub fn refine(
     most: usize,
 ) -> Result<Refined, JobError> {
     let even = measured.samples.len();
+    // Samples come and go, motions stay.
+    let ways = Ways::of(job.motions, &Body::all(job))?;
     let mut out = Refined { hidden: Hidden { scallop_mm: 0.0, gouge_mm: 0.0 }, added: 0, left_out: 0 };
     // Bounds over all cells that have not been replaced by smaller ones.
     let (mut height, mut depth) = (0.0f64, 0.0f64);
@@ -89,7 +93,7 @@ pub fn refine(
         let here = (&measured.patches[from..], &measured.cuts[from..]);
         let room = most.saturating_sub(measured.samples.len() - even);
         let Doubts { height_mm, depth_mm, mut places } =
-            doubts(surfaces, &Job { samples: part, ..*job }, here, wanted, room + 1)?;
+            doubts(surfaces, (&Job { samples: part, ..*job }, &ways), here, wanted, room + 1)?;
         if places.is_empty() || round == ROUNDS {
             height = height.max(height_mm);
             depth = depth.max(depth_mm);
@@ -107,7 +111,7 @@ pub fn refine(
             measured.divide(surfaces, from + of_one[0].0, of_one.iter().map(|p| p.1));
         }
         let samples = &measured.samples[first..];
-        measured.cuts.extend(cut(&Job { samples, ..*job }, &|_| ())?);
+        measured.cuts.extend(cut_by(&Job { samples, ..*job }, &ways, &|_| ())?);
         let new = first..measured.samples.len();
         let gouge_mm = wanted.gouge_mm;
         let exceeds = |c: &Cut| c.standoff_mm > wanted.enough_mm || -c.standoff_mm > gouge_mm;

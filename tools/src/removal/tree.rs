@@ -5,15 +5,18 @@
 //! a tangent at any tip of the box bounds it over the box. Turning the axis by `swing` about the tip moves
 //! the body past c by at most `swing |c - tip|`.
 
-use super::Swept;
 use super::body::Body;
-use super::piece::{Piece, moving};
+use super::job::{JobError, Swept};
+use super::piece::{Piece, moving, pieces};
 use super::target::Target;
 use crate::pose::Pose;
 use osculate_geom::{Box3, Point3, Unit3, Vec3};
 
 /// Pieces in a leaf: few next to the hundred or so that come near a group of samples.
 const LEAF: usize = 4;
+/// How far up the tool, in radii of the cutter, a point moves by what a turn of the axis counts for when motions are grouped. Passes to
+/// and fro that lean to two sides are told apart from this many radii on; 1 and 16 make more nodes to be looked at.
+const ARM_RADII: f64 = 4.0;
 
 struct Node {
     tips: Box3,
@@ -26,6 +29,24 @@ struct Node {
     leaf: Option<std::ops::Range<usize>>,
     /// The node that follows this one's whole subtree.
     next: usize,
+}
+
+/// All motions in pieces, and the tree over them.
+pub(super) struct Ways {
+    pub pieces: Vec<Piece>,
+    pub tree: Tree,
+}
+
+impl Ways {
+    /// Of a tool, the cutter first.
+    pub fn of(motions: &[Swept], bodies: &[Body<'_>]) -> Result<Self, JobError> {
+        let reach =
+            |body: &Body<'_>| (body.above_mm + body.cutter.length_mm()).hypot(body.cutter.radius_mm());
+        let pieces = pieces(motions, bodies.iter().map(reach).fold(0.0, f64::max))?;
+        let radius_mm = bodies.first().map_or(0.0, |b| b.cutter.radius_mm());
+        let tree = Tree::new(motions, &pieces, ARM_RADII * radius_mm);
+        Ok(Self { pieces, tree })
+    }
 }
 
 /// The tree, nodes in preorder.
@@ -56,7 +77,7 @@ pub(super) enum Which {
 
 impl Tree {
     /// The tree; turning an axis counts as much as moving a tip by the turn times `arm_mm`.
-    pub fn new(motions: &[Swept], pieces: &[Piece], arm_mm: f64) -> Self {
+    fn new(motions: &[Swept], pieces: &[Piece], arm_mm: f64) -> Self {
         let ends: Vec<[Pose; 2]> =
             pieces.iter().map(|p| p.range.map(|t| moving(&motions[p.motion as usize], t).pose)).collect();
         let middle = |[a, b]: &[Pose; 2]| {
@@ -105,8 +126,8 @@ impl Tree {
     }
 }
 
-/// Adds the subtree of the pieces in `order`, which begins at `start` of the whole order.
-fn add(nodes: &mut Vec<Node>, poses: &Poses, order: &mut [u32], start: usize) -> usize {
+/// Adds the subtree of the pieces in `order`, which begins at `start` of the whole order; the box of its axes.
+fn add(nodes: &mut Vec<Node>, poses: &Poses, order: &mut [u32], start: usize) -> Box3 {
     let me = nodes.len();
     let leaf = (order.len() <= LEAF).then(|| start..start + order.len());
     nodes.push(Node {
@@ -117,32 +138,32 @@ fn add(nodes: &mut Vec<Node>, poses: &Poses, order: &mut [u32], start: usize) ->
         leaf: leaf.clone(),
         next: 0,
     });
-    let rapid;
-    let (tips, axes): (Box3, Vec<(Unit3, f64)>) = if leaf.is_some() {
-        rapid = order.iter().any(|k| poses.rapid[*k as usize]);
+    let (rapid, tips, axes) = if leaf.is_some() {
         let ends = || order.iter().flat_map(|k| &poses.ends[*k as usize]);
-        (Box3::around(ends().map(|p| &p.tip)), ends().map(|p| (p.axis, 0.0)).collect())
+        let rapid = order.iter().any(|k| poses.rapid[*k as usize]);
+        let axes: Vec<Point3> = ends().map(|p| Point3::from(p.axis.into_inner())).collect();
+        (rapid, Box3::around(ends().map(|p| &p.tip)), Box3::around(&axes))
     } else {
         let middle = order.len() / 2;
         let widest = widest(poses, order);
         let key = |k: &u32| poses.middles[*k as usize][widest];
         order.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
         let (low, high) = order.split_at_mut(middle);
-        let a = add(nodes, poses, low, start);
-        let b = add(nodes, poses, high, start + middle);
-        let (a, b) = (&nodes[a], &nodes[b]);
-        rapid = a.rapid || b.rapid;
-        (a.tips.union(&b.tips), vec![(a.axis, a.swing), (b.axis, b.swing)])
+        let low = add(nodes, poses, low, start);
+        let after = nodes.len();
+        let high = add(nodes, poses, high, start + middle);
+        let (a, b) = (&nodes[me + 1], &nodes[after]);
+        (a.rapid || b.rapid, a.tips.union(&b.tips), low.union(&high))
     };
-    let sum: Vec3 = axes.iter().map(|(a, _)| a.into_inner()).sum();
+    let ends = || order.iter().flat_map(|k| &poses.ends[*k as usize]).map(|p| p.axis);
+    // Passes to and fro lean to two sides, and of either there may be more: the middle between both is what no axis is far from.
     // Axes that cancel: any of them; the swing tells.
-    let axis = Unit3::try_new(sum, 1e-3).unwrap_or(axes[0].0);
-    let mut swing = 0.0f64;
-    for (a, own) in &axes {
-        // Angle from the chord: no cancellation near zero. Rounded up by more than asin's error.
-        let chord = (a.into_inner() - axis.into_inner()).norm();
-        swing = swing.max(own + 2.0 * (0.5 * chord).min(1.0).asin() + 1e-15);
-    }
+    let axis =
+        Unit3::try_new(axes.centre().coords, 1e-3).or_else(|| ends().next()).unwrap_or_else(Vec3::z_axis);
+    // From the axes themselves: bounds from those of the parts would add up over the levels.
+    let square = ends().map(|a| (a.into_inner() - axis.into_inner()).norm_squared()).fold(0.0, f64::max);
+    // Angle from the chord: no cancellation near zero. Rounded up by more than asin's error.
+    let mut swing = 2.0 * (0.5 * square.sqrt()).min(1.0).asin() + 1e-15;
     // Between two axes the interpolated one stays in the cap around both only below a right angle.
     if swing > std::f64::consts::FRAC_PI_2 {
         swing = std::f64::consts::PI;
@@ -151,7 +172,7 @@ fn add(nodes: &mut Vec<Node>, poses: &Poses, order: &mut [u32], start: usize) ->
     let node = &mut nodes[me];
     (node.tips, node.axis, node.swing, node.next) = (tips, axis, swing, next);
     node.rapid = rapid;
-    me
+    axes
 }
 
 /// The coordinate of the middles with the widest range.
@@ -182,5 +203,99 @@ impl Node {
             let fall = g.dot(&(middle - tip)) + g.abs().dot(&half) + target.fall(&g);
             near.distance - fall > need
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cutter, CutterSpec};
+
+    /// Passes to and fro that lean to either side, 0.5 mm apart.
+    fn passes(count: u32) -> Vec<Swept> {
+        let pose = |x: f64, y: f64, lean: f64| Pose {
+            tip: Point3::new(x, y, 0.002 * x * x - 0.001 * y * y),
+            axis: Unit3::new_normalize(Vec3::new(lean, 0.1, 1.0)),
+        };
+        let pass = |k: u32| {
+            let (y, lean) = (0.5 * f64::from(k), if k.is_multiple_of(2) { 0.25 } else { -0.25 });
+            let at = move |i: u32| 0.25 * f64::from(if k.is_multiple_of(2) { i } else { 4 * count - i });
+            (0..4 * count).map(move |i| Swept {
+                from: pose(at(i), y, lean),
+                to: pose(at(i + 1), y, lean * (1.0 + 0.01 * f64::from(i % 3))),
+                rapid: i % 50 == 49,
+                block: k,
+            })
+        };
+        (0..2 * count).flat_map(pass).collect()
+    }
+
+    fn cutter(diameter_mm: f64, corner_radius_mm: f64) -> Cutter {
+        Cutter::try_from(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, length_mm: 30.0 }).unwrap()
+    }
+
+    /// Every piece that holds a corner of the target at some of its instants is found, whatever is asked for.
+    #[test]
+    fn what_comes_near_is_found() {
+        let motions = passes(12);
+        let (tool, holder) = (cutter(6.0, 1.0), cutter(20.0, 0.0));
+        let bodies =
+            [Body { cutter: &tool, above_mm: 0.0 }, Body { cutter: &holder, above_mm: tool.length_mm() }];
+        let Ways { pieces, tree } = Ways::of(&motions, &bodies).unwrap();
+        let mut met = [0; 3];
+        for k in 0..60 {
+            let (x, y) = (f64::from(k * 7 % 13), f64::from(k * 5 % 12));
+            // From under the part up to the holder.
+            let centre = Point3::new(x, y, -1.0 + 0.6 * f64::from(k));
+            let target = Target::upright(centre, &Vec3::new(0.3, 0.2, 0.1));
+            for (w, which) in [Which::All, Which::Cutting, Which::Intruding].into_iter().enumerate() {
+                let mut found = Vec::new();
+                tree.near(&bodies, &target, which, |piece, _, index| found.push((piece, index)));
+                let every = pieces.iter().zip(0u32..).flat_map(|p| [(p, 0), (p, 1)]);
+                for ((piece, p), index) in every {
+                    let rapid = motions[piece.motion as usize].rapid;
+                    let asked = match which {
+                        Which::All => true,
+                        Which::Cutting => index == 0 && !rapid,
+                        Which::Intruding => index == 1 || rapid,
+                    };
+                    let holds = |t: f64| {
+                        let pose = moving(&motions[piece.motion as usize], t).pose;
+                        let inside =
+                            |c: &Point3| bodies[index].near(&(c - pose.tip), &pose.axis).distance <= 0.0;
+                        target.corners().iter().any(inside)
+                    };
+                    let [lo, hi] = piece.range;
+                    if asked && [lo, 0.5 * (lo + hi), hi].into_iter().any(holds) {
+                        met[w] += 1;
+                        assert!(found.contains(&(p, index)), "{which:?} {p} {index}");
+                    }
+                }
+            }
+        }
+        assert!(met.iter().all(|m| *m > 100), "{met:?}");
+    }
+
+    /// How far axes swing is known as well of all motions as of few: it does not add up from level to level, and what a search
+    /// looks at stays next to what it finds however long the path is.
+    #[test]
+    fn searches_of_long_paths_look_at_little() {
+        let tool = cutter(6.0, 1.0);
+        let bodies = [Body { cutter: &tool, above_mm: 0.0 }];
+        // The path is sixteen times as long, what is around the target the same.
+        let looked_at = |count: u32| {
+            let Ways { tree, .. } = Ways::of(&passes(count), &bodies).unwrap();
+            let widest = 0.26f64.atan2(1.0);
+            assert!(tree.nodes.iter().all(|n| n.swing <= 1.1 * widest), "{}", tree.nodes[0].swing);
+            let target = Target::upright(Point3::new(5.0, 5.0, 0.0), &Vec3::new(0.2, 0.2, 0.02));
+            let (mut k, mut nodes) = (0, 0);
+            while let Some(node) = tree.nodes.get(k) {
+                nodes += 1;
+                k = if node.rejects(&bodies[0], &target) { node.next } else { k + 1 };
+            }
+            nodes
+        };
+        let [short, long] = [20, 80].map(looked_at);
+        assert!(long < short + short / 2, "{short} {long}");
     }
 }

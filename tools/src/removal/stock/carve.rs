@@ -5,8 +5,8 @@ use super::rays::Rays;
 use super::report::{Bite, Carved, Collision, SECTORS, Work};
 use crate::cutter::Cutter;
 use crate::removal::body::Body as Moved;
-use crate::removal::piece::{Piece, pieces};
-use crate::removal::tree::Tree;
+use crate::removal::piece::Piece;
+use crate::removal::tree::{Tree, Ways};
 use crate::removal::{Body, JobError, Swept};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -48,12 +48,7 @@ impl Stock {
     pub fn carve(&mut self, job: &StockJob<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Carved, JobError> {
         let mut bodies = vec![Moved { cutter: job.cutter, above_mm: 0.0 }];
         bodies.extend(job.uppers.iter().map(|u| Moved { cutter: u.body, above_mm: u.above_mm }));
-        let reach = bodies
-            .iter()
-            .map(|b| (b.above_mm + b.cutter.length_mm()).hypot(b.cutter.radius_mm()))
-            .fold(0.0, f64::max);
-        let pieces = pieces(job.motions, reach)?;
-        let tree = Tree::new(job.motions, &pieces, job.cutter.radius_mm());
+        let Ways { pieces, tree } = Ways::of(job.motions, &bodies)?;
         let stray_mm = self.stray_mm();
         let world = World { job, bodies, tree, pieces, stray_mm };
         let all: usize = self.fields.iter().map(|f| f.tiles.len()).sum();
