@@ -40,11 +40,7 @@ pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<Dia
         }
     };
     let gauge = job.cutter()?.length_mm() + job.holder()?.map_or(0.0, |h| h.length_mm());
-    let (mut normals, mut points) = (Vec::new(), Vec::new());
-    for (_, p, n) in faces.faces.iter().flat_map(|f| part::grid(&*f.surface, 24)) {
-        points.push(p);
-        normals.push(n);
-    }
+    let (points, mut normals): (Vec<Point3>, Vec<Unit3>) = looks(faces).unzip();
     if !axes.is_empty() {
         normals = axes.to_vec();
     }
@@ -59,24 +55,11 @@ pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<Dia
     }
     let mut notes = Vec::new();
     let mut setup = match given {
-        Some(rotation) => {
-            let turned: Vec<_> = points.iter().map(|p| rotation * p).collect();
-            let place = suggest(&[], &turned, gauge).setup.part_zero.translation;
-            Setup { part_zero: Isometry3::from_parts(place, rotation), gauge_length_mm: gauge }
-        }
+        Some(rotation) => standing(rotation, &points, gauge),
         None => {
             let found = suggest(&normals, &points, gauge);
             if found.turned {
-                let (x, y, z) = found.setup.part_zero.rotation.euler_angles();
-                notes.push(Diagnostic::note(
-                    "setup",
-                    format!(
-                        "the part is turned so that the tool's axes look up: rotate_deg = [{:.3}, {:.3}, {:.3}]",
-                        x.to_degrees(),
-                        y.to_degrees(),
-                        z.to_degrees()
-                    ),
-                ));
+                notes.push(note_of_turn("so that the tool's axes look up", &found.setup));
             }
             found.setup
         }
@@ -85,13 +68,33 @@ pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<Dia
         finite("part_zero_mm", &zero)?;
         setup.part_zero.translation = Translation3::from(Vec3::from(zero));
     } else {
-        let t = setup.part_zero.translation.vector;
-        notes.push(Diagnostic::note(
-            "setup",
-            format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces", t.x, t.y, t.z),
-        ));
+        notes.push(note_of_place(&setup));
     }
     Ok((setup, notes))
+}
+
+/// Points of the faces to machine, with their normals.
+fn looks(faces: &JobFaces) -> impl Iterator<Item = (Point3, Unit3)> {
+    faces.faces.iter().flat_map(|f| part::grid(&*f.surface, 24)).map(|(_, p, n)| (p, n))
+}
+
+/// The place of a part with these points that stands turned by a rotation.
+fn standing(rotation: UnitQuaternion<f64>, points: &[Point3], gauge_length_mm: f64) -> Setup {
+    let there: Vec<_> = points.iter().map(|p| rotation * p).collect();
+    let place = suggest(&[], &there, gauge_length_mm).setup.part_zero.translation;
+    Setup { part_zero: Isometry3::from_parts(place, rotation), gauge_length_mm }
+}
+
+fn note_of_turn(why: &str, setup: &Setup) -> Diagnostic {
+    let (x, y, z) = setup.part_zero.rotation.euler_angles();
+    let [x, y, z] = [x, y, z].map(f64::to_degrees);
+    Diagnostic::note("setup", format!("the part is turned {why}: rotate_deg = [{x:.3}, {y:.3}, {z:.3}]"))
+}
+
+fn note_of_place(setup: &Setup) -> Diagnostic {
+    let t = setup.part_zero.translation.vector;
+    let place = format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces", t.x, t.y, t.z);
+    Diagnostic::note("setup", place)
 }
 
 /// Turned parts that are posted beside the one that stands as suggested.
@@ -105,29 +108,18 @@ pub fn turned(job: &Job, faces: &JobFaces, path: &ClPath, control: &Control, set
     if job.setup.rotate_deg.is_some() || job.setup.part_zero_mm.is_some() {
         return Vec::new();
     }
-    let points: Vec<Point3> =
-        faces.faces.iter().flat_map(|f| part::grid(&*f.surface, 24)).map(|(_, p, _)| p).collect();
+    let points: Vec<Point3> = looks(faces).map(|l| l.0).collect();
     let turns = quicker_turns(path, &control.machine, setup, WORTH_A_TURN);
     turns
         .into_iter()
         .take(MOST_TURNS)
-        .map(|rotation| {
-            let there: Vec<_> = points.iter().map(|p| rotation * p).collect();
-            let place = suggest(&[], &there, setup.gauge_length_mm).setup.part_zero.translation;
-            Setup { part_zero: Isometry3::from_parts(place, rotation), ..*setup }
-        })
+        .map(|rotation| standing(rotation, &points, setup.gauge_length_mm))
         .collect()
 }
 
 /// What is said of a turned part.
 pub fn notes_of_turned(setup: &Setup, [before_min, now_min]: [f64; 2]) -> Vec<Diagnostic> {
-    let (x, y, z) = setup.part_zero.rotation.euler_angles();
-    let [x, y, z] = [x, y, z].map(f64::to_degrees);
-    let t = setup.part_zero.translation.vector;
-    let turn = format!(
-        "the part is turned so that the joints hold the path up less ({now_min:.2} min instead of {before_min:.2}): \
-         rotate_deg = [{x:.3}, {y:.3}, {z:.3}]"
-    );
-    let place = format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces", t.x, t.y, t.z);
-    [turn, place].map(|text| Diagnostic::note("setup", text)).to_vec()
+    let why =
+        format!("so that the joints hold the path up less ({now_min:.2} min instead of {before_min:.2})");
+    vec![note_of_turn(&why, setup), note_of_place(setup)]
 }
