@@ -41,7 +41,7 @@ usage: cargo xtask COMMAND
   papers d98    docs/papers/d98.md: the values, errata and figures of D98, ours beside theirs
   plans --data FOLDER [--only TEXT] [--program FILE]
                 docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
-  plans --speed [--program FILE]
+  plans --speed [--only TEXT] [--program FILE]
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
@@ -69,7 +69,7 @@ fn main() -> ExitCode {
             Some(options) => plans::run(&options),
             None => {
                 return wrong_usage(
-                    "plans takes --data FOLDER, --only TEXT and --program FILE, or --speed and --program FILE",
+                    "plans takes --data FOLDER, --only TEXT and --program FILE; with --speed no --data",
                 );
             }
         },

@@ -179,28 +179,20 @@ pub struct Options<'a> {
 }
 
 impl<'a> Options<'a> {
-    /// Pairs of option and value, `--speed` first where it is meant; None where one is unknown or the folder of data is
+    /// Pairs of option and value, and `--speed` among them where it is meant; None where one is unknown or the folder of data is
     /// missing where it is needed.
     pub fn of(words: &[&'a str]) -> Option<Self> {
-        let mut out = Self::default();
-        if words.contains(&"--speed") {
-            let rest: Vec<&str> = words.iter().copied().filter(|w| *w != "--speed").collect();
-            let program = match rest[..] {
-                [] => None,
-                ["--program", p] => Some(p),
-                _ => return None,
-            };
-            return Some(Self { program, speed: true, ..out });
-        }
-        for pair in words.chunks(2) {
+        let mut out = Self { speed: words.contains(&"--speed"), ..Self::default() };
+        let rest: Vec<&str> = words.iter().copied().filter(|w| *w != "--speed").collect();
+        for pair in rest.chunks(2) {
             match *pair {
-                ["--data", v] => out.data = Some(v),
+                ["--data", v] if !out.speed => out.data = Some(v),
                 ["--only", v] => out.only = v,
                 ["--program", v] => out.program = Some(v),
                 _ => return None,
             }
         }
-        out.data.map(|_| out)
+        (out.speed || out.data.is_some()).then_some(out)
     }
 }
 
@@ -217,7 +209,7 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
         }
     };
     if options.speed {
-        return speed::run(&program, &root);
+        return speed::run(only, &program, &root);
     }
     let to = root.join("docs/plans.md");
     let mut made: Vec<&str> = Vec::new();
