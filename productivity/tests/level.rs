@@ -5,9 +5,12 @@
 mod cutting;
 
 use cutting::{cusps, motions, verdict};
+use nalgebra::Vector2;
 use osculate_geom::analytic::{Cylinder, Paraboloid, Plane, Sphere, Torus};
-use osculate_geom::{Domain, Flipped, Interval, Jet2, Patch, Side, Surface, Taylor, Unit3, Uv, Vec3};
-use osculate_productivity::plan::{Passes, Strategy, Task, Tolerance, run};
+use osculate_geom::{
+    Axis, Domain, Flipped, Interval, Jet2, Patch, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
+};
+use osculate_productivity::plan::{CcPoint, Passes, Strategy, Task, Tolerance, run};
 use osculate_tools::removal::{Kind, Swept};
 use osculate_tools::{Cutter, CutterSpec, Lean};
 
@@ -223,4 +226,88 @@ fn seams_leave_no_mark() {
     assert!(around.passes.iter().filter(|p| p.closed).count() > 10);
     job.holds("around", &tube, &isoplanar([0.1, 0.0, 1.0]));
     job.holds("isoscallop", &tube, &Strategy::Isoscallop);
+}
+
+/// A triangle in a plane, with a tip towards lower u between sides that rise by 20 for one.
+struct Tip(Plane, Uv);
+
+impl Surface for Tip {
+    fn domain(&self) -> Domain {
+        self.0.domain()
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        self.0.jet2(at)
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        self.0.taylor(at, order)
+    }
+    fn contains(&self, at: Uv) -> bool {
+        self.0.contains(at) && (at.v - self.1.v).abs() * 20.0 <= at.u - self.1.u
+    }
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        let (Uv { u, v }, top) = (self.1, self.domain().u.hi);
+        let [lo, hi] = match axis {
+            Axis::U => [u + 20.0 * (fixed - v).abs(), top],
+            Axis::V => [-1.0, 1.0].map(|side| v + side * 0.05 * (fixed - u)),
+        };
+        if lo < hi { vec![Interval::new(lo, hi)] } else { Vec::new() }
+    }
+    fn turns(&self) -> Vec<Uv> {
+        let (Uv { u, v }, top) = (self.1, self.domain().u.hi);
+        [-1.0, 0.0, 1.0].map(|side: f64| uv(u + side.abs() * (top - u), v + side * 0.05 * (top - u))).to_vec()
+    }
+}
+
+/// A sharp corner of the trims may be all that lies in a cell, and narrower than what is looked at along a level: the first pass still
+/// comes as near as half a strip, and runs over it.
+#[test]
+fn a_sharp_tip_is_covered() {
+    let i = Interval::new(0.0, 12.0);
+    let job = Job::new(ball(6.0), 0.1);
+    let h = TOLERANCE.scallop_mm;
+    let half = (h * (6.0 - h)).sqrt();
+    for k in 0..40 {
+        let tip = uv(1.0 + 0.0071 * f64::from(k), 6.0);
+        let face = Tip(Plane::new(Domain { u: i, v: i }), tip);
+        let passes = job.plan(&face, &isoplanar([1.0, 0.1, 0.0])).passes;
+        let to = |w: &[CcPoint]| {
+            let (a, b) = (w[0].point.xy().coords, w[1].point.xy().coords);
+            let (way, to) = (b - a, Vector2::new(tip.u, tip.v) - a);
+            (to - way * (to.dot(&way) / way.norm_squared()).clamp(0.0, 1.0)).norm()
+        };
+        let nearest = passes.iter().flat_map(|p| p.points.windows(2)).map(to).fold(f64::INFINITY, f64::min);
+        assert!(nearest <= half, "{tip:?}: {nearest} of {half}");
+    }
+}
+
+/// A roof with a rounded edge, `z = -0.4 sqrt(x^2 + r^2)`.
+struct Roof;
+
+impl Surface for Roof {
+    fn domain(&self) -> Domain {
+        Domain { u: Interval::new(-4.0, 10.0), v: Interval::new(0.0, 14.0) }
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        self.taylor(at, 2).jet2()
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        let (x, y) = (Series::variable(Axis::U, at.u, order), Series::variable(Axis::V, at.v, order));
+        let z = (x * x + Series::constant(0.04, order)).sqrt() * -0.4;
+        Taylor { uv: at, side: Side::Along, coordinates: [x, y, z] }
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        let i = self.domain().get(axis);
+        (0..=28).map(|k| i.at(f64::from(k) / 28.0)).collect()
+    }
+}
+
+/// At the edge the normal turns faster than the tool follows it: that is no reason for passes elsewhere to lie closer.
+#[test]
+fn an_edge_does_not_make_the_rest_of_a_face_rough() {
+    let spec = CutterSpec::Toroidal { diameter_mm: 6.0, corner_radius_mm: 1.0, length_mm: 50.0 };
+    let job = Job::new(Cutter::try_from(spec).unwrap(), 0.1);
+    let along = isoplanar([1.0, 0.0, 0.0]);
+    let moves = job.holds("roof", &Roof, &along);
+    let used = cusps(&Roof, &moves, &job.cutter, TOLERANCE.scallop_mm);
+    assert!(used > 0.9, "{used}");
 }

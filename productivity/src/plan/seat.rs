@@ -41,6 +41,9 @@ fn span_at(breaks: &[f64], t: f64) -> f64 {
 /// Deviation of the normal from its average above which a face counts as rough, rad.
 const ROUGH_ANGLE: f64 = 0.01;
 
+/// Places to each side of one at which it is asked whether a face is rough there.
+const NEAR: i32 = 2;
+
 /// Knot spans looked at to tell whether a face is rough.
 const MOST_SPANS: usize = 500;
 
@@ -111,6 +114,24 @@ impl<'a> Seat<'a> {
                 [0.0, 0.25, 0.5, 0.75].iter().any(|g| self.is_rough(&line, w[0] + (w[1] - w[0]) * g))
             })
         })
+    }
+
+    /// Whether the face changes its normal faster than the tool can follow next to a place, `by` to both sides.
+    pub(super) fn rough_near(&self, at: Uv, by: [f64; 2]) -> bool {
+        let looks = |axis: Axis, by: f64| {
+            let line = IsoLine {
+                surface: self.task.surface,
+                along: axis,
+                fixed: at.get(axis.other()),
+                reversed: false,
+            };
+            let i = self.task.surface.domain().get(axis);
+            (-NEAR..=NEAR).any(|k| {
+                let t = at.get(axis) + by * f64::from(k) / f64::from(NEAR);
+                self.is_rough(&line, if i.periodic { t } else { t.clamp(i.lo, i.hi) })
+            })
+        };
+        self.rough && (looks(Axis::U, by[0]) || looks(Axis::V, by[1]))
     }
 
     /// Whether the face meets itself at the ends of `axis`.

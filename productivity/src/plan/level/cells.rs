@@ -19,7 +19,7 @@ const ALONG: [f64; 2] = [12.0, 320.0];
 /// Rows of each cell in which the trims are looked for.
 const ROWS: usize = 4;
 /// Most turns of the boundary with rows of their own.
-const MOST_TURNS: usize = 200;
+pub(super) const MOST_TURNS: usize = 200;
 /// The share of a reach that is counted on where the face is rough.
 const ROUGH: f64 = 0.96;
 /// Most nodes along a parameter of the grid for level lines.
@@ -85,6 +85,8 @@ pub(super) struct Cells<'a> {
     corners: Vec<f64>,
     /// Which way the passes run, level by level.
     pub ways: Ways,
+    /// Where the face is rough, in a cell or next to it.
+    pub rough: Vec<bool>,
     /// Half a strip at the narrowest extreme of the field around which lines bend, mm.
     loops_mm: Option<f64>,
 }
@@ -154,11 +156,13 @@ impl<'a> Cells<'a> {
             cells: vec![empty; count[0] * count[1]],
             corners,
             ways: Ways::Either,
+            rough: Vec::new(),
             loops_mm: None,
         };
         cells.find_inside();
         cells.find_extremes();
         cells.find_ways(seat);
+        cells.find_rough(seat);
         cells.find_reaches(seat)?;
         Ok(cells)
     }
@@ -255,6 +259,22 @@ impl<'a> Cells<'a> {
         }
     }
 
+    /// Marks where the face is rough: elsewhere reaches hold as they are.
+    fn find_rough(&mut self, seat: &Seat<'_>) {
+        let (face, n) = (self.face, self.count);
+        let half = AXES.map(|axis| {
+            0.5 * face.rectangle.domain.get(axis).length() / n[usize::from(axis == Axis::V)] as f64
+        });
+        let own: Vec<bool> = (0..self.cells.len())
+            .into_par_iter()
+            .map(|k| {
+                let at = place(&face, n, (k / n[1]) as f64 + 0.5, (k % n[1]) as f64 + 0.5);
+                self.cells[k].inside() && seat.rough_near(at, half)
+            })
+            .collect();
+        self.rough = (0..own.len()).map(|k| own[k] || self.neighbours(k).any(|m| own[m])).collect();
+    }
+
     /// Reaches at the middles of the cells, the least of a cell's own and what lies halfway to its neighbours.
     fn find_reaches(&mut self, seat: &Seat<'_>) -> Result<(), PlanError> {
         let task = seat.task();
@@ -277,15 +297,15 @@ impl<'a> Cells<'a> {
             });
         }
         // Ripples change from place to place within a cell.
-        let sure = if seat.rough() { ROUGH } else { 1.0 };
+        let sure = |k: usize| if self.rough[k] { ROUGH } else { 1.0 };
         let mut lost = None;
         let mut count = 0;
         let mut values = vec![[f64::NAN; 5]; found.len()];
-        for (v, f) in values.iter_mut().zip(found) {
+        for (k, (v, f)) in values.iter_mut().zip(found).enumerate() {
             match f {
                 Some(Ok(all)) => {
                     *v = all.map(|x| x.filter(|x| *x > 0.0).unwrap_or(f64::NAN));
-                    v[..4].iter_mut().for_each(|x| *x *= sure);
+                    v[..4].iter_mut().for_each(|x| *x *= sure(k));
                 }
                 Some(Err(e)) => {
                     count += 1;

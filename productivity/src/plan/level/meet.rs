@@ -35,7 +35,7 @@ impl Cells<'_> {
                 odd if odd % 2 == 1 => &PLACES[..2],
                 _ => &PLACES[2..],
             };
-            self.measure(seat, &levels, places, round < ROUNDS && !seat.rough());
+            self.measure(seat, &levels, places, round < ROUNDS);
             levels = self.levels(seat)?;
         }
         Ok(levels)
@@ -64,7 +64,7 @@ impl Cells<'_> {
                 places.iter().filter(|_| whole).filter_map(|p| ridge(*p)).collect()
             })
             .collect();
-        for (c, all) in self.cells.iter_mut().zip(found) {
+        for ((c, rough), all) in self.cells.iter_mut().zip(&self.rough).zip(found) {
             // Ridges with far sides and those with near sides are told apart.
             for ways in [[0, 0], [0, 1], [1, 0]] {
                 let Some([up, down]) = all
@@ -77,7 +77,7 @@ impl Cells<'_> {
                 };
                 for (k, (was, now)) in [(ways[1], (&mut c.up, up)), (ways[0], (&mut c.down, down))] {
                     // Ripples of rough faces change from place to place within a cell: one place does not speak for it.
-                    was[k] = if longer { now } else { was[k].min(now) };
+                    was[k] = if longer && !rough { now } else { was[k].min(now) };
                 }
                 if self.ways == Ways::Either {
                     (c.up[1], c.down[1]) = (c.up[0], c.down[0]);

@@ -1,7 +1,8 @@
 //! Passes along the level lines: which stretches of them the face needs, in what order, and their contact points.
 
-use super::cells::Cells;
-use super::trace::{Traced, trace};
+use super::cells::{Cells, MOST_TURNS};
+use super::field::Face;
+use super::trace::{Node, Traced, trace};
 use crate::plan::cover::union;
 use crate::plan::fits::fits;
 use crate::plan::line::PassLine;
@@ -9,15 +10,20 @@ use crate::plan::march::Grid;
 use crate::plan::resample::{contact_points, resample};
 use crate::plan::seat::Seat;
 use crate::plan::{Pass, PlanError};
-use osculate_geom::{Point3, uv};
+use osculate_geom::{Point3, Uv, uv};
 use rayon::prelude::*;
 
 /// Rows across a strip in which trims are looked for.
 const ROWS: usize = 12;
 /// Steps along a strip's width in which they are looked for.
 const STEPS: f64 = 4.0;
-/// Most looks along a line.
+/// Looks reach so many widths of the strip to both sides.
+const BESIDE: f64 = 1.5;
+/// Fewest and most looks along a line, about.
+const FEWEST_LOOKS: f64 = 8.0;
 const MOST_LOOKS: f64 = 20_000.0;
+/// Stretches closer to each other than so many widths of the strip are one pass.
+const NARROW: f64 = 0.875;
 /// A pass that begins within so many tool radii of the end of the one before is taken next.
 const NEXT: f64 = 1.5;
 
@@ -60,51 +66,100 @@ fn stretches<'a>(cells: &Cells<'a>, grid: Grid<'_>, levels: &[f64], k: usize) ->
     let above = levels.get(k + 1).map_or(f64::INFINITY, |a| level + 0.75 * (a - level));
     let mut out = Vec::new();
     for line in trace(cells.face, grid, level) {
-        let length = line.length();
-        let middle = cells.width_mm(line.near(0.5 * length).at);
-        let looks = (length / middle * STEPS).clamp(8.0, MOST_LOOKS).ceil();
         let needed = |line: &Traced<'_>, t: f64| {
             let node = line.near(t);
             let at = line.between(t);
-            let most = 1.5 * cells.width_mm(at);
+            let most = BESIDE * cells.width_mm(at);
             let by = |to: f64| {
                 let d = ((to - level) / node.slope_per_mm).clamp(-most, most);
                 uv(at.u + node.uphill.u * d, at.v + node.uphill.v * d)
             };
             cells.needed(at, at, 0) || cells.needed(by(below), by(above), ROWS)
         };
-        let at = |j: usize| length * j as f64 / looks;
-        let marks: Vec<bool> = (0..=looks as usize).map(|j| needed(&line, at(j))).collect();
-        if marks.iter().all(|m| *m) {
-            let whole_loop = line.closed;
-            out.push(Stretch {
-                line,
-                range: [0.0, length],
-                whole_loop,
-                level: k,
-                reversed: cells.ways.reversed(k),
-            });
+        let corners = corners(cells, &line, [below, above]);
+        let marks = looks(cells, &line, &needed, &corners);
+        let Some(gap) = marks.iter().find(|m| !m.1) else {
+            let (range, whole_loop) = ([0.0, line.length()], line.closed);
+            out.push(Stretch { line, range, whole_loop, level: k, reversed: cells.ways.reversed(k) });
             continue;
-        }
-        let Some(gap) = marks.iter().position(|m| !m) else { continue };
+        };
         // A loop that is not needed all around begins where it is not.
-        let start = line.nodes.partition_point(|n| n.s < at(gap));
-        let line = line.begun_at(start);
-        let mut found = Vec::new();
-        for j in 0..=looks as usize {
-            let t = at(j);
-            if needed(&line, t) {
-                // The edge of a strip is cut a little before or after its middle.
-                let half = 0.5 * cells.width_mm(line.between(t));
-                found.push([(t - half).max(0.0), (t + half).min(length)]);
-            }
-        }
-        for range in union(found, 1.5 * length / looks + 0.5 * middle) {
+        let (line, marks) = if line.closed {
+            let start = line.nodes.partition_point(|n| n.s < gap.0);
+            let start_s = line.nodes[start].s;
+            let line = line.begun_at(start);
+            let length = line.length();
+            let corners: Vec<f64> = corners.iter().map(|t| (t - start_s).rem_euclid(length)).collect();
+            let marks = looks(cells, &line, &needed, &corners);
+            (line, marks)
+        } else {
+            (line, marks)
+        };
+        let length = line.length();
+        let middle = cells.width_mm(line.near(0.5 * length).at);
+        let runs = marks.chunk_by(|a, b| a.1 == b.1).filter(|run| run[0].1);
+        let ends = runs.map(|run| {
+            // The edge of a strip is cut a little before or after its middle.
+            let half = |t: f64| 0.5 * cells.width_mm(line.between(t));
+            let (from, to) = (run[0].0, run[run.len() - 1].0);
+            [(from - half(from)).max(0.0), (to + half(to)).min(length)]
+        });
+        for range in union(ends.collect(), NARROW * middle) {
             let reversed = cells.ways.reversed(k);
             out.push(Stretch { line: line.clone(), range, whole_loop: false, level: k, reversed });
         }
     }
     out
+}
+
+/// Places along a line, closer where its strip is narrower, and whether the face needs the pass there.
+fn looks<'a>(
+    cells: &Cells<'a>,
+    line: &Traced<'a>,
+    needed: &dyn Fn(&Traced<'a>, f64) -> bool,
+    corners: &[f64],
+) -> Vec<(f64, bool)> {
+    let length = line.length();
+    let mut out = Vec::new();
+    let mut t = 0.0;
+    while t < length {
+        out.push((t, needed(line, t)));
+        let step = cells.width_mm(line.between(t)) / STEPS;
+        t += step.min(length / FEWEST_LOOKS).max(length / MOST_LOOKS);
+    }
+    out.push((length, needed(line, length)));
+    out.extend(corners.iter().map(|t| (*t, true)));
+    out.sort_by(|a, b| a.0.total_cmp(&b.0));
+    out
+}
+
+/// Where along a line corners of the face between two levels lie beside it: looks may miss what is narrow.
+fn corners(cells: &Cells<'_>, line: &Traced<'_>, [below, above]: [f64; 2]) -> Vec<f64> {
+    let face = &cells.face;
+    let beside = |at: &Uv| {
+        let (at, jet, phi) = face.at(*at)?;
+        let (uphill, slope) = Face::ascent(&jet, &phi).ok()?;
+        let width = cells.width_mm(at);
+        let far = (line.level - phi.value).abs() / slope;
+        if !(phi.value >= below && phi.value <= above && far <= BESIDE * width) {
+            return None;
+        }
+        let foot = face.surface.point(face.settle(at, uphill, line.level).ok()?);
+        let node = line
+            .nodes
+            .iter()
+            .min_by(|a, b| (a.point - foot).norm_squared().total_cmp(&(b.point - foot).norm_squared()))?;
+        let along = |a: &Node, b: &Node| {
+            let way = b.point - a.point;
+            let f = ((foot - a.point).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+            ((a.point + way * f - foot).norm(), a.s + (b.s - a.s) * f)
+        };
+        let k = line.nodes.partition_point(|n| n.s < node.s);
+        let near = &line.nodes[k.saturating_sub(1)..(k + 2).min(line.nodes.len())];
+        let (d, t) = near.windows(2).map(|w| along(&w[0], &w[1])).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (d <= 0.5 * width).then_some(t)
+    };
+    face.surface.turns().iter().take(MOST_TURNS).filter_map(beside).collect()
 }
 
 impl Stretch<'_> {

@@ -69,7 +69,8 @@ impl Cells<'_> {
             let frontier = |c: &Cell| {
                 if last < c.floor { c.low } else { c.low.max(last + c.down[down]) }
             };
-            open.retain(|c| frontier(c) < c.high - slack);
+            // A corner of the face may be all that lies in a cell: its one value is covered like any other.
+            open.retain(|c| last < c.floor || last + c.down[down] < c.high - slack);
             let mut next = f64::INFINITY;
             for c in &open {
                 if c.low >= next {
