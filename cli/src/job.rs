@@ -60,7 +60,7 @@ pub struct Job {
 pub struct PartTable {
     /// STEP or IGES file, relative to the job file.
     pub file: Option<String>,
-    /// Millimetres in a unit of a file of point sections that names none, or another than is meant.
+    /// Millimetres in a unit of a file of point sections or patches that names none, or another than is meant.
     pub unit_mm: Option<f64>,
     /// Faces to machine.
     pub faces: Option<FaceChoice>,

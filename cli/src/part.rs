@@ -114,13 +114,17 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         Some(u) if !(u.is_finite() && u > 0.0) => {
             return Err(Failure::file(path, format!("[part] unit_mm = {u} must be a positive number")));
         }
-        Some(_) if part.format != osculate_surfaces::Format::Sections => {
-            let text = "[part] unit_mm goes with point sections; this file says its unit itself";
-            return Err(Failure::file(path, text));
-        }
         Some(_) => {
-            part =
-                osculate_surfaces::sections::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?;
+            part = match part.format {
+                osculate_surfaces::Format::Sections => osculate_surfaces::sections::read_in(&bytes, unit_mm)
+                    .map_err(|e| Failure::file(path, e))?,
+                osculate_surfaces::Format::Patches => osculate_surfaces::patches::read_in(&bytes, unit_mm)
+                    .map_err(|e| Failure::file(path, e))?,
+                _ => {
+                    let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
+                    return Err(Failure::file(path, text));
+                }
+            };
         }
     }
     let format = match part.format {

@@ -4,7 +4,7 @@
 //! the number of vertices, a line of three coordinates a vertex. The other one (`.bpt`): a line with the number of
 //! patches, and for each patch a line with its two degrees and a line of three coordinates a pole. Rows of poles run
 //! along v, row after row along u. Numbers are separated by blanks, tabs or commas; lines that begin with `#` do not
-//! count. The files name no unit: coordinates are millimetres.
+//! count. The files name no unit: coordinates are millimetres where none is given.
 //!
 //! A patch with a side in one point (a lid, a bottom) is a patch; one without any area is left out and told.
 
@@ -216,24 +216,38 @@ fn surface(patch: &Patch) -> Result<NurbsSurface, NurbsError> {
     NurbsSurface::new(patch.degree, patch.degree.map(clamped), net)
 }
 
-/// Reads a set of Bezier patches, lengths in millimetres. Faces are in the order of the patches; on which side the
+/// Reads a set of Bezier patches, lengths in millimetres, which is told. Faces are in the order of the patches; on which side the
 /// material is the file does not say.
 ///
 /// # Errors
 /// [`PatchesError`] names the line and what was due there.
 pub fn read(bytes: &[u8]) -> Result<Part, PatchesError> {
+    read_in(bytes, None)
+}
+
+/// Reads a set of Bezier patches with `unit_mm` millimetres in a unit of the file.
+///
+/// # Errors
+/// [`PatchesError`] names the line and what was due there.
+pub fn read_in(bytes: &[u8], unit_mm: Option<f64>) -> Result<Part, PatchesError> {
     let text = String::from_utf8_lossy(bytes);
     let mut all = lines(&text);
     let count = count_line(&mut all, "counts of patches")?;
-    let mut diagnostics =
-        vec![Diagnostic::note("", "the file names no unit: its coordinates are taken as millimetres")];
-    let patches = match all.next() {
+    let mut diagnostics = Vec::new();
+    if unit_mm.is_none() {
+        let told = "the file names no unit: its coordinates are taken as millimetres";
+        diagnostics.push(Diagnostic::note("", told));
+    }
+    let mut patches = match all.next() {
         None => return Err(PatchesError::Ends { got: 0, want: count, what: "patches" }),
         Some(first) if numbers::<usize>(first.1).is_some_and(|n| n.len() == 2) => {
             by_poles(first, count, &mut all)?
         }
         Some(first) => by_vertices(first, count, &mut all)?,
     };
+    if let Some(mm) = unit_mm {
+        patches.iter_mut().flat_map(|p| &mut p.points).for_each(|p| *p *= mm);
+    }
     let rest = all.count();
     if rest > 0 {
         diagnostics
@@ -279,7 +293,7 @@ pub fn read(bytes: &[u8]) -> Result<Part, PatchesError> {
     Ok(Part {
         format: Format::Patches,
         uncertainty_mm: None,
-        unit: "mm".to_owned(),
+        unit: unit_mm.map_or_else(|| "mm".to_owned(), |mm| format!("{mm} mm")),
         schema: String::new(),
         faces,
         not_used: left.into_entries(),

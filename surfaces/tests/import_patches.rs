@@ -34,6 +34,11 @@ fn patches_of_vertex_numbers() {
     assert!((part.faces[1].point(uv(0.5, 0.25)) - Point3::new(4.5, 0.75, 1.5)).norm() < 1e-14);
     // The unit is told to be assumed.
     assert!(part.diagnostics[0].message.contains("millimetres"));
+    // One that is given counts, and nothing is assumed.
+    let part = patches::read_in(two().as_bytes(), Some(40.0)).unwrap();
+    assert_eq!((part.unit.as_str(), part.diagnostics.len()), ("40 mm", 0));
+    assert!((part.faces[1].point(uv(0.5, 0.25)) - Point3::new(180.0, 30.0, 60.0)).norm() < 1e-12);
+    assert!((part.faces[0].area_mm2() - 14_400.0).abs() < 1e-8);
 }
 
 #[test]

@@ -82,10 +82,11 @@ const fn blade(name: &'static str, face: &'static str, axis: [f64; 3]) -> Case {
     Case { name, source, tools: MINI, holder_mm: [25.0, 40.0], scallop_mm: 0.01, axis }
 }
 
-const TEAPOT: Source =
-    Source::File { path: "bezier/newell_teapot.txt", face: "F5", keys: "normals = \"file\"\n" };
+const fn teapot(keys: &'static str) -> Source {
+    Source::File { path: "bezier/newell_teapot.txt", face: "F5", keys }
+}
 
-const CASES: [Case; 12] = [
+const CASES: [Case; 13] = [
     m86("m86-1"),
     m86("m86-2"),
     m86("m86-3"),
@@ -110,10 +111,19 @@ const CASES: [Case; 12] = [
     // The cavity of a mould for the body: the side towards the axis.
     Case {
         name: "teapot mould",
-        source: TEAPOT,
+        source: teapot("normals = \"file\"\n"),
         tools: TINY,
         holder_mm: [8.0, 20.0],
         scallop_mm: 0.001,
+        axis: [-0.67, 0.67, -0.34],
+    },
+    // At three millimetres the joints' speeds decide; this is the size of a teapot.
+    Case {
+        name: "teapot mould, 40 mm a unit",
+        source: teapot("normals = \"file\"\nunit_mm = 40\n"),
+        tools: LARGE,
+        holder_mm: [50.0, 60.0],
+        scallop_mm: 0.01,
         axis: [-0.67, 0.67, -0.34],
     },
 ];
@@ -163,7 +173,7 @@ fn job(case: &Case, kind: &str, data: &str, chosen: Option<&str>) -> String {
     format!(
         "format = 1\ntools = [\n{tools}]\n[part]\n{part}\n[tolerance]\nscallop_mm = {h}\ngouge_mm = {}\nchord_mm = {}\n\
          [strategy]\n{strategy}\n[cutting]\nspindle_rpm = 12000\nfeed_mm_min = 2000\n[machine]\nname = \"trunnion-ac\"\n\
-         dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[verification]\nmax_samples = 200000\n",
+         dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[verification]\nmax_samples = 600000\n",
         0.5 * h,
         0.2 * h
     )
