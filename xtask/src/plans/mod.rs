@@ -353,7 +353,8 @@ fn points(program: &Path, case: &Case, data: &Path, place: &Path, area_mm2: f64)
         }
         Source::File { path, face, keys } => {
             // The files of points have no unit; the job says it.
-            let scale = if keys.contains("unit_mm = 1000") { 1000.0 } else { 1.0 };
+            let unit = keys.lines().find_map(|l| l.strip_prefix("unit_mm = ")?.parse().ok());
+            let scale: f64 = unit.unwrap_or(1.0);
             let mesh = place.join("face.stl");
             let words = [
                 "export".to_owned(),
