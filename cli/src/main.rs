@@ -3,42 +3,13 @@
 //! Exit codes: 0 done, 1 the job cannot be done as asked, 2 wrong usage. Results go to stdout (`--json`: one object
 //! and nothing else), messages and progress to stderr.
 
-mod args;
-mod budget;
-mod builtin;
-mod cancel;
-mod choice;
 mod cmd;
-mod cutter_keys;
-mod drop;
-mod failure;
-mod figure;
-mod flank;
-mod ideal;
-mod job;
-mod lead_key;
-mod left_out;
-mod look;
-mod nc;
-mod output;
-mod part;
-mod passes;
-mod ply;
-mod posted_setup;
-mod program;
-mod progress;
-mod render;
-mod report;
-mod report_fill;
-mod rough;
-mod setup;
-mod stock_keys;
-mod strategy;
-mod verify;
+mod screen;
 
-use args::{Cli, Verb};
 use clap::Parser;
-use failure::{Done, Outcome};
+use osculate::failure::{Done, Outcome};
+use screen::args::{Cli, Verb};
+use screen::{cancel, progress};
 use std::process::ExitCode;
 
 /// Exit code of a finished command whose result is not within tolerance.
@@ -76,7 +47,7 @@ fn run(cli: &Cli) -> Outcome {
 fn main() -> ExitCode {
     // Wrong usage ends here with clap's own message and exit code 2; --help and --version with 0.
     let cli = Cli::parse();
-    progress::lines(cli.progress);
+    progress::SCREEN.lines(cli.progress);
     if let Err(why) = cancel::watch() {
         eprintln!("osculate: an interrupt will end this run without a word: {why}");
     }

@@ -1,15 +1,16 @@
 //! `compare`: tools, strategies, directions and leads of a job side by side, ranked, with the reason why each lost.
 
-use crate::choice::{self, Choice, Row};
-use crate::failure::{Done, Failure, Outcome};
-use crate::figure::postures::{Arrays, Postures};
-use crate::figure::{Study, Wanted, sheet};
-use crate::ideal::{self, Bound};
-use crate::job::Job;
-use crate::part::{self, JobFaces, LoadedFace};
-use crate::program::WallS;
-use crate::progress::Stage;
-use crate::{output, render};
+use crate::screen::progress::SCREEN;
+use crate::screen::{output, render};
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::figure::postures::{Arrays, Postures};
+use osculate::figure::{Study, Wanted, sheet};
+use osculate::job::Job;
+use osculate::part::{self, JobFaces, LoadedFace};
+use osculate::watch::Stage;
+use osculate::work::choice::{self, Choice, Row};
+use osculate::work::ideal::{self, Bound};
+use osculate::work::program::WallS;
 use osculate_geom::{Unit3, Vec3};
 use osculate_productivity::ideal::Feeding;
 use serde::Serialize;
@@ -64,24 +65,24 @@ struct BestField {
 /// Runs the verb.
 pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome {
     let job = Job::load(path)?;
-    let stage = Stage::begin("import");
+    let stage = Stage::begin(&SCREEN, "import");
     let faces = part::of_job(&job)?;
     stage.end();
-    let stage = Stage::begin("ideal");
+    let stage = Stage::begin(&SCREEN, "ideal");
     let ideal = ideal::of_job(&job, &faces)?;
     stage.end();
     let fields = match out {
         Some(out) => {
-            let stage = Stage::begin("fields");
+            let stage = Stage::begin(&SCREEN, "fields");
             let made = fields(&job, &faces, nodes, out, &|f| stage.at(f))?;
             stage.end();
             made
         }
         None => Vec::new(),
     };
-    let stage = Stage::begin("choose");
+    let stage = Stage::begin(&SCREEN, "choose");
     let mut choice = Choice::screen(&job, &faces).map_err(|why| faces.warned(why))?;
-    let settled = choice::settle(&mut choice, VERIFIED, None, &mut WallS::default(), &|f| stage.at(f))
+    let settled = choice::settle(&mut choice, VERIFIED, &(), &mut WallS::default(), &|f| stage.at(f))
         .map_err(|why| faces.warned(why))?;
     stage.end();
     let area_mm2 = faces.faces.iter().map(part::area).sum();

@@ -1,8 +1,8 @@
 //! `export`: faces of a part as STEP, IGES, JSON, or triangles as STL or OBJ.
 
-use crate::args::ExportArgs;
-use crate::failure::{Done, Failure, Outcome, read};
-use crate::{output, render};
+use crate::screen::args::ExportArgs;
+use crate::screen::{output, render};
+use osculate::failure::{Done, Failure, Outcome, read};
 use osculate_surfaces::{Face, MeshOptions, PartMesh, iges, json, mesh_faces, step, stl};
 use serde::Serialize;
 

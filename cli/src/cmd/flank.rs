@@ -1,20 +1,23 @@
 //! `flank`: the side of a cutter on a ruled face, every positioning side by side, the chosen one as path and program.
 
 use crate::cmd::plan;
-use crate::failure::{Done, Failure, Outcome};
-use crate::flank::face::{FlankFace, range};
-use crate::flank::keys::least_mm;
-use crate::flank::methods::{Answer, Method, Motion, NAMES, Study};
-use crate::flank::path::{self, Work};
-use crate::job::Job;
-use crate::output;
-use crate::part;
-use crate::passes;
-use crate::program::{Planned, WallS};
-use crate::progress::Stage;
-use crate::render::{self, Table, number};
-use crate::report::{self, Column};
-use crate::report_fill::{Extras, Field};
+use crate::screen::output;
+use crate::screen::progress::SCREEN;
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::job::Job;
+use osculate::job::flank::least_mm;
+use osculate::part;
+use osculate::report::{self, Column};
+use osculate::watch::Stage;
+use osculate::words::{Table, number};
+use osculate::work::extras::{Extras, Field};
+use osculate::work::flank::face::{FlankFace, range};
+use osculate::work::flank::methods::{Answer, Method, Motion, NAMES, Study};
+use osculate::work::flank::path::{self, Work};
+use osculate::work::passes;
+use osculate::work::plan::prove;
+use osculate::work::program::{Planned, WallS};
 use osculate_geom::{Axis, Diagnostic, Interval, Point3, Surface, uv};
 use osculate_tools::flank::RuledStrip;
 use osculate_tools::flank::envelope::{Envelope, Scratch};
@@ -56,11 +59,11 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         return Err(wrong(format!("below_mm = {} must be a number of 0 or more", table.below_mm)));
     }
     let mut wall_s = WallS::default();
-    let stage = Stage::begin("import");
+    let stage = Stage::begin(&SCREEN, "import");
     let FlankFace { face, along, straying_mm, faces } = FlankFace::of(&job, part::of_job(&job)?)?;
     wall_s.import = stage.end();
 
-    let stage = Stage::begin("plan");
+    let stage = Stage::begin(&SCREEN, "plan");
     let whole = face.domain().u;
     let span = range(&job, "span_u", table.span_u, whole)?;
     let judge = range(&job, "judge_u", table.judge_u, whole)?;
@@ -156,12 +159,14 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let strategy = format!("flank, {}", table.method);
     let planned =
         Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: false };
-    let (summary, text, verified) = plan::execute(&job, &faces, &planned, wall_s, out)?;
-    comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter)?, &verified));
+    SCREEN.saves_into(out);
+    let plan = prove(&job, &faces, planned, wall_s, &SCREEN)?;
+    plan::write(&plan, out)?;
+    comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter)?, &plan.verified));
     let text_json = serde_json::to_string_pretty(&comparison).map_err(Failure::job)? + "\n";
     output::write(&out.join("flank.json"), text_json.as_bytes())?;
-    show(&comparison, json, &text)?;
-    Ok(if summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
+    show(&comparison, json, &plan::describe(&plan, out))?;
+    Ok(if plan.summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
 }
 
 /// Way in radii that a motion of least deviation goes on beyond the span's ends: the ends of a face are cut from there.
@@ -235,7 +240,7 @@ fn maps(answers: &[Answer]) -> Vec<(report::Scalar, Field<'_>)> {
 
 fn cells(m: &Method) -> [String; 8] {
     let one = |x: Option<f64>, d: usize| x.map_or_else(|| "-".to_owned(), |x| number(x, d));
-    let two = |r: Option<crate::flank::methods::Range>| {
+    let two = |r: Option<osculate::work::flank::methods::Range>| {
         r.map_or_else(|| "-".to_owned(), |r| format!("{:+.6} {:+.6}", r.min, r.max))
     };
     [

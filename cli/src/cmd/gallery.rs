@@ -1,7 +1,7 @@
 //! `gallery`: the surfaces with a name.
 
-use crate::failure::{Done, Outcome};
-use crate::render;
+use crate::screen::render;
+use osculate::failure::{Done, Outcome};
 use osculate_surfaces::gallery::ENTRIES;
 
 /// Runs the verb.

@@ -1,9 +1,11 @@
 //! `inspect`: what is in a CAD file.
 
-use crate::args::PartArgs;
-use crate::failure::{Done, Outcome};
-use crate::part::{self, Loaded, LoadedFace};
-use crate::render::{self, Table, number};
+use crate::screen::args::PartArgs;
+use crate::screen::render;
+use osculate::failure::{Done, Outcome};
+use osculate::part::{self, Loaded, LoadedFace};
+use osculate::words;
+use osculate::words::{Table, number};
 use osculate_geom::{Box3, Surface};
 use osculate_surfaces::Colour;
 use rayon::prelude::*;
@@ -121,7 +123,7 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
 
 /// Runs the verb.
 pub fn run(args: &PartArgs, json: bool) -> Outcome {
-    let part = part::load(args)?;
+    let part = args.load()?;
     let answer = answer(&part);
     if json {
         render::json(&answer)?;
@@ -218,7 +220,7 @@ fn describe(a: &Answer, part: &Loaded) -> String {
         out.push_str(&format!("\n{}", t.render()));
     }
     if !part.diagnostics.is_empty() {
-        out.push_str(&format!("\n{}", render::findings(&part.diagnostics)));
+        out.push_str(&format!("\n{}", words::findings(&part.diagnostics)));
     }
     out.push('\n');
     out

@@ -1,12 +1,14 @@
 //! `lines`: the characteristic lines of a face as figures and JSON.
 
-use crate::args::{LinesArgs, PostureArgs};
-use crate::failure::{Done, Failure, Outcome};
-use crate::figure::postures::Postures;
-use crate::figure::{self, Panel, Study, Wanted, json, sheet};
-use crate::render::{self, number};
-use crate::report::project::Direction;
-use crate::{output, part};
+use crate::screen::args::{LinesArgs, PostureArgs};
+use crate::screen::output;
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::figure::postures::Postures;
+use osculate::figure::{self, Panel, Study, Wanted, json, sheet};
+use osculate::part;
+use osculate::report::project::Direction;
+use osculate::words::number;
 use osculate_geom::{Unit3, Vec3};
 use osculate_productivity::optimum::{Limits, Range};
 use osculate_productivity::rate::Caps;
@@ -22,7 +24,7 @@ const MOST_NODES: usize = 200;
 pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     let wanted = wanted(args)?;
     let tool = args.postures.tool.as_deref().map(|keys| limits(keys, &args.postures)).transpose()?;
-    let loaded = part::whole(part::load(&args.part)?)?;
+    let loaded = part::whole(args.part.load()?)?;
     let face = loaded.one(args.face.as_deref())?;
     let study = Study::of(&face.surface, face.nurbs(), &wanted)
         .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;

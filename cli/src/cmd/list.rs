@@ -1,8 +1,10 @@
 //! `machines`, `dialects`, `tools`: what is built in.
 
-use crate::cutter_keys;
-use crate::failure::{Done, Failure, Outcome};
-use crate::render::{self, Table};
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::job::cutter;
+use osculate::words;
+use osculate::words::Table;
 use osculate_postproc::machine::spec::CarriedSide;
 use osculate_postproc::machine::{Joint, JointKind};
 use osculate_postproc::nc::Dialect;
@@ -55,16 +57,16 @@ fn chain(m: &Machine) -> String {
     let carrying: String = head.map(link).collect();
     let mut out = format!("  {}: {}\n    part{carried}--#bed#{carrying}--tool\n", m.name(), m.description());
     for j in m.joints() {
-        let [x, y, z] = [j.direction.x, j.direction.y, j.direction.z].map(|c| render::number(c, 4));
-        let end = |v: Option<f64>| v.map_or("no limit".into(), |v| render::number(j.shown(v), 5));
+        let [x, y, z] = [j.direction.x, j.direction.y, j.direction.z].map(|c| words::number(c, 4));
+        let end = |v: Option<f64>| v.map_or("no limit".into(), |v| words::number(j.shown(v), 5));
         let range =
             if j.is_endless() { "endless".into() } else { format!("{} to {}", end(j.min), end(j.max)) };
         let d = &j.drive;
         out.push_str(&format!(
             "      {:<4} along ({x}, {y}, {z}), {range} {u}, {} {u}/s, {} {u}/s2\n",
             j.letter,
-            render::number(j.shown(d.velocity_per_s), 4),
-            render::number(j.shown(d.acceleration_per_s2), 4),
+            words::number(j.shown(d.velocity_per_s), 4),
+            words::number(j.shown(d.acceleration_per_s2), 4),
             u = j.unit()
         ));
     }
@@ -102,7 +104,7 @@ pub fn dialects(json: bool) -> Outcome {
 
 /// Runs `tools`.
 pub fn tools(json: bool) -> Outcome {
-    let rows = cutter_keys::KINDS.map(|(kind, needs, may)| {
+    let rows = cutter::KINDS.map(|(kind, needs, may)| {
         let optional = may.iter().copied().chain(["length_mm"]).map(|k| format!("[{k}]"));
         let keys: Vec<String> = needs.iter().map(ToString::to_string).chain(optional).collect();
         (kind, keys.join(", "))

@@ -1,10 +1,12 @@
 //! `post`: CL data to NC code.
 
-use crate::args::PostArgs;
-use crate::failure::{Done, Failure, Outcome};
-use crate::nc::{self, Control, Words};
-use crate::output;
-use crate::render::{self, Table, number};
+use crate::screen::args::PostArgs;
+use crate::screen::output;
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::words;
+use osculate::words::{Table, number};
+use osculate::work::nc::{self, Control, Words};
 use osculate_geom::{Diagnostic, Vec3};
 use osculate_postproc::cldata::{ClReadOptions, ClStream};
 use osculate_postproc::{Orientation, PostOptions, Setup, built_in_names, post_from};
@@ -130,7 +132,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     row("axis error", number(answer.axis_error_deg, 3), "deg");
     render::text(&format!("\n{}\n  {}\n", t.render(), args.out.display()));
     if !notes.is_empty() {
-        render::text(&format!("\n{}", render::findings(&notes)));
+        render::text(&format!("\n{}", words::findings(&notes)));
     }
     render::text("\n");
     Ok(Done::Yes)

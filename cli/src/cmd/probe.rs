@@ -1,9 +1,10 @@
 //! `probe`: differential geometry at parameters.
 
-use crate::args::PartArgs;
-use crate::failure::{Done, Failure, Outcome};
-use crate::part;
-use crate::render::{self, number};
+use crate::screen::args::PartArgs;
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::part;
+use osculate::words::number;
 use osculate_geom::{Surface, Unit3, uv};
 use serde::Serialize;
 
@@ -27,7 +28,7 @@ struct Answer {
 
 /// Runs the verb.
 pub fn run(args: &PartArgs, face: Option<&str>, at: &[[f64; 2]], json: bool) -> Outcome {
-    let loaded = part::whole(part::load(args)?)?;
+    let loaded = part::whole(args.load()?)?;
     let face = loaded.one(face)?;
     let array = |d: &Unit3| [d.x, d.y, d.z];
     let mut points = Vec::new();

@@ -1,11 +1,13 @@
 //! `readback`: what an NC program makes the tool do, as CL data, read and written as a stream.
 
-use crate::args::ReadbackArgs;
 use crate::cmd::time::{each_line, names_of};
-use crate::failure::{Done, Failure, Outcome};
-use crate::nc;
-use crate::output;
-use crate::render::{self, Table, number};
+use crate::screen::args::ReadbackArgs;
+use crate::screen::output;
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::words;
+use osculate::words::{Table, number};
+use osculate::work::nc;
 use osculate_geom::{Point3, Vec3};
 use osculate_postproc::Setup;
 use osculate_postproc::cldata::{ClWriteOptions, ClWriter};
@@ -84,7 +86,7 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     row("rapid", number(answer.air_length_mm, 4), "mm");
     render::text(&format!("\n{}\n  {}\n", t.render(), args.out.display()));
     if !reader.diagnostics().is_empty() {
-        render::text(&format!("\n{}", render::findings(reader.diagnostics())));
+        render::text(&format!("\n{}", words::findings(reader.diagnostics())));
     }
     render::text("\n");
     Ok(Done::Yes)

@@ -1,9 +1,10 @@
 //! `strip`: the strip at one contact, exact and by every closed form that applies.
 
-use crate::failure::{Done, Failure, Outcome};
-use crate::job::{ContactTable, Job, LeadKey};
-use crate::part;
-use crate::render::{self, Table, number};
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::job::{ContactTable, Job, LeadKey};
+use osculate::part;
+use osculate::words::{Table, number};
 use osculate_geom::{Axis, Surface, uv};
 use osculate_productivity::closed_form::{self, DomainError, Section};
 use osculate_tools::{Contact, FeedLine, strip};

@@ -1,9 +1,11 @@
 //! `time`: how long a machine takes over an NC program, from its text, read as a stream.
 
-use crate::args::TimeArgs;
-use crate::failure::{Done, Failure, Outcome};
-use crate::nc;
-use crate::render::{self, Table};
+use crate::screen::args::TimeArgs;
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::words;
+use osculate::words::Table;
+use osculate::work::nc;
 use osculate_geom::Vec3;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::timing::{Clock, Names};
@@ -62,7 +64,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
         render::text(&format!("  {joint} makes {count} moves slower than F asks\n"));
     }
     if !timed.diagnostics.is_empty() {
-        render::text(&format!("\n{}", render::findings(&timed.diagnostics)));
+        render::text(&format!("\n{}", words::findings(&timed.diagnostics)));
     }
     render::text("\n");
     Ok(Done::Yes)

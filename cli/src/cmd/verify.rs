@@ -1,16 +1,19 @@
 //! `verify`: material removal of a CL file or an NC program against the part.
 
-use crate::failure::{Done, Failure, Outcome, read_text};
-use crate::job::Job;
-use crate::nc;
-use crate::output;
-use crate::part;
-use crate::ply;
-use crate::posted_setup;
-use crate::progress::Stage;
-use crate::render::{self, Table, number};
-use crate::stock_keys::{self, StockSummary};
-use crate::verify::{self, HistogramBin, Verification, WorstPlace};
+use crate::screen::output;
+use crate::screen::progress::SCREEN;
+use crate::screen::render;
+use osculate::failure::{Done, Failure, Outcome, read_text};
+use osculate::job::Job;
+use osculate::part;
+use osculate::watch::Stage;
+use osculate::words;
+use osculate::words::{Table, number};
+use osculate::work::nc;
+use osculate::work::ply;
+use osculate::work::posted_setup;
+use osculate::work::stock::{self, StockSummary};
+use osculate::work::verify::{self, HistogramBin, Verification, WorstPlace};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_postproc::cldata;
 use osculate_tools::Cutter;
@@ -136,19 +139,19 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     }
     let strange = meet(file, &motions, &faces).map_err(|why| why.warned(&diagnostics))?;
     diagnostics.extend(strange);
-    let stage = Stage::begin("verify");
+    let stage = Stage::begin(&SCREEN, "verify");
     let v = verify::run(&job, &faces, &motions, source, None, &|f| stage.at(f))?;
     let wall = stage.end();
     diagnostics.extend(v.diagnostics.iter().cloned());
-    let stage = Stage::begin("stock");
-    let stock = stock_keys::run(&job, &faces, &motions, &|f| stage.at(f))?;
+    let stage = Stage::begin(&SCREEN, "stock");
+    let stock = stock::run(&job, &faces, &motions, &|f| stage.at(f))?;
     stage.end();
     let stock = stock.map(|(summary, notes)| {
         diagnostics.extend(notes);
         summary
     });
     if let Some(path) = options.ply {
-        ply::write(path, &job, &faces, &motions, v.summary.spacing_mm)?;
+        output::write(path, &ply::bytes(&job, &faces, &motions, v.summary.spacing_mm)?)?;
     }
     if let (Some(path), Some(stock)) = (options.blocks, &stock) {
         output::write(path, stock.csv().as_bytes())?;
@@ -208,7 +211,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
             render::text(&format!("\n{}", stock_text(s)));
         }
         if !diagnostics.is_empty() {
-            render::text(&format!("\n{}", render::findings(&diagnostics)));
+            render::text(&format!("\n{}", words::findings(&diagnostics)));
         }
         render::text("\n");
     }
@@ -311,12 +314,12 @@ fn meet(file: &Path, motions: &[Swept], faces: &part::JobFaces) -> Result<Option
         path.add(&m.from.tip);
         path.add(&m.to.tip);
     }
-    let whole = stock_keys::around(faces);
+    let whole = stock::around(faces);
     let reach = whole.grown(0.5 * whole.diagonal_mm());
     let apart = path.is_empty() || (0..3).any(|k| path.min[k] > reach.max[k] || path.max[k] < reach.min[k]);
-    let part = stock_keys::corners(&whole);
+    let part = stock::corners(&whole);
     if apart {
-        let path_text = if path.is_empty() { "nothing".to_owned() } else { stock_keys::corners(&path) };
+        let path_text = if path.is_empty() { "nothing".to_owned() } else { stock::corners(&path) };
         return Err(Failure::file(
             file,
             format!(
@@ -332,7 +335,7 @@ fn meet(file: &Path, motions: &[Swept], faces: &part::JobFaces) -> Result<Option
         let text = format!(
             "the feed moves lie in {} mm, {times:.3} times the size of the part in {part} mm: is the unit right (inch against \
              mm)?",
-            stock_keys::corners(&path)
+            stock::corners(&path)
         );
         Diagnostic::warning("units", text)
     }))

@@ -9,6 +9,7 @@
 
 mod chart;
 mod data;
+pub mod fill;
 pub mod legend;
 mod mesh;
 mod pack;

@@ -1,0 +1,422 @@
+//! Parts as commands see them: faces with names, from a file or built in.
+
+pub mod builtin;
+
+use crate::failure::{Failure, beside, read};
+use crate::job::{FaceChoice, Job, Normals};
+use builtin::Builtin;
+use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
+use osculate_productivity::plan::Walls;
+use osculate_surfaces::orient::Enclosure;
+use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface, orient, tessellate};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+/// Certainty below which a vote on the material side does not count.
+const CLEAR_VOTE: f64 = 0.5;
+/// Rays are cast from a grid of this many points a side.
+const VOTE_GRID: usize = 12;
+/// Chord tolerance of the triangles that the vote counts, as a part of the box's diagonal.
+const VOTE_CHORD: f64 = 1e-3;
+
+/// A face ready for work.
+#[derive(Clone)]
+pub struct LoadedFace {
+    /// `F1`, `F2`, ...
+    pub id: String,
+    /// Name in the file.
+    pub name: String,
+    /// Kind as `inspect` prints it.
+    pub kind: String,
+    /// The face with trims and material side.
+    pub surface: Arc<TrimmedSurface>,
+    /// The imported face, where it comes from a file.
+    pub source: Option<Arc<Face>>,
+    /// The spline, where it is a built-in one.
+    pub spline: Option<Arc<NurbsSurface>>,
+}
+
+/// A part ready for work.
+pub struct Loaded {
+    /// `step`, `iges`, `patches`, `sections`, `json` or `builtin`.
+    pub format: &'static str,
+    /// The file's unit.
+    pub unit: String,
+    /// The file's schema.
+    pub schema: String,
+    /// Faces.
+    pub faces: Vec<LoadedFace>,
+    /// What the file has that is not used.
+    pub not_used: Vec<NotUsed>,
+    /// The message for a file that ends too early.
+    pub truncated: Option<String>,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl LoadedFace {
+    /// The spline that the face is a piece of, where it is one.
+    pub fn nurbs(&self) -> Option<&NurbsSurface> {
+        self.spline.as_deref().or_else(|| self.source.as_ref().and_then(|f| f.carrier.nurbs()).map(|n| &**n))
+    }
+}
+
+impl Loaded {
+    /// The only face, or the one with this id.
+    pub fn one(&self, id: Option<&str>) -> Result<&LoadedFace, Failure> {
+        match (id, self.faces.as_slice()) {
+            (Some(id), _) => self.face(id),
+            (None, [one]) => Ok(one),
+            (None, all) => {
+                Err(Failure::Usage(format!("the part has {} faces: say which with --face", all.len())))
+            }
+        }
+    }
+
+    /// The face of this id.
+    pub fn face(&self, id: &str) -> Result<&LoadedFace, Failure> {
+        self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
+            let ids: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).take(12).collect();
+            let more = if self.faces.len() > ids.len() { ", ..." } else { "" };
+            Failure::job(format!(
+                "there is no face {id}; the part has {}{more} (see inspect)",
+                ids.join(", ")
+            ))
+        })
+    }
+}
+
+fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
+    let surface = TrimmedSurface::new(b.surface, &[], Side::Along).map_err(Failure::job)?;
+    let face = LoadedFace {
+        id: "F1".to_owned(),
+        name: String::new(),
+        kind: b.kind.to_owned(),
+        surface: Arc::new(surface),
+        source: None,
+        spline: b.spline,
+    };
+    Ok(Loaded {
+        format: "builtin",
+        unit: "mm".to_owned(),
+        schema: String::new(),
+        faces: vec![face],
+        not_used: Vec::new(),
+        truncated: None,
+        diagnostics: Vec::new(),
+    })
+}
+
+fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
+    let bytes = read(path)?;
+    let mut part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
+    match unit_mm {
+        None => {}
+        Some(u) if !(u.is_finite() && u > 0.0) => {
+            return Err(Failure::file(path, format!("[part] unit_mm = {u} must be a positive number")));
+        }
+        Some(_) => {
+            part = match part.format {
+                osculate_surfaces::Format::Sections => osculate_surfaces::sections::read_in(&bytes, unit_mm)
+                    .map_err(|e| Failure::file(path, e))?,
+                osculate_surfaces::Format::Patches => osculate_surfaces::patches::read_in(&bytes, unit_mm)
+                    .map_err(|e| Failure::file(path, e))?,
+                _ => {
+                    let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
+                    return Err(Failure::file(path, text));
+                }
+            };
+        }
+    }
+    let format = match part.format {
+        osculate_surfaces::Format::Step => "step",
+        osculate_surfaces::Format::Iges => "iges",
+        osculate_surfaces::Format::Patches => "patches",
+        osculate_surfaces::Format::Sections => "sections",
+        osculate_surfaces::Format::Json => "json",
+    };
+    let faces = part
+        .faces
+        .into_iter()
+        .map(|f| {
+            let source = Arc::new(f);
+            LoadedFace {
+                id: source.id.clone(),
+                name: source.name.clone(),
+                kind: source.kind.to_string(),
+                surface: source.surface.clone(),
+                source: Some(source),
+                spline: None,
+            }
+        })
+        .collect();
+    Ok(Loaded {
+        format,
+        unit: part.unit,
+        schema: part.schema,
+        faces,
+        not_used: part.not_used,
+        truncated: part.truncated.then(|| {
+            let what =
+                "is truncated: faces may be missing (inspect shows what was read); export or copy it again";
+            format!("{}: the file {what}", path.display())
+        }),
+        diagnostics: part.diagnostics,
+    })
+}
+
+/// The part, unless its file ends too early.
+pub fn whole(part: Loaded) -> Result<Loaded, Failure> {
+    match &part.truncated {
+        Some(message) => Err(Failure::job(message)),
+        None => Ok(part),
+    }
+}
+
+/// The part of a file.
+pub fn open(path: &Path) -> Result<Loaded, Failure> {
+    from_file(path, None)
+}
+
+/// A built-in surface as a part, by its keys as TOML.
+pub fn built_in(keys: &str) -> Result<Loaded, Failure> {
+    from_builtin(builtin::parse(keys).map_err(Failure::Usage)?)
+}
+
+/// The faces that a job works on.
+pub struct JobFaces {
+    /// The whole part.
+    pub part: Loaded,
+    /// Faces to machine.
+    pub faces: Vec<LoadedFace>,
+    /// Faces that the tool must not touch.
+    pub check: Vec<LoadedFace>,
+    /// The check faces as hops see them, once they are asked for.
+    pub walls: OnceLock<Arc<Walls>>,
+}
+
+impl JobFaces {
+    /// A failure with what was warned of when the part was read: it may be why.
+    pub fn warned(&self, why: Failure) -> Failure {
+        why.warned(&self.part.diagnostics)
+    }
+}
+
+/// The faces of a job, with their material sides settled.
+pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
+    let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
+    let mut part = match (&job.part.file, &job.part.builtin, &job.part.ruled) {
+        (Some(file), ..) => whole(from_file(&beside(&job.path, file), job.part.unit_mm)?)?,
+        (None, Some(table), _) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?)?,
+        (None, None, Some(table)) => {
+            let strip = crate::job::flank::strip(table).map_err(|e| Failure::file(&job.path, e))?;
+            from_builtin(Builtin { kind: "ruled", surface: strip, spline: None })?
+        }
+        (None, None, None) => return Err(Failure::file(&job.path, "[part] needs file, builtin or ruled")),
+    };
+    let mut faces = choose(&part, job.part.faces.as_ref(), "faces").map_err(here)?;
+    if faces.is_empty() {
+        return Err(Failure::file(&job.path, "[part] faces chooses no face"));
+    }
+    settle_sides(job, &mut part, &mut faces)?;
+    doubt_sides(job, &mut part, &faces);
+    let check = match &job.part.check_faces {
+        None => Vec::new(),
+        some => {
+            let mut check = choose(&part, some.as_ref(), "check_faces").map_err(here)?;
+            let machined = |f: &LoadedFace| faces.iter().any(|m| m.id == f.id);
+            // "all" means all others; who names a face means it.
+            if matches!(some, Some(FaceChoice::Word(w)) if w == "all") {
+                check.retain(|f| !machined(f));
+            } else if let Some(both) = check.iter().find(|f| machined(f)) {
+                return Err(Failure::file(
+                    &job.path,
+                    format!(
+                        "[part] check_faces names {0}, which is also a face to machine: the tool must touch it. \
+                         Take {0} out of one of them, or say check_faces = \"all\" for all other faces",
+                        both.id
+                    ),
+                ));
+            }
+            settle_sides(job, &mut part, &mut check)?;
+            check
+        }
+    };
+    if check.is_empty() && part.faces.len() > faces.len() {
+        part.diagnostics.push(Diagnostic::note(
+            "check_faces",
+            format!(
+                "{} other faces of the part are not checked against the tool; check_faces = \"all\" would do so",
+                part.faces.len() - faces.len()
+            ),
+        ));
+    }
+    Ok(JobFaces { part, faces, check, walls: OnceLock::new() })
+}
+
+/// The single face of a job.
+pub fn one_face(job: &Job) -> Result<LoadedFace, Failure> {
+    let mut all = of_job(job)?.faces;
+    match (all.pop(), all.len()) {
+        (Some(one), 0) => Ok(one),
+        (_, more) => Err(Failure::file(
+            &job.path,
+            format!("[part] faces chooses {} faces where one is needed", more + 1),
+        )),
+    }
+}
+
+fn choose(part: &Loaded, choice: Option<&FaceChoice>, key: &str) -> Result<Vec<LoadedFace>, Failure> {
+    match choice {
+        None => Ok(part.faces.clone()),
+        Some(FaceChoice::Word(w)) if w == "all" => Ok(part.faces.clone()),
+        Some(FaceChoice::Word(id)) => Ok(vec![part.face(id)?.clone()]),
+        Some(FaceChoice::Ids(ids)) => ids.iter().map(|id| part.face(id).cloned()).collect(),
+        Some(FaceChoice::Largest(l)) => {
+            if l.largest == 0 || l.largest > part.faces.len() {
+                return Err(Failure::job(format!(
+                    "{key} = {{ largest = {} }}: the part has {} faces",
+                    l.largest,
+                    part.faces.len()
+                )));
+            }
+            let mut sized: Vec<(f64, &LoadedFace)> = part.faces.iter().map(|f| (area(f), f)).collect();
+            // Equal areas keep the order of the file.
+            sized.sort_by(|a, b| b.0.total_cmp(&a.0));
+            Ok(sized.into_iter().take(l.largest).map(|s| s.1.clone()).collect())
+        }
+    }
+}
+
+/// Area of a face, mm2.
+pub fn area(face: &LoadedFace) -> f64 {
+    face.surface.area_mm2()
+}
+
+/// Box around a face.
+pub fn bounds(face: &LoadedFace) -> Box3 {
+    face.surface.bbox(4)
+}
+
+/// Points with normals on a grid over a face's parameters, those inside its trims.
+pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, Unit3)> {
+    let d = surface.domain();
+    let mut out = Vec::new();
+    for i in 0..=n {
+        for j in 0..=n {
+            let at = d.at(i as f64 / n as f64, j as f64 / n as f64);
+            let jet = surface.jet2(at);
+            if let Ok(normal) = jet.normal()
+                && surface.contains(at)
+            {
+                out.push((at, jet.point, normal));
+            }
+        }
+    }
+    out
+}
+
+/// Triangles of a whole part.
+fn soup(part: &Loaded) -> Vec<[Point3; 3]> {
+    let whole = part.faces.iter().fold(Box3::empty(), |b, f| b.union(&bounds(f)));
+    let chord = VOTE_CHORD * whole.diagonal_mm();
+    let mut triangles: Vec<[Point3; 3]> = Vec::new();
+    for f in &part.faces {
+        let m = tessellate(&f.surface, chord, None);
+        let at = |k: u32| Point3::from(m.positions[k as usize]);
+        triangles.extend(m.triangles.iter().map(|t| t.map(at)));
+    }
+    triangles
+}
+
+/// On which side of a face the part encloses material, where it does so clearly.
+fn enclosed(face: &LoadedFace, triangles: &[[Point3; 3]]) -> Option<Enclosure> {
+    let points: Vec<(Point3, Unit3)> =
+        grid(&*face.surface, VOTE_GRID).into_iter().map(|(_, p, n)| (p, n)).collect();
+    orient::enclosed_side(&points, triangles).filter(|e| e.certainty >= CLEAR_VOTE)
+}
+
+/// Faces whose file does not say where the material is.
+fn unsaid(faces: &[LoadedFace]) -> Vec<usize> {
+    (0..faces.len()).filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented)).collect()
+}
+
+/// Turns faces over whose file does not say where the material is, or all of them where the job says so.
+fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<(), Failure> {
+    let open = unsaid(faces);
+    let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
+    match job.part.normals {
+        Normals::File => return Ok(()),
+        Normals::Reversed => {
+            faces.iter_mut().for_each(flip);
+            return Ok(());
+        }
+        Normals::Auto if open.is_empty() => return Ok(()),
+        Normals::Auto => {}
+    }
+    let triangles = soup(part);
+    for k in open {
+        let face = &mut faces[k];
+        match enclosed(face, &triangles) {
+            Some(e) => {
+                if e.side == Side::Against {
+                    flip(face);
+                }
+                part.diagnostics.push(Diagnostic::note(
+                    face.id.clone(),
+                    format!(
+                        "the file does not say where the material is; it is on the side that the part encloses \
+                         (certainty {:.0} %)",
+                        100.0 * e.certainty
+                    ),
+                ));
+            }
+            None => {
+                return Err(Failure::file(
+                    &job.path,
+                    format!(
+                        "[part] {}: neither the file nor the shape of the part says on which side of the face the \
+                         material is; say normals = \"file\" or normals = \"reversed\" (probe shows the normal)",
+                        face.id
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Warns of faces that the job has machined from the side on which the part has its material: a blade from within. Only
+/// where the file itself says no side, as a job may well turn over what a file says.
+fn doubt_sides(job: &Job, part: &mut Loaded, faces: &[LoadedFace]) {
+    let open = unsaid(faces);
+    if open.is_empty() || job.part.normals == Normals::Auto {
+        return;
+    }
+    let triangles = soup(part);
+    for face in open.into_iter().map(|k| &faces[k]) {
+        if let Some(e) = enclosed(face, &triangles).filter(|e| e.side == Side::Against) {
+            part.diagnostics.push(Diagnostic::warning(
+                face.id.clone(),
+                format!(
+                    "the tool is on the side that the part encloses (certainty {:.0} %), as [part] normals has it: the \
+                     part would be cut from within; leave normals out, or turn it over",
+                    100.0 * e.certainty
+                ),
+            ));
+        }
+    }
+}
+
+/// Range of the principal curvatures over a face, 1/mm, from a grid of its inside.
+pub fn curvature_range(surface: &dyn Surface) -> Option<[f64; 2]> {
+    let mut range: Option<[f64; 2]> = None;
+    for (at, ..) in grid(surface, 24) {
+        if let Ok(forms) = surface.jet2(at).forms() {
+            let p = forms.principal();
+            let r = range.get_or_insert([p.k_min, p.k_max]);
+            *r = [r[0].min(p.k_min), r[1].max(p.k_max)];
+        }
+    }
+    range
+}

@@ -1,0 +1,439 @@
+//! From the results of a plan to what its report shows.
+
+use crate::job::Job;
+use crate::part::{JobFaces, LoadedFace, area};
+use crate::report::{
+    self, Column, FaceMesh, Histogram, Holder, Link, Outcome, Pass, PathPoints, Report, Stage, Table, Tool,
+    ToolPose, Verdict, View, Worst,
+};
+use crate::words::number;
+use crate::work::extras::Extras;
+use crate::work::extras::FaceLeftOut;
+use crate::work::nc::Motions;
+use crate::work::summary::Summary;
+use crate::work::verify::Verified;
+use osculate_geom::{Diagnostic, Point3, Unit3};
+use osculate_productivity::plan::{Linked, Passes};
+use osculate_surfaces::tessellate;
+use osculate_tools::cl::Motion;
+use osculate_tools::removal::{Cut, Sample};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Triangles over all faces, about.
+const TRIANGLES: f64 = 120_000.0;
+/// Poses in the animation.
+const POSES: usize = 6000;
+/// Points of passes drawn.
+const PATH_POINTS: usize = 120_000;
+
+/// Everything that a report tells.
+pub struct Story<'a> {
+    /// The job's name.
+    pub title: &'a str,
+    /// The job.
+    pub job: &'a Job,
+    /// Its faces.
+    pub faces: &'a JobFaces,
+    /// The passes.
+    pub passes: &'a Passes,
+    /// The linked path.
+    pub linked: &'a Linked,
+    /// What was measured.
+    pub verified: &'a Verified,
+    /// The figures.
+    pub summary: &'a Summary,
+    /// All findings.
+    pub diagnostics: &'a [Diagnostic],
+    /// The program read back.
+    pub time_by_move: &'a Motions,
+    /// What this report shows beside what every report shows.
+    pub extras: &'a Extras<'a>,
+}
+
+/// The report's pages.
+pub struct Pages {
+    /// `report.html`.
+    pub html: String,
+    /// `picture.svg`.
+    pub svg: String,
+    /// `path.svg`.
+    pub path_svg: String,
+}
+
+/// Builds both pages.
+pub fn pages(story: &Story<'_>, progress: &dyn Fn(f64)) -> Pages {
+    let report = report(story, progress);
+    progress(0.8);
+    let html = report::html(&report);
+    let svg = report::svg(&report, &View { tool_at: Some(0.5), ..View::default() });
+    let view = View {
+        direction: report::Direction { azimuth_deg: -52.0, elevation_deg: 58.0 },
+        part: report::PartColours::Plain,
+        path: report::PathColours::StripWidth,
+        tool_at: None,
+        ..View::default()
+    };
+    let path_svg = report::svg(&report, &view);
+    Pages { html, svg, path_svg }
+}
+
+fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
+    let s = story.summary;
+    let total_area: f64 = story.faces.faces.iter().chain(&story.faces.check).map(area).sum();
+    let edge = (2.0 * total_area / TRIANGLES).sqrt().max(1e-6);
+    let lookup = Lookup::new(&story.verified.samples, story.verified.summary.spacing_mm);
+    let mut faces = Vec::new();
+    let machined = story.faces.faces.iter().map(|f| (f, false));
+    for (k, (face, check)) in machined.chain(story.faces.check.iter().map(|f| (f, true))).enumerate() {
+        let mut m = mesh_of(face, if check { 3.0 * edge } else { edge });
+        if !check {
+            m.deviation_mm = deviation(&m, k as u32, &lookup, &story.verified.samples, &story.verified.cuts);
+        }
+        let point = |p: &[f32; 3]| Point3::from(p.map(f64::from));
+        for (_, field) in &story.extras.maps {
+            let value = |p: &[f32; 3]| if check { f32::NAN } else { field(k, &point(p)) as f32 };
+            m.scalars.push(m.positions.par_iter().map(value).collect());
+        }
+        faces.push(m);
+        progress(0.6 * (k + 1) as f64 / (story.faces.faces.len() + story.faces.check.len()) as f64);
+    }
+    Report {
+        title: format!("{}: {}", story.title, s.strategy),
+        subtitle: format!("{}, {}, feed {}", s.machine, s.dialect, s.feed),
+        verdict: verdict(story),
+        faces,
+        scalars: story.extras.maps.iter().map(|m| m.0.clone()).collect(),
+        passes: passes(story.passes),
+        path_points: PathPoints::Contact,
+        links: links(story.linked),
+        tool: tool(story.job),
+        poses: poses(story),
+        histogram: Histogram {
+            edges_mm: histogram_edges(story),
+            weights: story.verified.verdict.histogram.iter().map(|b| b.area_mm2).collect(),
+            unit: "mm2".to_owned(),
+        },
+        tables: story.extras.tables.iter().cloned().chain(tables(story)).collect(),
+        diagnostics: story.diagnostics.to_vec(),
+        stages: [
+            ("import", s.wall_s.import),
+            ("plan", s.wall_s.plan),
+            ("post", s.wall_s.post),
+            ("verify", s.wall_s.verify),
+            ("ideal", s.wall_s.ideal),
+        ]
+        .map(|(name, wall_s)| Stage { name: name.to_owned(), wall_s })
+        .to_vec(),
+    }
+}
+
+/// Bin borders; the two open bins at the ends are drawn as wide as their neighbours.
+fn histogram_edges(story: &Story<'_>) -> Vec<f64> {
+    let bins = &story.verified.verdict.histogram;
+    let inner: Vec<f64> = bins
+        .iter()
+        .map(|b| b.from_mm)
+        .chain(bins.last().map(|b| b.to_mm))
+        .filter(|x| x.is_finite())
+        .collect();
+    let (Some(first), Some(last)) = (inner.first(), inner.last()) else { return Vec::new() };
+    let width = if inner.len() > 1 { inner[1] - inner[0] } else { 1.0 };
+    let mut edges = Vec::with_capacity(inner.len() + 2);
+    edges.push(first - width);
+    edges.extend(&inner);
+    edges.push(last + width);
+    edges
+}
+
+fn verdict(story: &Story<'_>) -> Verdict {
+    let v = &story.summary.verification;
+    let t = &story.job.tolerance;
+    let words = if v.within_tolerance {
+        "Every sample of the machined faces is within tolerance.".to_owned()
+    } else {
+        story.verified.worst.first().map_or_else(
+            || "The path is not within tolerance.".to_owned(),
+            |w| {
+                format!(
+                    "Worst: {} of {} mm on {} at ({:.3}, {:.3}, {:.3}), block {}.",
+                    w.kind,
+                    number(w.value_mm, 4),
+                    w.face,
+                    w.at_mm[0],
+                    w.at_mm[1],
+                    w.at_mm[2],
+                    w.block
+                )
+            },
+        )
+    };
+    Verdict {
+        outcome: if v.within_tolerance { Outcome::Within } else { Outcome::Outside },
+        words,
+        source: "the NC program, read back through the machine".to_owned(),
+        samples: v.samples,
+        scallop_max_mm: v.scallop_max_mm,
+        scallop_p99_mm: v.scallop_p99_mm,
+        gouge_max_mm: v.gouge_max_mm,
+        uncut_area_mm2: v.uncut_area_mm2,
+        scallop_tolerance_mm: t.scallop_mm,
+        gouge_tolerance_mm: story.job.tolerance().map_or(f64::NAN, |t| t.gouge_mm),
+        worst: story
+            .verified
+            .worst
+            .iter()
+            .map(|w| Worst {
+                deviation_mm: if w.kind == "gouge" { -w.value_mm } else { w.value_mm },
+                at_mm: w.at_mm,
+                place: format!(
+                    "{}: {}, u {} v {}, block {}",
+                    w.kind,
+                    w.face,
+                    number(w.uv[0], 5),
+                    number(w.uv[1], 5),
+                    w.block
+                ),
+            })
+            .collect(),
+    }
+}
+
+fn f32s(p: &Point3) -> [f32; 3] {
+    [p.x as f32, p.y as f32, p.z as f32]
+}
+
+fn passes(all: &Passes) -> Vec<Pass> {
+    let points: usize = all.passes.iter().map(|p| p.points.len()).sum();
+    let stride = points.div_ceil(PATH_POINTS).max(1);
+    all.passes
+        .iter()
+        .map(|p| {
+            let last = p.points.len().saturating_sub(1);
+            let kept = || p.points.iter().enumerate().filter(move |(k, _)| k % stride == 0 || *k == last);
+            Pass {
+                points_mm: kept().map(|(_, c)| f32s(&c.point)).collect(),
+                widths_mm: kept().map(|(_, c)| c.width_mm as f32).collect(),
+            }
+        })
+        .collect()
+}
+
+/// Runs of moves that are not passes, each with the point that it leaves from.
+fn links(linked: &Linked) -> Vec<Link> {
+    let mut out: Vec<Link> = Vec::new();
+    let mut open: Option<Link> = None;
+    for (k, m) in linked.path.moves.iter().enumerate().skip(1) {
+        let rapid = matches!(m.motion, Motion::Rapid);
+        if linked.pass_of_move[k].is_some() {
+            out.extend(open.take());
+            continue;
+        }
+        let from = f32s(&linked.path.moves[k - 1].pose.tip);
+        match &mut open {
+            Some(l) if l.rapid == rapid => l.points_mm.push(f32s(&m.pose.tip)),
+            other => {
+                out.extend(other.take());
+                open = Some(Link { points_mm: vec![from, f32s(&m.pose.tip)], rapid });
+            }
+        }
+    }
+    out.extend(open);
+    out
+}
+
+/// Turn of a drawn tool's outline from point to point, rad: a hundredth of a millimetre on the large arc of a barrel.
+const OUTLINE_TURN_RAD: f64 = 0.03;
+
+fn tool(job: &Job) -> Option<Tool> {
+    let c = job.cutter().ok()?;
+    let kind = if !c.is_end_mill() {
+        job.tool().kind.clone()
+    } else if c.is_ball() {
+        "ball".to_owned()
+    } else if c.corner_mm() == 0.0 {
+        "flat".to_owned()
+    } else {
+        format!("toroidal r{}", c.corner_mm())
+    };
+    Some(Tool {
+        label: format!("{kind} D{}", 2.0 * c.radius_mm()),
+        diameter_mm: 2.0 * c.radius_mm(),
+        corner_radius_mm: c.corner_mm(),
+        length_mm: c.length_mm(),
+        flute_mm: None,
+        holder: job.tool().holder.map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
+        meridian_mm: if c.is_end_mill() { Vec::new() } else { c.outline_mm(OUTLINE_TURN_RAD) },
+    })
+}
+
+/// Poses of the program as read back, with their time; the pass is found by the CL path's own poses only where the
+/// motion is at feed.
+fn poses(story: &Story<'_>) -> Vec<ToolPose> {
+    let read = story.time_by_move;
+    let n = read.motions.len();
+    let stride = n.div_ceil(POSES).max(1);
+    (0..n)
+        .filter(|k| k % stride == 0 || *k + 1 == n)
+        .map(|k| {
+            let m = &read.motions[k];
+            ToolPose {
+                tip_mm: f32s(&m.to.tip),
+                axis: [m.to.axis.x as f32, m.to.axis.y as f32, m.to.axis.z as f32],
+                time_min: read.times_min[k] as f32,
+                pass: None,
+            }
+        })
+        .collect()
+}
+
+fn tables(story: &Story<'_>) -> Vec<Table> {
+    let s = story.summary;
+    let v = &s.verification;
+    let pairs = |caption: &str, rows: Vec<(&str, String)>| Table {
+        caption: caption.to_owned(),
+        columns: Vec::new(),
+        rows: rows.into_iter().map(|(k, v)| vec![k.to_owned(), v]).collect(),
+    };
+    let ideal = s.ideal.as_ref().map_or_else(Vec::new, |i| {
+        vec![
+            ("ideal time, estimated", format!("{} min", i.ideal.words())),
+            ("efficiency", format!("{:.0} %", i.efficiency_percent)),
+            ("the estimate took", format!("{:.1} s at {} places", s.wall_s.ideal, i.ideal.places)),
+        ]
+    });
+    let mut out = vec![
+        pairs(
+            "Plan",
+            vec![
+                ("strategy", s.strategy.clone()),
+                ("lead, tilt", format!("{} deg", s.lean_words())),
+                ("passes", s.passes.to_string()),
+                ("CL points", s.points.to_string()),
+                ("cutting length", format!("{:.1} mm", s.cutting_length_mm)),
+                ("air length", format!("{:.1} mm", s.air_length_mm)),
+                ("time", format!("{:.2} min", s.time_min)),
+                ("of it at feed", format!("{:.2} min", s.cutting_time_min)),
+            ],
+        ),
+        pairs(
+            "Productivity",
+            vec![
+                ("area", format!("{:.1} mm2", s.area_mm2)),
+                (
+                    "instantaneous",
+                    format!(
+                        "{} to {} mm2/min",
+                        number(s.productivity_mm2_min.instantaneous_min, 4),
+                        number(s.productivity_mm2_min.instantaneous_max, 4)
+                    ),
+                ),
+                ("global", format!("{} mm2/min", number(s.productivity_mm2_min.global, 4))),
+            ]
+            .into_iter()
+            .chain(ideal)
+            .collect(),
+        ),
+        pairs(
+            "Verification",
+            vec![
+                ("samples", format!("{}, {} of them where limits were near", v.samples, v.added_samples)),
+                ("spacing", format!("{} mm", number(v.spacing_mm, 3))),
+                (
+                    "may hide between samples",
+                    format!(
+                        "{} mm of scallop, {} mm of gouge",
+                        number(v.hidden_scallop_mm, 2),
+                        number(v.hidden_gouge_mm, 2)
+                    ),
+                ),
+                ("within tolerance there too", if v.certain { "yes" } else { "not shown" }.to_owned()),
+                ("scallop max", format!("{:.5} mm", v.scallop_max_mm)),
+                ("scallop p99", format!("{:.5} mm", v.scallop_p99_mm)),
+                ("scallop median", format!("{:.5} mm", v.scallop_median_mm)),
+                ("median of its crests", format!("{:.5} mm", v.crest_median_mm)),
+                ("gouge max", format!("{:.5} mm", v.gouge_max_mm)),
+                ("uncut area", format!("{:.3} mm2", v.uncut_area_mm2)),
+            ],
+        ),
+    ];
+    let column = |name: &str, unit: &str| Column { name: name.to_owned(), unit: unit.to_owned() };
+    out.push(Table {
+        caption: "Faces".to_owned(),
+        columns: vec![column("face", ""), column("kind", ""), column("area", "mm2"), column("role", "")],
+        rows: story
+            .faces
+            .faces
+            .iter()
+            .map(|f| (f, "machined"))
+            .chain(story.faces.check.iter().map(|f| (f, "checked")))
+            .map(|(f, role)| vec![f.id.clone(), f.kind.clone(), format!("{:.2}", area(f)), role.to_owned()])
+            .collect(),
+    });
+    out
+}
+
+/// Triangles of a face for the picture.
+fn mesh_of(face: &LoadedFace, edge_mm: f64) -> FaceMesh {
+    let m = tessellate(&face.surface, 0.2 * edge_mm, Some(edge_mm));
+    let flat = |v: &[[f64; 3]]| v.iter().map(|p| p.map(|x| x as f32)).collect();
+    FaceMesh {
+        id: face.id.clone(),
+        positions: flat(&m.positions),
+        normals: flat(&m.normals),
+        triangles: m.triangles,
+        deviation_mm: Vec::new(),
+        scalars: Vec::new(),
+    }
+}
+
+/// Samples by cells of space.
+struct Lookup {
+    cell_mm: f64,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+}
+
+impl Lookup {
+    fn new(samples: &[Sample], spacing_mm: f64) -> Self {
+        let cell_mm = 2.0 * spacing_mm;
+        let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        for (k, s) in samples.iter().enumerate() {
+            cells.entry(Self::key(cell_mm, &s.point)).or_default().push(k as u32);
+        }
+        Self { cell_mm, cells }
+    }
+
+    fn key(cell_mm: f64, p: &Point3) -> [i64; 3] {
+        [p.x, p.y, p.z].map(|c| (c / cell_mm).floor() as i64)
+    }
+
+    /// The nearest sample of a face in the cells around a point.
+    fn nearest(&self, p: &Point3, face: u32, samples: &[Sample]) -> Option<u32> {
+        let [a, b, c] = Self::key(self.cell_mm, p);
+        let mut best: Option<(f64, u32)> = None;
+        for i in -1..=1 {
+            for j in -1..=1 {
+                for k in -1..=1 {
+                    for s in self.cells.get(&[a + i, b + j, c + k]).into_iter().flatten() {
+                        let sample = &samples[*s as usize];
+                        let d = (sample.point - p).norm_squared();
+                        if sample.face == face && best.is_none_or(|b| (d, *s) < b) {
+                            best = Some((d, *s));
+                        }
+                    }
+                }
+            }
+        }
+        best.map(|b| b.1)
+    }
+}
+
+fn deviation(m: &FaceMesh, face: u32, lookup: &Lookup, samples: &[Sample], cuts: &[Cut]) -> Vec<f32> {
+    m.positions
+        .par_iter()
+        .map(|p| {
+            let at = Point3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+            lookup.nearest(&at, face, samples).map_or(f32::NAN, |s| cuts[s as usize].standoff_mm as f32)
+        })
+        .collect()
+}

@@ -1,0 +1,303 @@
+//! The command line as typed.
+
+use clap::{Args, Parser, Subcommand};
+use osculate::failure::Failure;
+use osculate::part::{self, Loaded};
+use std::path::PathBuf;
+
+/// Plan, verify and post multi-axis NC machining of free-form surfaces.
+#[derive(Debug, Parser)]
+#[command(name = "osculate", version, about, long_about = None)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub verb: Verb,
+    /// One JSON object on stdout and nothing else there.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// A line on stderr for every stage and per cent of it, for other programs: `progress: verify 42 %`.
+    #[arg(long, global = true)]
+    pub progress: bool,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// What is in a CAD file: faces with kind, degrees, poles, area, curvature range, what was not understood.
+    Inspect(PartArgs),
+    /// Faces as STEP, IGES or JSON, or their triangles as STL or OBJ, by the ending of the file to write.
+    Export(ExportArgs),
+    /// Point, normal, fundamental forms, principal curvatures and directions at parameters.
+    Probe {
+        /// The part.
+        #[command(flatten)]
+        part: PartArgs,
+        /// The face, by its id in `inspect`; may be left out where there is only one.
+        #[arg(long)]
+        face: Option<String>,
+        /// Surface parameters; may be given more than once.
+        #[arg(long, value_name = "U,V", required = true, value_parser = pair, allow_hyphen_values = true)]
+        at: Vec<[f64; 2]>,
+    },
+    /// Characteristic lines of a face as SVG figures and JSON: lines of curvature, umbilics, contours, gradients, ridges.
+    Lines(LinesArgs),
+    /// Strip width at one contact: exact and every closed form that applies, side by side.
+    Strip {
+        /// The job file, with its contact table.
+        job: PathBuf,
+    },
+    /// Tools, strategies, directions and leads of a job side by side: time, length, productivity, ranked, with why each lost.
+    Compare {
+        /// The job file.
+        job: PathBuf,
+        /// Folder for compare.json and for pictures of the best posture all over the faces: of every tool, and of the
+        /// best tool at each place.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Pictures: places along u and along v.
+        #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u64).range(1..=200))]
+        nodes: u64,
+    },
+    /// The main job: path, CL file, NC program, verification, report.
+    Plan {
+        /// The job file.
+        job: PathBuf,
+        /// Folder for the results.
+        #[arg(long)]
+        out: PathBuf,
+    },
+    /// The side of a cutter on a ruled face: every positioning side by side, the chosen one as path, NC program and report.
+    Flank {
+        /// The job file, with its flank table.
+        job: PathBuf,
+        /// Folder for path, program and report; without it only the table is made.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// CL data to NC code.
+    Post(PostArgs),
+    /// Material removal against the part: scallop, gouge, uncut area.
+    Verify {
+        /// A CL file or an NC program.
+        file: PathBuf,
+        /// The job file: part, tool, tolerance and machine.
+        #[arg(long)]
+        job: PathBuf,
+        /// Skip words of the NC program that are not understood, with a finding each, instead of stopping.
+        #[arg(long)]
+        lenient: bool,
+        /// Write the surface as cut, coloured by its deviation, as a PLY file.
+        #[arg(long, value_name = "FILE")]
+        ply: Option<PathBuf>,
+        /// Write what each block took from the raw material, its chip section and engagement, as a CSV file.
+        #[arg(long, value_name = "FILE")]
+        blocks: Option<PathBuf>,
+    },
+    /// Machining time of an NC program with the axes' limits.
+    Time(TimeArgs),
+    /// What an NC program makes the tool do, as CL data.
+    Readback(ReadbackArgs),
+    /// The built-in machines.
+    Machines,
+    /// The built-in dialects.
+    Dialects,
+    /// The cutter kinds that a job can ask for.
+    Tools,
+    /// The surfaces with a name, for --builtin and for jobs.
+    Gallery,
+}
+
+/// A part: a file or a built-in surface.
+#[derive(Debug, Args)]
+pub struct PartArgs {
+    /// A STEP or IGES file.
+    #[arg(required_unless_present = "builtin", conflicts_with = "builtin")]
+    pub part: Option<PathBuf>,
+    /// A built-in surface as a TOML table's keys, for example 'kind = "torus", major_radius_mm = 200, ...'.
+    #[arg(long, value_name = "KEYS")]
+    pub builtin: Option<String>,
+}
+
+impl PartArgs {
+    /// The part.
+    pub fn load(&self) -> Result<Loaded, Failure> {
+        match (&self.part, &self.builtin) {
+            (Some(path), None) => part::open(path),
+            (None, Some(keys)) => part::built_in(keys),
+            _ => Err(Failure::Usage("give either a part file or --builtin".to_owned())),
+        }
+    }
+}
+
+/// What `lines` takes.
+#[derive(Debug, Args)]
+pub struct LinesArgs {
+    /// The part.
+    #[command(flatten)]
+    pub part: PartArgs,
+    /// The face, by its id in `inspect`; may be left out where there is only one.
+    #[arg(long)]
+    pub face: Option<String>,
+    /// Tool axis for contours and gradients.
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", value_parser = triple, allow_hyphen_values = true)]
+    pub axis: [f64; 3],
+    /// Distance of neighbouring lines, mm; a twenty-second of the face's size where not given.
+    #[arg(long)]
+    pub spacing_mm: Option<f64>,
+    /// About how many levels of height and of curvature difference.
+    #[arg(long, default_value_t = 12)]
+    pub levels: usize,
+    /// Where the viewer stands: azimuth from +x towards +y and elevation, degrees; chosen by the face where not given.
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = pair, allow_hyphen_values = true)]
+    pub view_deg: Option<[f64; 2]>,
+    /// Best postures of a tool over the face.
+    #[command(flatten)]
+    pub postures: PostureArgs,
+    /// Folder for the figures and lines.json.
+    #[arg(long)]
+    pub out: PathBuf,
+}
+
+/// What the postures of `lines` take.
+#[derive(Debug, Args)]
+pub struct PostureArgs {
+    /// Show the best posture of this tool all over the face: a list of its keys, as under `[tool]` of a job:
+    /// 'kind = "toroidal", diameter_mm = 12, corner_radius_mm = 2, length_mm = 60'.
+    #[arg(long, value_name = "KEYS")]
+    pub tool: Option<String>,
+    /// Postures: material that may be left, mm.
+    #[arg(long, default_value_t = 0.01)]
+    pub scallop_mm: f64,
+    /// Postures: undercut that may stay, mm.
+    #[arg(long, default_value_t = 0.005)]
+    pub gouge_mm: f64,
+    /// Postures: feed of the contact, mm/min.
+    #[arg(long, default_value_t = 1000.0)]
+    pub feed_mm_min: f64,
+    /// Postures: least and greatest lead, degrees.
+    #[arg(long, value_name = "LEAST,MOST", default_value = "3,40", value_parser = pair, allow_hyphen_values = true)]
+    pub lead_deg: [f64; 2],
+    /// Postures: least and greatest tilt, degrees.
+    #[arg(long, value_name = "LEAST,MOST", default_value = "0,0", value_parser = pair, allow_hyphen_values = true)]
+    pub tilt_deg: [f64; 2],
+    /// Postures: nodes along u and along v.
+    #[arg(long, default_value_t = 20)]
+    pub nodes: usize,
+}
+
+/// What `export` takes.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// A STEP or IGES file, or the JSON of an export.
+    pub part: PathBuf,
+    /// Only these faces, by their ids in `inspect`, with commas between.
+    #[arg(long, value_name = "IDS", value_delimiter = ',')]
+    pub faces: Vec<String>,
+    /// The file to write: .step, .stp, .igs, .iges, .json, .stl or .obj.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Triangles: largest distance from the faces; a thousandth of the part's size where not given.
+    #[arg(long)]
+    pub chord_mm: Option<f64>,
+    /// Triangles: largest angle between the normals at the ends of a side.
+    #[arg(long)]
+    pub angle_deg: Option<f64>,
+    /// Triangles: longest side.
+    #[arg(long)]
+    pub max_edge_mm: Option<f64>,
+    /// STL as text.
+    #[arg(long)]
+    pub text: bool,
+}
+
+/// What `post` takes.
+#[derive(Debug, Args)]
+pub struct PostArgs {
+    /// The CL file.
+    pub clfile: PathBuf,
+    /// A built-in machine or the path of a machine file.
+    #[arg(long)]
+    pub machine: String,
+    /// sinumerik, heidenhain, fanuc or linuxcnc.
+    #[arg(long)]
+    pub dialect: String,
+    /// tcp, none, kv, kf, kz, inverse_time, rotary (deg/min over the rotary axes) or fastest (as the joints allow).
+    #[arg(long, default_value = "tcp")]
+    pub feed: String,
+    /// The largest rise of F from block to block, for --feed kz, mm/min.
+    #[arg(long)]
+    pub kz_step: Option<f64>,
+    /// Put the moves into a subprogram that the main program calls (sinumerik).
+    #[arg(long)]
+    pub subprogram: bool,
+    /// Where the tool points, in words: rotary joints, directions (A3= B3= C3=, TX TY TZ, I J K), or a tilted plane per
+    /// position (CYCLE800, PLANE SPATIAL, G68.2).
+    #[arg(long, value_parser = ["joints", "vectors", "planes"], default_value = "joints")]
+    pub orientation: String,
+    /// Where the part's origin sits from the table's reference point, mm.
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub part_zero: Option<[f64; 3]>,
+    /// From the tip to the spindle nose, mm; cutter and holder of the CL data where not given.
+    #[arg(long)]
+    pub gauge_length_mm: Option<f64>,
+    /// The program to write.
+    #[arg(long)]
+    pub out: PathBuf,
+}
+
+/// What `time` takes.
+#[derive(Debug, Args)]
+pub struct TimeArgs {
+    /// The NC program.
+    #[arg(value_name = "NCFILE")]
+    pub file: PathBuf,
+    /// A built-in machine or the path of a machine file.
+    #[arg(long)]
+    pub machine: String,
+    /// sinumerik, heidenhain, fanuc or linuxcnc; by the file's extension where not given.
+    #[arg(long)]
+    pub dialect: Option<String>,
+    /// Where the part's origin sits from the table's reference point, mm.
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
+    pub part_zero: Option<[f64; 3]>,
+    /// From the tip to the spindle nose, mm.
+    #[arg(long)]
+    pub gauge_length_mm: Option<f64>,
+    /// Stop at the first word that is not understood instead of leaving it out with a finding.
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// What `readback` takes.
+#[derive(Debug, Args)]
+pub struct ReadbackArgs {
+    /// The program and its machine.
+    #[command(flatten)]
+    pub nc: TimeArgs,
+    /// The CL file to write.
+    #[arg(long)]
+    pub out: PathBuf,
+}
+
+fn numbers<const N: usize>(s: &str) -> Result<[f64; N], String> {
+    let parts: Vec<&str> = s.split(',').collect();
+    if parts.len() != N {
+        return Err(format!("expected {N} numbers separated by commas, got {}", parts.len()));
+    }
+    let mut out = [0.0; N];
+    for (o, p) in out.iter_mut().zip(parts) {
+        *o = p.trim().parse::<f64>().map_err(|_| format!("'{p}' is not a number"))?;
+        if !o.is_finite() {
+            return Err(format!("'{p}' is not a finite number"));
+        }
+    }
+    Ok(out)
+}
+
+fn pair(s: &str) -> Result<[f64; 2], String> {
+    numbers(s)
+}
+
+fn triple(s: &str) -> Result<[f64; 3], String> {
+    numbers(s)
+}

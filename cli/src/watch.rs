@@ -1,0 +1,57 @@
+//! Who hears how work goes on: stages, fractions, and what a run that is stopped can save.
+//!
+//! The library prints nothing and writes no file by itself. Work of a second or more names its stages to a [`Watch`];
+//! `()` is one that listens to nothing.
+
+use std::time::Instant;
+
+/// Makes the text of what is finished of a path.
+pub type PartialText = Box<dyn FnOnce() -> Result<String, String> + Send>;
+
+/// Hears how work goes on, from whichever thread does it.
+pub trait Watch: Sync {
+    /// A stage begins.
+    fn begin(&self, _stage: &'static str) {}
+
+    /// This fraction of the stage is done, 0 to 1; not always in ascending order.
+    fn at(&self, _fraction: f64) {}
+
+    /// The stage has ended.
+    fn end(&self) {}
+
+    /// What a run that is stopped from here on can save as CL data, and what that has, in words.
+    fn partial(&self, _text: PartialText, _what: String) {}
+
+    /// Whether somebody would save what is partial: making it costs a copy of the passes.
+    fn wants_partial(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody listens.
+impl Watch for () {}
+
+/// A stage of work: measures its time and tells its progress.
+pub struct Stage<'a> {
+    watch: &'a dyn Watch,
+    start: Instant,
+}
+
+impl<'a> Stage<'a> {
+    /// Begins a stage.
+    pub fn begin(watch: &'a dyn Watch, name: &'static str) -> Self {
+        watch.begin(name);
+        Self { watch, start: Instant::now() }
+    }
+
+    /// Tells a fraction done, 0 to 1.
+    pub fn at(&self, fraction: f64) {
+        self.watch.at(fraction);
+    }
+
+    /// Ends the stage; its wall time, s.
+    pub fn end(self) -> f64 {
+        self.watch.end();
+        self.start.elapsed().as_secs_f64()
+    }
+}

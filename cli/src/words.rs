@@ -1,0 +1,86 @@
+//! Tables and numbers as text, for screens and pages.
+
+use osculate_geom::Diagnostic;
+
+/// A table with right-aligned columns but the first.
+pub struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these headings, units in them.
+    pub fn new<'a>(headings: impl IntoIterator<Item = &'a str>) -> Self {
+        Self { rows: vec![headings.into_iter().map(ToString::to_string).collect()] }
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// The table as text.
+    pub fn render(&self) -> String {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let width = |c: usize| self.rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max();
+        let widths: Vec<usize> = (0..columns).map(|c| width(c).unwrap_or(0)).collect();
+        let mut out = String::new();
+        for (k, row) in self.rows.iter().enumerate() {
+            let mut line = String::from(" ");
+            for (c, (cell, w)) in row.iter().zip(&widths).enumerate() {
+                let pad = " ".repeat(w.saturating_sub(cell.chars().count()));
+                if c == 0 {
+                    line.push_str(&format!(" {cell}{pad}"));
+                } else {
+                    line.push_str(&format!("  {pad}{cell}"));
+                }
+            }
+            out.push_str(line.trim_end());
+            out.push('\n');
+            if k == 0 {
+                let rule: usize = widths.iter().sum::<usize>() + 2 * columns.saturating_sub(1);
+                out.push_str(&format!("  {}\n", "-".repeat(rule)));
+            }
+        }
+        out
+    }
+}
+
+/// Findings, one a line.
+pub fn findings(all: &[Diagnostic]) -> String {
+    all.iter().map(|d| format!("  {d}\n")).collect()
+}
+
+/// A number with `digits` significant digits, plain where it is neither huge nor tiny.
+pub fn number(x: f64, digits: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        // No minus before a zero.
+        return format!("{}", x + 0.0);
+    }
+    let exponent = x.abs().log10().floor();
+    if (-5.0..7.0).contains(&exponent) {
+        let decimals = (digits as f64 - 1.0 - exponent).max(0.0) as usize;
+        format!("{x:.decimals$}")
+    } else {
+        format!("{x:.*e}", digits.saturating_sub(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_digits() {
+        assert_eq!(number(0.0123456, 3), "0.0123");
+        assert_eq!(number(123_456.0, 3), "123456");
+        assert_eq!(number(1.5e-9, 3), "1.50e-9");
+        assert_eq!(number(0.0, 3), "0");
+    }
+
+    #[test]
+    fn tables_line_up() {
+        let mut t = Table::new(["form", "width mm"]);
+        t.row(["exact".into(), "1.25".into()]);
+        assert_eq!(t.render(), "  form   width mm\n  ---------------\n  exact      1.25\n");
+    }
+}

@@ -1,0 +1,60 @@
+//! What posting may add to what a path leaves, and what planning keeps back for it.
+//!
+//! Passes are laid out for the scallop less two terms. *Words*: positions are rounded to the last decimal of the machine's axes; half
+//! a unit of it at a crest, which lies between two passes that are rounded each for itself. *Ways*: between CL points the joints
+//! move, and the tool's end strays from the straight motion that was planned, as far as the post allows: its tip, and what its axis
+//! turns about the tip at the cutter's radius. Such a stray is greatest in the middle of a block, points any way, and at a crest is the
+//! mean of two passes that stray to either side: a quarter of the most that the post allows is counted.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::work::nc;
+use osculate_postproc::SolveOptions;
+use osculate_productivity::plan::Tolerance;
+
+/// How far the tip may stray, of the chords; at the cutter's radius the axis as far again.
+const WAYS: f64 = 0.25;
+/// ... but no less than this, mm, which programs can just say.
+const LEAST_TIP_MM: f64 = 0.5e-4;
+/// The share of both that is counted.
+const COUNTED: f64 = 0.25;
+/// The cone in which joints are held near a pole, of what the axis may stray.
+const CONE: f64 = 0.5;
+/// Planning keeps back no more than this share of the scallop: above it passes cannot make good for a coarse machine.
+const MOST: f64 = 0.3;
+
+/// How closely the joints follow the path of a job.
+pub fn solve(job: &Job) -> Result<SolveOptions, Failure> {
+    let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter()?.radius_mm(), job.tolerance()?);
+    let tip_tol_mm = (WAYS * t.chord_mm).clamp(LEAST_TIP_MM, coarse.tip_tol_mm);
+    let axis_tol_rad = (tip_tol_mm / radius_mm).min(coarse.axis_tol_rad);
+    let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
+    Ok(SolveOptions { tip_tol_mm, axis_tol_rad, singular_cone_rad, ..coarse })
+}
+
+/// Half a unit of the last decimal of the coarsest slide, mm.
+fn words_mm(job: &Job) -> Result<f64, Failure> {
+    let machine = nc::control(job)?.0.machine;
+    let decimals =
+        machine.linear().map(|p| machine.joints()[p].decimals).into_iter().fold(usize::MAX, usize::min);
+    // A machine has few decimals.
+    Ok(0.5 * 10f64.powi(-(decimals.min(16) as i32)))
+}
+
+/// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
+pub fn leaning(job: &Job, share: f64) -> Result<Tolerance, Failure> {
+    let s = solve(job)?;
+    let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter()?.radius_mm());
+    kept_back(job, share, words_mm(job)? + ways_mm)
+}
+
+/// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
+pub fn upright(job: &Job) -> Result<Tolerance, Failure> {
+    kept_back(job, 1.0, words_mm(job)?)
+}
+
+fn kept_back(job: &Job, share: f64, by_mm: f64) -> Result<Tolerance, Failure> {
+    let given = job.tolerance()?;
+    let scallop_mm = share * (given.scallop_mm - by_mm.min(MOST * given.scallop_mm));
+    Ok(Tolerance { scallop_mm, ..given })
+}

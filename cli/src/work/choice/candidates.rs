@@ -1,0 +1,126 @@
+//! The candidates of a job: its tools times strategies times directions times leads.
+
+use crate::failure::Failure;
+use crate::job::{Job, LeadKey};
+use crate::part::{self, JobFaces};
+use crate::work::drop;
+use crate::work::passes::BALL_LEAD_DEG;
+use crate::work::rough;
+use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
+use osculate_productivity::compare::Candidate;
+use osculate_productivity::plan::{Along, LocalLead, Strategy};
+use osculate_tools::{Cutter, Lean};
+
+/// Leads tried, degrees: small ones for wide strips, great ones to keep heel and holder off.
+const LEADS_DEG: [f64; 14] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 27.0, 35.0, 45.0];
+/// Points a side of a face for its mean normal.
+const GRID: usize = 8;
+
+pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
+    if drop::KINDS.contains(&job.strategy.kind.as_str()) || rough::is(job) {
+        let text = format!("[strategy] {} takes one [tool], not [[tools]]", job.strategy.kind);
+        return Err(Failure::file(&job.path, text));
+    }
+    let strategies = if job.strategy.kind == "auto" {
+        every(job, faces)?
+    } else {
+        vec![crate::work::strategy::of_job(job)?]
+    };
+    let strategies: Vec<Strategy> = strategies.into_iter().flat_map(each_direction).collect();
+    let mut out = Vec::new();
+    for (tool, cutter) in cutters.iter().enumerate() {
+        for strategy in &strategies {
+            let fits = match strategy {
+                Strategy::Contour2cl { .. } => cutter.is_ball(),
+                Strategy::Curvature5c => !cutter.is_ball(),
+                _ => true,
+            };
+            if !fits {
+                continue;
+            }
+            // Regions pay where leads, and with them strips, differ over the face.
+            let only_local = job.strategy.kind == "auto" && matches!(strategy, Strategy::Regions { .. });
+            let leans = leans(job, cutter, strategy)?;
+            for (lean, local) in leans.into_iter().filter(|(_, local)| *local || !only_local) {
+                out.push(Candidate { tool, strategy: *strategy, lean, local });
+            }
+        }
+    }
+    if out.is_empty() {
+        let text = format!(
+            "[strategy] {} is not for any of these tools: contour_2cl takes a ball, curvature_5c a flat or toroidal cutter",
+            job.strategy.kind
+        );
+        return Err(Failure::file(&job.path, text));
+    }
+    Ok(out)
+}
+
+/// Leads of a tool and strategy, and whether each is held or the least of one that is found place by place.
+fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<(Lean, bool)>, Failure> {
+    if strategy.fixed_axis().is_some() {
+        return Ok(vec![(Lean::default(), false)]);
+    }
+    let held = |leads: &[f64]| -> Result<Vec<(Lean, bool)>, Failure> {
+        leads.iter().map(|deg| Ok((job.lean(deg.to_radians())?, false))).collect()
+    };
+    match job.strategy.lead_deg {
+        LeadKey::Given(deg) => held(&[deg]),
+        // A ball is the same at any lead.
+        _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]),
+        LeadKey::Local => Ok(vec![(job.lean(LocalLead::LEAST_RAD)?, true)]),
+        LeadKey::Auto => {
+            let mut all = held(&LEADS_DEG)?;
+            all.push((job.lean(LocalLead::LEAST_RAD)?, true));
+            Ok(all)
+        }
+    }
+}
+
+/// Every strategy that can be chosen.
+fn every(job: &Job, faces: &JobFaces) -> Result<Vec<Strategy>, Failure> {
+    let [first, second] = plane_normals(faces);
+    Ok(vec![
+        Strategy::Isoparametric { along: Along::Auto },
+        Strategy::Regions { along: Along::Auto },
+        Strategy::Isoplanar { normal: first },
+        Strategy::Isoplanar { normal: second },
+        Strategy::Isoscallop,
+        Strategy::Streamline,
+        Strategy::Curvature5c,
+        Strategy::Contour2cl { axis: job.contour_axis()? },
+    ])
+}
+
+/// Two normals of planes across the faces, at right angles to their mean normal and to each other.
+fn plane_normals(faces: &JobFaces) -> [Unit3; 2] {
+    let all = faces.faces.iter().flat_map(|f| part::grid(&*f.surface, GRID));
+    let sum = all.fold(Vec3::zeros(), |s, (_, _, n)| s + n.into_inner());
+    let up = Unit3::try_new(sum, 1e-9).unwrap_or_else(Vec3::z_axis);
+    let first = any_perpendicular(&up);
+    [first, Unit3::new_unchecked(up.cross(&first))]
+}
+
+/// A strategy whose direction is open, with both directions.
+fn each_direction(strategy: Strategy) -> Vec<Strategy> {
+    match strategy {
+        Strategy::Isoparametric { along: Along::Auto } => {
+            [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) }).to_vec()
+        }
+        Strategy::Regions { along: Along::Auto } => {
+            [Axis::U, Axis::V].map(|a| Strategy::Regions { along: Along::Fixed(a) }).to_vec()
+        }
+        other => vec![other],
+    }
+}
+
+/// A strategy in words, with its direction.
+pub(super) fn words(strategy: &Strategy) -> String {
+    match strategy {
+        Strategy::Isoparametric { along: Along::Fixed(a) } | Strategy::Regions { along: Along::Fixed(a) } => {
+            format!("{} {}", strategy.name(), if *a == Axis::U { "u" } else { "v" })
+        }
+        Strategy::Isoplanar { normal: n } => format!("isoplanar ({:.2}, {:.2}, {:.2})", n.x, n.y, n.z),
+        other => other.name().to_owned(),
+    }
+}

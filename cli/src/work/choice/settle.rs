@@ -1,0 +1,127 @@
+//! Contenders verified from their programs until enough of them hold.
+
+use super::table::Measured;
+use super::{Choice, Contender, text_table};
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part;
+use crate::watch::Watch;
+use crate::work::look::Objection;
+use crate::work::program::{Planned, Posted, WallS};
+use crate::work::verify::{Verification, Verified};
+use osculate_productivity::levels::{Totals, levels};
+use osculate_tools::removal::Limits;
+
+/// Contenders that are verified at most.
+const MOST_VERIFIED: usize = 9;
+
+/// The plan that is chosen.
+pub struct Settled {
+    /// The job with its tool.
+    pub job: Job,
+    /// The plan.
+    pub planned: Planned<'static>,
+    /// Its program.
+    pub posted: Posted,
+    /// What the program leaves.
+    pub verified: Verified,
+}
+
+/// Verifies contenders until `enough` hold, and then those around the first that may take less time; the fastest that holds is
+/// chosen, or where none does the one that is least off.
+///
+/// # Errors
+/// Where no candidate comes as far as verification, with every reason in one table.
+pub fn settle(
+    choice: &mut Choice<'_>,
+    enough: usize,
+    watch: &dyn Watch,
+    wall_s: &mut WallS,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Settled, Failure> {
+    let mut best: Option<(f64, Settled)> = None;
+    let (mut holding, mut verified) = (0, 0);
+    while verified < MOST_VERIFIED {
+        let Some(contender) = choice.next(watch, wall_s, progress)? else { break };
+        verified += 1;
+        let found =
+            match contender.posted.verify(&contender.job, choice.faces, &contender.planned, wall_s, watch) {
+                Ok(found) => found,
+                Err(why) => {
+                    choice.lost(&contender, &why);
+                    continue;
+                }
+            };
+        let why = objection(&contender.job, &found.summary)?;
+        holding += usize::from(why.is_none());
+        let measured = measured(choice, &contender, &found.summary)?;
+        choice.record(&contender, measured, why);
+        if holding >= enough && found.summary.within_tolerance {
+            choice.undercut(&contender);
+        }
+        let off = off_by(&contender.job, &found.summary)?;
+        let rank = (off, contender.posted.time_min());
+        if best.as_ref().is_none_or(|b| rank < (b.0, b.1.posted.time_min())) {
+            let Contender { job, planned, posted, .. } = contender;
+            best = Some((off, Settled { job, planned, posted, verified: found }));
+        }
+    }
+    best.map(|b| b.1).ok_or_else(|| {
+        let job = &choice.jobs[0];
+        let table = text_table(&choice.rows());
+        Failure::file(&job.path, format!("no tool and strategy holds the tolerance:\n\n{table}"))
+    })
+}
+
+/// By how much of its limits a verification is off; nothing where it holds, so that the first that holds stays the best.
+fn off_by(job: &Job, v: &Verification) -> Result<f64, Failure> {
+    if v.within_tolerance {
+        return Ok(0.0);
+    }
+    let t = job.tolerance()?;
+    Ok((v.scallop_max_mm / t.scallop_mm).max(v.gouge_max_mm / t.gouge_mm).max(1.0))
+}
+
+/// Why a verification does not hold.
+fn objection(job: &Job, v: &Verification) -> Result<Option<Objection>, Failure> {
+    if v.within_tolerance {
+        return Ok(None);
+    }
+    let t = job.tolerance()?;
+    let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
+    let figures = [
+        ("gouge", v.gouge_max_mm, t.gouge_mm, "mm"),
+        ("holder takes", v.holder_max_mm, collision, "mm"),
+        ("rapid move takes", v.rapid_max_mm, collision, "mm"),
+        ("uncut area", v.uncut_area_mm2, 0.0, "mm2"),
+        ("scallop", v.scallop_max_mm, t.scallop_mm, "mm"),
+    ];
+    let bad = figures.into_iter().enumerate().find(|(_, (_, is, limit, _))| is > limit);
+    let (k, text) = bad.map_or_else(
+        || (0, "verification does not hold".to_owned()),
+        |(k, (what, is, limit, unit))| {
+            (k, format!("verified: {what} {is:.4} {unit}, {limit} {unit} is accepted"))
+        },
+    );
+    Ok(Some(Objection { digs_in: k == 0, left_mm: (k == 4).then_some(v.scallop_max_mm), text }))
+}
+
+fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Result<Measured, Failure> {
+    let area_mm2 = choice.faces.faces.iter().map(part::area).sum();
+    let totals = Totals { area_mm2, time_min: contender.posted.time_min() };
+    let passes = &contender.planned.passes;
+    let l = levels(&passes.passes, contender.job.feed_mm_min()?, totals);
+    let lengths: Vec<f64> = passes.passes.iter().map(|p| p.length_mm()).collect();
+    let whole: f64 = lengths.iter().sum();
+    let regional = l.regional.iter().zip(&lengths).map(|(r, l)| r * l).sum::<f64>();
+    Ok(Measured {
+        scallop_max_mm: v.scallop_max_mm,
+        scallop_median_mm: v.scallop_median_mm,
+        gouge_max_mm: v.gouge_max_mm,
+        uncut_area_mm2: v.uncut_area_mm2,
+        within_tolerance: v.within_tolerance,
+        instantaneous_mm2_min: [l.instantaneous_min, l.instantaneous_max],
+        regional_mm2_min: if whole > 0.0 { regional / whole } else { 0.0 },
+        global_mm2_min: l.global,
+    })
+}

@@ -1,0 +1,203 @@
+//! What became of the candidates, as rows for people and for programs.
+
+use super::{Choice, Entry, State, candidates};
+use crate::report;
+use crate::words::Table;
+use serde::Serialize;
+
+/// Characters of a reason in the table; all of it is in the JSON.
+const WHY: usize = 90;
+
+/// What verification measured of a contender.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Measured {
+    /// Highest material left, mm.
+    pub scallop_max_mm: f64,
+    /// Median, mm.
+    pub scallop_median_mm: f64,
+    /// Deepest gouge, mm.
+    pub gouge_max_mm: f64,
+    /// Area left standing, mm2.
+    pub uncut_area_mm2: f64,
+    /// Whether it is within tolerance.
+    pub within_tolerance: bool,
+    /// Area per minute at its places, least and greatest, mm2/min.
+    pub instantaneous_mm2_min: [f64; 2],
+    /// Mean over the passes, mm2/min.
+    pub regional_mm2_min: f64,
+    /// Area over time, mm2/min.
+    pub global_mm2_min: f64,
+}
+
+/// What became of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Verified within tolerance; the first such row is the best.
+    Holds,
+    /// Possible, and slower than the best by what is known of it.
+    Slower,
+    /// Screened only: others promised more, or enough was planned.
+    NotPlanned,
+    /// Planned or verified, and not within tolerance.
+    Fails,
+    /// Not possible.
+    NotPossible,
+}
+
+/// One row.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// The tool in words.
+    pub tool: String,
+    /// Strategy with direction.
+    pub strategy: String,
+    /// Lead; of a local one the least allowed.
+    pub lead_deg: f64,
+    /// Whether the lead was found place by place.
+    pub local_lead: bool,
+    /// Tilt.
+    pub tilt_deg: f64,
+    /// Leads looked at.
+    pub leads: usize,
+    /// Time by strips at places; absent where there are none.
+    pub pointwise_min: Option<f64>,
+    /// Time with the overlap of constant spacing.
+    pub layout_min: Option<f64>,
+    /// Length of passes so predicted.
+    pub predicted_length_mm: Option<f64>,
+    /// Passes of the plan, where there is one.
+    pub passes: Option<usize>,
+    /// Moves of the plan.
+    pub points: Option<usize>,
+    /// Length of cutting moves of the plan.
+    pub cutting_length_mm: Option<f64>,
+    /// Time of the program, where it was posted.
+    pub time_min: Option<f64>,
+    /// What was measured, where it was verified.
+    pub verified: Option<Measured>,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Why it is not the best.
+    pub why: String,
+}
+
+fn of_entry(choice: &Choice<'_>, entry: &Entry, leads: usize) -> Row {
+    let c = &entry.candidate;
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let f = entry.figures;
+    let (outcome, why) = match &entry.state {
+        State::Out(why) if f.is_some() => (Outcome::Fails, why.clone()),
+        State::Out(why) => (Outcome::NotPossible, why.clone()),
+        State::Taken if entry.verified.is_some_and(|v| v.within_tolerance) => (Outcome::Holds, String::new()),
+        State::Open => {
+            let promise = Choice::least_min(entry);
+            (Outcome::NotPlanned, format!("not planned: strips alone take {promise:.2} min"))
+        }
+        _ => (Outcome::Slower, format!("takes {:.2} min at least", Choice::least_min(entry))),
+    };
+    Row {
+        tool: choice.jobs[c.tool].tool_words(),
+        strategy: candidates::words(&c.strategy),
+        lead_deg: c.lean.lead_rad.to_degrees(),
+        local_lead: c.local,
+        tilt_deg: c.lean.tilt_rad.to_degrees(),
+        leads,
+        pointwise_min: finite(entry.screened.pointwise_min),
+        layout_min: finite(entry.screened.layout_min),
+        predicted_length_mm: finite(entry.screened.length_mm),
+        passes: f.map(|f| f.passes),
+        points: f.map(|f| f.points),
+        cutting_length_mm: f.map(|f| f.cutting_length_mm),
+        time_min: f.and_then(|f| f.posted_min),
+        verified: entry.verified,
+        outcome,
+        why,
+    }
+}
+
+/// How far a row has come, the furthest first.
+fn rank(entry: &Entry) -> (u8, f64) {
+    let class = match &entry.state {
+        State::Taken => 0,
+        State::Posted(_) | State::Planned(_) => 1,
+        // What was planned and failed says more than what was not planned.
+        State::Out(_) if entry.verified.is_some() => 2,
+        State::Out(_) if entry.figures.is_some() => 3,
+        State::Out(_) if entry.tried => 4,
+        State::Open => 5,
+        State::Out(_) => 6,
+    };
+    (class, Choice::least_min(entry))
+}
+
+pub(super) fn rows(choice: &Choice<'_>) -> Vec<Row> {
+    let mut best: Vec<(&Entry, usize)> = Vec::new();
+    for e in &choice.entries {
+        let group =
+            |o: &Entry| (o.candidate.tool, o.candidate.strategy) == (e.candidate.tool, e.candidate.strategy);
+        match best.iter_mut().find(|(o, _)| group(o)) {
+            Some((o, leads)) => {
+                *leads += 1;
+                if rank(e) < rank(o) {
+                    *o = e;
+                }
+            }
+            None => best.push((e, 1)),
+        }
+    }
+    best.sort_by(|a, b| {
+        let (a, b) = (rank(a.0), rank(b.0));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    best.into_iter().map(|(e, leads)| of_entry(choice, e, leads)).collect()
+}
+
+fn cells(row: &Row) -> [String; 9] {
+    let time = |t: Option<f64>| t.map_or_else(|| "-".to_owned(), |t| format!("{t:.2}"));
+    let length = row.cutting_length_mm.or(row.predicted_length_mm);
+    let measured = row
+        .verified
+        .map_or_else(|| "-".to_owned(), |v| format!("{:.4} / {:.4}", v.scallop_max_mm, v.gouge_max_mm));
+    let mut why: String = row.why.lines().next().unwrap_or("").chars().take(WHY).collect();
+    if row.outcome == Outcome::Holds {
+        why = "within tolerance".to_owned();
+    }
+    [
+        row.tool.clone(),
+        row.strategy.clone(),
+        if row.local_lead { "local".to_owned() } else { format!("{:.0}", row.lead_deg) },
+        time(row.pointwise_min),
+        time(row.layout_min),
+        length.map_or_else(|| "-".to_owned(), |l| format!("{l:.0}")),
+        time(row.time_min),
+        measured,
+        why,
+    ]
+}
+
+const HEADINGS: [&str; 9] = [
+    "tool",
+    "strategy",
+    "lead deg",
+    "pointwise min",
+    "layout min",
+    "length mm",
+    "time min",
+    "scallop / gouge mm",
+    "",
+];
+
+/// The rows as text.
+pub fn text_table(rows: &[Row]) -> String {
+    let mut t = Table::new(HEADINGS);
+    rows.iter().for_each(|r| t.row(cells(r)));
+    t.render()
+}
+
+/// The rows for the report.
+pub fn page_table(rows: &[Row], caption: String) -> report::Table {
+    let columns =
+        HEADINGS.map(|h| report::Column { name: h.to_owned(), ..report::Column::default() }).to_vec();
+    report::Table { caption, columns, rows: rows.iter().map(|r| cells(r).to_vec()).collect() }
+}

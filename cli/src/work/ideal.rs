@@ -1,0 +1,97 @@
+//! The least time of any plan of a job, and how near a plan comes to it.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part::JobFaces;
+use crate::words::number;
+use crate::work::choice::patches;
+use crate::work::program::{Planned, Posted};
+use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Search};
+use osculate_productivity::optimum::Range;
+use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
+
+/// Places over all faces at which the best posture is searched.
+const PLACES: usize = 16;
+
+/// The bound.
+#[derive(Debug, Clone, Serialize)]
+pub struct Bound {
+    /// Least time, min.
+    pub time_min: f64,
+    /// Standard error of the sum over places, min.
+    pub error_min: f64,
+    /// Places.
+    pub places: usize,
+    /// Area that none of the tools reaches.
+    pub unreached_mm2: f64,
+    /// What it is the least time of.
+    pub assumes: String,
+}
+
+impl Bound {
+    /// Time and error, min, as tables show them.
+    pub fn words(&self) -> String {
+        format!("{} +- {}", number(self.time_min, 3), number(self.error_min, 2))
+    }
+}
+
+/// The bound and the plan's share of it, keys of `summary.json`.
+#[derive(Debug, Clone, Serialize)]
+pub struct IdealTime {
+    /// The bound.
+    pub ideal: Bound,
+    /// Length of the passes on the part, mm.
+    pub contact_length_mm: f64,
+    /// The bound over the longer of cutting time and contact length over feed.
+    pub efficiency_percent: f64,
+}
+
+/// The bound over the faces of a job with all its tools.
+pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
+    let jobs = job.each_tool();
+    let cutters = jobs.iter().map(Job::cutter).collect::<Result<Vec<_>, _>>()?;
+    let mut tools = Vec::with_capacity(jobs.len());
+    for (one, cutter) in jobs.iter().zip(&cutters) {
+        tools.push(Feeding { cutter, feed_mm_min: one.feed_mm_min()? });
+    }
+    let (tilt, tilts) = tilts(job);
+    let search = Search { places: PLACES, tilt };
+    let found = ideal::ideal(&patches(faces), &tools, &job.tolerance()?, search)
+        .map_err(|e| Failure::file(&job.path, e))?;
+    Ok(Bound {
+        time_min: found.time_min,
+        error_min: found.error_min,
+        places: found.places,
+        unreached_mm2: found.unreached_mm2,
+        assumes: format!(
+            "the best posture at every point with leads to {:.0} deg and {tilts}, tool touching the part, contact at the \
+             tool's feed; no overlap, no links, no tooth marks, no limits of the machine",
+            MOST_LEAD_RAD.to_degrees()
+        ),
+    })
+}
+
+/// Tilts of the bound, and in words: where the job does not tilt, nor does the bound, as the feed is free to turn instead.
+pub fn tilts(job: &Job) -> (Range, &'static str) {
+    if job.strategy.tilt_deg == 0.0 {
+        (Range::only(0.0), "no tilt")
+    } else {
+        (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt")
+    }
+}
+
+/// The bound beside a plan.
+pub fn of_plan(
+    job: &Job,
+    faces: &JobFaces,
+    planned: &Planned<'_>,
+    posted: &Posted,
+) -> Result<IdealTime, Failure> {
+    let ideal = of_job(job, faces)?;
+    let contact_length_mm = planned.passes.length_mm();
+    // The tip may be slower than the contact or faster: the bound is one of contacts.
+    let cutting = posted.read.cutting_time_min.max(contact_length_mm / job.feed_mm_min()?);
+    let efficiency_percent = if cutting > 0.0 { 100.0 * ideal.time_min / cutting } else { 0.0 };
+    Ok(IdealTime { ideal, contact_length_mm, efficiency_percent })
+}

@@ -1,0 +1,105 @@
+//! What a job leaves out of its passes where the tool would go into the part: the keys, the figures and their tables.
+
+use crate::failure::Failure;
+use crate::job::{Gouges, Job};
+use crate::part::JobFaces;
+use crate::report::{Column, Table};
+use crate::words::number;
+use crate::work::drop::names;
+use crate::work::extras::{Extras, FaceLeftOut};
+use crate::work::passes;
+use osculate_geom::Diagnostic;
+use osculate_productivity::plan::{Guard, LeftOut, Linked, Passes, leave_out};
+
+/// Whether the job wants places left out at which the tool would go into the part.
+pub fn is_wanted(job: &Job) -> bool {
+    job.strategy.gouges == Gouges::LeaveOut
+}
+
+/// Refuses the keys where they say nothing.
+pub fn check(job: &Job) -> Result<(), Failure> {
+    let refuse = |text: String| Err(Failure::file(&job.path, format!("[strategy] {text}")));
+    let kind = job.strategy.kind.as_str();
+    match (is_wanted(job), job.strategy.keep_off_mm) {
+        (false, Some(_)) => refuse("keep_off_mm needs gouges = \"leave_out\"".to_owned()),
+        (true, _) if kind == "auto" || job.each_tool().len() > 1 => refuse(
+            "gouges = \"leave_out\" needs one tool and a strategy by name: what is chosen from leaves nothing out"
+                .to_owned(),
+        ),
+        (true, _) if kind == "z_level" || kind == "flank" => {
+            refuse(format!("gouges = \"leave_out\" is for passes of finishing, not for {kind}"))
+        }
+        (true, Some(v)) if !(v.is_finite() && v >= 0.0) => {
+            refuse(format!("keep_off_mm = {v} must be zero or a positive number"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What remains of passes with the tool of the job, whatever its keys say.
+pub fn of(job: &Job, faces: &JobFaces, passes: &Passes) -> Result<LeftOut, Failure> {
+    let holder = job.holder()?;
+    let guard = Guard {
+        faces: &names(&faces.faces),
+        check: &names(&faces.check),
+        cutter: &job.cutter()?,
+        holder: holder.as_ref(),
+        tolerance: job.tolerance()?,
+        keep_off_mm: job.strategy.keep_off_mm.unwrap_or(0.0),
+    };
+    leave_out(passes, &guard).map_err(|e| Failure::file(&job.path, e))
+}
+
+/// Passes with what the job wants left out of them, joined, and what the report says of it.
+pub fn linked(
+    job: &Job,
+    faces: &JobFaces,
+    passes: Passes,
+) -> Result<(Passes, Linked, Extras<'static>), Failure> {
+    let cutter = &job.cutter()?;
+    let mut extras = Extras::default();
+    if !is_wanted(job) {
+        let linked = passes::linked(job, faces, &passes, cutter)?;
+        return Ok((passes, linked, extras));
+    }
+    let LeftOut { passes: rest, touched, area_mm2 } = of(job, faces, &passes)?;
+    if rest.passes.is_empty() {
+        let text = "[strategy] gouges = \"leave_out\": nothing remains: the tool goes into the part or a check face all along \
+                    the passes";
+        return Err(Failure::file(&job.path, text));
+    }
+    if touched > 0 {
+        let found = faces.faces.iter().zip(area_mm2).filter(|(_, a)| *a > 0.0);
+        extras.left_out = found.map(|(f, area_mm2)| FaceLeftOut { face: f.id.clone(), area_mm2 }).collect();
+        let text = format!(
+            "{touched} of {} passes do not go where the tool would go into the part or a check face; {}, which counts as \
+             uncut",
+            passes.passes.len(),
+            words(&extras.left_out)
+        );
+        extras.diagnostics.push(Diagnostic::warning("left out", text));
+        extras.tables.push(Table {
+            caption: "Left out: the tool would go into the part or a check face".to_owned(),
+            columns: ["face", "area mm2"]
+                .map(|n| Column { name: n.to_owned(), ..Column::default() })
+                .to_vec(),
+            rows: extras
+                .left_out
+                .iter()
+                .map(|f| vec![f.face.clone(), format!("{:.3}", f.area_mm2)])
+                .collect(),
+        });
+    }
+    let linked = passes::linked_around_all(job, faces, &rest, cutter)?;
+    Ok((rest, linked, extras))
+}
+
+/// Faces and areas in words.
+pub fn words(left: &[FaceLeftOut]) -> String {
+    if left.is_empty() {
+        return "nothing of the faces stays uncut for it".to_owned();
+    }
+    let each: Vec<String> =
+        left.iter().map(|f| format!("{} {} mm2", f.face, number(f.area_mm2, 4))).collect();
+    format!("left out: {}", each.join(", "))
+}

@@ -1,0 +1,265 @@
+//! Passes over the faces of a job by one strategy, joined to a path.
+
+use crate::failure::Failure;
+use crate::job::{Job, LeadKey};
+use crate::part::{self, JobFaces, LoadedFace};
+use crate::watch::Watch;
+use crate::work::budget;
+use crate::work::left_out;
+use crate::work::look::Look;
+use crate::work::nc;
+use crate::work::rough;
+use osculate_geom::{Box3, Diagnostic, Surface};
+use osculate_productivity::compare::Around;
+use osculate_productivity::plan::{
+    Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Walls, link, predicted_length_mm,
+    run as plan_face,
+};
+use osculate_tools::cl::ClPath;
+use osculate_tools::{Cutter, Lean};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Leads tried where the job leaves the choice to the program, degrees.
+pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
+/// Lead of a ball where the job leaves the choice: enough to keep the tip, which does not cut, off the part.
+pub const BALL_LEAD_DEG: f64 = 15.0;
+
+/// How the passes of a job are joined.
+pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Result<Links, Failure> {
+    let mut obstacles = Box3::empty();
+    for f in faces.faces.iter().chain(&faces.check) {
+        obstacles = obstacles.union(&part::bounds(f));
+    }
+    let feed_mm_min = job.feed_mm_min()?;
+    Ok(Links {
+        obstacles,
+        clearance_mm: length(job, "clearance_mm", job.setup.clearance_mm)?.unwrap_or(10.0),
+        approach_mm: approach_mm(job)?,
+        hop_mm: hop_mm(job)?,
+        cutter: *cutter,
+        holder: job.holder()?,
+        feed_mm_min,
+        plunge_mm_min: 0.5 * feed_mm_min,
+    })
+}
+
+/// A length of `[setup]`, which must be positive.
+fn length(job: &Job, key: &str, given: Option<f64>) -> Result<Option<f64>, Failure> {
+    match given {
+        Some(v) if !(v.is_finite() && v > 0.0) => {
+            Err(Failure::file(&job.path, format!("[setup] {key} = {v} must be a positive number")))
+        }
+        other => Ok(other),
+    }
+}
+
+fn approach_mm(job: &Job) -> Result<f64, Failure> {
+    Ok(length(job, "approach_mm", job.setup.approach_mm)?.unwrap_or(2.0))
+}
+
+/// The lift of the lowest hops, of `approach_mm`, where the job does not say it.
+const HOP_SHARE: f64 = 0.125;
+
+fn hop_mm(job: &Job) -> Result<f64, Failure> {
+    let approach = approach_mm(job)?;
+    let own = if rough::is(job) { approach } else { HOP_SHARE * approach };
+    let hop = length(job, "hop_mm", job.setup.hop_mm)?.unwrap_or(own);
+    if hop > approach {
+        let why = format!(
+            "[setup] hop_mm = {hop} is more than approach_mm = {approach}: hops rise by no more than that"
+        );
+        return Err(Failure::file(&job.path, why));
+    }
+    Ok(hop)
+}
+
+/// Faces as hops see them.
+fn walls_of<'a>(job: &Job, faces: impl Iterator<Item = &'a LoadedFace>) -> Result<Walls, Failure> {
+    // Below the height of a hop, which passes over neighbours of the faces to machine.
+    let clearance_mm = length(job, "check_clearance_mm", job.setup.check_clearance_mm)?
+        .map_or_else(|| approach_mm(job).map(|a| 0.5 * a), Ok)?;
+    let named: Vec<Named<'_>> = faces.map(|f| Named { face: &f.id, surface: &*f.surface }).collect();
+    Walls::of(&named, clearance_mm)
+        .map_err(|e| Failure::file(&job.path, format!("faces that hops keep off: {e}")))
+}
+
+/// The check faces as hops see them, made once for all plans of a job.
+fn walls(job: &Job, faces: &JobFaces) -> Result<Arc<Walls>, Failure> {
+    if let Some(made) = faces.walls.get() {
+        return Ok(Arc::clone(made));
+    }
+    let walls = walls_of(job, faces.check.iter())?;
+    Ok(Arc::clone(faces.walls.get_or_init(|| Arc::new(walls))))
+}
+
+/// Passes joined to a path.
+pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
+    Ok(link(&passes.passes, &links(job, faces, cutter)?, &*walls(job, faces)?))
+}
+
+/// Passes joined to a path whose hops keep off faces to machine too: over places that passes leave out.
+pub fn linked_around_all(
+    job: &Job,
+    faces: &JobFaces,
+    passes: &Passes,
+    cutter: &Cutter,
+) -> Result<Linked, Failure> {
+    let walls = walls_of(job, faces.faces.iter().chain(&faces.check))?;
+    Ok(link(&passes.passes, &links(job, faces, cutter)?, &walls))
+}
+
+/// A linked path with the tool and spindle of the job.
+pub fn cl_path(job: &Job, linked: &Linked) -> Result<ClPath, Failure> {
+    let mut cl = linked.path.clone();
+    cl.cutter = Some(job.cutter_spec()?);
+    cl.holder = job.tool().holder;
+    cl.spindle_rpm = job.spindle_rpm()?;
+    Ok(cl)
+}
+
+/// The name of a job in programs and reports: that of its folder, or else of the file.
+pub fn title(job: &Job) -> String {
+    let path = job.path.as_path();
+    let name = path.parent().and_then(Path::file_name).or_else(|| path.file_stem());
+    name.map_or_else(|| "osculate".to_owned(), |t| t.to_string_lossy().into_owned())
+}
+
+/// How passes are to be placed, and who hears of those that are finished.
+pub struct Way<'a> {
+    /// The strategy.
+    pub strategy: &'a Strategy,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// Whether the lead is found place by place; that of `lean` is then the least.
+    pub local: bool,
+    /// The share of the scallop tolerance that passes are laid out for.
+    pub share: f64,
+    /// Who hears what is finished.
+    pub watch: &'a dyn Watch,
+}
+
+/// Passes over every face of the job with its tool.
+pub fn each_face(
+    job: &Job,
+    faces: &JobFaces,
+    way: &Way<'_>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Passes, Failure> {
+    let tolerance = budget::leaning(job, way.share)?;
+    let cutter = &job.cutter()?;
+    let holder = job.holder()?;
+    let all = faces.faces.iter().chain(&faces.check);
+    let around = way.local.then(|| Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str()))));
+    let local = LocalLead {
+        tilt_rad: way.lean.tilt_rad,
+        least_rad: way.lean.lead_rad,
+        most_rad: LocalLead::MOST_RAD,
+        rate_rad_per_mm: job.lead_rate_rad_per_mm()?,
+        holder: holder.as_ref(),
+        around: around.as_ref(),
+    };
+    let lean = if way.local { Leaning::Local(&local) } else { way.lean.into() };
+    let n = faces.faces.len();
+    let mut out = Passes::default();
+    for (k, face) in faces.faces.iter().enumerate() {
+        let here = move |f: f64| progress((k as f64 + f) / n as f64);
+        let (surface, face) = (&*face.surface, face.id.as_str());
+        let task = Task { surface, face, cutter, lean, tolerance, progress: &here };
+        let p = plan_face(&task, way.strategy).map_err(|e| Failure::file(&job.path, e))?;
+        out.passes.extend(p.passes);
+        out.diagnostics.extend(p.diagnostics);
+        if way.watch.wants_partial() && k + 1 < n {
+            let empty = cl_path(job, &Linked::default())?;
+            let (done, links, name) = (out.passes.clone(), links(job, faces, cutter)?, title(job));
+            let walls = walls(job, faces)?;
+            let text = move || {
+                nc::cl_text(&ClPath { moves: link(&done, &links, &walls).path.moves, ..empty }, &name)
+            };
+            way.watch.partial(Box::new(text), format!("the passes of {} of {n} faces", k + 1));
+        }
+    }
+    Ok(out)
+}
+
+/// Passes of a tool that leans along them: the lead is the job's, or the best of a few.
+pub fn with_best_lead(
+    job: &Job,
+    faces: &JobFaces,
+    strategy: &Strategy,
+    watch: &dyn Watch,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<(Passes, Lean), Failure> {
+    let cutter = &job.cutter()?;
+    let way = |lean: Lean, local: bool| Way { strategy, lean, local, share: 1.0, watch };
+    if job.strategy.lead_deg == LeadKey::Local {
+        let lean = job.lean(LocalLead::LEAST_RAD)?;
+        return Ok((each_face(job, faces, &way(lean, true), progress)?, lean));
+    }
+    let mut leads: Vec<f64> = match job.strategy.lead_deg {
+        LeadKey::Given(deg) => vec![deg],
+        _ if cutter.is_ball() => vec![BALL_LEAD_DEG],
+        _ => LEADS_DEG.to_vec(),
+    };
+    let choice = leads.len() > 1;
+    if choice {
+        leads = ranked(job, faces, cutter, &leads)?;
+    }
+    let mut best: Option<(f64, Passes, Lean)> = None;
+    let mut refused: Option<Failure> = None;
+    for deg in leads {
+        let lean = job.lean(deg.to_radians())?;
+        match each_face(job, faces, &way(lean, false), progress) {
+            Ok(mut p) if choice => {
+                // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
+                let gouge = Look::at(job, faces, &linked(job, faces, &p, cutter)?)?.gouge_mm;
+                // Where such places are left out, the lead that leaves out the least is the best.
+                let (off, what, fine) = if left_out::is_wanted(job) {
+                    let left = left_out::of(job, faces, &p)?;
+                    let area: f64 = left.area_mm2.iter().sum();
+                    (area, format!("area left out ({area:.3} mm2)"), left.touched == 0)
+                } else {
+                    (gouge, format!("gouge ({gouge:.4} mm)"), gouge <= job.tolerance()?.gouge_mm)
+                };
+                p.diagnostics.push(Diagnostic::note(
+                    "lead",
+                    format!("{deg:.0} deg chosen of {LEADS_DEG:?} by predicted length and {what}"),
+                ));
+                if fine {
+                    return Ok((p, lean));
+                }
+                if best.as_ref().is_none_or(|b| off < b.0) {
+                    best = Some((off, p, lean));
+                }
+            }
+            Ok(p) => return Ok((p, lean)),
+            Err(e) => refused = Some(e),
+        }
+    }
+    match (best, refused) {
+        // None is good: the least bad one goes on to verification, which says so.
+        (Some((_, passes, lean)), _) => Ok((passes, lean)),
+        (None, Some(e)) => Err(e),
+        (None, None) => Err(Failure::job("no lead was tried")),
+    }
+}
+
+/// Leads by the length of path that they promise, shortest first.
+fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Result<Vec<f64>, Failure> {
+    let tolerance = job.tolerance()?;
+    let mut out = Vec::with_capacity(leads.len());
+    for deg in leads {
+        let lean = job.lean(deg.to_radians())?.into();
+        let length: f64 = faces
+            .faces
+            .iter()
+            .map(|face| {
+                let (surface, face) = (&*face.surface, face.id.as_str());
+                predicted_length_mm(&Task { surface, face, cutter, lean, tolerance, progress: &|_| {} })
+            })
+            .sum();
+        out.push((length, *deg));
+    }
+    out.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(out.into_iter().map(|o| o.1).collect())
+}

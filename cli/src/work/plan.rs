@@ -1,0 +1,240 @@
+//! The main job, from the part to a verified NC program with a report.
+
+use crate::failure::Failure;
+use crate::job::{Job, LeadKey};
+use crate::part::{self, JobFaces};
+use crate::report::fill::{self, Story};
+use crate::watch::{Stage, Watch};
+use crate::work::choice::{self, Choice, Row};
+use crate::work::passes::{self, Way};
+use crate::work::program::{Planned, Posted, WallS};
+use crate::work::summary::{Productivity, Summary};
+use crate::work::verify::Verified;
+use crate::work::{drop, ideal, left_out, rough, strategy};
+use osculate_geom::Diagnostic;
+use osculate_productivity::levels::{Totals, levels};
+use osculate_tools::Lean;
+
+/// A file of a plan, by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlanFile {
+    /// Name, without a folder.
+    pub name: String,
+    /// What stands in it.
+    pub text: String,
+}
+
+/// A plan with its program, what was proved of it, and the pages that a person looks at.
+pub struct Plan {
+    /// The figures.
+    pub summary: Summary,
+    /// What verification of the program measured.
+    pub verified: Verified,
+    /// Findings of all stages.
+    pub diagnostics: Vec<Diagnostic>,
+    /// CL data, program, report, pictures and summary.
+    pub files: Vec<PlanFile>,
+}
+
+impl Plan {
+    /// The file of this name.
+    #[must_use]
+    pub fn file(&self, name: &str) -> Option<&str> {
+        self.files.iter().find(|f| f.name == name).map(|f| f.text.as_str())
+    }
+
+    /// The NC program, whatever its control calls its files.
+    #[must_use]
+    pub fn program(&self) -> &str {
+        let program = self.files.iter().find(|f| f.name.starts_with("program."));
+        program.map_or("", |f| f.text.as_str())
+    }
+}
+
+/// Plans a job on its faces.
+///
+/// # Errors
+/// Where no path can be planned or posted. A plan that does not hold is none: its verdict says so.
+pub fn plan(job: &Job, faces: &JobFaces, import_s: f64, watch: &dyn Watch) -> Result<Plan, Failure> {
+    let mut wall_s = WallS { import: import_s, ..WallS::default() };
+    let open = job.strategy.kind == "auto" || job.each_tool().len() > 1;
+    if open {
+        let (job, chosen) = chosen(job, faces, &mut wall_s, watch).map_err(|why| faces.warned(why))?;
+        return chosen.told(&job, faces, wall_s, watch);
+    }
+    let stage = Stage::begin(watch, "plan");
+    let planned = planned(job, faces, watch, &|f| stage.at(f)).map_err(|why| faces.warned(why))?;
+    wall_s.plan = stage.end();
+    prove(job, faces, planned, wall_s, watch)
+}
+
+/// Posts a path that is planned already, verifies the program and tells everything.
+///
+/// # Errors
+/// Where it cannot be posted or verified.
+pub fn prove(
+    job: &Job,
+    faces: &JobFaces,
+    planned: Planned<'_>,
+    mut wall_s: WallS,
+    watch: &dyn Watch,
+) -> Result<Plan, Failure> {
+    let posted = Posted::of(job, faces, &planned, &mut wall_s, watch)?;
+    let verified = posted.verify(job, faces, &planned, &mut wall_s, watch)?;
+    Proved { planned, posted, verified, compared: Vec::new() }.told(job, faces, wall_s, watch)
+}
+
+/// The fastest of all candidates whose program holds, with the job that has its tool.
+fn chosen(
+    job: &Job,
+    faces: &JobFaces,
+    wall_s: &mut WallS,
+    watch: &dyn Watch,
+) -> Result<(Job, Proved<'static>), Failure> {
+    let stage = Stage::begin(watch, "choose");
+    let mut choice = Choice::screen(job, faces)?;
+    let settled = choice::settle(&mut choice, 1, watch, wall_s, &|f| stage.at(f))?;
+    let mut planned = settled.planned;
+    let compared = choice.rows();
+    planned.extras.diagnostics.push(Diagnostic::note("auto", choice.story()));
+    let caption = "Tools, strategies and leads compared".to_owned();
+    planned.extras.tables.push(choice::page_table(&compared, caption));
+    // Programs and verifications on the way have times of their own.
+    wall_s.plan = stage.end() - wall_s.post - wall_s.verify;
+    let proved = Proved { planned, posted: settled.posted, verified: settled.verified, compared };
+    Ok((settled.job, proved))
+}
+
+/// A plan with its program and what was measured, and what it was chosen from.
+struct Proved<'a> {
+    planned: Planned<'a>,
+    posted: Posted,
+    verified: Verified,
+    compared: Vec<Row>,
+}
+
+impl Proved<'_> {
+    /// Everything that is told of it.
+    fn told(
+        self,
+        job: &Job,
+        faces: &JobFaces,
+        mut wall_s: WallS,
+        watch: &dyn Watch,
+    ) -> Result<Plan, Failure> {
+        let Proved { planned, posted, verified, compared } = self;
+        let stage = Stage::begin(watch, "ideal");
+        // The least time for whole faces says nothing of a plan that leaves some of them out.
+        let whole = planned.extras.left_out.is_empty();
+        let ideal = if planned.with_strips && whole {
+            Some(ideal::of_plan(job, faces, &planned, &posted)?)
+        } else {
+            None
+        };
+        wall_s.ideal = stage.end();
+        let stage = Stage::begin(watch, "report");
+        let Posted { cl_text, control, program, read, diagnostics } = posted;
+        let title = passes::title(job);
+        let before = [&faces.part.diagnostics, &planned.passes.diagnostics, &planned.extras.diagnostics];
+        let diagnostics: Vec<Diagnostic> = before
+            .into_iter()
+            .flatten()
+            .cloned()
+            .chain(diagnostics)
+            .chain(verified.diagnostics.iter().cloned())
+            .collect();
+        let area_mm2: f64 = faces.faces.iter().map(part::area).sum();
+        let feed = job.feed_mm_min()?;
+        let left_mm2: f64 = planned.extras.left_out.iter().map(|f| f.area_mm2).sum();
+        let totals = Totals { area_mm2: area_mm2 - left_mm2, time_min: read.time_min };
+        let l = levels(&planned.passes.passes, feed, totals);
+        let found = if planned.local { planned.passes.inclination_rad() } else { None };
+        let mut summary = Summary {
+            format: 1,
+            strategy: planned.strategy.clone(),
+            tool: serde_json::to_value(job.cutter_spec()?).map_err(Failure::job)?,
+            tool_words: job.tool_words(),
+            lead_deg: found.map_or(planned.lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
+            lead_range_deg: found.map(|[least, _, most]| [least, most].map(f64::to_degrees)),
+            tilt_deg: planned.lean.tilt_rad.to_degrees(),
+            machine: control.machine.name().to_owned(),
+            dialect: control.dialect_name.clone(),
+            feed: control.feed_name.clone(),
+            passes: planned.passes.passes.len(),
+            points: planned.linked.path.moves.len(),
+            cutting_length_mm: planned.linked.cutting_length_mm,
+            air_length_mm: planned.linked.air_length_mm,
+            time_min: read.time_min,
+            cutting_time_min: read.cutting_time_min,
+            area_mm2,
+            productivity_mm2_min: Productivity {
+                instantaneous_min: l.instantaneous_min,
+                instantaneous_max: l.instantaneous_max,
+                regional: l.regional,
+                global: l.global,
+            },
+            ideal,
+            verification: verified.summary.clone(),
+            left_out: planned.extras.left_out.clone(),
+            worst: verified.worst.clone(),
+            wall_s,
+            compared,
+            diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
+        };
+        let story = Story {
+            title: &title,
+            job,
+            faces,
+            passes: &planned.passes,
+            linked: &planned.linked,
+            verified: &verified,
+            summary: &summary,
+            diagnostics: &diagnostics,
+            time_by_move: &read,
+            extras: &planned.extras,
+        };
+        let pages = fill::pages(&story, &|f| stage.at(f));
+        let mut files = vec![
+            PlanFile { name: "path.cl".to_owned(), text: cl_text },
+            PlanFile { name: format!("program.{}", control.extension), text: program.text },
+            PlanFile { name: "report.html".to_owned(), text: pages.html },
+            PlanFile { name: "picture.svg".to_owned(), text: pages.svg },
+            PlanFile { name: "path.svg".to_owned(), text: pages.path_svg },
+        ];
+        summary.wall_s.report = stage.end();
+        let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
+        files.push(PlanFile { name: "summary.json".to_owned(), text });
+        Ok(Plan { summary, verified, diagnostics, files })
+    }
+}
+
+/// Passes and links by the job's strategy.
+fn planned(
+    job: &Job,
+    faces: &JobFaces,
+    watch: &dyn Watch,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Planned<'static>, Failure> {
+    if drop::KINDS.contains(&job.strategy.kind.as_str()) {
+        let passes = drop::passes(job, faces, progress)?;
+        let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+        let strategy = job.strategy.kind.clone();
+        let lean = Lean::default();
+        return Ok(Planned { passes, linked, strategy, lean, local: false, extras, with_strips: true });
+    }
+    if rough::is(job) {
+        return rough::planned(job, faces, progress);
+    }
+    let strategy = &strategy::of_job(job)?;
+    let (passes, lean) = match strategy.fixed_axis() {
+        Some(_) => {
+            let way = Way { strategy, lean: Lean::default(), local: false, share: 1.0, watch };
+            (passes::each_face(job, faces, &way, progress)?, Lean::default())
+        }
+        None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
+    };
+    let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+    let strategy = strategy.name().to_owned();
+    let local = job.strategy.lead_deg == LeadKey::Local;
+    Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
+}

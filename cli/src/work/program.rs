@@ -1,0 +1,162 @@
+//! A plan, its program, and what verification of the program measured.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part::JobFaces;
+use crate::watch::{Stage, Watch};
+use crate::work::extras::Extras;
+use crate::work::nc::{self, Control, Motions};
+use crate::work::passes;
+use crate::work::rough;
+use crate::work::setup;
+use crate::work::verify::{self, Verified};
+use osculate_geom::{Diagnostic, Unit3};
+use osculate_postproc::{self as post, Setup};
+use osculate_productivity::plan::{Linked, Passes};
+use osculate_tools::Lean;
+use serde::Serialize;
+
+/// Seconds of wall time by stage.
+#[derive(Debug, Default, Serialize, Clone, Copy)]
+pub struct WallS {
+    /// Reading the part.
+    pub import: f64,
+    /// Planning.
+    pub plan: f64,
+    /// Posting.
+    pub post: f64,
+    /// Verification.
+    pub verify: f64,
+    /// The estimate of the ideal time.
+    pub ideal: f64,
+    /// Pages and pictures.
+    pub report: f64,
+}
+
+/// A plan before it is posted.
+pub struct Planned<'a> {
+    /// The passes.
+    pub passes: Passes,
+    /// The passes joined.
+    pub linked: Linked,
+    /// Its name.
+    pub strategy: String,
+    /// Lead and tilt; of a local lead the least that was allowed.
+    pub lean: Lean,
+    /// Whether the lead was found place by place.
+    pub local: bool,
+    /// What the report shows beside what every report shows.
+    pub extras: Extras<'a>,
+    /// Whether the points of passes know the width of their strips, for samples that resolve them.
+    pub with_strips: bool,
+}
+
+/// A plan posted and read back.
+pub struct Posted {
+    /// CL data.
+    pub cl_text: String,
+    /// The control it is posted for.
+    pub control: Control,
+    /// The program.
+    pub program: post::Posted,
+    /// What the program does.
+    pub read: Motions,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Posted {
+    /// Posts a plan. From here on a run that is stopped can save the path.
+    pub fn of(
+        job: &Job,
+        faces: &JobFaces,
+        planned: &Planned<'_>,
+        wall_s: &mut WallS,
+        watch: &dyn Watch,
+    ) -> Result<Self, Failure> {
+        let (control, control_notes) = nc::control(job)?;
+        let stage = Stage::begin(watch, "post");
+        let (base, mut setup_notes) = setup::of(job, faces, &axes_of(planned))?;
+        let cl = passes::cl_path(job, &planned.linked)?;
+        let title = passes::title(job);
+        let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
+        if watch.wants_partial() {
+            let text = cl_text.clone();
+            watch.partial(Box::new(move || Ok(text)), "the whole path".to_owned());
+        }
+        let options = nc::job_options(job, &control, &title)?;
+        let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
+            let program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
+            let read = nc::read_back(&program.text, &control, setup, false)
+                .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
+            Ok((program, read))
+        };
+        let (mut program, mut read) = written(&base)?;
+        stage.at(0.6);
+        let first_min = read.time_min;
+        for turned in setup::turned(job, faces, &cl, &control, &base) {
+            // A turn that no program can be written for is none.
+            let Ok(other) = written(&turned) else { continue };
+            if other.1.time_min < read.time_min.min((1.0 - setup::WORTH_A_TURN) * first_min) {
+                setup_notes = setup::notes_of_turned(&turned, [first_min, other.1.time_min]);
+                (program, read) = other;
+            }
+        }
+        wall_s.post += stage.end();
+        let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
+        let diagnostics = notes.into_iter().flatten().cloned().collect();
+        Ok(Self { cl_text, control, program, read, diagnostics })
+    }
+
+    /// Time of the program, min.
+    pub const fn time_min(&self) -> f64 {
+        self.read.time_min
+    }
+
+    /// Measures what the program leaves.
+    pub fn verify(
+        &self,
+        job: &Job,
+        faces: &JobFaces,
+        planned: &Planned<'_>,
+        wall_s: &mut WallS,
+        watch: &dyn Watch,
+    ) -> Result<Verified, Failure> {
+        let stage = Stage::begin(watch, "verify");
+        let strip = planned.with_strips.then(|| narrow_strip(&planned.passes)).flatten();
+        let mut verified = verify::run(job, faces, &self.read.motions, "nc", strip, &|f| stage.at(f))?;
+        if rough::is(job) {
+            rough::carve(job, faces, &self.read.motions, &mut verified)?;
+        }
+        wall_s.verify += stage.end();
+        Ok(verified)
+    }
+}
+
+/// Tool axes that are looked at for a setup.
+const AXES: usize = 4000;
+
+/// Axes of the tool along the path, for a setup in which they look up.
+fn axes_of(planned: &Planned<'_>) -> Vec<Unit3> {
+    if !planned.extras.axes.is_empty() {
+        return planned.extras.axes.clone();
+    }
+    let linked = &planned.linked;
+    let cutting: Vec<Unit3> = linked
+        .path
+        .moves
+        .iter()
+        .zip(&linked.pass_of_move)
+        .filter(|(_, pass)| pass.is_some())
+        .map(|(m, _)| m.pose.axis)
+        .collect();
+    cutting.iter().step_by(cutting.len().div_ceil(AXES).max(1)).copied().collect()
+}
+
+/// The strip that samples must resolve: the width that nine tenths of the path exceed.
+fn narrow_strip(passes: &Passes) -> Option<f64> {
+    let mut widths: Vec<f64> =
+        passes.passes.iter().flat_map(|p| &p.points).map(|p| p.width_mm).filter(|w| w.is_finite()).collect();
+    widths.sort_by(f64::total_cmp);
+    widths.get(widths.len() / 10).copied()
+}

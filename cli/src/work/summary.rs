@@ -1,0 +1,95 @@
+//! The figures of a plan: `summary.json`.
+
+use crate::words::number;
+use crate::work::choice::Row;
+use crate::work::extras::FaceLeftOut;
+use crate::work::ideal::IdealTime;
+use crate::work::program::WallS;
+use crate::work::verify::{Verification, WorstPlace};
+use serde::Serialize;
+
+/// Productivity at three levels, mm2/min.
+#[derive(Debug, Serialize)]
+pub struct Productivity {
+    /// Least at a place of a pass.
+    pub instantaneous_min: f64,
+    /// Greatest at a place of a pass.
+    pub instantaneous_max: f64,
+    /// Of each pass.
+    pub regional: Vec<f64>,
+    /// Of the whole program.
+    pub global: f64,
+}
+
+/// `summary.json`.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    /// Of this file.
+    pub format: u32,
+    /// The strategy by name.
+    pub strategy: String,
+    /// The tool's sizes.
+    pub tool: serde_json::Value,
+    /// The tool in words.
+    pub tool_words: String,
+    /// Lead, deg; of a local one the mean.
+    pub lead_deg: f64,
+    /// Least and greatest of a local lead; `lead_deg` is then their mean by length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lead_range_deg: Option<[f64; 2]>,
+    /// Tilt, deg.
+    pub tilt_deg: f64,
+    /// The machine by name.
+    pub machine: String,
+    /// The control's language.
+    pub dialect: String,
+    /// How F is programmed.
+    pub feed: String,
+    /// Passes.
+    pub passes: usize,
+    /// CL points.
+    pub points: usize,
+    /// Length of the passes.
+    pub cutting_length_mm: f64,
+    /// Length of what joins them.
+    pub air_length_mm: f64,
+    /// Time of the program.
+    pub time_min: f64,
+    /// Time of its feed moves.
+    pub cutting_time_min: f64,
+    /// Area of the faces to machine.
+    pub area_mm2: f64,
+    /// Area over time at three levels.
+    pub productivity_mm2_min: Productivity,
+    /// The estimated ideal time, with which the plan is compared.
+    #[serde(flatten)]
+    pub ideal: Option<IdealTime>,
+    /// What the program leaves.
+    pub verification: Verification,
+    /// Of faces, what passes leave out so that the tool does not go into the part; it is uncut too.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<FaceLeftOut>,
+    /// Where it is worst.
+    pub worst: Vec<WorstPlace>,
+    /// Wall time by stage, s.
+    pub wall_s: WallS,
+    /// What the plan was chosen from.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compared: Vec<Row>,
+    /// Findings.
+    pub diagnostics: Vec<String>,
+}
+
+impl Summary {
+    /// Lead and tilt in words, degrees.
+    pub fn lean_words(&self) -> String {
+        let tilt = number(self.tilt_deg, 4);
+        match self.lead_range_deg {
+            Some([least, most]) => {
+                let [least, mean, most] = [least, self.lead_deg, most].map(|x| number(x, 3));
+                format!("{least} to {most} (mean {mean}), {tilt}")
+            }
+            None => format!("{}, {tilt}", number(self.lead_deg, 4)),
+        }
+    }
+}
