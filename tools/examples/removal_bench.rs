@@ -16,7 +16,7 @@ use osculate_geom::{
     Axis, Box3, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
 };
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob, Upper};
-use osculate_tools::removal::{Body, Job, Limits, Swept, cut, judge, sample_surface};
+use osculate_tools::removal::{Body, Job, Limits, Swept, cut, sample_surface, tally};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 use std::error::Error;
 use std::time::Instant;
@@ -247,7 +247,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let cuts = cut(&job, &|_| ())?;
         let (seconds, cpu) = (begin.elapsed().as_secs_f64(), cpu_s() - cpu);
         let begin = Instant::now();
-        let verdict = judge(&sampling.samples, &cuts, &Limits::new(0.02, 0.02), &sampling.density, 5.0)?;
+        let verdict = tally(&sampling.samples, &cuts, &Limits::new(0.02, 0.02), &sampling.density, 5.0)?;
         println!(
             "{name:<10} {:>9} samples {:>8} motions {seconds:>8.2} s, {cpu:>7.2} CPU s, judged in {:.2} s: \
              scallop {:.4} gouge {:.4} uncut {:.1} mm2",

@@ -12,7 +12,7 @@ use osculate::report::{self, Column};
 use osculate::watch::Stage;
 use osculate::words::{Table, number};
 use osculate::work::extras::{Extras, Field};
-use osculate::work::flank::face::{FlankFace, range};
+use osculate::work::flank::face::{FlankFace, judged, range};
 use osculate::work::flank::methods::{Answer, Method, Motion, NAMES, Study};
 use osculate::work::flank::path::{self, Work};
 use osculate::work::passes;
@@ -60,7 +60,9 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     }
     let mut wall_s = WallS::default();
     let stage = Stage::begin(&SCREEN, "import");
-    let FlankFace { face, along, straying_mm, faces } = FlankFace::of(&job, part::of_job(&job)?)?;
+    let faces = part::of_job(&job)?;
+    let FlankFace { face, along, straying_mm, .. } = FlankFace::of(&job, &faces)?;
+    let faces = judged(&job, faces)?;
     wall_s.import = stage.end();
 
     let stage = Stage::begin(&SCREEN, "plan");

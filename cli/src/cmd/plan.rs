@@ -1,5 +1,6 @@
 //! `plan`: the main job, from the part to a verified NC program with a report.
 
+use crate::cmd::verify::figures;
 use crate::screen::progress::SCREEN;
 use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
@@ -7,8 +8,11 @@ use osculate::job::Job;
 use osculate::part;
 use osculate::watch::Stage;
 use osculate::words::{Table, findings, number};
+use osculate::work::flank::face::judged;
 use osculate::work::plan::{Plan, plan};
+use osculate::work::verify::Verified;
 use osculate::work::{choice, left_out};
+use std::io::IsTerminal;
 use std::path::Path;
 
 /// Runs the verb.
@@ -17,7 +21,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     output::folder(out)?;
     let stage = Stage::begin(&SCREEN, "import");
     left_out::check(&job)?;
-    let faces = part::of_job(&job)?;
+    let faces = judged(&job, part::of_job(&job)?)?;
     let import_s = stage.end();
     SCREEN.saves_into(out);
     let plan = plan(&job, &faces, import_s, &SCREEN)?;
@@ -70,23 +74,8 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
         text.push_str(&format!("{}\n", choice::text_table(&s.compared)));
     }
     text.push_str(&format!("{}\n", t.render()));
-    let f = &s.verification;
-    let mut t = Table::new(["verified from the NC text", "", "unit"]);
-    let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
-    row("samples", f.samples.to_string(), "");
-    row("scallop max", format!("{:.5}", f.scallop_max_mm), "mm");
-    row("scallop p99", format!("{:.5}", f.scallop_p99_mm), "mm");
-    row("scallop median", format!("{:.5}", f.scallop_median_mm), "mm");
-    row("median of its crests", format!("{:.5}", f.crest_median_mm), "mm");
-    row("gouge max", format!("{:.5}", f.gouge_max_mm), "mm");
-    row("uncut area", format!("{:.3}", f.uncut_area_mm2), "mm2");
-    text.push_str(&t.render());
-    if f.within_tolerance {
-        text.push_str(&format!("\n  {}\n", f.words()));
-    } else {
-        let red = std::io::IsTerminal::is_terminal(&std::io::stdout());
-        let (on, off) = if red { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
-        text.push_str(&format!("\n  {on}{}{off}\n", f.words()));
+    text.push_str(&format!("{}\n{}", figures(&s.verification), on_screen(v)));
+    if !v.verdict.is_held() {
         for w in v.worst.iter().take(5) {
             text.push_str(&format!(
                 "  {} {} mm at ({:.3}, {:.3}, {:.3}) on {}, block {}\n",
@@ -111,4 +100,14 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     let files: Vec<String> = plan.files.iter().map(|f| out.join(&f.name).display().to_string()).collect();
     text.push_str(&format!("\n  {}\n\n", files.join(", ")));
     text
+}
+
+/// A verdict, in red where it is not held and a person looks.
+fn on_screen(v: &Verified) -> String {
+    let text = v.verdict.to_string();
+    if v.verdict.is_held() || !std::io::stdout().is_terminal() {
+        return text;
+    }
+    let words = v.verdict.words();
+    text.replace(&words, &format!("\u{1b}[1;31m{words}\u{1b}[0m"))
 }

@@ -14,6 +14,14 @@ use std::path::{Path, PathBuf};
 
 /// Greatest change of a local lead where the job says none: at 2000 mm/min some 30 degrees a second, as rotary axes can.
 const LEAD_RATE_DEG_PER_MM: f64 = 1.0;
+/// Material that is assumed on faces where no raw material is declared: this many scallops, so that heights are told far above
+/// what is accepted, and no less than this, mm, ...
+const LAYER_SCALLOPS: f64 = 20.0;
+const LEAST_LAYER_MM: f64 = 0.5;
+/// ... but no more than this share of the approach height, at which rapid moves end.
+pub const LAYER_OF_APPROACH: f64 = 0.75;
+/// The share of the scallop tolerance that tooth marks take at most.
+const MARK_SHARE: f64 = 0.5;
 /// The format that this version reads.
 const FORMAT: u32 = 1;
 
@@ -68,8 +76,10 @@ pub struct PartTable {
     pub unit_mm: Option<f64>,
     /// Faces to machine.
     pub faces: Option<FaceChoice>,
-    /// Faces that the tool must not touch.
+    /// Faces that the tool must not touch; all others of the part are none the less.
     pub check_faces: Option<FaceChoice>,
+    /// Faces that the tool may hit: they are not looked at, and the verdict says so.
+    pub may_hit: Option<FaceChoice>,
     /// Which side the material is on, for faces whose file does not say.
     #[serde(default)]
     pub normals: Normals,
@@ -102,6 +112,14 @@ pub enum FaceChoice {
     Ids(Vec<String>),
     /// `{ largest = n }`
     Largest(LargestTable),
+}
+
+impl FaceChoice {
+    /// Whether all faces are meant.
+    #[must_use]
+    pub fn is_all(&self) -> bool {
+        matches!(self, Self::Word(w) if w == "all")
+    }
 }
 
 /// `{ largest = n }`
@@ -148,6 +166,8 @@ pub struct ToolTable {
 pub struct ToleranceTable {
     /// Highest material left.
     pub scallop_mm: f64,
+    /// Uncut area that is accepted, mm2; none where not given.
+    pub unreached_mm2: Option<f64>,
     /// Deepest undercut accepted; half the scallop where not given.
     pub gouge_mm: Option<f64>,
     /// Chord tolerance of the path; a fifth of the scallop where not given.
@@ -280,6 +300,8 @@ pub struct VerificationTable {
     pub spacing_mm: Option<f64>,
     /// Most samples.
     pub max_samples: Option<usize>,
+    /// `samples`: limits that are met at the samples are enough.
+    pub accept: Option<String>,
 }
 
 /// A length that must be positive.
@@ -458,7 +480,8 @@ impl Job {
     /// The feed, capped by the feed per tooth where the job gives both.
     pub fn feed_mm_min(&self) -> Result<f64, Failure> {
         let c = &self.cutting;
-        let feed = positive(&self.path, "[cutting] feed_mm_min", c.feed_mm_min.unwrap_or(1000.0))?;
+        let given = positive(&self.path, "[cutting] feed_mm_min", c.feed_mm_min.unwrap_or(1000.0))?;
+        let feed = self.mark_cap_mm_min()?.map_or(given, |cap| given.min(cap));
         match (c.feed_per_tooth_mm, c.spindle_rpm, self.tool().teeth) {
             (Some(f), Some(n), Some(z)) => {
                 let f = positive(&self.path, "[cutting] feed_per_tooth_mm", f)?;
@@ -472,9 +495,52 @@ impl Job {
         }
     }
 
+    /// The feed at which the marks of teeth take half of the scallop tolerance on a plane; None where nothing tells how often teeth
+    /// pass, or what they leave depends on a lead that is not known yet. Half is best where the feed is free: the width of a strip
+    /// goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97, eq. 41].
+    pub fn mark_cap_mm_min(&self) -> Result<Option<f64>, Failure> {
+        let Some(rpm) = self.spindle_rpm()? else { return Ok(None) };
+        let teeth = f64::from(self.tool().teeth.unwrap_or(1).max(1));
+        let mark_mm = MARK_SHARE * self.tolerance()?.scallop_mm;
+        Ok(self.feed_per_tooth_mm(mark_mm)?.map(|f| f * teeth * rpm))
+    }
+
+    /// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.
+    ///
+    /// A corner of radius r leaves `h = r - sqrt(r^2 - f^2/4)`; an edge that leans by the lead L leaves `h = f sin L cos L`.
+    pub fn feed_per_tooth_mm(&self, mark_mm: f64) -> Result<Option<f64>, Failure> {
+        let r = self.cutter()?.corner_mm();
+        if r > 0.0 {
+            let h = mark_mm.min(r);
+            return Ok(Some(2.0 * (h * (2.0 * r - h)).sqrt()));
+        }
+        let lead = match self.strategy.lead_deg {
+            LeadKey::Given(deg) => deg.to_radians().abs(),
+            LeadKey::Auto | LeadKey::Local => return Ok(None),
+        };
+        let slope = lead.sin() * lead.cos();
+        Ok((slope > 0.0).then(|| mark_mm / slope))
+    }
+
     /// The spindle speed.
     pub fn spindle_rpm(&self) -> Result<Option<f64>, Failure> {
         self.cutting.spindle_rpm.map(|n| positive(&self.path, "[cutting] spindle_rpm", n)).transpose()
+    }
+
+    /// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
+    pub fn layer_mm(&self) -> Result<f64, Failure> {
+        if let Some(allowance) = self.stock.as_ref().and_then(|s| s.allowance_mm.filter(|_| s.file.is_none()))
+        {
+            return positive(&self.path, "[stock] allowance_mm", allowance);
+        }
+        let (scallop_mm, radius_mm) = (self.tolerance()?.scallop_mm, self.cutter()?.radius_mm());
+        let layer = (LAYER_SCALLOPS * scallop_mm).max(LEAST_LAYER_MM).min(0.5 * radius_mm);
+        Ok(match self.setup.approach_mm {
+            Some(approach) if approach.is_finite() && approach > 0.0 => {
+                layer.min(LAYER_OF_APPROACH * approach)
+            }
+            _ => layer,
+        })
     }
 
     /// The tool axis of contour passes.

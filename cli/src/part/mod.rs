@@ -9,6 +9,7 @@ use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::orient::Enclosure;
 use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface, orient, tessellate};
+use osculate_tools::removal::Unseen;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -34,6 +35,8 @@ pub struct LoadedFace {
     pub source: Option<Arc<Face>>,
     /// The spline, where it is a built-in one.
     pub spline: Option<Arc<NurbsSurface>>,
+    /// What of the face is looked at, where that is not all of it.
+    pub part_of_it: Option<String>,
 }
 
 /// A part ready for work.
@@ -95,6 +98,7 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         surface: Arc::new(surface),
         source: None,
         spline: b.spline,
+        part_of_it: None,
     };
     Ok(Loaded {
         format: "builtin",
@@ -147,6 +151,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
                 surface: source.surface.clone(),
                 source: Some(source),
                 spline: None,
+                part_of_it: None,
             }
         })
         .collect();
@@ -189,8 +194,10 @@ pub struct JobFaces {
     pub part: Loaded,
     /// Faces to machine.
     pub faces: Vec<LoadedFace>,
-    /// Faces that the tool must not touch.
+    /// Faces that the tool must not touch: all others of the part.
     pub check: Vec<LoadedFace>,
+    /// Faces that are not looked at.
+    pub unseen: Vec<Unseen>,
     /// The check faces as hops see them, once they are asked for.
     pub walls: OnceLock<Arc<Walls>>,
 }
@@ -218,40 +225,61 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
     if faces.is_empty() {
         return Err(Failure::file(&job.path, "[part] faces chooses no face"));
     }
-    settle_sides(job, &mut part, &mut faces)?;
-    doubt_sides(job, &mut part, &faces);
-    let check = match &job.part.check_faces {
-        None => Vec::new(),
-        some => {
-            let mut check = choose(&part, some.as_ref(), "check_faces").map_err(here)?;
-            let machined = |f: &LoadedFace| faces.iter().any(|m| m.id == f.id);
-            // "all" means all others; who names a face means it.
-            if matches!(some, Some(FaceChoice::Word(w)) if w == "all") {
-                check.retain(|f| !machined(f));
-            } else if let Some(both) = check.iter().find(|f| machined(f)) {
-                return Err(Failure::file(
-                    &job.path,
-                    format!(
-                        "[part] check_faces names {0}, which is also a face to machine: the tool must touch it. \
-                         Take {0} out of one of them, or say check_faces = \"all\" for all other faces",
-                        both.id
-                    ),
-                ));
-            }
-            settle_sides(job, &mut part, &mut check)?;
-            check
-        }
-    };
-    if check.is_empty() && part.faces.len() > faces.len() {
-        part.diagnostics.push(Diagnostic::note(
-            "check_faces",
+    if let Some(k) = settle_sides(job, &mut part, &mut faces)?.first() {
+        return Err(Failure::file(
+            &job.path,
             format!(
-                "{} other faces of the part are not checked against the tool; check_faces = \"all\" would do so",
-                part.faces.len() - faces.len()
+                "[part] {}: neither the file nor the shape of the part says on which side of the face the material is; say \
+                 normals = \"file\" or normals = \"reversed\" (probe shows the normal)",
+                faces[*k].id
             ),
         ));
     }
-    Ok(JobFaces { part, faces, check, walls: OnceLock::new() })
+    doubt_sides(job, &mut part, &faces);
+    let machined = |f: &LoadedFace| faces.iter().any(|m| m.id == f.id);
+    if let Some(named) = job.part.check_faces.as_ref().filter(|c| !c.is_all()) {
+        let named = choose(&part, Some(named), "check_faces").map_err(here)?;
+        if let Some(both) = named.iter().find(|f| machined(f)) {
+            return Err(both_kinds(job, "check_faces", &both.id, "the tool must touch it"));
+        }
+    }
+    let may_hit = match &job.part.may_hit {
+        None => Vec::new(),
+        some => choose(&part, some.as_ref(), "may_hit").map_err(here)?,
+    };
+    if let Some(both) =
+        may_hit.iter().find(|f| machined(f) && !job.part.may_hit.as_ref().is_some_and(FaceChoice::is_all))
+    {
+        return Err(both_kinds(job, "may_hit", &both.id, "it is cut to its tolerance"));
+    }
+    // All other faces of the part are there, whether the job names them or not.
+    let hit = |f: &LoadedFace| may_hit.iter().any(|m| m.id == f.id);
+    let mut check: Vec<LoadedFace> = part.faces.iter().filter(|f| !machined(f) && !hit(f)).cloned().collect();
+    let open = settle_sides(job, &mut part, &mut check)?;
+    let ids = |all: &mut dyn Iterator<Item = &LoadedFace>| all.map(|f| f.id.clone()).collect::<Vec<_>>();
+    let mut unseen = Vec::new();
+    let allowed = ids(&mut may_hit.iter().filter(|f| !machined(f)));
+    if !allowed.is_empty() {
+        unseen.push(Unseen::MayBeHit(allowed));
+    }
+    if !open.is_empty() {
+        unseen.push(Unseen::NoSide(ids(&mut open.iter().map(|k| &check[*k]))));
+        let mut k = 0;
+        check.retain(|_| {
+            k += 1;
+            !open.contains(&(k - 1))
+        });
+    }
+    Ok(JobFaces { part, faces, check, unseen, walls: OnceLock::new() })
+}
+
+/// A face that two keys of a job name for different things.
+fn both_kinds(job: &Job, key: &str, id: &str, why: &str) -> Failure {
+    let text = format!(
+        "[part] {key} names {id}, which is also a face to machine: {why}. Take {id} out of one of them; all other faces of the \
+         part are checked whether they are named or not"
+    );
+    Failure::file(&job.path, text)
 }
 
 /// The single face of a job.
@@ -341,20 +369,22 @@ fn unsaid(faces: &[LoadedFace]) -> Vec<usize> {
     (0..faces.len()).filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented)).collect()
 }
 
-/// Turns faces over whose file does not say where the material is, or all of them where the job says so.
-fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<(), Failure> {
+/// Turns faces over whose file does not say where the material is, or all of them where the job says so; the faces for which
+/// nothing says it come back, by their places.
+fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<Vec<usize>, Failure> {
     let open = unsaid(faces);
     let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
     match job.part.normals {
-        Normals::File => return Ok(()),
+        Normals::File => return Ok(Vec::new()),
         Normals::Reversed => {
             faces.iter_mut().for_each(flip);
-            return Ok(());
+            return Ok(Vec::new());
         }
-        Normals::Auto if open.is_empty() => return Ok(()),
+        Normals::Auto if open.is_empty() => return Ok(Vec::new()),
         Normals::Auto => {}
     }
     let triangles = soup(part);
+    let mut unknown = Vec::new();
     for k in open {
         let face = &mut faces[k];
         match enclosed(face, &triangles) {
@@ -371,19 +401,10 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
                     ),
                 ));
             }
-            None => {
-                return Err(Failure::file(
-                    &job.path,
-                    format!(
-                        "[part] {}: neither the file nor the shape of the part says on which side of the face the \
-                         material is; say normals = \"file\" or normals = \"reversed\" (probe shows the normal)",
-                        face.id
-                    ),
-                ));
-            }
+            None => unknown.push(k),
         }
     }
-    Ok(())
+    Ok(unknown)
 }
 
 /// Warns of faces that the job has machined from the side on which the part has its material: a blade from within. Only

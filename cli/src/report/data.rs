@@ -49,6 +49,8 @@ pub enum Outcome {
     /// Not measured: nothing is claimed.
     #[default]
     NotVerified,
+    /// Within its limits at the samples; that it is so between them, or everywhere in the scope, is not shown.
+    NotShown,
 }
 
 /// What the verification measured and what it was held against.

@@ -16,7 +16,7 @@ use osculate_geom::{Diagnostic, Point3, Unit3};
 use osculate_productivity::plan::{Linked, Passes};
 use osculate_surfaces::tessellate;
 use osculate_tools::cl::Motion;
-use osculate_tools::removal::{Cut, Sample};
+use osculate_tools::removal::{Answer, Cut, Sample};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -82,13 +82,19 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
     let s = story.summary;
     let total_area: f64 = story.faces.faces.iter().chain(&story.faces.check).map(area).sum();
     let edge = (2.0 * total_area / TRIANGLES).sqrt().max(1e-6);
-    let lookup = Lookup::new(&story.verified.samples, story.verified.summary.spacing_mm);
+    let lookup = Lookup::new(story.verified.verdict.samples(), story.verified.summary.spacing_mm);
     let mut faces = Vec::new();
     let machined = story.faces.faces.iter().map(|f| (f, false));
     for (k, (face, check)) in machined.chain(story.faces.check.iter().map(|f| (f, true))).enumerate() {
         let mut m = mesh_of(face, if check { 3.0 * edge } else { edge });
         if !check {
-            m.deviation_mm = deviation(&m, k as u32, &lookup, &story.verified.samples, &story.verified.cuts);
+            m.deviation_mm = deviation(
+                &m,
+                k as u32,
+                &lookup,
+                story.verified.verdict.samples(),
+                story.verified.verdict.cuts(),
+            );
         }
         let point = |p: &[f32; 3]| Point3::from(p.map(f64::from));
         for (_, field) in &story.extras.maps {
@@ -111,7 +117,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         poses: poses(story),
         histogram: Histogram {
             edges_mm: histogram_edges(story),
-            weights: story.verified.verdict.histogram.iter().map(|b| b.area_mm2).collect(),
+            weights: story.verified.verdict.figures().tally.histogram.iter().map(|b| b.area_mm2).collect(),
             unit: "mm2".to_owned(),
         },
         tables: story.extras.tables.iter().cloned().chain(tables(story)).collect(),
@@ -130,7 +136,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
 
 /// Bin borders; the two open bins at the ends are drawn as wide as their neighbours.
 fn histogram_edges(story: &Story<'_>) -> Vec<f64> {
-    let bins = &story.verified.verdict.histogram;
+    let bins = &story.verified.verdict.figures().tally.histogram;
     let inner: Vec<f64> = bins
         .iter()
         .map(|b| b.from_mm)
@@ -149,27 +155,26 @@ fn histogram_edges(story: &Story<'_>) -> Vec<f64> {
 fn verdict(story: &Story<'_>) -> Verdict {
     let v = &story.summary.verification;
     let t = &story.job.tolerance;
-    let words = if v.within_tolerance {
-        "Every sample of the machined faces is within tolerance.".to_owned()
-    } else {
-        story.verified.worst.first().map_or_else(
-            || "The path is not within tolerance.".to_owned(),
-            |w| {
-                format!(
-                    "Worst: {} of {} mm on {} at ({:.3}, {:.3}, {:.3}), block {}.",
-                    w.kind,
-                    number(w.value_mm, 4),
-                    w.face,
-                    w.at_mm[0],
-                    w.at_mm[1],
-                    w.at_mm[2],
-                    w.block
-                )
-            },
-        )
-    };
+    let answer = story.verified.verdict.answer();
+    let mut words = story.verified.verdict.words();
+    if let Some(w) = story.verified.worst.first().filter(|_| answer == Answer::NotHeld) {
+        words += &format!(
+            ". Worst: {} of {} mm on {} at ({:.3}, {:.3}, {:.3}), block {}.",
+            w.kind,
+            number(w.value_mm, 4),
+            w.face,
+            w.at_mm[0],
+            w.at_mm[1],
+            w.at_mm[2],
+            w.block
+        );
+    }
     Verdict {
-        outcome: if v.within_tolerance { Outcome::Within } else { Outcome::Outside },
+        outcome: match answer {
+            Answer::Held => Outcome::Within,
+            Answer::NotHeld => Outcome::Outside,
+            Answer::NotShown => Outcome::NotShown,
+        },
         words,
         source: "the NC program, read back through the machine".to_owned(),
         samples: v.samples,
@@ -341,11 +346,12 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
                 ("spacing", format!("{} mm", number(v.spacing_mm, 3))),
                 (
                     "may hide between samples",
-                    format!(
-                        "{} mm of scallop, {} mm of gouge",
-                        number(v.hidden_scallop_mm, 2),
-                        number(v.hidden_gouge_mm, 2)
-                    ),
+                    match (v.hidden_scallop_mm, v.hidden_gouge_mm) {
+                        (Some(scallop), Some(gouge)) => {
+                            format!("{} mm of scallop, {} mm of gouge", number(scallop, 2), number(gouge, 2))
+                        }
+                        _ => "not bounded".to_owned(),
+                    },
                 ),
                 ("within tolerance there too", if v.certain { "yes" } else { "not shown" }.to_owned()),
                 ("scallop max", format!("{:.5} mm", v.scallop_max_mm)),
@@ -357,6 +363,14 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             ],
         ),
     ];
+    let scope = story.verified.verdict.scope();
+    out.push(Table {
+        caption: "Scope of the verdict".to_owned(),
+        columns: ["part of it", "covers"]
+            .map(|n| Column { name: n.to_owned(), ..Column::default() })
+            .to_vec(),
+        rows: scope.iter().map(|row| vec![row.what.to_owned(), row.covers.clone()]).collect(),
+    });
     let column = |name: &str, unit: &str| Column { name: name.to_owned(), unit: unit.to_owned() };
     out.push(Table {
         caption: "Faces".to_owned(),

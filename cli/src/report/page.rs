@@ -130,6 +130,7 @@ fn verdict(out: &mut String, v: &Verdict) {
     let (class, word) = match v.outcome {
         Outcome::Within => ("within", "Within tolerance"),
         Outcome::Outside => ("outside", "Out of tolerance"),
+        Outcome::NotShown => ("unknown", "Not shown to hold"),
         Outcome::NotVerified => ("unknown", "Not verified"),
     };
     let _ = write!(

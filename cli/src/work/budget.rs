@@ -4,10 +4,12 @@
 //! a unit of it at a crest, which lies between two passes that are rounded each for itself. *Ways*: between CL points the joints
 //! move, and the tool's end strays from the straight motion that was planned, as far as the post allows: its tip, and what its axis
 //! turns about the tip at the cutter's radius. Such a stray is greatest in the middle of a block, points any way, and at a crest is the
-//! mean of two passes that stray to either side: a quarter of the most that the post allows is counted.
+//! mean of two passes that stray to either side: a quarter of the most that the post allows is counted. What teeth leave at the
+//! feed of the job is kept back before both.
 
 use crate::failure::Failure;
 use crate::job::Job;
+use crate::part::{self, JobFaces};
 use crate::work::nc;
 use osculate_postproc::SolveOptions;
 use osculate_productivity::plan::Tolerance;
@@ -22,6 +24,10 @@ const COUNTED: f64 = 0.25;
 const CONE: f64 = 0.5;
 /// Planning keeps back no more than this share of the scallop: above it passes cannot make good for a coarse machine.
 const MOST: f64 = 0.3;
+
+/// Planning keeps back no more than this share of the scallop for the marks of teeth: the feed is capped so that they take no more
+/// on a plane.
+const MARKS: f64 = 0.6;
 
 /// How closely the joints follow the path of a job.
 pub fn solve(job: &Job) -> Result<SolveOptions, Failure> {
@@ -42,19 +48,40 @@ fn words_mm(job: &Job) -> Result<f64, Failure> {
 }
 
 /// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
-pub fn leaning(job: &Job, share: f64) -> Result<Tolerance, Failure> {
+pub fn leaning(job: &Job, faces: &JobFaces, share: f64) -> Result<Tolerance, Failure> {
     let s = solve(job)?;
     let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter()?.radius_mm());
-    kept_back(job, share, words_mm(job)? + ways_mm)
+    kept_back(job, faces, share, words_mm(job)? + ways_mm)
 }
 
 /// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
-pub fn upright(job: &Job) -> Result<Tolerance, Failure> {
-    kept_back(job, 1.0, words_mm(job)?)
+pub fn upright(job: &Job, faces: &JobFaces) -> Result<Tolerance, Failure> {
+    kept_back(job, faces, 1.0, words_mm(job)?)
 }
 
-fn kept_back(job: &Job, share: f64, by_mm: f64) -> Result<Tolerance, Failure> {
+/// The highest mark that teeth leave on the faces at the feed of a job, to leading order, mm; zero where it is not known.
+///
+/// Where the part's curvature along the feed is k the tip goes `1 + k r` times as fast as the contact, and tool and part close
+/// with `1/r + k`: the mark is `f^2 / (8 r (1 + k r))`, highest where the part is most hollow.
+fn mark_mm(job: &Job, faces: &JobFaces) -> Result<f64, Failure> {
+    let (Some(rpm), r) = (job.spindle_rpm()?, job.cutter()?.corner_mm()) else { return Ok(0.0) };
+    let teeth = f64::from(job.tool().teeth.unwrap_or(1).max(1));
+    let f = job.feed_mm_min()? / (rpm * teeth);
+    if r <= 0.0 {
+        let per_mm = job.feed_per_tooth_mm(1.0)?;
+        return Ok(per_mm.map_or(0.0, |one| f / one));
+    }
+    let ranges = faces.faces.iter().filter_map(|face| part::curvature_range(&*face.surface));
+    let hollow = ranges.map(|[low, _]| low).fold(0.0, f64::min);
+    Ok(f * f / (8.0 * r * (1.0 + hollow * r).max(MOST_HOLLOW)))
+}
+
+/// Hollows that come closer to the tool's corner than this are no longer of leading order: there verification tells.
+const MOST_HOLLOW: f64 = 0.5;
+
+fn kept_back(job: &Job, faces: &JobFaces, share: f64, by_mm: f64) -> Result<Tolerance, Failure> {
     let given = job.tolerance()?;
-    let scallop_mm = share * (given.scallop_mm - by_mm.min(MOST * given.scallop_mm));
+    let marks_mm = mark_mm(job, faces)?.min(MARKS * given.scallop_mm);
+    let scallop_mm = share * (given.scallop_mm - marks_mm - by_mm.min(MOST * given.scallop_mm));
     Ok(Tolerance { scallop_mm, ..given })
 }

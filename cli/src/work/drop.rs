@@ -19,7 +19,7 @@ pub fn passes(job: &Job, faces: &JobFaces, progress: &(dyn Fn(f64) + Sync)) -> R
         cutter: &job.cutter()?,
         axis,
         feed,
-        tolerance: budget::upright(job)?,
+        tolerance: budget::upright(job, faces)?,
         progress,
     };
     let plan = if job.strategy.kind == "gradient_3c" { gradient_3c } else { drop_cutter };

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, beside, read_text};
 use crate::job::Job;
+use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::feed::FeedMode;
@@ -9,7 +10,7 @@ use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
 use osculate_tools::cl::{ClPath, Motion};
-use osculate_tools::removal::Swept;
+use osculate_tools::removal::{GoalControl, Program, Swept};
 use std::path::Path;
 
 /// Largest rise of F from block to block for `kz` where the job gives none, mm/min.
@@ -150,6 +151,7 @@ pub fn job_options(job: &Job, control: &Control, name: &str) -> Result<PostOptio
 }
 
 /// What an NC program does, in the part's frame.
+#[derive(Default)]
 pub struct Motions {
     /// Straight pieces with the line of the program that makes them.
     pub motions: Vec<Swept>,
@@ -159,8 +161,24 @@ pub struct Motions {
     pub time_min: f64,
     /// Time of feed moves, min.
     pub cutting_time_min: f64,
+    /// The spindle's speed, where the program says one.
+    pub spindle_rpm: Option<f64>,
+    /// The state of the control while it runs.
+    pub control: GoalControl,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Motions {
+    /// The motions as a verdict takes them.
+    pub fn reading(&self, source: &'static str) -> Reading<'_> {
+        Reading {
+            source,
+            program: Program { motions: &self.motions, times_min: &self.times_min },
+            control: self.control.clone(),
+            spindle_rpm: self.spindle_rpm,
+        }
+    }
 }
 
 /// Reads an NC program back through the machine.
@@ -179,6 +197,8 @@ pub fn read_back(text: &str, control: &Control, setup: &Setup, lenient: bool) ->
         times_min: Vec::with_capacity(read.moves.len()),
         time_min: read.time_min(),
         cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),
+        spindle_rpm: read.spindle_rpm,
+        control: GoalControl::default(),
         diagnostics: read.diagnostics,
     };
     let mut clock = 0.0;

@@ -1,7 +1,7 @@
 //! Passes over the faces of a job by one strategy, joined to a path.
 
 use crate::failure::Failure;
-use crate::job::{Job, LeadKey};
+use crate::job::{Job, LAYER_OF_APPROACH, LeadKey};
 use crate::part::{self, JobFaces, LoadedFace};
 use crate::watch::Watch;
 use crate::work::budget;
@@ -24,6 +24,9 @@ use std::sync::Arc;
 pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
 /// Lead of a ball where the job leaves the choice: enough to keep the tip, which does not cut, off the part.
 pub const BALL_LEAD_DEG: f64 = 15.0;
+
+/// Height from which the tool goes down at feed where nothing higher stands on the faces, mm.
+const APPROACH_MM: f64 = 2.0;
 
 /// How the passes of a job are joined.
 pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Result<Links, Failure> {
@@ -55,7 +58,10 @@ fn length(job: &Job, key: &str, given: Option<f64>) -> Result<Option<f64>, Failu
 }
 
 fn approach_mm(job: &Job) -> Result<f64, Failure> {
-    Ok(length(job, "approach_mm", job.setup.approach_mm)?.unwrap_or(2.0))
+    let given = length(job, "approach_mm", job.setup.approach_mm)?;
+    // Rapid moves end above what stands on the faces.
+    let above = job.layer_mm()? / LAYER_OF_APPROACH;
+    Ok(given.unwrap_or_else(|| APPROACH_MM.max(above)))
 }
 
 /// The lift of the lowest hops, of `approach_mm`, where the job does not say it.
@@ -146,7 +152,7 @@ pub fn each_face(
     way: &Way<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
-    let tolerance = budget::leaning(job, way.share)?;
+    let tolerance = budget::leaning(job, faces, way.share)?;
     let cutter = &job.cutter()?;
     let holder = job.holder()?;
     let all = faces.faces.iter().chain(&faces.check);

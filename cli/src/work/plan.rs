@@ -9,7 +9,7 @@ use crate::work::choice::{self, Choice, Row};
 use crate::work::passes::{self, Way};
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::summary::{Productivity, Summary};
-use crate::work::verify::Verified;
+use crate::work::verify::{VerdictKeys, Verified};
 use crate::work::{drop, ideal, left_out, rough, strategy};
 use osculate_geom::Diagnostic;
 use osculate_productivity::levels::{Totals, levels};
@@ -80,7 +80,7 @@ pub fn prove(
     watch: &dyn Watch,
 ) -> Result<Plan, Failure> {
     let posted = Posted::of(job, faces, &planned, &mut wall_s, watch)?;
-    let verified = posted.verify(job, faces, &planned, &mut wall_s, watch)?;
+    let verified = posted.verify(job, faces, &mut wall_s, watch)?;
     Proved { planned, posted, verified, compared: Vec::new() }.told(job, faces, wall_s, watch)
 }
 
@@ -175,6 +175,7 @@ impl Proved<'_> {
             },
             ideal,
             verification: verified.summary.clone(),
+            verdict: VerdictKeys::of(&verified.verdict),
             left_out: planned.extras.left_out.clone(),
             worst: verified.worst.clone(),
             wall_s,

@@ -7,7 +7,6 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
-use crate::work::verify;
 use osculate_geom::{Point3, Unit3, Vec3, uv};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::{self, Sample, Swept};
@@ -38,7 +37,14 @@ pub fn bytes(job: &Job, faces: &JobFaces, motions: &[Swept], spacing_mm: f64) ->
         }
         triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + first)));
     }
-    let work = verify::to_cut((&cutter, holder.as_ref()), motions, &samples, tolerance.scallop_mm);
+    let work = removal::Job {
+        cutter: &cutter,
+        holder: holder.as_ref(),
+        motions,
+        samples: &samples,
+        stock_mm: job.layer_mm()?,
+        depth_mm: cutter.radius_mm(),
+    };
     let cuts = removal::cut(&work, &|_| {}).map_err(Failure::job)?;
     let mut out = format!(
         "ply\nformat binary_little_endian 1.0\ncomment osculate: surface as cut, mm\nelement vertex {}\n\

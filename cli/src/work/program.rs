@@ -7,9 +7,8 @@ use crate::watch::{Stage, Watch};
 use crate::work::extras::Extras;
 use crate::work::nc::{self, Control, Motions};
 use crate::work::passes;
-use crate::work::rough;
-use crate::work::setup;
 use crate::work::verify::{self, Verified};
+use crate::work::{reading, setup};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
 use osculate_productivity::plan::{Linked, Passes};
@@ -102,6 +101,8 @@ impl Posted {
                 (program, read) = other;
             }
         }
+        // The verdict is on what its text does, read as everybody reads it: from the place that its head says.
+        (read, _) = reading::program(&program.text, &control, job, faces, false)?;
         wall_s.post += stage.end();
         let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
         let diagnostics = notes.into_iter().flatten().cloned().collect();
@@ -118,16 +119,11 @@ impl Posted {
         &self,
         job: &Job,
         faces: &JobFaces,
-        planned: &Planned<'_>,
         wall_s: &mut WallS,
         watch: &dyn Watch,
     ) -> Result<Verified, Failure> {
         let stage = Stage::begin(watch, "verify");
-        let strip = planned.with_strips.then(|| narrow_strip(&planned.passes)).flatten();
-        let mut verified = verify::run(job, faces, &self.read.motions, "nc", strip, &|f| stage.at(f))?;
-        if rough::is(job) {
-            rough::carve(job, faces, &self.read.motions, &mut verified)?;
-        }
+        let verified = verify::run(job, faces, self.read.reading("nc"), &|f| stage.at(f))?;
         wall_s.verify += stage.end();
         Ok(verified)
     }
@@ -151,12 +147,4 @@ fn axes_of(planned: &Planned<'_>) -> Vec<Unit3> {
         .map(|(m, _)| m.pose.axis)
         .collect();
     cutting.iter().step_by(cutting.len().div_ceil(AXES).max(1)).copied().collect()
-}
-
-/// The strip that samples must resolve: the width that nine tenths of the path exceed.
-fn narrow_strip(passes: &Passes) -> Option<f64> {
-    let mut widths: Vec<f64> =
-        passes.passes.iter().flat_map(|p| &p.points).map(|p| p.width_mm).filter(|w| w.is_finite()).collect();
-    widths.sort_by(f64::total_cmp);
-    widths.get(widths.len() / 10).copied()
 }

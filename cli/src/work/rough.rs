@@ -8,12 +8,10 @@ use crate::work::extras::Extras;
 use crate::work::passes;
 use crate::work::program::Planned;
 use crate::work::stock;
-use crate::work::verify::Verified;
-use osculate_geom::{Diagnostic, Offset};
+use osculate_geom::Offset;
 use osculate_productivity::plan::{RoughTask, Sizes, z_level};
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::Lean;
-use osculate_tools::removal::Swept;
 
 /// The key of job files.
 pub const KIND: &str = "z_level";
@@ -27,7 +25,7 @@ pub fn is(job: &Job) -> bool {
 }
 
 /// What a roughing leaves on the faces, mm.
-fn allowance_mm(job: &Job) -> Result<f64, Failure> {
+pub fn allowance_mm(job: &Job) -> Result<f64, Failure> {
     let given = job.strategy.allowance_mm.unwrap_or(0.0);
     if given.is_finite() && given >= 0.0 {
         Ok(given)
@@ -63,32 +61,6 @@ fn sizes(job: &Job) -> Result<Sizes, Failure> {
         ramp_rad: ramp_deg.to_radians(),
         chord_mm: job.tolerance()?.chord_mm,
     })
-}
-
-/// Cuts the raw material by the motions of a program: what it takes and leaves is told, and whatever runs into material that is
-/// not to breaks the verdict.
-pub fn carve(job: &Job, faces: &JobFaces, motions: &[Swept], verified: &mut Verified) -> Result<(), Failure> {
-    let Some((stock, notes)) = stock::run(job, faces, motions, &|_| {})? else { return Ok(()) };
-    verified.diagnostics.extend(notes);
-    let text = format!(
-        "{:.0} mm3 of {:.0} mm3 are taken, {:.0} mm3 left (+- {:.0})",
-        stock.removed_mm3, stock.volume_mm3, stock.left_mm3, stock.spread_mm3
-    );
-    verified.diagnostics.push(Diagnostic::note("stock", text));
-    for c in &stock.collisions {
-        let [x, y, z] = c.at_mm;
-        let rapid = if c.rapid { " in rapid" } else { "" };
-        let text = format!(
-            "block {}: the {}{rapid} goes {:.3} mm deep through raw material at ({x:.3}, {y:.3}, {z:.3})",
-            c.block, c.body, c.deepest_mm
-        );
-        verified.diagnostics.push(Diagnostic::loss("stock", text));
-    }
-    if !stock.collisions.is_empty() {
-        verified.summary.within_tolerance = false;
-        verified.summary.certain = false;
-    }
-    Ok(())
 }
 
 /// The path of a roughing.

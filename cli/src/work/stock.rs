@@ -3,10 +3,10 @@
 use crate::failure::{Failure, beside, read};
 use crate::job::Job;
 use crate::part::{self, JobFaces};
-use osculate_geom::{Box3, Diagnostic, Point3};
+use osculate_geom::{Box3, Diagnostic, Point3, Unit3, Vec3};
 use osculate_surfaces::tessellate;
-use osculate_tools::removal::stock::{Blank, Carved, Resolution, Stock, StockJob, Upper, read_stl};
-use osculate_tools::removal::{Body, Sample, Swept, sample_triangles};
+use osculate_tools::removal::stock::{Blank, Resolution, read_stl};
+use osculate_tools::removal::{Body, GoalStock, Sample, StockFound, sample_triangles};
 use serde::{Deserialize, Serialize};
 
 /// Cells along the longest side of the stock where the job gives none.
@@ -24,12 +24,26 @@ pub struct StockTable {
     pub box_mm: Option<[f64; 6]>,
     /// A closed STL mesh in the part's frame, mm, relative to the job file.
     pub file: Option<String>,
+    /// A cylinder.
+    pub cylinder: Option<CylinderTable>,
     /// A layer of this thickness around the faces of the job, or around the file's solid.
     pub allowance_mm: Option<f64>,
     /// Sides of cells.
     pub cell_mm: Option<f64>,
     /// Memory for it.
     pub memory_mb: Option<f64>,
+}
+
+/// `cylinder` of `[stock]`
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderTable {
+    /// Its axis, through the part's origin; z where not given.
+    pub axis: Option<[f64; 3]>,
+    /// Diameter.
+    pub diameter_mm: f64,
+    /// Where it begins and ends along the axis.
+    pub z_mm: [f64; 2],
 }
 
 /// `[fixture]`
@@ -167,95 +181,164 @@ fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
 /// The box around the raw material of a job, where it has one.
 pub fn bounds(job: &Job, faces: &JobFaces) -> Result<Option<Box3>, Failure> {
     let Some(table) = &job.stock else { return Ok(None) };
-    let solid = match (&table.box_mm, &table.file) {
-        (Some(b), _) => Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) },
-        (None, Some(file)) => Box3::around(mesh(job, file)?.iter().flatten()),
-        (None, None) => around(faces),
+    let solid = match (&table.box_mm, &table.file, &table.cylinder) {
+        (Some(b), ..) => Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) },
+        (None, Some(file), _) => Box3::around(mesh(job, file)?.iter().flatten()),
+        (None, None, Some(c)) => {
+            let prism = c.prism().map_err(|e| Failure::file(&job.path, format!("[stock] {e}")))?;
+            Box3::around(prism.iter().flatten())
+        }
+        (None, None, None) => around(faces),
     };
     Ok(Some(solid.grown(table.allowance_mm.unwrap_or(0.0))))
 }
 
-/// Moves the tool through the raw material of a job, where it has one.
-pub fn run(
-    job: &Job,
-    faces: &JobFaces,
-    motions: &[Swept],
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<Option<(StockSummary, Vec<Diagnostic>)>, Failure> {
-    let Some(table) = &job.stock else { return Ok(None) };
-    let wrong = |text: String| Failure::file(&job.path, format!("[stock] {text}"));
-    let triangles = match (&table.box_mm, &table.file, table.allowance_mm) {
-        (Some(_), None, None) => Vec::new(),
-        (None, Some(file), _) => mesh(job, file)?,
-        (None, None, Some(_)) => {
-            let chord = 0.5 * job.tolerance()?.scallop_mm;
-            let mut out = Vec::new();
-            for f in &faces.faces {
-                let m = tessellate(&f.surface, chord, None);
-                let p = |k: u32| Point3::from(m.positions[k as usize]);
-                out.extend(m.triangles.iter().map(|t| t.map(p)));
-            }
-            out
-        }
-        (None, None, None) => return Err(wrong("needs box_mm, file or allowance_mm".to_owned())),
-        _ => return Err(wrong("box_mm goes with neither file nor allowance_mm; keep one".to_owned())),
-    };
-    let blank = match (&table.box_mm, table.allowance_mm) {
-        (Some(b), _) => {
-            Blank::Box(Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) })
-        }
-        (None, Some(thickness_mm)) => {
-            Blank::Layer { triangles: &triangles, thickness_mm, filled: table.file.is_some() }
-        }
-        (None, None) => Blank::Mesh(&triangles),
-    };
-    let size = match &blank {
-        Blank::Box(b) => b.max - b.min,
-        _ => {
-            let b = Box3::around(triangles.iter().flatten());
-            b.max - b.min
-        }
-    };
-    let memory = table.memory_mb.unwrap_or(DEFAULT_MEMORY_MB);
-    if !(memory.is_finite() && memory > 0.0) {
-        return Err(wrong(format!("memory_mb = {memory} must be positive")));
-    }
-    let resolution = Resolution {
-        cell_mm: table.cell_mm.unwrap_or(size.amax() / DEFAULT_CELLS),
-        tri: true,
-        // Beyond what a machine can address there is no limit.
-        budget_bytes: (memory * 1e6).min(1e15) as usize,
-    };
-    let made = Stock::fill(&blank, &resolution).map_err(|e| wrong(e.to_string()))?;
-    let mut notes = Vec::new();
-    if let Some(wanted) = made.coarsened {
-        let cell = made.stock.cell_mm();
-        notes.push(Diagnostic::warning(
-            "stock",
-            format!("cells are {cell:.4} mm instead of {wanted:.4} mm to stay within memory_mb = {memory}"),
-        ));
-    }
-    let mut stock = made.stock;
-    notes.extend(holds(stock.bounds(), &around(faces)));
-    let volume_mm3 = stock.volume().mm3;
-    let (cutter, shank) = job.flutes()?;
-    let holder = job.holder()?;
-    let mut uppers = Vec::new();
-    let mut above_mm = cutter.length_mm();
-    for (body, kind) in [(shank.as_ref(), Body::Shank), (holder.as_ref(), Body::Holder)] {
-        if let Some(body) = body {
-            uppers.push(Upper { body, above_mm, kind });
-            above_mm += body.length_mm();
-        }
-    }
-    let touch_mm = job.tolerance()?.gouge_mm;
-    let work = StockJob { cutter: &cutter, uppers: &uppers, motions, touch_mm };
-    let carved = stock.carve(&work, progress).map_err(Failure::job)?;
-    Ok(Some((summary(&stock, volume_mm3, &carved), notes)))
+/// Raw material as the job declares it.
+pub struct RawMaterial {
+    boxed: Option<Box3>,
+    triangles: Vec<[Point3; 3]>,
+    /// Thickness of the layer around the triangles, mm, and whether they are filled.
+    layer: Option<(f64, bool)>,
+    resolution: Resolution,
+    words: String,
 }
 
-fn summary(stock: &Stock, volume_mm3: f64, carved: &Carved) -> StockSummary {
-    let left = stock.volume();
+/// Sides of the prism that stands around a cylinder: it is a ten-thousandth of the radius wider.
+const SIDES: u32 = 256;
+
+impl RawMaterial {
+    /// The raw material of a job, where it declares one.
+    pub fn of(job: &Job, faces: &JobFaces) -> Result<Option<Self>, Failure> {
+        let Some(table) = &job.stock else { return Ok(None) };
+        let wrong = |text: String| Failure::file(&job.path, format!("[stock] {text}"));
+        let (mut boxed, mut triangles, mut layer) = (None, Vec::new(), None);
+        let words = match (&table.box_mm, &table.file, &table.cylinder, table.allowance_mm) {
+            (Some(b), None, None, None) => {
+                let b = Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) };
+                boxed = Some(b);
+                format!("a box, {} mm", corners(&b))
+            }
+            (None, Some(file), None, allowance) => {
+                triangles = mesh(job, file)?;
+                layer = allowance.map(|a| (a, true));
+                let more = allowance.map_or_else(String::new, |a| format!(" and {a} mm around it"));
+                format!("the solid of {file}{more}")
+            }
+            (None, None, Some(c), None) => {
+                triangles = c.prism().map_err(wrong)?;
+                format!("a cylinder of {} mm from {} to {} mm", c.diameter_mm, c.z_mm[0], c.z_mm[1])
+            }
+            (None, None, None, Some(allowance)) => {
+                let chord = 0.5 * job.tolerance()?.scallop_mm;
+                for f in &faces.faces {
+                    let m = tessellate(&f.surface, chord, None);
+                    let p = |k: u32| Point3::from(m.positions[k as usize]);
+                    triangles.extend(m.triangles.iter().map(|t| t.map(p)));
+                }
+                layer = Some((allowance, false));
+                format!("a layer of {allowance} mm on the faces to machine")
+            }
+            (None, None, None, None) => {
+                return Err(wrong("needs box_mm, cylinder, file or allowance_mm".to_owned()));
+            }
+            _ => {
+                return Err(wrong(
+                    "has several of box_mm, cylinder, file and allowance_mm; keep one (allowance_mm goes with file)".to_owned(),
+                ));
+            }
+        };
+        let size = boxed.unwrap_or_else(|| Box3::around(triangles.iter().flatten()));
+        let memory = table.memory_mb.unwrap_or(DEFAULT_MEMORY_MB);
+        if !(memory.is_finite() && memory > 0.0) {
+            return Err(wrong(format!("memory_mb = {memory} must be positive")));
+        }
+        let resolution = Resolution {
+            cell_mm: table.cell_mm.unwrap_or((size.max - size.min).amax() / DEFAULT_CELLS),
+            tri: true,
+            // Beyond what a machine can address there is no limit.
+            budget_bytes: (memory * 1e6).min(1e15) as usize,
+        };
+        Ok(Some(Self { boxed, triangles, layer, resolution, words }))
+    }
+
+    /// The raw material of a goal, with the layer on the faces to machine as far as they are judged.
+    pub fn goal(&self, layer_mm: f64) -> GoalStock<'_> {
+        let blank = match (&self.boxed, self.layer) {
+            (Some(b), _) => Blank::Box(*b),
+            (None, Some((thickness_mm, filled))) => {
+                Blank::Layer { triangles: &self.triangles, thickness_mm, filled }
+            }
+            (None, None) => Blank::Mesh(&self.triangles),
+        };
+        GoalStock::Declared { blank, resolution: self.resolution, layer_mm, words: &self.words }
+    }
+}
+
+impl CylinderTable {
+    /// The axis of the cylinder through the part's origin.
+    fn axis(&self) -> Result<Unit3, String> {
+        let a = self.axis.unwrap_or([0.0, 0.0, 1.0]);
+        Unit3::try_new(Vec3::from(a), 1e-9)
+            .filter(|u| u.iter().all(|c| c.is_finite()))
+            .ok_or_else(|| format!("cylinder axis = {a:?} has no direction"))
+    }
+
+    /// A closed prism around the cylinder, its triangles counter-clockwise from outside.
+    fn prism(&self) -> Result<Vec<[Point3; 3]>, String> {
+        let (d, [low, high]) = (self.diameter_mm, self.z_mm);
+        if !(d.is_finite() && d > 0.0 && low.is_finite() && high.is_finite() && low < high) {
+            return Err("cylinder needs diameter_mm above zero and z_mm = [lower, upper]".to_owned());
+        }
+        let axis = self.axis()?.into_inner();
+        let side = if axis.z.abs() < 0.9 { Vec3::z() } else { Vec3::x() };
+        let x = axis.cross(&side).normalize();
+        let y = axis.cross(&x);
+        let step = std::f64::consts::TAU / f64::from(SIDES);
+        let radius = 0.5 * d / (0.5 * step).cos();
+        let at = |k: u32, h: f64| {
+            let (sin, cos) = (step * f64::from(k % SIDES)).sin_cos();
+            Point3::from(axis * h + (x * cos + y * sin) * radius)
+        };
+        let middle = |h: f64| Point3::from(axis * h);
+        Ok((0..SIDES)
+            .flat_map(|k| {
+                let [a, b] = [k, k + 1].map(|k| at(k, low));
+                let [c, d] = [k, k + 1].map(|k| at(k, high));
+                [[a, b, d], [a, d, c], [middle(high), c, d], [middle(low), b, a]]
+            })
+            .collect())
+    }
+}
+
+/// What became of raw material, as files have it, with what is to be told.
+pub fn told(found: &StockFound, faces: &JobFaces) -> (StockSummary, Vec<Diagnostic>) {
+    let mut notes = Vec::new();
+    if let Some(wanted) = found.coarsened_mm {
+        let cell = found.cell_mm;
+        let text = format!("cells are {cell:.4} mm instead of {wanted:.4} mm to stay within memory_mb");
+        notes.push(Diagnostic::warning("stock", text));
+    }
+    notes.extend(holds(&found.bounds, &around(faces)));
+    let stock = summary(found);
+    let text = format!(
+        "{:.0} mm3 of {:.0} mm3 are taken, {:.0} mm3 left (+- {:.0})",
+        stock.removed_mm3, stock.volume_mm3, stock.left_mm3, stock.spread_mm3
+    );
+    notes.push(Diagnostic::note("stock", text));
+    for c in stock.collisions.iter().take(LISTED) {
+        let [x, y, z] = c.at_mm;
+        let rapid = if c.rapid { " in rapid" } else { "" };
+        let text = format!(
+            "block {}: the {}{rapid} goes {:.3} mm deep through raw material at ({x:.3}, {y:.3}, {z:.3})",
+            c.block, c.body, c.deepest_mm
+        );
+        notes.push(Diagnostic::loss("stock", text));
+    }
+    (stock, notes)
+}
+
+fn summary(found: &StockFound) -> StockSummary {
+    let (left, carved) = (&found.left, &found.carved);
     let blocks: Vec<StockBlock> = carved
         .work
         .iter()
@@ -284,9 +367,9 @@ fn summary(stock: &Stock, volume_mm3: f64, carved: &Carved) -> StockSummary {
         at_mm: c.at.into(),
     });
     StockSummary {
-        cell_mm: stock.cell_mm(),
-        rays: stock.rays(),
-        volume_mm3,
+        cell_mm: found.cell_mm,
+        rays: found.rays,
+        volume_mm3: found.before.mm3,
         removed_mm3: carved.volume_mm3(),
         left_mm3: left.mm3,
         spread_mm3: left.spread_mm3,

@@ -5,7 +5,7 @@ use crate::work::choice::Row;
 use crate::work::extras::FaceLeftOut;
 use crate::work::ideal::IdealTime;
 use crate::work::program::WallS;
-use crate::work::verify::{Verification, WorstPlace};
+use crate::work::verify::{VerdictKeys, Verification, WorstPlace};
 use serde::Serialize;
 
 /// Productivity at three levels, mm2/min.
@@ -66,6 +66,8 @@ pub struct Summary {
     pub ideal: Option<IdealTime>,
     /// What the program leaves.
     pub verification: Verification,
+    /// The verdict.
+    pub verdict: VerdictKeys,
     /// Of faces, what passes leave out so that the tool does not go into the part; it is uncut too.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<FaceLeftOut>,

@@ -11,7 +11,7 @@ use osculate_geom::{Domain, Interval, Point3, Vec3};
 use osculate_postproc::readback::{ReadOptions, read};
 use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, post};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
-use osculate_tools::removal::{Kind, Limits, Swept, judge, sample_surface};
+use osculate_tools::removal::{Kind, Limits, Swept, sample_surface, tally};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 
 /// Share of its depth by which a gouge may look shallower for the samples' spacing.
@@ -30,7 +30,7 @@ fn deepest(cutter: &Cutter, motions: &[Swept], depth: f64, at: Point3) -> (f64, 
     }
     let cuts = run(cutter, motions, &sampling.samples);
     let limits = Limits::new(0.02, 1e-3);
-    let v = judge(&sampling.samples, &cuts, &limits, &sampling.density, sharpest).expect("good limits");
+    let v = tally(&sampling.samples, &cuts, &limits, &sampling.density, sharpest).expect("good limits");
     (v.gouge_max_mm, v.worst.iter().find(|w| w.kind == Kind::Gouge).and_then(|w| w.block))
 }
 

@@ -7,7 +7,7 @@ use joined::joined;
 use osculate_geom::{Axis, Surface, Unit3, Uv};
 use osculate_productivity::plan::{Pass, Tolerance};
 use osculate_tools::Cutter;
-use osculate_tools::removal::{Job, Limits, Sample, Swept, Verdict, cut, judge, sample_surface};
+use osculate_tools::removal::{Job, Limits, Sample, Swept, Tally, cut, sample_surface, tally};
 
 /// Rows along each parameter on which cusps are looked for, and samples on a row.
 const ROWS: usize = 8;
@@ -25,12 +25,12 @@ pub fn verdict(
     cutter: &Cutter,
     tolerance: Tolerance,
     spacing_mm: f64,
-) -> Verdict {
+) -> Tally {
     let sampling = sample_surface(surface, 0, spacing_mm, 400_000).expect("a face");
     let job = Job { cutter, holder: None, motions, samples: &sampling.samples, stock_mm: 1.0, depth_mm: 2.0 };
     let cuts = cut(&job, &|_| ()).expect("a job");
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
-    judge(&sampling.samples, &cuts, &limits, &sampling.density, cutter.radius_mm()).expect("a verdict")
+    tally(&sampling.samples, &cuts, &limits, &sampling.density, cutter.radius_mm()).expect("a verdict")
 }
 
 /// Median height of the cusps between passes over the tolerance: of the highest places between two lower ones on rows

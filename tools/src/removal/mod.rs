@@ -4,7 +4,8 @@
 //! n.
 //! [`cut`] moves cutter and holder through the whole path and keeps the lowest height at which any of them
 //! enters the line `p + s n`: the standoff. Positive is material left (a scallop, or a place never machined),
-//! negative a gouge. [`judge`] turns standoffs into a verdict, [`sample_surface`] makes the samples.
+//! negative a gouge. [`tally()`] sums standoffs up, [`sample_surface`] makes the samples. [`prove()`] does all of it and more: it alone
+//! says whether a program holds, against a [`Goal`] that names everything that must be so.
 //!
 //! Tools are exact and so are the motions ([`crate::sweep::LinearMotion`]), but for 2e-5 mm where a turning
 //! tool is deepest twice within a small stretch. What is approximate is that the part is looked at in
@@ -16,7 +17,7 @@
 //!
 //! ```
 //! use osculate_geom::{Domain, Interval, Point3, Vec3, analytic::Plane};
-//! use osculate_tools::removal::{Job, Limits, Swept, cut, judge, sample_surface};
+//! use osculate_tools::removal::{Job, Limits, Swept, cut, tally, sample_surface};
 //! use osculate_tools::{Cutter, CutterSpec, Pose};
 //! let face = Plane::new(Domain { u: Interval::new(0.0, 4.0), v: Interval::new(0.0, 4.0) });
 //! let sampling = sample_surface(&face, 0, 0.5, 10_000)?;
@@ -35,9 +36,9 @@
 //!     depth_mm: 1.0,
 //! };
 //! let cuts = cut(&job, &|_| ())?;
-//! let verdict = judge(&sampling.samples, &cuts, &Limits::new(0.01, 0.005), &sampling.density, 3.0)?;
+//! let found = tally(&sampling.samples, &cuts, &Limits::new(0.01, 0.005), &sampling.density, 3.0)?;
 //! // Passes 0.4 mm apart with a ball of radius 3: R - sqrt(R^2 - 0.2^2).
-//! assert!(verdict.within && verdict.scallop_max_mm <= 3.0 - (9.0f64 - 0.04).sqrt() + 1e-12);
+//! assert!(found.within && found.scallop_max_mm <= 3.0 - (9.0f64 - 0.04).sqrt() + 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -49,14 +50,18 @@ mod cut;
 mod deepest;
 mod density;
 mod digs;
+mod goal;
 mod grid;
 mod hidden;
 mod job;
 mod piece;
+mod prove;
 mod refine;
 mod sampling;
 pub mod stock;
+mod tally;
 mod target;
+mod tooth;
 mod tree;
 mod verdict;
 
@@ -64,8 +69,13 @@ pub use boundary::{sample_boundary, sample_triangles};
 pub use crest::crests;
 pub use cut::cut;
 pub use density::{Density, Hidden};
+pub use goal::{
+    Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Gravity, Looks, Program, Remark, Unseen,
+};
 pub use hidden::{DIVISIONS, Wanted, hidden};
 pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
+pub use prove::{LEAST_SAMPLES, ProveError, prove};
 pub use refine::{Measured, Refined, refine};
 pub use sampling::{Patch, Sampling, SamplingError, sample_surface};
-pub use verdict::{Bin, JudgeError, Kind, Limits, Verdict, Worst, judge};
+pub use tally::{Bin, Kind, Limits, Tally, TallyError, Worst, tally};
+pub use verdict::{Answer, Figures, ScopeRow, StockFound, Verdict};

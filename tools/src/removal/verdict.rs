@@ -1,308 +1,185 @@
-//! From standoffs to a verdict.
+//! The verdict on a program: held, not held, or not shown, with its scope first.
 //!
-//! A machined sample (not `check_only`) is *uncut* where nothing touched it or where more than `uncut_mm`
-//! stands: a place that was missed, not a cusp between passes. All other machined samples make the scallop
-//! statistics, area-weighted. A path is within tolerance when nothing is uncut, the highest scallop and the
-//! deepest gouge (on checked faces too) keep their limits, and neither holder nor rapids took more than
-//! `collision_mm`.
+//! [`prove`](super::prove()) alone makes one. Equal programs and goals give equal verdicts, byte for byte as text too.
 
-use super::density::{Density, Hidden};
+use super::density::Hidden;
 use super::job::{Cut, Sample};
-use osculate_geom::{Box3, Point3, Uv};
+use super::stock::{Carved, Volume};
+use super::tally::Tally;
+use std::fmt;
 
-/// What is acceptable, all mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Greatest height of scallops.
-    pub scallop_mm: f64,
-    /// Greatest depth of gouges.
-    pub gouge_mm: f64,
-    /// Height above which material counts as not machined rather than as a scallop; at least `scallop_mm`.
-    pub uncut_mm: f64,
-    /// Most that the holder or a rapid may take away, for touches that are only rounding.
-    pub collision_mm: f64,
-    /// Most places listed of each kind.
-    pub worst: usize,
+/// The answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Everything in the scope holds, between the samples too.
+    Held,
+    /// Something does not hold.
+    NotHeld,
+    /// The limits are met where it was looked, but that they are elsewhere is not shown.
+    NotShown,
 }
 
-impl Limits {
-    /// Limits for a scallop and a gouge tolerance: uncut above five times the scallop (a stepover more than
-    /// doubled), collisions from the gouge tolerance on, ten places of each kind.
+impl Answer {
+    /// As files have it.
     #[must_use]
-    pub const fn new(scallop_mm: f64, gouge_mm: f64) -> Self {
-        Self { scallop_mm, gouge_mm, uncut_mm: 5.0 * scallop_mm, collision_mm: gouge_mm, worst: 10 }
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::NotHeld => "not_held",
+            Self::NotShown => "not_shown",
+        }
     }
 }
 
-/// The kind of a place in [`Verdict::worst`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Material standing between passes.
-    Scallop,
-    /// Material taken from the part.
-    Gouge,
-    /// Material not machined.
-    Uncut,
-    /// Material taken by the holder.
-    Holder,
-    /// Material taken in a rapid.
-    Rapid,
+/// What a part of the scope is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ScopeRow {
+    /// Which part.
+    pub what: &'static str,
+    /// What of it is covered, or that it is not.
+    pub covers: String,
 }
 
-/// A place that stands out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Worst {
-    /// Of which kind.
-    pub kind: Kind,
-    /// Height, depth or height taken, mm, positive.
-    pub value_mm: f64,
-    /// Where, mm.
-    pub at: Point3,
-    /// On which face.
-    pub face: u32,
-    /// Surface parameters.
-    pub uv: Uv,
-    /// The block that did it; None where nothing did (uncut).
-    pub block: Option<u32>,
+/// What became of declared raw material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StockFound {
+    /// Sides of cells, mm.
+    pub cell_mm: f64,
+    /// The side that was asked for, where memory required larger ones.
+    pub coarsened_mm: Option<f64>,
+    /// Rays.
+    pub rays: usize,
+    /// The box that it fills, mm.
+    pub bounds: osculate_geom::Box3,
+    /// Before.
+    pub before: Volume,
+    /// After.
+    pub left: Volume,
+    /// What every block took, and what ran into material.
+    pub carved: Carved,
 }
 
-/// A bin of the histogram of standoffs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bin {
-    /// Lower end, mm; the first bin begins at minus infinity.
-    pub from_mm: f64,
-    /// Upper end, mm, not included; the last bin ends at infinity.
-    pub to_mm: f64,
-    /// Area of the machined samples in it, mm2.
-    pub area_mm2: f64,
+/// The figures behind a verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figures {
+    /// Over all samples.
+    pub tally: Tally,
+    /// Samples that were added where limits might be exceeded between the others.
+    pub added: usize,
+    /// Distance of the others, mm.
+    pub spacing_mm: f64,
+    /// What may hide between samples, mm.
+    pub hidden: Hidden,
+    /// The smallest radius of curvature at a sample, mm; None where everything is flat.
+    pub smallest_radius_mm: Option<f64>,
+    /// Median height of the crests between passes, mm.
+    pub crest_median_mm: f64,
+    /// The highest tooth mark, mm; None where nothing tells the spindle's speed.
+    pub mark_max_mm: Option<f64>,
+    /// Highest scallop with its tooth mark, mm.
+    pub height_max_mm: f64,
+    /// The program is so far off that a coarse look tells: figures are of that look, and nothing was looked at closer.
+    pub coarse: bool,
+    /// Declared raw material, where it was looked at.
+    pub stock: Option<StockFound>,
 }
 
-/// The verdict on a path.
+/// The verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// Whether all limits are kept.
-    pub within: bool,
-    /// Samples judged.
-    pub samples: usize,
-    /// Highest scallop, mm.
-    pub scallop_max_mm: f64,
-    /// Height that 99 percent of the area which is not uncut stays below, mm.
-    pub scallop_p99_mm: f64,
-    /// Median standoff of that area, mm; negative where most of it is cut below the part.
-    pub median_mm: f64,
-    /// Deepest gouge, mm.
-    pub gouge_max_mm: f64,
-    /// Area gouged deeper than the limit, mm2.
-    pub gouge_area_mm2: f64,
-    /// Area left unmachined, mm2.
-    pub uncut_area_mm2: f64,
-    /// Samples left unmachined.
-    pub uncut_samples: usize,
-    /// The most that a rapid took, mm.
-    pub rapid_max_mm: f64,
-    /// The most that the holder took, mm.
-    pub holder_max_mm: f64,
-    /// What may hide between the samples, mm.
-    pub hidden: Hidden,
-    /// The most notable places of each kind, worst first, no two of a kind nearer than a fiftieth of the
-    /// part.
-    pub worst: Vec<Worst>,
-    /// Area by standoff: forty equal bins from twice the gouge limit (a quarter of the scallop's at least)
-    /// below the part to twice the scallop limit above it, and one beyond each end.
-    pub histogram: Vec<Bin>,
+    pub(super) answer: Answer,
+    /// The faces for which alone it holds, where others are not looked at.
+    pub(super) only: Option<String>,
+    pub(super) why: Vec<String>,
+    pub(super) remarks: Vec<String>,
+    pub(super) scope: Vec<ScopeRow>,
+    pub(super) figures: Figures,
+    pub(super) samples: Vec<Sample>,
+    pub(super) cuts: Vec<Cut>,
 }
 
-/// Input that cannot be judged.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum JudgeError {
-    /// Not one result for each sample.
-    #[error("{samples} samples but {cuts} results: judge what cut() returned for the same samples")]
-    Count {
-        /// Samples.
-        samples: usize,
-        /// Results.
-        cuts: usize,
-    },
-    /// Limits that contradict themselves.
-    #[error(
-        "limits must be finite with scallop_mm > 0, gouge_mm >= 0, collision_mm >= 0 and uncut_mm >= \
-         scallop_mm, got scallop_mm = {}, gouge_mm = {}, collision_mm = {}, uncut_mm = {}",
-        .0.scallop_mm, .0.gouge_mm, .0.collision_mm, .0.uncut_mm
-    )]
-    Limits(Limits),
-    /// A sample whose area is negative or not a number.
-    #[error("sample {sample} stands for an area of {area_mm2} mm2")]
-    Area {
-        /// Index of the sample.
-        sample: usize,
-        /// Its area, mm2.
-        area_mm2: f64,
-    },
-}
+impl Verdict {
+    /// The answer.
+    #[must_use]
+    pub const fn answer(&self) -> Answer {
+        self.answer
+    }
 
-impl Limits {
-    fn valid(&self) -> bool {
-        let all = [self.scallop_mm, self.gouge_mm, self.uncut_mm, self.collision_mm];
-        all.iter().all(|x| x.is_finite() && *x >= 0.0)
-            && self.scallop_mm > 0.0
-            && self.uncut_mm >= self.scallop_mm
+    /// Whether the answer is [`Answer::Held`].
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        self.answer == Answer::Held
+    }
+
+    /// Why it is not held, or not shown; the gravest first. Empty where it is held.
+    #[must_use]
+    pub fn why(&self) -> &[String] {
+        &self.why
+    }
+
+    /// What is to be told of the state of the control, whatever the answer.
+    #[must_use]
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
+    /// What it covers and what not.
+    #[must_use]
+    pub fn scope(&self) -> &[ScopeRow] {
+        &self.scope
+    }
+
+    /// The figures.
+    #[must_use]
+    pub const fn figures(&self) -> &Figures {
+        &self.figures
+    }
+
+    /// Where it was measured: evenly at first, then the samples that were added.
+    #[must_use]
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// What was measured there.
+    #[must_use]
+    pub fn cuts(&self) -> &[Cut] {
+        &self.cuts
+    }
+
+    /// The answer as a doubt of another judge leaves it: what was held is not shown, for this reason.
+    #[must_use]
+    pub fn doubted(mut self, why: String) -> Self {
+        if self.answer == Answer::Held {
+            self.answer = Answer::NotShown;
+        }
+        self.why.push(why);
+        self
+    }
+
+    /// The answer in words, in one line.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let only = self.only.as_ref().map_or_else(String::new, |only| format!(" for {only} only"));
+        match self.answer {
+            Answer::Held => format!("held{only}: within tolerance, with all that may hide between samples"),
+            Answer::NotHeld => format!("NOT held: {}", self.why.join("; ")),
+            Answer::NotShown => format!("NOT SHOWN to hold{only}: {}", self.why.join("; ")),
+        }
     }
 }
 
-/// Judges the result of [`cut`](super::cut) for the same samples; the samples' density and the tool's
-/// effective radius bound what they may have missed, see [`Density::bound`].
-///
-/// # Errors
-/// [`JudgeError`].
-pub fn judge(
-    samples: &[Sample],
-    cuts: &[Cut],
-    limits: &Limits,
-    density: &Density,
-    tool_radius_mm: f64,
-) -> Result<Verdict, JudgeError> {
-    if samples.len() != cuts.len() {
-        return Err(JudgeError::Count { samples: samples.len(), cuts: cuts.len() });
-    }
-    if !limits.valid() {
-        return Err(JudgeError::Limits(*limits));
-    }
-    for (k, s) in samples.iter().enumerate() {
-        if !(s.area_mm2 >= 0.0 && s.area_mm2.is_finite()) {
-            return Err(JudgeError::Area { sample: k, area_mm2: s.area_mm2 });
+impl fmt::Display for Verdict {
+    /// Scope, then answer, then what is to be told.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = self.scope.iter().map(|row| row.what.len()).max().unwrap_or(0);
+        for row in &self.scope {
+            writeln!(f, "  {:width$}  {}", row.what, row.covers)?;
         }
-    }
-    let mut places = Places { samples, of: Default::default() };
-    let mut left: Vec<(f64, f64)> = Vec::new();
-    let mut v = Verdict {
-        within: false,
-        samples: samples.len(),
-        scallop_max_mm: 0.0,
-        scallop_p99_mm: 0.0,
-        median_mm: 0.0,
-        gouge_max_mm: 0.0,
-        gouge_area_mm2: 0.0,
-        uncut_area_mm2: 0.0,
-        uncut_samples: 0,
-        rapid_max_mm: 0.0,
-        holder_max_mm: 0.0,
-        hidden: Hidden { scallop_mm: 0.0, gouge_mm: 0.0 },
-        worst: Vec::new(),
-        histogram: bins(limits),
-    };
-    for (k, (sample, cut)) in samples.iter().zip(cuts).enumerate() {
-        let (height, area) = (cut.standoff_mm, sample.area_mm2);
-        let block = cut.by.map(|by| by.block);
-        if height < 0.0 {
-            v.gouge_max_mm = v.gouge_max_mm.max(-height);
-            if -height > limits.gouge_mm {
-                v.gouge_area_mm2 += area;
-            }
-            places.see(Kind::Gouge, -height, k, block);
+        writeln!(f, "\n  {}", self.words())?;
+        for remark in &self.remarks {
+            writeln!(f, "  {remark}")?;
         }
-        for (kind, touch, max) in
-            [(Kind::Holder, cut.holder, &mut v.holder_max_mm), (Kind::Rapid, cut.rapid, &mut v.rapid_max_mm)]
-        {
-            if let Some(touch) = touch {
-                *max = max.max(touch.removed_mm);
-                if touch.removed_mm > limits.collision_mm {
-                    places.see(kind, touch.removed_mm, k, Some(touch.block));
-                }
-            }
-        }
-        if sample.check_only {
-            continue;
-        }
-        // The last bin ends at infinity.
-        if let Some(bin) = v.histogram.iter_mut().find(|b| height < b.to_mm) {
-            bin.area_mm2 += area;
-        }
-        if cut.by.is_none() || height > limits.uncut_mm {
-            v.uncut_area_mm2 += area;
-            v.uncut_samples += 1;
-            places.see(Kind::Uncut, height, k, block);
-        } else {
-            v.scallop_max_mm = v.scallop_max_mm.max(height);
-            left.push((height, area));
-            if height > 0.0 {
-                places.see(Kind::Scallop, height, k, block);
-            }
-        }
-    }
-    left.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    v.scallop_p99_mm = quantile(&left, 0.99).max(0.0);
-    v.median_mm = quantile(&left, 0.5);
-    v.hidden = density.bound(tool_radius_mm, v.scallop_max_mm);
-    v.worst = places.worst(limits.worst);
-    v.within = v.uncut_samples == 0
-        && v.scallop_max_mm <= limits.scallop_mm
-        && v.gouge_max_mm <= limits.gouge_mm
-        && v.rapid_max_mm <= limits.collision_mm
-        && v.holder_max_mm <= limits.collision_mm;
-    Ok(v)
-}
-
-/// The least height that `share` of the area does not exceed, heights ascending; 0 where there is nothing.
-fn quantile(ascending: &[(f64, f64)], share: f64) -> f64 {
-    let wanted = share * ascending.iter().map(|x| x.1).sum::<f64>();
-    let mut area = 0.0;
-    for (height, own) in ascending {
-        area += own;
-        if area >= wanted {
-            return *height;
-        }
-    }
-    // Only rounding of the sum leads here.
-    ascending.last().map_or(0.0, |x| x.0)
-}
-
-fn bins(limits: &Limits) -> Vec<Bin> {
-    const BINS: usize = 40;
-    let (lo, hi) = (-2.0 * limits.gouge_mm.max(0.25 * limits.scallop_mm), 2.0 * limits.scallop_mm);
-    let edge = |k: usize| lo + (hi - lo) * k as f64 / BINS as f64;
-    let mut bins = vec![Bin { from_mm: f64::NEG_INFINITY, to_mm: lo, area_mm2: 0.0 }];
-    bins.extend((0..BINS).map(|k| Bin { from_mm: edge(k), to_mm: edge(k + 1), area_mm2: 0.0 }));
-    bins.push(Bin { from_mm: edge(BINS), to_mm: f64::INFINITY, area_mm2: 0.0 });
-    bins
-}
-
-const KINDS: [Kind; 5] = [Kind::Gouge, Kind::Holder, Kind::Rapid, Kind::Uncut, Kind::Scallop];
-
-/// A place seen: value, sample, block.
-type Seen = (f64, usize, Option<u32>);
-
-/// What was seen, by kind.
-struct Places<'a> {
-    samples: &'a [Sample],
-    of: [Vec<Seen>; KINDS.len()],
-}
-
-impl Places<'_> {
-    fn see(&mut self, kind: Kind, value: f64, sample: usize, block: Option<u32>) {
-        let k = KINDS.iter().position(|x| *x == kind).expect("every kind is listed");
-        self.of[k].push((value, sample, block));
-    }
-
-    fn worst(self, most: usize) -> Vec<Worst> {
-        let apart = Box3::around(self.samples.iter().map(|s| &s.point)).diagonal_mm() / 50.0;
-        let mut out = Vec::new();
-        for (kind, mut seen) in KINDS.into_iter().zip(self.of) {
-            let top = seen.iter().map(|x| x.0).fold(0.0, f64::max);
-            // Places of less than half the worst are not notable.
-            seen.retain(|x| x.0 >= 0.5 * top);
-            seen.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            let first = out.len();
-            for (value_mm, sample, block) in seen {
-                if out.len() - first >= most {
-                    break;
-                }
-                let s = &self.samples[sample];
-                if out[first..].iter().any(|w: &Worst| (w.at - s.point).norm() < apart) {
-                    continue;
-                }
-                out.push(Worst { kind, value_mm, at: s.point, face: s.face, uv: s.uv, block });
-            }
-        }
-        out
+        Ok(())
     }
 }

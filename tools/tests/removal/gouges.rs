@@ -3,7 +3,7 @@
 use crate::common::{ball, pose, run, through, upright};
 use osculate_geom::analytic::{Cylinder, Placed, Placement, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Vec3};
-use osculate_tools::removal::{Kind, Limits, Sampling, Swept, Verdict, judge, sample_surface};
+use osculate_tools::removal::{Kind, Limits, Sampling, Swept, Tally, sample_surface, tally};
 use osculate_tools::{Cutter, Pose};
 
 fn face(side: f64, spacing: f64) -> Sampling {
@@ -11,10 +11,10 @@ fn face(side: f64, spacing: f64) -> Sampling {
     sample_surface(&Plane::new(Domain { u: i, v: i }), 7, spacing, 1_000_000).expect("a good face")
 }
 
-fn verdict(cutter: &Cutter, motions: &[Swept], sampling: &Sampling) -> Verdict {
+fn verdict(cutter: &Cutter, motions: &[Swept], sampling: &Sampling) -> Tally {
     let cuts = run(cutter, motions, &sampling.samples, 0.5);
     let limits = Limits::new(0.02, 1e-3);
-    judge(&sampling.samples, &cuts, &limits, &sampling.density, cutter.radius_mm()).expect("good limits")
+    tally(&sampling.samples, &cuts, &limits, &sampling.density, cutter.radius_mm()).expect("good limits")
 }
 
 /// A raster with one point every 0.5 mm; `place` may move a point.

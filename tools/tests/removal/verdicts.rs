@@ -5,8 +5,8 @@ use osculate_geom::analytic::Plane;
 use osculate_geom::{Domain, Interval};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use osculate_tools::removal::{
-    Body, By, Cut, Density, Job, JudgeError, Kind, Limits, Sample, Swept, Touch, Verdict, crests, cut, judge,
-    sample_surface,
+    Body, By, Cut, Density, Job, Kind, Limits, Sample, Swept, Tally, TallyError, Touch, crests, cut,
+    sample_surface, tally,
 };
 
 const DENSITY: Density = Density { spacing_mm: 0.1, convex_per_mm: 0.0 };
@@ -20,8 +20,8 @@ fn line(count: usize) -> Vec<Sample> {
     (0..count).map(|k| sample([k as f64, 0.0, 0.0], [0.0, 0.0, 1.0])).collect()
 }
 
-fn judged(samples: &[Sample], cuts: &[Cut]) -> Verdict {
-    judge(samples, cuts, &Limits::new(0.01, 0.005), &DENSITY, 5.0).expect("good limits")
+fn judged(samples: &[Sample], cuts: &[Cut]) -> Tally {
+    tally(samples, cuts, &Limits::new(0.01, 0.005), &DENSITY, 5.0).expect("good limits")
 }
 
 #[test]
@@ -158,8 +158,8 @@ fn nonsense_is_refused() {
     let cuts = vec![cut_to(0.0); 2];
     let limits = Limits::new(0.01, 0.005);
     assert!(matches!(
-        judge(&samples, &cuts, &limits, &DENSITY, 5.0),
-        Err(JudgeError::Count { samples: 3, cuts: 2 })
+        tally(&samples, &cuts, &limits, &DENSITY, 5.0),
+        Err(TallyError::Count { samples: 3, cuts: 2 })
     ));
     let cuts = vec![cut_to(0.0); 3];
     for bad in [
@@ -167,15 +167,15 @@ fn nonsense_is_refused() {
         Limits { gouge_mm: f64::NAN, ..limits },
         Limits { uncut_mm: 0.009, ..limits },
     ] {
-        assert!(matches!(judge(&samples, &cuts, &bad, &DENSITY, 5.0), Err(JudgeError::Limits(_))));
+        assert!(matches!(tally(&samples, &cuts, &bad, &DENSITY, 5.0), Err(TallyError::Limits(_))));
     }
     let mut no_area = samples.clone();
     no_area[1].area_mm2 = f64::NAN;
     assert!(matches!(
-        judge(&no_area, &cuts, &limits, &DENSITY, 5.0),
-        Err(JudgeError::Area { sample: 1, .. })
+        tally(&no_area, &cuts, &limits, &DENSITY, 5.0),
+        Err(TallyError::Area { sample: 1, .. })
     ));
-    let empty = judge(&[], &[], &limits, &DENSITY, 5.0).unwrap();
+    let empty = tally(&[], &[], &limits, &DENSITY, 5.0).unwrap();
     assert!(empty.samples == 0 && empty.scallop_p99_mm == 0.0 && empty.worst.is_empty());
 }
 

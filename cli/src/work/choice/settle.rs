@@ -10,8 +10,10 @@ use crate::work::look::Objection;
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::verify::{Verification, Verified};
 use osculate_productivity::levels::{Totals, levels};
-use osculate_tools::removal::Limits;
+use osculate_tools::removal::{Answer, Limits};
 
+/// Contenders that hold at their samples only, after which the best of them is taken: finer looks are for the job to ask for.
+const MOST_NOT_SHOWN: usize = 2;
 /// Contenders that are verified at most.
 const MOST_VERIFIED: usize = 9;
 
@@ -40,26 +42,26 @@ pub fn settle(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Settled, Failure> {
     let mut best: Option<(f64, Settled)> = None;
-    let (mut holding, mut verified) = (0, 0);
-    while verified < MOST_VERIFIED {
+    let (mut holding, mut verified, mut not_shown) = (0, 0, 0);
+    while verified < MOST_VERIFIED && not_shown < MOST_NOT_SHOWN {
         let Some(contender) = choice.next(watch, wall_s, progress)? else { break };
         verified += 1;
-        let found =
-            match contender.posted.verify(&contender.job, choice.faces, &contender.planned, wall_s, watch) {
-                Ok(found) => found,
-                Err(why) => {
-                    choice.lost(&contender, &why);
-                    continue;
-                }
-            };
-        let why = objection(&contender.job, &found.summary)?;
+        let found = match contender.posted.verify(&contender.job, choice.faces, wall_s, watch) {
+            Ok(found) => found,
+            Err(why) => {
+                choice.lost(&contender, &why);
+                continue;
+            }
+        };
+        let why = objection(&contender.job, &found)?;
+        not_shown += usize::from(found.verdict.answer() == Answer::NotShown);
         holding += usize::from(why.is_none());
         let measured = measured(choice, &contender, &found.summary)?;
         choice.record(&contender, measured, why);
         if holding >= enough && found.summary.within_tolerance {
             choice.undercut(&contender);
         }
-        let off = off_by(&contender.job, &found.summary)?;
+        let off = off_by(&contender.job, &found)?;
         let rank = (off, contender.posted.time_min());
         if best.as_ref().is_none_or(|b| rank < (b.0, b.1.posted.time_min())) {
             let Contender { job, planned, posted, .. } = contender;
@@ -73,19 +75,31 @@ pub fn settle(
     })
 }
 
+/// How far off a plan counts that holds at its samples: less than any that does not.
+const NEARLY: f64 = 0.5;
+
 /// By how much of its limits a verification is off; nothing where it holds, so that the first that holds stays the best.
-fn off_by(job: &Job, v: &Verification) -> Result<f64, Failure> {
-    if v.within_tolerance {
-        return Ok(0.0);
+fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
+    let v = &found.summary;
+    match found.verdict.answer() {
+        Answer::Held => return Ok(0.0),
+        Answer::NotShown => return Ok(NEARLY),
+        Answer::NotHeld => {}
     }
     let t = job.tolerance()?;
     Ok((v.scallop_max_mm / t.scallop_mm).max(v.gouge_max_mm / t.gouge_mm).max(1.0))
 }
 
 /// Why a verification does not hold.
-fn objection(job: &Job, v: &Verification) -> Result<Option<Objection>, Failure> {
-    if v.within_tolerance {
-        return Ok(None);
+fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> {
+    let v = &found.summary;
+    match found.verdict.answer() {
+        Answer::Held => return Ok(None),
+        Answer::NotShown => {
+            let text = format!("verified: {}", found.verdict.words());
+            return Ok(Some(Objection { digs_in: false, left_mm: None, text }));
+        }
+        Answer::NotHeld => {}
     }
     let t = job.tolerance()?;
     let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
@@ -93,17 +107,17 @@ fn objection(job: &Job, v: &Verification) -> Result<Option<Objection>, Failure> 
         ("gouge", v.gouge_max_mm, t.gouge_mm, "mm"),
         ("holder takes", v.holder_max_mm, collision, "mm"),
         ("rapid move takes", v.rapid_max_mm, collision, "mm"),
-        ("uncut area", v.uncut_area_mm2, 0.0, "mm2"),
-        ("scallop", v.scallop_max_mm, t.scallop_mm, "mm"),
+        ("uncut area", v.uncut_area_mm2, job.tolerance.unreached_mm2.unwrap_or(0.0), "mm2"),
+        ("scallop with tooth mark", v.height_max_mm, t.scallop_mm, "mm"),
     ];
     let bad = figures.into_iter().enumerate().find(|(_, (_, is, limit, _))| is > limit);
     let (k, text) = bad.map_or_else(
-        || (0, "verification does not hold".to_owned()),
+        || (0, format!("verified: {}", found.verdict.words())),
         |(k, (what, is, limit, unit))| {
             (k, format!("verified: {what} {is:.4} {unit}, {limit} {unit} is accepted"))
         },
     );
-    Ok(Some(Objection { digs_in: k == 0, left_mm: (k == 4).then_some(v.scallop_max_mm), text }))
+    Ok(Some(Objection { digs_in: k == 0, left_mm: (k == 4).then_some(v.height_max_mm), text }))
 }
 
 fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Result<Measured, Failure> {

@@ -121,6 +121,9 @@ impl Surface for Across {
         };
         Taylor { uv: at, side: a.side, coordinates: [series(0), series(1), series(2)] }
     }
+    fn contains(&self, at: Uv) -> bool {
+        self.straight || self.surface.contains(self.native(at))
+    }
     fn point(&self, at: Uv) -> Point3 {
         if !self.straight {
             return self.surface.point(self.native(at));
@@ -128,6 +131,15 @@ impl Surface for Across {
         let [a, b] = [0.0, 1.0].map(|v| self.surface.point(self.native(uv(at.u, v))));
         a + (b - a) * at.v
     }
+}
+
+/// The faces of a job, that to machine as `[flank]` says that it is judged: on its other side, or over a part of its length.
+pub fn judged(job: &Job, all: JobFaces) -> Result<JobFaces, Failure> {
+    if job.flank.side == 1 && job.flank.judge_u.is_none() {
+        return Ok(all);
+    }
+    let FlankFace { judged, .. } = FlankFace::of(job, &all)?;
+    Ok(JobFaces { faces: vec![judged], ..all })
 }
 
 /// A face ready to be flank milled.
@@ -138,8 +150,8 @@ pub struct FlankFace {
     pub along: Axis,
     /// How far its lines across stray from straight ones, mm.
     pub straying_mm: f64,
-    /// The faces to verify against: this one where it is judged.
-    pub faces: JobFaces,
+    /// The real face, where it is judged.
+    pub judged: LoadedFace,
 }
 
 /// A range of a job that must lie in order.
@@ -172,7 +184,7 @@ fn rectangle(face: &LoadedFace) -> Domain {
 
 impl FlankFace {
     /// The only machined face of a job.
-    pub fn of(job: &Job, mut all: JobFaces) -> Result<Self, Failure> {
+    pub fn of(job: &Job, all: &JobFaces) -> Result<Self, Failure> {
         let table = &job.flank;
         let wrong = |text: String| Failure::file(&job.path, format!("[flank] {text}"));
         let [one] = all.faces.as_slice() else {
@@ -218,16 +230,17 @@ impl FlankFace {
                 judge.lo, judge.hi, whole.lo, whole.hi
             )));
         }
-        let mut verified = one.clone();
-        if judge.lo > whole.lo || judge.hi < whole.hi || across.straight {
-            let part = Across { range: judge, ..across.clone() };
+        let mut judged = one.clone();
+        if judge.lo > whole.lo || judge.hi < whole.hi {
+            // The face itself, whatever stands for it while it is planned.
+            let part = Across { range: judge, straight: false, ..across.clone() };
             let surface = TrimmedSurface::new(Arc::new(part), &[], Side::Along).map_err(Failure::job)?;
-            verified.surface = Arc::new(surface);
+            judged.surface = Arc::new(surface);
+            judged.part_of_it = Some(format!("u = {} to {} along it", judge.lo, judge.hi));
         } else if flipped {
-            verified.surface = Arc::new(TrimmedSurface::clone(&verified.surface).flipped());
+            judged.surface = Arc::new(TrimmedSurface::clone(&judged.surface).flipped());
         }
         let along = across.along;
-        all.faces = vec![verified];
-        Ok(Self { face: Arc::new(across), along, straying_mm, faces: all })
+        Ok(Self { face: Arc::new(across), along, straying_mm, judged })
     }
 }

@@ -161,7 +161,7 @@ pub fn agreement(motion: &Motion, lead_mm: f64, verified: &Verified) -> Agreemen
     let envelope = Envelope::new(motion.side, &pieces);
     // The even samples: those added crowd where limits are near.
     let even = verified.summary.samples - verified.summary.added_samples;
-    let pairs: Vec<_> = verified.samples.iter().zip(&verified.cuts).take(even).collect();
+    let pairs: Vec<_> = verified.verdict.samples().iter().zip(verified.verdict.cuts()).take(even).collect();
     let mut differences: Vec<f64> = pairs
         .par_iter()
         .map_init(Scratch::default, |scratch, (sample, cut)| {

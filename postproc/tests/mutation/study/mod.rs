@@ -14,7 +14,7 @@ use osculate_postproc::readback::{ReadOptions, read};
 use osculate_postproc::{Dialect, Setup};
 use osculate_tools::Cutter;
 use osculate_tools::cl::Motion;
-use osculate_tools::removal::{Job, Limits, Swept, cut, judge, sample_surface};
+use osculate_tools::removal::{Job, Limits, Swept, cut, sample_surface, tally};
 use programs::{Good, RECIPES, good};
 use rayon::prelude::*;
 use reference::{Shape, reference};
@@ -101,7 +101,7 @@ fn verify(g: &Good, motions: &[Swept], cutter: &Cutter) -> Says {
     let samples = &sampling.samples;
     let job = Job { cutter, holder: None, motions, samples, stock_mm: STOCK_MM, depth_mm: DEPTH_MM };
     let Ok(cuts) = cut(&job, &|_| ()) else { return Says::Refused };
-    let v = judge(samples, &cuts, &LIMITS, &sampling.density, cutter.radius_mm()).expect("good limits");
+    let v = tally(samples, &cuts, &LIMITS, &sampling.density, cutter.radius_mm()).expect("good limits");
     if v.within { Says::Within } else { Says::NotWithin }
 }
 

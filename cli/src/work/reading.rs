@@ -1,0 +1,208 @@
+//! Programs and CL data read for their verdict: motions, times, and the state of the control. The same for every verb.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part::JobFaces;
+use crate::work::nc::{self, Control, Motions};
+use crate::work::{posted_setup, stock};
+use osculate_geom::{Box3, Diagnostic};
+use osculate_postproc::cldata;
+use osculate_tools::Cutter;
+use osculate_tools::cl::{ClPath, Motion};
+use osculate_tools::removal::Swept;
+use std::path::Path;
+
+/// A text that was read.
+pub struct Read {
+    /// `nc` or `cl`.
+    pub source: &'static str,
+    /// What it does.
+    pub motions: Motions,
+    /// Findings beside those of the motions.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads a program or CL data for the verdict of a job.
+///
+/// # Errors
+/// Where the text cannot be read, or what it does cannot be meant for the part.
+pub fn read(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool) -> Result<Read, Failure> {
+    let mut read =
+        if is_cl(file, text) { of_cl(file, text, job)? } else { of_nc(file, text, job, faces, lenient)? };
+    let motions = &read.motions.motions;
+    if motions.is_empty() {
+        return Err(Failure::file(file, "has no motion: at least two positions are needed"));
+    }
+    let strange = meet(file, motions, faces).map_err(|why| why.warned(&read.diagnostics))?;
+    read.diagnostics.extend(strange);
+    Ok(read)
+}
+
+fn of_cl(file: &Path, text: &str, job: &Job) -> Result<Read, Failure> {
+    let cl = cldata::read(text).map_err(|e| Failure::file(file, e))?;
+    let mut diagnostics = cl.diagnostics;
+    let own = job.cutter_spec()?;
+    if let Some(other) = cl.path.cutter.filter(|c| Cutter::try_from(*c) != Cutter::try_from(own)) {
+        let text = format!("the CL data is for another cutter: {other:?}; verified with the job's, {own:?}");
+        diagnostics.push(Diagnostic::warning("tool", text));
+    }
+    Ok(Read { source: "cl", motions: timed(&cl.path), diagnostics })
+}
+
+/// The motions of CL data, with times by their feeds; rapid moves take none, as nothing says their speed.
+fn timed(path: &ClPath) -> Motions {
+    let motions = Swept::along(path);
+    let mut clock = 0.0;
+    let times_min = motions
+        .iter()
+        .zip(path.moves.iter().skip(1))
+        .map(|(m, to)| {
+            if let Motion::Feed(feed) = to.motion {
+                clock += (m.to.tip - m.from.tip).norm() / feed;
+            }
+            clock
+        })
+        .collect();
+    let (time_min, spindle_rpm) = (clock, path.spindle_rpm);
+    Motions { motions, times_min, time_min, cutting_time_min: clock, spindle_rpm, ..Motions::default() }
+}
+
+fn of_nc(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool) -> Result<Read, Failure> {
+    let (control, notes) = nc::control(job)?;
+    let mut diagnostics = Vec::new();
+    if job.machine.is_none() {
+        diagnostics.push(Diagnostic::warning(
+            "machine",
+            format!(
+                "the job has no [machine]: the program is read as {} for {}; give [machine] name or file, and dialect",
+                control.dialect_name,
+                control.machine.name()
+            ),
+        ));
+    } else {
+        diagnostics.extend(notes);
+    }
+    let (motions, notes) =
+        program(text, &control, job, faces, lenient).map_err(|e| Failure::file(file, e.message()))?;
+    diagnostics.extend(notes);
+    diagnostics.extend(feeds(job, &motions)?);
+    diagnostics.extend(motions.diagnostics.iter().cloned());
+    Ok(Read { source: "nc", motions, diagnostics })
+}
+
+/// What a program does to the part of a job that stands where the program's head says, with findings on that place.
+///
+/// # Errors
+/// Where it cannot be read.
+pub fn program(
+    text: &str,
+    control: &Control,
+    job: &Job,
+    faces: &JobFaces,
+    lenient: bool,
+) -> Result<(Motions, Vec<Diagnostic>), Failure> {
+    let (setup, notes) = posted_setup::of_program(job, faces, text, control.dialect)?;
+    let motions = nc::read_back(text, control, &setup, lenient).map_err(Failure::job)?;
+    Ok((motions, notes))
+}
+
+/// Whether a text is CL data: a statement of APT stands in its first lines.
+fn is_cl(path: &Path, text: &str) -> bool {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if matches!(ending.as_deref(), Some("cl" | "apt" | "cls" | "aptsource")) {
+        return true;
+    }
+    text.lines().take(200).any(|l| {
+        let l = l.trim_start().to_uppercase();
+        l.starts_with("GOTO/") || l.starts_with("PARTNO") || l.starts_with("LOADTL/")
+    })
+}
+
+/// A feed above the job's by more than this is reported: rounding of F and of the path stays far below.
+const FEED_EXCESS: f64 = 1.05;
+
+/// Reports feed moves whose tip goes faster than the job says: the fastest, with its line.
+fn feeds(job: &Job, read: &Motions) -> Result<Option<Diagnostic>, Failure> {
+    let wanted = job.feed_mm_min()?;
+    let (mut fastest, mut line, mut fast) = (0.0, 0, 0usize);
+    let mut before = 0.0;
+    for (m, clock) in read.motions.iter().zip(&read.times_min) {
+        let length = (m.to.tip - m.from.tip).norm();
+        let time = clock - before;
+        before = *clock;
+        // Shorter moves say more about rounding than about feed.
+        if m.rapid || time <= 0.0 || length < SHORT_MM {
+            continue;
+        }
+        let feed = length / time;
+        if feed > FEED_EXCESS * wanted {
+            fast += 1;
+        }
+        if feed > fastest {
+            (fastest, line) = (feed, m.block);
+        }
+    }
+    Ok((fast > 0).then(|| {
+        let text = format!(
+            "the tip moves faster than feed_mm_min = {wanted:.0} in {fast} moves, most in line {line}: {fastest:.0} mm/min"
+        );
+        Diagnostic::warning("feed", text)
+    }))
+}
+
+/// Moves that are too short to tell their feed, mm.
+const SHORT_MM: f64 = 0.05;
+
+/// What unit a path may be in that meets the part only when scaled: a hint for the message.
+fn unit_hint(path: &Box3, reach: &Box3) -> &'static str {
+    const INCH: f64 = 25.4;
+    let meets = |scale: f64| {
+        (0..3).all(|k| path.min[k] * scale <= reach.max[k] && path.max[k] * scale >= reach.min[k])
+    };
+    if path.is_empty() {
+        ""
+    } else if meets(INCH) {
+        "; taken as inches they would meet: does the program need G20 or UNITS/INCHES?"
+    } else if meets(1.0 / INCH) {
+        "; divided by 25.4 they would meet: is the part in inches, or the program in mm under G20?"
+    } else {
+        ""
+    }
+}
+
+/// Feed moves that span more than this many times the part, or less than its share, are told.
+const SPAN: f64 = 8.0;
+
+/// Refuses a path that never comes near the part, a wrong unit or a wrong part zero, and tells one of another size.
+fn meet(file: &Path, motions: &[Swept], faces: &JobFaces) -> Result<Option<Diagnostic>, Failure> {
+    let mut path = Box3::empty();
+    for m in motions.iter().filter(|m| !m.rapid) {
+        path.add(&m.from.tip);
+        path.add(&m.to.tip);
+    }
+    let whole = stock::around(faces);
+    let reach = whole.grown(0.5 * whole.diagonal_mm());
+    let apart = path.is_empty() || (0..3).any(|k| path.min[k] > reach.max[k] || path.max[k] < reach.min[k]);
+    let part = stock::corners(&whole);
+    if apart {
+        let path_text = if path.is_empty() { "nothing".to_owned() } else { stock::corners(&path) };
+        return Err(Failure::file(
+            file,
+            format!(
+                "the feed moves lie in {path_text} mm, the part in {part} mm: they do not meet; is the unit right (inch \
+                 against mm), or [setup] part_zero_mm?{}",
+                unit_hint(&path, &reach)
+            ),
+        ));
+    }
+    let times = path.diagonal_mm() / whole.diagonal_mm();
+    let strange = !(1.0 / SPAN..=SPAN).contains(&times);
+    Ok(strange.then(|| {
+        let text = format!(
+            "the feed moves lie in {} mm, {times:.3} times the size of the part in {part} mm: is the unit right (inch against \
+             mm)?",
+            stock::corners(&path)
+        );
+        Diagnostic::warning("units", text)
+    }))
+}

@@ -1,0 +1,166 @@
+//! What must be so for a program to hold: the goal against which [`prove`](super::prove()) judges motions.
+//!
+//! A goal names everything that is looked at, and everything that is not: faces to machine, all other faces of the part, the tool
+//! with its holder and teeth, raw material, fixtures, the state of the control. What it leaves out is named in the verdict's
+//! scope. Lengths are mm in the part's frame.
+
+use super::job::{Sample, Swept};
+use super::stock::{Blank, Resolution};
+use crate::cutter::Cutter;
+use osculate_geom::{Surface, Uv};
+
+/// A face with its name.
+#[derive(Clone)]
+pub struct GoalFace<'a> {
+    /// As people name it.
+    pub name: &'a str,
+    /// The face, its normal out of the material. A roughing is measured against faces set out by its allowance.
+    pub surface: &'a dyn Surface,
+    /// Closed polylines of its trims, where it is trimmed.
+    pub outlines: Vec<&'a [Uv]>,
+    /// What of it is looked at, where that is not all of it.
+    pub part_of_it: Option<String>,
+}
+
+/// Why faces of the part are not looked at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// The job says that they may be hit.
+    MayBeHit(Vec<String>),
+    /// Nothing says on which side of them the material is.
+    NoSide(Vec<String>),
+}
+
+/// The tool that all motions carry.
+#[derive(Clone, Copy)]
+pub struct GoalTool<'a> {
+    /// The whole tool below the holder.
+    pub cutter: &'a Cutter,
+    /// The part of it that cuts; the whole one where nothing else is known.
+    pub flutes: &'a Cutter,
+    /// What is above the part that cuts, up to the cutter's length.
+    pub shank: Option<&'a Cutter>,
+    /// The holder.
+    pub holder: Option<&'a Cutter>,
+    /// Cutting edges; where nothing says how many, tooth marks are those of a single one.
+    pub teeth: Option<u32>,
+    /// Revolutions a minute. Without it tooth marks are not known.
+    pub spindle_rpm: Option<f64>,
+}
+
+/// Raw material.
+#[derive(Clone, Copy)]
+pub enum GoalStock<'a> {
+    /// None is declared: a layer of this thickness on the faces to machine stands for it.
+    Assumed {
+        /// The thickness, mm.
+        layer_mm: f64,
+    },
+    /// What is declared.
+    Declared {
+        /// Before the first motion.
+        blank: Blank<'a>,
+        /// How finely it is looked at.
+        resolution: Resolution,
+        /// What stands on the faces to machine at most as far as they are judged, mm.
+        layer_mm: f64,
+        /// In words.
+        words: &'a str,
+    },
+}
+
+impl GoalStock<'_> {
+    /// The layer on the faces to machine, mm.
+    #[must_use]
+    pub const fn layer_mm(&self) -> f64 {
+        match self {
+            Self::Assumed { layer_mm } | Self::Declared { layer_mm, .. } => *layer_mm,
+        }
+    }
+}
+
+/// What must hold, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GoalLimits {
+    /// Highest material left: scallop and tooth mark together; of a roughing above its allowance.
+    pub scallop_mm: f64,
+    /// Deepest undercut, in any face; holder and rapids take no more.
+    pub gouge_mm: f64,
+    /// Uncut area that is accepted, mm2.
+    pub unreached_mm2: f64,
+    /// Whether limits that are met at the samples are enough.
+    pub at_samples: bool,
+}
+
+/// How densely faces are looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Looks {
+    /// Distance of samples, mm; from the width of a strip where not given.
+    pub spacing_mm: Option<f64>,
+    /// Most samples.
+    pub max_samples: usize,
+}
+
+/// How grave a remark on the state of the control is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Gravity {
+    /// To be told.
+    Told,
+    /// What the program does depends on something that is not known: nothing is shown.
+    Open,
+    /// The program does not run as the job means it.
+    Breaks,
+}
+
+/// Something about the state of the control in which a program runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remark {
+    /// How grave it is.
+    pub gravity: Gravity,
+    /// With its line.
+    pub text: String,
+}
+
+/// The state of the control while the program runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GoalControl {
+    /// What was looked at, in words; empty where it was not, as for CL data.
+    pub words: String,
+    /// Remarks.
+    pub remarks: Vec<Remark>,
+    /// Width to which corners are blended, mm.
+    pub blend_mm: f64,
+}
+
+/// Everything that must be so.
+pub struct Goal<'a> {
+    /// Faces to machine; at least one.
+    pub machined: Vec<GoalFace<'a>>,
+    /// All other faces that are looked at: nothing may be taken from them.
+    pub checked: Vec<GoalFace<'a>>,
+    /// Faces that are not looked at.
+    pub unseen: Vec<Unseen>,
+    /// Places on fixtures, numbered as faces after all others; nothing may be taken from them.
+    pub fixtures: Vec<Sample>,
+    /// The tool.
+    pub tool: GoalTool<'a>,
+    /// Raw material.
+    pub stock: GoalStock<'a>,
+    /// Limits.
+    pub limits: GoalLimits,
+    /// How densely to look.
+    pub looks: Looks,
+    /// What a roughing leaves on the faces on purpose, mm; None for a finishing.
+    pub roughing_mm: Option<f64>,
+    /// The control.
+    pub control: GoalControl,
+}
+
+/// What a program does, as it was read back.
+#[derive(Clone, Copy)]
+pub struct Program<'a> {
+    /// Its motions, in their order.
+    pub motions: &'a [Swept],
+    /// When each ends, min from the start; empty where nothing says, as of CL data without feeds.
+    pub times_min: &'a [f64],
+}

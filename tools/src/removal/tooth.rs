@@ -1,0 +1,85 @@
+//! Tooth marks: what stands between the places at which the teeth pass.
+//!
+//! A tooth passes a place once in the period `1 / (n z)`. Between two passes of it the tool goes on, so that the part is cut by
+//! frozen tools one period apart. At a sample, let `e(t)` be the height at which the tool at the time t enters the sample's normal:
+//! the standoff is its least value. Whatever the phase, some tooth passes within the stretch of one period around that instant,
+//! and the worst phase leaves `e(a) = e(a + period)`, the two passes on either side as high as each other [R97, eq. 41, at a given
+//! feed]. The mark is that height above the standoff. Passes beside this one may cut some of it; the sum of standoff and mark is
+//! therefore a bound, which the lattice of passes and teeth reaches where their phases agree.
+//!
+//! Times are those of the read program, so that feeds that joints or the control cap are the capped ones, and a tool that turns
+//! makes its marks as it turns. Where a run of feed moves ends the tool stands still.
+
+use super::goal::Program;
+use super::job::{Body, Cut, Sample};
+use crate::cutter::{Cutter, Line};
+use crate::pose::Pose;
+use osculate_geom::Unit3;
+use rayon::prelude::*;
+
+/// Halvings of the bracket of the worst phase: to a thousandth of a period and of the motion; of two heights at its ends the
+/// higher one is taken, so that what is left of it adds to the mark.
+const HALVINGS: u32 = 12;
+
+/// A tool with teeth on the way of a program.
+pub(super) struct Teeth<'a> {
+    pub cutter: &'a Cutter,
+    pub program: Program<'a>,
+    /// Time from one tooth to the next, min.
+    pub period_min: f64,
+}
+
+impl Teeth<'_> {
+    /// The marks at samples, mm, in their order; zero where no feed move of the cutter made the surface.
+    pub fn marks(&self, samples: &[Sample], cuts: &[Cut], stock_mm: f64) -> Vec<f64> {
+        samples.par_iter().zip(cuts).map(|(s, c)| self.mark(s, c, stock_mm)).collect()
+    }
+
+    fn mark(&self, sample: &Sample, cut: &Cut, stock_mm: f64) -> f64 {
+        let Some(by) = cut.by.filter(|by| !sample.check_only && !by.rapid && by.body == Body::Cutter) else {
+            return 0.0;
+        };
+        let motion = by.motion as usize;
+        let up = Line { origin: sample.point, direction: sample.normal };
+        let height = |t: f64| {
+            let entry = self.cutter.entry(&self.pose(motion, t), &up);
+            entry.map_or(stock_mm, |e| e.at_mm.min(stock_mm))
+        };
+        let (begin, end) = (self.begin(motion), self.program.times_min[motion]);
+        // Left of the bracket both ends of the stretch fall towards the least height, right of it both rise.
+        let (mut low, mut high) = (begin - self.period_min, end);
+        let mut worst = f64::INFINITY;
+        for _ in 0..HALVINGS {
+            let a = 0.5 * (low + high);
+            let (first, second) = (height(a), height(a + self.period_min));
+            // The worst phase leaves no more than the higher of the two, wherever the stretch lies.
+            worst = worst.min(first.max(second));
+            if first > second { low = a } else { high = a }
+        }
+        (worst - cut.standoff_mm).max(0.0)
+    }
+
+    fn begin(&self, motion: usize) -> f64 {
+        if motion == 0 { 0.0 } else { self.program.times_min[motion - 1] }
+    }
+
+    /// The tool at a time within the run of feed moves that has this motion.
+    fn pose(&self, motion: usize, t: f64) -> Pose {
+        let (motions, times) = (self.program.motions, self.program.times_min);
+        let mut k = motion;
+        while t < self.begin(k) && k > 0 && !motions[k - 1].rapid {
+            k -= 1;
+        }
+        while t > times[k] && k + 1 < motions.len() && !motions[k + 1].rapid {
+            k += 1;
+        }
+        let (swept, begin) = (&motions[k], self.begin(k));
+        let whole = times[k] - begin;
+        let share = if whole > 0.0 { ((t - begin) / whole).clamp(0.0, 1.0) } else { 1.0 };
+        let axis = swept.from.axis.lerp(&swept.to.axis, share);
+        Pose {
+            tip: swept.from.tip + (swept.to.tip - swept.from.tip) * share,
+            axis: Unit3::try_new(axis, 0.0).unwrap_or(swept.to.axis),
+        }
+    }
+}
