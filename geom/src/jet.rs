@@ -1,7 +1,6 @@
 //! Taylor data of a surface at a point to second and third order, and what follows from it alone.
 
-use crate::forms::{Degenerate, Forms, normal_of};
-use crate::point::{Point3, Unit3, Uv, Vec3};
+use crate::point::{Point3, Uv, Vec3};
 
 /// Which side of a surface the material is on.
 ///
@@ -57,22 +56,6 @@ pub struct Jet2 {
 }
 
 impl Jet2 {
-    /// The outward unit normal.
-    ///
-    /// # Errors
-    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
-    pub fn normal(&self) -> Result<Unit3, Degenerate> {
-        Ok(normal_of(self)?.0)
-    }
-
-    /// First and second fundamental form with the outward normal.
-    ///
-    /// # Errors
-    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
-    pub fn forms(&self) -> Result<Forms, Degenerate> {
-        Forms::of(self)
-    }
-
     /// The tangent vector `a S_u + b S_v`.
     #[must_use]
     pub fn tangent(&self, rate: Uv) -> Vec3 {
