@@ -5,8 +5,8 @@
 //! ([`Surface::contains`]) stays what it was. Across a seam at which a field is cut the face itself goes on.
 
 use super::Task;
-use super::level::{AXES, widest_mm};
-use super::line::meets_itself;
+use super::level::widest_mm;
+use super::line::{AXES, meets_itself};
 use super::seat::Seat;
 use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Surface, Taylor, Uv, Vec3};
 
