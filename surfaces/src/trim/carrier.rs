@@ -2,14 +2,32 @@
 //! point, and the parameters of a point near it.
 
 use super::analytic::{Analytic, Shape};
-use super::curve::Motion;
 use super::foot;
+use super::motion::Motion;
 use super::region::Known;
 use crate::nurbs::{Net, NurbsSurface};
-use crate::part::PlaceError;
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Axis, Box3, Domain, Jet2, Jet3, Offset, Point3, Surface, Taylor, Unit3, Uv};
 use std::sync::{Arc, OnceLock};
+
+/// Why a face cannot be put into its place.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum PlaceError {
+    /// The motion scales or mirrors.
+    #[error(
+        "its place scales lengths by {scale} (negative: mirrors them), which its surface does not follow"
+    )]
+    Scaled {
+        /// Factor of lengths.
+        scale: f64,
+    },
+    /// The motion distorts.
+    #[error("its place distorts it")]
+    Distorted,
+    /// Coordinates leave the range of numbers.
+    #[error("its place leaves the range of numbers")]
+    Far,
+}
 
 /// The untrimmed surface of a face.
 #[derive(Clone, Debug)]
