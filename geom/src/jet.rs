@@ -24,6 +24,15 @@ impl Side {
         }
     }
 
+    /// This side [`Side::Along`] itself, the other one [`Side::Against`] itself.
+    #[must_use]
+    pub const fn seen(self, side: Self) -> Self {
+        match side {
+            Self::Along => self,
+            Self::Against => self.flipped(),
+        }
+    }
+
     /// The other side.
     #[must_use]
     pub const fn flipped(self) -> Self {
@@ -56,6 +65,13 @@ pub struct Jet2 {
 }
 
 impl Jet2 {
+    /// The jet with its material side as it is, or against that.
+    #[must_use]
+    pub const fn turned(mut self, side: Side) -> Self {
+        self.side = self.side.seen(side);
+        self
+    }
+
     /// The tangent vector `a S_u + b S_v`.
     #[must_use]
     pub fn tangent(&self, rate: Uv) -> Vec3 {
@@ -85,6 +101,13 @@ pub struct Jet3 {
 }
 
 impl Jet3 {
+    /// The jet with its material side as it is, or against that.
+    #[must_use]
+    pub const fn turned(mut self, side: Side) -> Self {
+        self.jet2 = self.jet2.turned(side);
+        self
+    }
+
     /// The third derivative of S along a curve with parameter rate `rate` that runs straight in the parameters.
     #[must_use]
     pub fn third(&self, rate: Uv) -> Vec3 {

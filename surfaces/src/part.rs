@@ -6,7 +6,7 @@
 use crate::trim::carrier::{FaceSurface, PlaceError};
 use crate::trim::motion::Motion;
 use crate::trimmed::TrimmedSurface;
-use osculate_geom::{Axis, Box3, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
+use osculate_geom::{Axis, Box3, Diagnostic, Surface, forward_surface};
 use std::fmt;
 use std::sync::Arc;
 
@@ -261,33 +261,7 @@ impl Face {
 }
 
 impl Surface for Face {
-    fn domain(&self) -> Domain {
-        self.surface.domain()
-    }
-    fn jet2(&self, uv: Uv) -> Jet2 {
-        self.surface.jet2(uv)
-    }
-    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        self.surface.taylor(uv, order)
-    }
-    fn jet3(&self, uv: Uv) -> Jet3 {
-        self.surface.jet3(uv)
-    }
-    fn point(&self, uv: Uv) -> Point3 {
-        self.surface.point(uv)
-    }
-    fn contains(&self, uv: Uv) -> bool {
-        self.surface.contains(uv)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.surface.breaks(axis)
-    }
-    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
-        self.surface.spans(axis, fixed)
-    }
-    fn turns(&self) -> Vec<Uv> {
-        self.surface.turns()
-    }
+    forward_surface!(all | s | s.surface);
 }
 
 impl Part {

@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::region::Known;
 use crate::nurbs::{Net, NurbsSurface};
 use osculate_geom::analytic::Placement;
-use osculate_geom::{Axis, Box3, Domain, Jet2, Jet3, Offset, Point3, Surface, Taylor, Unit3, Uv};
+use osculate_geom::{Axis, Box3, Domain, Offset, Point3, Surface, Unit3, Uv, forward_surface};
 use std::sync::{Arc, OnceLock};
 
 /// Why a face cannot be put into its place.
@@ -145,27 +145,7 @@ impl FaceSurface {
 }
 
 impl Surface for FaceSurface {
-    fn domain(&self) -> Domain {
-        self.surface().domain()
-    }
-    fn jet2(&self, uv: Uv) -> Jet2 {
-        self.surface().jet2(uv)
-    }
-    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        self.surface().taylor(uv, order)
-    }
-    fn jet3(&self, uv: Uv) -> Jet3 {
-        self.surface().jet3(uv)
-    }
-    fn point(&self, uv: Uv) -> Point3 {
-        self.surface().point(uv)
-    }
-    fn contains(&self, uv: Uv) -> bool {
-        self.surface().contains(uv)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.surface().breaks(axis)
-    }
+    forward_surface!(all | s | s.surface());
 }
 
 /// A motion whose factor of lengths is this near to one is rigid: frames are made of unit vectors.
