@@ -51,6 +51,15 @@ impl Interval {
         self.periodic || (t >= self.lo - slack && t <= self.hi + slack)
     }
 
+    /// Both ends, and of ascending breaks of something larger those between them.
+    #[must_use]
+    pub fn breaks(&self, of: Vec<f64>) -> Vec<f64> {
+        let mut kept = vec![self.lo];
+        kept.extend(of.into_iter().filter(|t| *t > self.lo && *t < self.hi));
+        kept.push(self.hi);
+        kept
+    }
+
     /// The parameter at `fraction` of the way from `lo` to `hi`.
     #[must_use]
     pub fn at(&self, fraction: f64) -> f64 {

@@ -39,6 +39,24 @@ pub(crate) fn normal_of(jet: &Jet2) -> Result<(Unit3, f64), Degenerate> {
     Ok((Unit3::new_unchecked(cross * (jet.side.sign() / area)), a))
 }
 
+impl Jet2 {
+    /// The outward unit normal.
+    ///
+    /// # Errors
+    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
+    pub fn normal(&self) -> Result<Unit3, Degenerate> {
+        Ok(normal_of(self)?.0)
+    }
+
+    /// First and second fundamental form with the outward normal.
+    ///
+    /// # Errors
+    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
+    pub fn forms(&self) -> Result<Forms, Degenerate> {
+        Forms::of(self)
+    }
+}
+
 /// Both fundamental forms at a point, in the parameter basis and in an orthonormal tangent frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forms {

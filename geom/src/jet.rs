@@ -1,7 +1,6 @@
 //! Taylor data of a surface at a point to second and third order, and what follows from it alone.
 
-use crate::forms::{Degenerate, Forms, normal_of};
-use crate::point::{Point3, Unit3, Uv, Vec3};
+use crate::point::{Point3, Uv, Vec3};
 
 /// Which side of a surface the material is on.
 ///
@@ -22,6 +21,15 @@ impl Side {
         match self {
             Self::Along => 1.0,
             Self::Against => -1.0,
+        }
+    }
+
+    /// This side [`Side::Along`] itself, the other one [`Side::Against`] itself.
+    #[must_use]
+    pub const fn seen(self, side: Self) -> Self {
+        match side {
+            Self::Along => self,
+            Self::Against => self.flipped(),
         }
     }
 
@@ -57,20 +65,11 @@ pub struct Jet2 {
 }
 
 impl Jet2 {
-    /// The outward unit normal.
-    ///
-    /// # Errors
-    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
-    pub fn normal(&self) -> Result<Unit3, Degenerate> {
-        Ok(normal_of(self)?.0)
-    }
-
-    /// First and second fundamental form with the outward normal.
-    ///
-    /// # Errors
-    /// [`Degenerate`] where S_u and S_v are parallel or vanish.
-    pub fn forms(&self) -> Result<Forms, Degenerate> {
-        Forms::of(self)
+    /// The jet with its material side as it is, or against that.
+    #[must_use]
+    pub const fn turned(mut self, side: Side) -> Self {
+        self.side = self.side.seen(side);
+        self
     }
 
     /// The tangent vector `a S_u + b S_v`.
@@ -102,6 +101,13 @@ pub struct Jet3 {
 }
 
 impl Jet3 {
+    /// The jet with its material side as it is, or against that.
+    #[must_use]
+    pub const fn turned(mut self, side: Side) -> Self {
+        self.jet2 = self.jet2.turned(side);
+        self
+    }
+
     /// The third derivative of S along a curve with parameter rate `rate` that runs straight in the parameters.
     #[must_use]
     pub fn third(&self, rate: Uv) -> Vec3 {

@@ -17,8 +17,8 @@
 //! is a flat end on the offset].
 
 use crate::diagnostic::Diagnostic;
-use crate::domain::Domain;
 use crate::forms::Degenerate;
+use crate::forward_surface;
 use crate::jet::{Jet2, Jet3};
 use crate::limit;
 use crate::point::{Axis, Point3, Uv, Vec3, uv};
@@ -169,9 +169,7 @@ impl<S: Surface> Offset<S> {
 }
 
 impl<S: Surface> Surface for Offset<S> {
-    fn domain(&self) -> Domain {
-        self.base.domain()
-    }
+    forward_surface!(trims | s | s.base);
     fn jet2(&self, uv: Uv) -> Jet2 {
         self.jet_from(&self.base.jet3(uv)).unwrap_or_else(|| self.taylor(uv, 2).jet2())
     }
@@ -195,12 +193,6 @@ impl<S: Surface> Surface for Offset<S> {
             Ok(n) => jet.point + n.into_inner() * self.distance_mm,
             Err(_) => self.taylor(uv, 0).derivative(0, 0).into(),
         }
-    }
-    fn contains(&self, uv: Uv) -> bool {
-        self.base.contains(uv)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.base.breaks(axis)
     }
 }
 

@@ -4,6 +4,7 @@ use crate::domain::{Domain, Interval};
 use crate::jet::{Jet2, Jet3, Side};
 use crate::point::{Axis, Point3, Uv};
 use crate::taylor::Taylor;
+use std::sync::Arc;
 
 /// A parametric surface, possibly trimmed, with a material side.
 ///
@@ -93,78 +94,109 @@ fn scanned_spans(line: Interval, inside: &dyn Fn(f64) -> bool) -> Vec<Interval> 
     out
 }
 
+/// Writes methods of [`Surface`] that hand the question on to another surface.
+///
+/// A wrapper that writes them by hand forgets the provided ones, whose defaults then hide what the surface below knows: a
+/// trimmed surface would have the corners of its rectangle for its turns. `trims` is everything about where the surface
+/// is (domain, contains, breaks, spans, turns), `shape` everything about its points, `all` is both; single methods go by
+/// their names.
+///
+/// ```
+/// use osculate_geom::{Jet2, Surface, Taylor, Uv, forward_surface};
+/// struct Seen<S>(S);
+/// impl<S: Surface> Surface for Seen<S> {
+///     forward_surface!(all |s| s.0);
+/// }
+/// ```
+#[macro_export]
+macro_rules! forward_surface {
+    (all |$s:ident| $base:expr) => {
+        $crate::forward_surface!(shape | $s | $base);
+        $crate::forward_surface!(trims | $s | $base);
+    };
+    (shape |$s:ident| $base:expr) => {
+        fn jet2(&self, uv: $crate::Uv) -> $crate::Jet2 {
+            let $s = self;
+            $base.jet2(uv)
+        }
+        fn taylor(&self, uv: $crate::Uv, order: usize) -> $crate::Taylor {
+            let $s = self;
+            $base.taylor(uv, order)
+        }
+        fn jet3(&self, uv: $crate::Uv) -> $crate::Jet3 {
+            let $s = self;
+            $base.jet3(uv)
+        }
+        $crate::forward_surface!(point | $s | $base);
+    };
+    (trims |$s:ident| $base:expr) => {
+        $crate::forward_surface!(domain | $s | $base);
+        $crate::forward_surface!(breaks | $s | $base);
+        $crate::forward_surface!(turns | $s | $base);
+        fn contains(&self, uv: $crate::Uv) -> bool {
+            let $s = self;
+            $base.contains(uv)
+        }
+        fn spans(&self, axis: $crate::Axis, fixed: f64) -> Vec<$crate::Interval> {
+            let $s = self;
+            $base.spans(axis, fixed)
+        }
+    };
+    (point |$s:ident| $base:expr) => {
+        fn point(&self, uv: $crate::Uv) -> $crate::Point3 {
+            let $s = self;
+            $base.point(uv)
+        }
+    };
+    (domain |$s:ident| $base:expr) => {
+        fn domain(&self) -> $crate::Domain {
+            let $s = self;
+            $base.domain()
+        }
+    };
+    (breaks |$s:ident| $base:expr) => {
+        fn breaks(&self, axis: $crate::Axis) -> Vec<f64> {
+            let $s = self;
+            $base.breaks(axis)
+        }
+    };
+    (turns |$s:ident| $base:expr) => {
+        fn turns(&self) -> Vec<$crate::Uv> {
+            let $s = self;
+            $base.turns()
+        }
+    };
+}
+
+impl<S: Surface + ?Sized> Surface for &S {
+    forward_surface!(all | s | (**s));
+}
+
+impl<S: Surface + ?Sized> Surface for Box<S> {
+    forward_surface!(all | s | (**s));
+}
+
+impl<S: Surface + ?Sized> Surface for Arc<S> {
+    forward_surface!(all | s | (**s));
+}
+
 /// A surface with its material side turned over: the same points, the opposite outward normal.
 #[derive(Clone, Copy, Debug)]
 pub struct Flipped<S>(pub S);
 
 impl<S: Surface> Surface for Flipped<S> {
-    fn domain(&self) -> Domain {
-        self.0.domain()
-    }
+    forward_surface!(trims | s | s.0);
+    forward_surface!(point | s | s.0);
     fn jet2(&self, uv: Uv) -> Jet2 {
-        let mut jet = self.0.jet2(uv);
-        jet.side = jet.side.flipped();
-        jet
+        self.0.jet2(uv).turned(Side::Against)
     }
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        self.0.taylor(uv, order).flipped()
+        self.0.taylor(uv, order).turned(Side::Against)
     }
     fn jet3(&self, uv: Uv) -> Jet3 {
-        let mut jet = self.0.jet3(uv);
-        jet.jet2.side = jet.jet2.side.flipped();
-        jet
-    }
-    fn point(&self, uv: Uv) -> Point3 {
-        self.0.point(uv)
-    }
-    fn contains(&self, uv: Uv) -> bool {
-        self.0.contains(uv)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.0.breaks(axis)
-    }
-    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
-        self.0.spans(axis, fixed)
-    }
-    fn turns(&self) -> Vec<Uv> {
-        self.0.turns()
+        self.0.jet3(uv).turned(Side::Against)
     }
 }
-
-macro_rules! forward_surface {
-    ($($t:ty),*) => {$(
-        impl<S: Surface + ?Sized> Surface for $t {
-            fn domain(&self) -> Domain {
-                (**self).domain()
-            }
-            fn jet2(&self, uv: Uv) -> Jet2 {
-                (**self).jet2(uv)
-            }
-            fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-                (**self).taylor(uv, order)
-            }
-            fn jet3(&self, uv: Uv) -> Jet3 {
-                (**self).jet3(uv)
-            }
-            fn point(&self, uv: Uv) -> Point3 {
-                (**self).point(uv)
-            }
-            fn contains(&self, uv: Uv) -> bool {
-                (**self).contains(uv)
-            }
-            fn breaks(&self, axis: Axis) -> Vec<f64> {
-                (**self).breaks(axis)
-            }
-            fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
-                (**self).spans(axis, fixed)
-            }
-            fn turns(&self) -> Vec<Uv> {
-                (**self).turns()
-            }
-        }
-    )*};
-}
-forward_surface!(&S, Box<S>, std::sync::Arc<S>);
 
 /// A surface restricted to a parameter rectangle and given a material side.
 #[derive(Clone, Debug)]
@@ -178,38 +210,52 @@ pub struct Patch<S> {
 }
 
 impl<S: Surface> Surface for Patch<S> {
+    forward_surface!(point | s | s.surface);
     fn domain(&self) -> Domain {
         self.domain
     }
     fn jet2(&self, uv: Uv) -> Jet2 {
-        let mut jet = self.surface.jet2(uv);
-        if self.side == Side::Against {
-            jet.side = jet.side.flipped();
-        }
-        jet
+        self.surface.jet2(uv).turned(self.side)
     }
     fn jet3(&self, uv: Uv) -> Jet3 {
-        let mut jet = self.surface.jet3(uv);
-        if self.side == Side::Against {
-            jet.jet2.side = jet.jet2.side.flipped();
-        }
-        jet
+        self.surface.jet3(uv).turned(self.side)
     }
     fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        let t = self.surface.taylor(uv, order);
-        if self.side == Side::Against { t.flipped() } else { t }
-    }
-    fn point(&self, uv: Uv) -> Point3 {
-        self.surface.point(uv)
+        self.surface.taylor(uv, order).turned(self.side)
     }
     fn contains(&self, uv: Uv) -> bool {
         self.domain.contains(uv) && self.surface.contains(uv)
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {
-        let i = self.domain.get(axis);
-        let mut kept = vec![i.lo];
-        kept.extend(self.surface.breaks(axis).into_iter().filter(|t| *t > i.lo && *t < i.hi));
-        kept.push(i.hi);
-        kept
+        self.domain.get(axis).breaks(self.surface.breaks(axis))
+    }
+    /// As exact as those of the whole surface where the rectangle lies inside its own; else from `contains`.
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        let (kept, whole) = (self.domain.get(axis), self.surface.domain().get(axis));
+        if !self.domain.get(axis.other()).contains(fixed) {
+            return Vec::new();
+        }
+        if kept.lo < whole.lo || kept.hi > whole.hi {
+            return scanned_spans(kept, &|t| self.contains(Uv::from_axis(axis, t, fixed)));
+        }
+        let cut = |s: Interval| Interval::new(s.lo.max(kept.lo), s.hi.min(kept.hi));
+        self.surface.spans(axis, fixed).into_iter().map(cut).filter(|s| s.lo < s.hi).collect()
+    }
+    /// Where the sides of the rectangle enter and leave the surface, and the surface's own turns between them.
+    fn turns(&self) -> Vec<Uv> {
+        let d = self.domain;
+        let side = |axis: Axis, fixed: f64| {
+            let ends = self.spans(axis, fixed).into_iter().flat_map(|s| [s.lo, s.hi]);
+            ends.map(|t| Uv::from_axis(axis, t, fixed)).collect::<Vec<Uv>>()
+        };
+        let mut all = side(Axis::U, d.v.lo);
+        all.extend(side(Axis::U, d.v.hi).into_iter().rev());
+        let inner = self.surface.turns().into_iter().filter(|at| d.contains(*at)).map(|at| d.bring(at));
+        for at in side(Axis::V, d.u.lo).into_iter().chain(side(Axis::V, d.u.hi)).chain(inner) {
+            if !all.contains(&at) {
+                all.push(at);
+            }
+        }
+        all
     }
 }

@@ -112,8 +112,14 @@ impl Taylor {
 
     /// The same surface with the material on the other side.
     #[must_use]
-    pub fn flipped(mut self) -> Self {
-        self.side = self.side.flipped();
+    pub fn flipped(self) -> Self {
+        self.turned(Side::Against)
+    }
+
+    /// The polynomial with its material side as it is, or against that.
+    #[must_use]
+    pub fn turned(mut self, side: Side) -> Self {
+        self.side = self.side.seen(side);
         self
     }
 }

@@ -7,9 +7,7 @@
 //!
 //! Source: [Piegl & Tiller, The NURBS Book, chapters 7 and 8].
 
-use crate::nurbs::{Net, NurbsError, NurbsSurface};
-use crate::nurbs_curve::{CurveError, NurbsCurve3};
-use crate::nurbs_edit::EditError;
+use crate::nurbs::{CurveError, EditError, Net, NurbsCurve3, NurbsError, NurbsSurface};
 use crate::trim::spline::Spline;
 use crate::trim::sweep::{SweepError, extrude, revolve};
 use osculate_geom::analytic::{

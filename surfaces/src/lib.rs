@@ -25,7 +25,9 @@
 pub mod fit;
 pub mod gallery;
 pub mod iges;
+mod import;
 pub mod json;
+mod leftovers;
 pub mod lines;
 mod mesh;
 mod part;
@@ -43,13 +45,6 @@ mod closest;
 mod convert;
 mod knots;
 mod nurbs;
-mod nurbs_batch;
-mod nurbs_curve;
-mod nurbs_degree;
-mod nurbs_edit;
-mod nurbs_eval;
-mod nurbs_pieces;
-mod nurbs_taylor;
 pub mod orient;
 mod quad;
 mod refine;
@@ -60,13 +55,14 @@ pub use closest::{
     ClosestError, FaceSearch, Foot, FootKind, closest, closest_batch, closest_near, closest_sampled,
 };
 pub use convert::{ConvertError, CurveToNurbs, ToNurbs};
+pub use import::{ImportError, detect, read};
 pub use knots::{KnotError, Knots, MAX_DEGREE};
 pub use mesh::{Mesh, MeshError, MeshOptions, MeshReport, PartMesh, mesh_faces, tessellate};
-pub use nurbs::{Net, NurbsError, NurbsSurface};
-pub use nurbs_curve::{CurveError, CurveJet, NurbsCurve, NurbsCurve2, NurbsCurve3};
-pub use nurbs_degree::{RemovedCurve, RemovedSurface};
-pub use nurbs_edit::{BezierPatch, EditError};
-pub use part::{Colour, CurvatureRange, Face, FaceKind, Format, ImportError, NotUsed, Part, detect, read};
+pub use nurbs::{
+    BezierPatch, CurveError, CurveJet, EditError, Net, NurbsCurve, NurbsCurve2, NurbsCurve3, NurbsError,
+    NurbsSurface, RemovedCurve, RemovedSurface,
+};
+pub use part::{Colour, CurvatureRange, Face, FaceKind, Format, NotUsed, Part};
 pub use ruled::{
     Band, Mate, RuledBand, RuledError, Ruling, RulingError, RulingOptions, ruled, ruled_bands, ruling,
 };

@@ -3,12 +3,10 @@
 //! Lengths are millimetres whatever the file's unit was. Nothing is repaired silently: every departure from what the
 //! file says is a [`Diagnostic`].
 
-use crate::trim::carrier::FaceSurface;
-use crate::trim::curve::Motion;
+use crate::trim::carrier::{FaceSurface, PlaceError};
+use crate::trim::motion::Motion;
 use crate::trimmed::TrimmedSurface;
-use crate::{iges, json, patches, sections, step};
-use osculate_geom::{Axis, Box3, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
-use std::collections::HashMap;
+use osculate_geom::{Axis, Box3, Diagnostic, Surface, forward_surface};
 use std::fmt;
 use std::sync::Arc;
 
@@ -23,7 +21,7 @@ pub enum Format {
     Patches,
     /// Sections of points as text.
     Sections,
-    /// The JSON of [`json`].
+    /// The JSON of [`crate::json`].
     Json,
 }
 
@@ -82,25 +80,6 @@ pub struct Colour {
     pub green: f64,
     /// Blue.
     pub blue: f64,
-}
-
-/// Why a face cannot be put into its place.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum PlaceError {
-    /// The motion scales or mirrors.
-    #[error(
-        "its place scales lengths by {scale} (negative: mirrors them), which its surface does not follow"
-    )]
-    Scaled {
-        /// Factor of lengths.
-        scale: f64,
-    },
-    /// The motion distorts.
-    #[error("its place distorts it")]
-    Distorted,
-    /// Coordinates leave the range of numbers.
-    #[error("its place leaves the range of numbers")]
-    Far,
 }
 
 /// The kind of surface that a file gave for a face.
@@ -282,33 +261,7 @@ impl Face {
 }
 
 impl Surface for Face {
-    fn domain(&self) -> Domain {
-        self.surface.domain()
-    }
-    fn jet2(&self, uv: Uv) -> Jet2 {
-        self.surface.jet2(uv)
-    }
-    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        self.surface.taylor(uv, order)
-    }
-    fn jet3(&self, uv: Uv) -> Jet3 {
-        self.surface.jet3(uv)
-    }
-    fn point(&self, uv: Uv) -> Point3 {
-        self.surface.point(uv)
-    }
-    fn contains(&self, uv: Uv) -> bool {
-        self.surface.contains(uv)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.surface.breaks(axis)
-    }
-    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
-        self.surface.spans(axis, fixed)
-    }
-    fn turns(&self) -> Vec<Uv> {
-        self.surface.turns()
-    }
+    forward_surface!(all | s | s.surface);
 }
 
 impl Part {
@@ -322,140 +275,5 @@ impl Part {
     #[must_use]
     pub fn bbox(&self) -> Box3 {
         self.faces.iter().fold(Box3::empty(), |b, f| b.union(&f.bbox()))
-    }
-}
-
-/// Why bytes are no part.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ImportError {
-    /// Nothing to read.
-    #[error("the file is empty")]
-    Empty,
-    /// Two bytes a character.
-    #[error(
-        "the file is UTF-16 text; STEP, IGES and point files are one byte a character: save it as UTF-8 or ASCII"
-    )]
-    Wide,
-    /// None of the formats.
-    #[error(
-        "no format that is read: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
-         in column 73 of its lines, a set of Bezier patches begins with their number and a line of vertex numbers, \
-         sections are rows of x y z, and faces that were exported as JSON begin with a brace"
-    )]
-    Unknown {
-        /// The first characters.
-        begin: String,
-    },
-    /// A STEP file that cannot be read.
-    #[error(transparent)]
-    Step(#[from] step::StepError),
-    /// An IGES file that cannot be read.
-    #[error(transparent)]
-    Iges(#[from] iges::IgesError),
-    /// Bezier patches that cannot be read.
-    #[error("Bezier patches: {0}")]
-    Patches(#[from] patches::PatchesError),
-    /// Sections that no surface goes through.
-    #[error("point sections: {0}")]
-    Sections(#[from] sections::SectionsError),
-    /// Faces as JSON that cannot be read.
-    #[error(transparent)]
-    Json(#[from] json::JsonError),
-}
-
-/// The format of a file, by its first lines.
-#[must_use]
-pub fn detect(bytes: &[u8]) -> Option<Format> {
-    if step::looks_like(bytes) {
-        Some(Format::Step)
-    } else if iges::looks_like(bytes) {
-        Some(Format::Iges)
-    } else if patches::looks_like(bytes) {
-        Some(Format::Patches)
-    } else if sections::looks_like(bytes) {
-        Some(Format::Sections)
-    } else if json::looks_like(bytes) {
-        Some(Format::Json)
-    } else {
-        None
-    }
-}
-
-/// Whether text begins as UTF-16 does: with its mark, or with every other byte zero.
-fn is_wide(bytes: &[u8]) -> bool {
-    let head = &bytes[..bytes.len().min(64)];
-    let every_other = |odd: usize| head.len() >= 16 && head.iter().skip(odd).step_by(2).all(|b| *b == 0);
-    head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff]) || (every_other(0) != every_other(1))
-}
-
-/// Reads a file of any format that [`detect`] knows.
-///
-/// # Errors
-/// [`ImportError`] where the bytes are neither, or nothing of them can be read.
-pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
-    if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(ImportError::Empty);
-    }
-    match detect(bytes) {
-        Some(Format::Step) => Ok(step::read(bytes)?),
-        Some(Format::Iges) => Ok(iges::read(bytes)?),
-        Some(Format::Patches) => Ok(patches::read(bytes)?),
-        Some(Format::Sections) => Ok(sections::read(bytes)?),
-        Some(Format::Json) => Ok(json::read_part(bytes)?),
-        None if is_wide(bytes) => Err(ImportError::Wide),
-        None => {
-            let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
-            Err(ImportError::Unknown { begin })
-        }
-    }
-}
-
-/// Memory that copies of faces at other places may take in all, bytes ([`Face::copy_bytes`]): a file of a few kilobytes
-/// can ask for any number of copies of a large face.
-pub(crate) const MAX_COPIES: usize = 1 << 30;
-
-/// What is said where [`MAX_COPIES`] ends the placing.
-pub(crate) fn too_many_copies(left_out: usize) -> Diagnostic {
-    Diagnostic::loss(
-        "",
-        format!(
-            "{left_out} instances of faces are left out: the copies would take more than {} MiB. Export the parts of the \
-             assembly one by one",
-            MAX_COPIES >> 20
-        ),
-    )
-}
-
-/// Counts of entities left out, by kind and reason, in order of first appearance.
-#[derive(Debug, Default)]
-pub(crate) struct Leftovers {
-    entries: Vec<NotUsed>,
-    /// Places of kind and reason in the list.
-    index: HashMap<(String, String), usize>,
-}
-
-impl Leftovers {
-    /// Lines that are kept of each kind.
-    pub(crate) const LINES: usize = 8;
-
-    /// Counts one more, on a line.
-    pub(crate) fn add_at(&mut self, kind: &str, why: &str, line: usize) {
-        self.add_lines(kind, 1, why, &[line]);
-    }
-
-    /// Counts several, the first ones on these lines.
-    pub(crate) fn add_lines(&mut self, kind: &str, count: usize, why: &str, lines: &[usize]) {
-        let at = *self.index.entry((kind.to_owned(), why.to_owned())).or_insert(self.entries.len());
-        if at == self.entries.len() {
-            let (kind, why) = (kind.to_owned(), why.to_owned());
-            self.entries.push(NotUsed { kind, count: 0, why, lines: Vec::new() });
-        }
-        let entry = &mut self.entries[at];
-        entry.count += count;
-        entry.lines.extend(lines.iter().take(Self::LINES.saturating_sub(entry.lines.len())));
-    }
-
-    pub(crate) fn into_entries(self) -> Vec<NotUsed> {
-        self.entries
     }
 }

@@ -9,8 +9,9 @@
 //! A patch with a side in one point (a lid, a bottom) is a patch; one without any area is left out and told.
 
 use crate::knots::MAX_DEGREE;
+use crate::leftovers::Leftovers;
 use crate::nurbs::{Net, NurbsError, NurbsSurface};
-use crate::part::{Face, FaceKind, Format, Leftovers, Part};
+use crate::part::{Face, FaceKind, Format, Part};
 use crate::trim::boundary::build;
 use crate::trim::carrier::FaceSurface;
 use osculate_geom::{Diagnostic, Point3, Side};

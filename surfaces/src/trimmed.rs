@@ -7,7 +7,9 @@
 use crate::trim::edge::FaceEdge;
 use crate::trim::integrate;
 use crate::trim::region::{Chain, Known, Region};
-use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, uv};
+use osculate_geom::{
+    Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, forward_surface, uv,
+};
 use std::sync::Arc;
 
 /// A closed polyline in the parameter rectangle; the first point is not repeated.
@@ -360,39 +362,24 @@ impl TrimmedSurface {
 }
 
 impl Surface for TrimmedSurface {
+    forward_surface!(point | s | s.carrier);
+    fn jet2(&self, uv: Uv) -> Jet2 {
+        self.carrier.jet2(uv).turned(self.side)
+    }
+    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+        self.carrier.taylor(uv, order).turned(self.side)
+    }
+    fn jet3(&self, uv: Uv) -> Jet3 {
+        self.carrier.jet3(uv).turned(self.side)
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        self.domain.get(axis).breaks(self.carrier.breaks(axis))
+    }
     fn domain(&self) -> Domain {
         self.domain
     }
-    fn jet2(&self, uv: Uv) -> Jet2 {
-        let mut jet = self.carrier.jet2(uv);
-        if self.side == Side::Against {
-            jet.side = jet.side.flipped();
-        }
-        jet
-    }
-    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        let t = self.carrier.taylor(uv, order);
-        if self.side == Side::Against { t.flipped() } else { t }
-    }
-    fn jet3(&self, uv: Uv) -> Jet3 {
-        let mut jet = self.carrier.jet3(uv);
-        if self.side == Side::Against {
-            jet.jet2.side = jet.jet2.side.flipped();
-        }
-        jet
-    }
-    fn point(&self, uv: Uv) -> Point3 {
-        self.carrier.point(uv)
-    }
     fn contains(&self, uv: Uv) -> bool {
         self.domain.contains(uv) && self.region.as_ref().is_none_or(|r| r.inside(self.domain.bring(uv)))
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        let i = self.domain.get(axis);
-        let mut kept = vec![i.lo];
-        kept.extend(self.carrier.breaks(axis).into_iter().filter(|t| *t > i.lo && *t < i.hi));
-        kept.push(i.hi);
-        kept
     }
     /// Exact for the loops' polygons. Empty where `fixed` is outside the rectangle.
     fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {

@@ -6,8 +6,10 @@
 //! distance from the axis, z the height above the tip.
 
 mod bounds;
+mod error;
 
-use crate::make::CutterError;
+pub use error::CutterError;
+
 use crate::meridian::{Arc, LocalNear, Meridian, end_mill_corner};
 use crate::pose::Pose;
 use osculate_geom::{Point3, Unit3, Vec3};

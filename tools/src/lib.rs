@@ -38,7 +38,6 @@ pub mod strip;
 pub mod sweep;
 
 pub use contact::{Contact, ContactError, ContactMotion, FeedLine, Lean};
-pub use cutter::{Cutter, Entry, Line, Part};
-pub use make::CutterError;
+pub use cutter::{Cutter, CutterError, Entry, Line, Part};
 pub use pose::Pose;
 pub use spec::{CutterSpec, HolderSpec};

@@ -1,4 +1,4 @@
-//! Running cargo and git in the workspace's root, with what went wrong in words.
+//! Running cargo and git in the workspace's root and writing files, with what went wrong in words.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -170,6 +170,12 @@ pub fn output_of(mut command: Command, input: &str) -> Result<String, Failure> {
         return Err(Failure::Status { line: said, status: answer.status });
     }
     String::from_utf8(answer.stdout).map_err(|why| Failure::Answer { line: said, why: why.to_string() })
+}
+
+/// Writes a text file and the folders above it.
+pub fn write(to: &Path, text: &str) -> Result<(), Failure> {
+    let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
+    made.and_then(|()| std::fs::write(to, text)).map_err(|why| Failure::Write { path: to.to_path_buf(), why })
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! A surface moved to another frame.
 
-use crate::domain::{Domain, Interval};
+use crate::forward_surface;
 use crate::jet::{Jet2, Jet3};
-use crate::point::{Axis, Point3, Unit3, Uv, Vec3, any_perpendicular};
+use crate::point::{Point3, Unit3, Uv, Vec3, any_perpendicular};
 use crate::surface::Surface;
 use crate::taylor::Taylor;
 
@@ -79,9 +79,7 @@ pub struct Placed<S> {
 }
 
 impl<S: Surface> Surface for Placed<S> {
-    fn domain(&self) -> Domain {
-        self.surface.domain()
-    }
+    forward_surface!(trims | s | s.surface);
     fn jet2(&self, uv: Uv) -> Jet2 {
         self.placement.jet2(&self.surface.jet2(uv))
     }
@@ -101,17 +99,5 @@ impl<S: Surface> Surface for Placed<S> {
     }
     fn point(&self, uv: Uv) -> Point3 {
         self.placement.point(&self.surface.point(uv))
-    }
-    fn contains(&self, uv: Uv) -> bool {
-        self.surface.contains(uv)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.surface.breaks(axis)
-    }
-    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
-        self.surface.spans(axis, fixed)
-    }
-    fn turns(&self) -> Vec<Uv> {
-        self.surface.turns()
     }
 }

@@ -5,8 +5,8 @@
 //! egregium, rigid motion, scale, parameters swapped and reversed, material turned over, and Gauss and Bonnet on a small
 //! rectangle. The laws of closed surfaces are in [`total_curvature`].
 
+use super::local::{breaks_are_ordered, curvature_laws, jets_match_differences, taylor_matches};
 use super::wrappers::{Reversed, Swapped};
-use super::{breaks_are_ordered, curvature_laws, jets_match_differences, taylor_matches};
 use crate::analytic::{Placed, Placement};
 use crate::frame::geodesic_curvature;
 use crate::jet::Jet2;

@@ -1,6 +1,6 @@
 //! The same surface under other parameters: swapped and reversed. The material stays where it is.
 
-use crate::domain::Domain;
+use crate::domain::{Domain, Interval};
 use crate::jet::Jet2;
 use crate::point::{Axis, Point3, Uv, uv};
 use crate::series::Series;
@@ -33,6 +33,12 @@ impl<S: Surface> Surface for Swapped<S> {
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         self.0.breaks(axis.other())
+    }
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        self.0.spans(axis.other(), fixed)
+    }
+    fn turns(&self) -> Vec<Uv> {
+        self.0.turns().into_iter().map(|at| uv(at.v, at.u)).collect()
     }
 }
 
@@ -97,5 +103,17 @@ impl<S: Surface> Surface for Reversed<S> {
             }
         }
         breaks
+    }
+    fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        let i = self.surface.domain().get(self.axis);
+        let back = |t: f64| i.lo + (i.hi - t);
+        if axis != self.axis {
+            return self.surface.spans(axis, back(fixed));
+        }
+        let spans = self.surface.spans(axis, fixed).into_iter().rev();
+        spans.map(|s| Interval { lo: back(s.hi), hi: back(s.lo), ..s }).collect()
+    }
+    fn turns(&self) -> Vec<Uv> {
+        self.surface.turns().into_iter().map(|at| self.place(at)).collect()
     }
 }

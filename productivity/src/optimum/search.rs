@@ -7,7 +7,7 @@
 //! Over waves of the part a strip ends at a crest that it meets in one direction and passes in the next: there are as many
 //! basins as waves within the strip, and directions are looked at twice as closely.
 
-use super::{Binding, Limits, Measured, Posture, compare, measure, planar_mark_mm, share_by};
+use super::posture::{Binding, Limits, Measured, Posture, Range, compare, measure, planar_mark_mm, share_by};
 use crate::closed_form::leading_order_swept;
 use osculate_geom::{Degenerate, Relative, Surface, SymEigen, Uv, Vec3};
 use osculate_tools::strip::{Chart, ChartError, StripError, Within};
@@ -321,7 +321,7 @@ impl<'a> Search<'a> {
     }
 
     fn grid(&self) -> Vec<(Posture, f64)> {
-        let steps = |r: super::Range, n: usize| -> Vec<f64> {
+        let steps = |r: Range, n: usize| -> Vec<f64> {
             if r.width() <= 0.0 {
                 vec![r.least_rad]
             } else {
@@ -361,7 +361,7 @@ impl<'a> Search<'a> {
 
     pub fn binding(&self, p: &Posture, m: &Measured) -> Binding {
         let limits = self.limits;
-        let close = |x: f64, y: f64, r: super::Range| (x - y).abs() <= 1e-3 * r.width().max(1e-9);
+        let close = |x: f64, y: f64, r: Range| (x - y).abs() <= 1e-3 * r.width().max(1e-9);
         let nudged = |by: f64| Posture { lean: Lean { lead_rad: p.lean.lead_rad + by, ..p.lean }, ..*p };
         if m.undercut_mm > 0.5 * limits.gouge_mm {
             Binding::Gouge

@@ -5,10 +5,10 @@
 //! ([`Surface::contains`]) stays what it was. Across a seam at which a field is cut the face itself goes on.
 
 use super::Task;
-use super::level::{AXES, widest_mm};
-use super::line::meets_itself;
+use super::level::widest_mm;
+use super::line::{AXES, meets_itself};
 use super::seat::Seat;
-use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Surface, Taylor, Uv, Vec3};
+use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Surface, Taylor, Uv, Vec3, forward_surface};
 
 /// Strip widths that passes can run out over the border.
 const RUN_OUT: f64 = 1.0;
@@ -141,6 +141,7 @@ fn carried(jet: &Jet3, [a, b]: [f64; 2]) -> Jet2 {
 }
 
 impl Surface for Extended<'_> {
+    forward_surface!(turns | s | s.base);
     fn domain(&self) -> Domain {
         self.outer
     }
@@ -187,9 +188,6 @@ impl Surface for Extended<'_> {
     fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
         let across = self.inner.get(axis.other());
         if fixed < across.lo || fixed > across.hi { Vec::new() } else { self.base.spans(axis, fixed) }
-    }
-    fn turns(&self) -> Vec<Uv> {
-        self.base.turns()
     }
 }
 

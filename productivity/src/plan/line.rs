@@ -84,3 +84,19 @@ pub(super) fn meets_itself(surface: &dyn Surface, axis: Axis) -> bool {
     let size = fractions.iter().map(|f| (at(i.at(0.5), *f) - at(i.lo, *f)).norm()).fold(0.0, f64::max);
     i.periodic || gap <= 1e-6 * size
 }
+/// Axes in the order of their index.
+pub(super) const AXES: [Axis; 2] = [Axis::U, Axis::V];
+
+/// Greatest lengths of the face along u and along v, mm.
+pub(super) fn lengths(surface: &dyn Surface, rectangle: &Rectangle) -> [f64; 2] {
+    AXES.map(|axis| {
+        let [i, across] = [rectangle.domain.get(axis), rectangle.domain.get(axis.other())];
+        let at = |f: f64, g: f64| surface.point(Uv::from_axis(axis, i.at(f), across.at(g)));
+        (0..=4)
+            .map(|k| {
+                let g = f64::from(k) / 4.0;
+                (0..40).map(|s| (at(f64::from(s + 1) / 40.0, g) - at(f64::from(s) / 40.0, g)).norm()).sum()
+            })
+            .fold(0.0, f64::max)
+    })
+}

@@ -13,7 +13,9 @@ use super::lead::{Clearance, LeadField, Leaning};
 use super::seat::Seat;
 use super::{Along, MAX_PASSES, Passes, PlanError, Task, shorter};
 use osculate_geom::line::LineError;
-use osculate_geom::{Axis, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv};
+use osculate_geom::{
+    Axis, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv, forward_surface,
+};
 use rayon::prelude::*;
 
 /// Most regions: each costs a retract, and wide regions have most of the gain.
@@ -34,26 +36,11 @@ struct Region<'a> {
 }
 
 impl Surface for Region<'_> {
-    fn domain(&self) -> Domain {
-        self.base.domain()
-    }
-    fn jet2(&self, at: Uv) -> Jet2 {
-        self.base.jet2(at)
-    }
-    fn jet3(&self, at: Uv) -> Jet3 {
-        self.base.jet3(at)
-    }
-    fn taylor(&self, at: Uv, order: usize) -> Taylor {
-        self.base.taylor(at, order)
-    }
-    fn point(&self, at: Uv) -> Point3 {
-        self.base.point(at)
-    }
+    forward_surface!(domain | s | s.base);
+    forward_surface!(shape | s | s.base);
+    forward_surface!(breaks | s | s.base);
     fn contains(&self, at: Uv) -> bool {
         self.range.contains(at.get(self.along)) && self.base.contains(at)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.base.breaks(axis)
     }
     fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
         if axis != self.along {

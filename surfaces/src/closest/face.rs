@@ -11,8 +11,9 @@
 //! so that only pieces that may hold the nearest point are followed down. Likewise for cells of a grid over the
 //! rectangle, with their radius in space.
 
+use super::closest;
 use super::descent::{Of, descend};
-use super::{ClosestError, Foot, FootKind, PERPENDICULAR, closest, finish, finite};
+use super::foot::{ClosestError, Foot, FootKind, PERPENDICULAR, finish, finite};
 use crate::nurbs::NurbsSurface;
 use crate::trimmed::TrimmedSurface;
 use osculate_geom::{Axis, Point3, Surface, Uv, uv};

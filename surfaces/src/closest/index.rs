@@ -12,11 +12,11 @@
 //! flatness bounds its distance from the cell from below.
 
 use super::bounds::{Bounds, bounds, moved};
-use super::tree::Tree;
-use crate::nurbs::NurbsSurface;
-use crate::nurbs_pieces::piece_powers;
+use super::cell::Cell;
+use super::tree::{Index, Tree};
+use crate::nurbs::{NurbsSurface, piece_powers};
 use nalgebra::Vector4;
-use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Point3, Uv, Vec3, uv};
+use osculate_geom::{Axis, Domain, Interval, Jet2, Uv, Vec3, uv};
 
 /// A cell is flat enough for the index when it strays from its parallelogram by less than this fraction of
 /// its own size: then Newton's method converges from any start in it unless the query is near a centre of
@@ -30,45 +30,7 @@ const MAX_HALVINGS: u32 = 8;
 /// Most cells made by halving pieces, beyond the one that every piece has.
 const MAX_EXTRA_CELLS: usize = 1 << 17;
 
-/// A sub-rectangle of a piece.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
-    /// The spans of its piece.
-    pub(super) span: [u32; 2],
-    /// Parameters of its middle and half its widths.
-    pub(super) middle: Uv,
-    pub(super) half: Uv,
-    /// The point in the middle.
-    pub(super) centre: Point3,
-    /// Derivatives there by s and t.
-    pub(super) sides: [Vec3; 2],
-    /// Second derivatives there by ss, st and tt.
-    pub(super) bends: [Vec3; 3],
-    pub(super) bounds: Bounds,
-}
-
 impl Cell {
-    /// Largest distance of a point of the cell from the parallelogram's point with the same s and t.
-    pub(super) fn flatness_mm(&self) -> f64 {
-        let [ss, st, tt] = self.bounds.second;
-        0.5 * (ss + tt) + st
-    }
-
-    /// Radius of a ball around the middle that holds the cell.
-    pub(super) fn radius_mm(&self) -> f64 {
-        self.sides[0].norm() + self.sides[1].norm() + self.flatness_mm()
-    }
-
-    /// The axis whose halving flattens the cell more.
-    pub(super) fn bent_axis(&self) -> Axis {
-        if self.bounds.second[0] >= self.bounds.second[2] { Axis::U } else { Axis::V }
-    }
-
-    /// Parameters at a place of the cell.
-    pub(super) fn at(&self, place: [f64; 2]) -> Uv {
-        uv(self.middle.u + self.half.u * place[0], self.middle.v + self.half.v * place[1])
-    }
-
     /// The cell's rectangle, cut to the ends of its piece, which rounding could pass.
     pub(super) fn rect(&self, surface: &NurbsSurface) -> Domain {
         let side = |axis: Axis| {
@@ -82,41 +44,6 @@ impl Cell {
     /// The jet of the cell's own piece.
     pub(super) fn jet(&self, surface: &NurbsSurface, at: Uv) -> Jet2 {
         surface.piece_jet(at, self.spans())
-    }
-
-    /// The spans of its piece.
-    pub(super) fn spans(&self) -> [usize; 2] {
-        self.span.map(|s| s as usize)
-    }
-
-    /// Distance of the nearest point of the parallelogram, mm.
-    fn reach_mm(&self, query: &Point3) -> f64 {
-        let [a, b] = &self.sides;
-        let r = self.centre - query;
-        let (e, f, g) = (a.norm_squared(), a.dot(b), b.norm_squared());
-        let (ra, rb) = (r.dot(a), r.dot(b));
-        let value = |s: f64, t: f64| (r + a * s + b * t).norm_squared();
-        // The part of b across a, for a determinant without cancellation.
-        if e > 0.0 {
-            let across = b - a * (f / e);
-            let det = across.norm_squared();
-            if det > 1e-24 * g {
-                let t = -r.dot(&across) / det;
-                let s = -(ra + f * t) / e;
-                if s.abs() <= 1.0 && t.abs() <= 1.0 {
-                    return value(s, t).sqrt();
-                }
-            }
-        }
-        // On one of the four sides; those of a parallelogram without area are all of it.
-        let ratio = |num: f64, den: f64| if den > 0.0 { (num / den).clamp(-1.0, 1.0) } else { 0.0 };
-        let on = |end: f64| value(end, ratio(-(rb + f * end), g)).min(value(ratio(-(ra + f * end), e), end));
-        on(-1.0).min(on(1.0)).sqrt()
-    }
-
-    /// No point of the cell is nearer, mm.
-    pub(super) fn least_mm(&self, query: &Point3) -> f64 {
-        self.reach_mm(query) - self.flatness_mm()
     }
 
     /// Both halves across an axis, with bounds that shrink with them.
@@ -146,11 +73,6 @@ impl Cell {
             }
         })
     }
-
-    pub(super) fn box_around(&self) -> Box3 {
-        let reach = self.sides[0].abs() + self.sides[1].abs() + Vec3::repeat(self.flatness_mm());
-        Box3 { min: self.centre - reach, max: self.centre + reach }
-    }
 }
 
 /// Second derivatives by s and t, which run over the half widths.
@@ -158,11 +80,11 @@ fn bends(jet: &Jet2, half: Uv) -> [Vec3; 3] {
     [jet.duu * (half.u * half.u), jet.duv * (half.u * half.v), jet.dvv * (half.v * half.v)]
 }
 
-/// Cells and the tree over them.
-#[derive(Clone, Debug)]
-pub(crate) struct Index {
-    pub(super) cells: Vec<Cell>,
-    pub(super) tree: Tree,
+impl NurbsSurface {
+    /// What the search for closest points needs, built on first use.
+    pub(crate) fn index(&self) -> &Index {
+        self.index_cell.get_or_init(|| Index::new(self))
+    }
 }
 
 impl Index {

@@ -12,11 +12,11 @@
 //! 4. else it is halved, until the work allowed is spent; then the least lower bound left is reported as the
 //!    gap.
 
+use super::cell::Cell;
 use super::descent::Found;
-use super::index::Cell;
+use super::foot::{ClosestError, Foot, FootKind, PERPENDICULAR, finish};
 use super::tree::{Seen, sharpened};
 use super::way::descend_surface;
-use super::{ClosestError, Foot, FootKind, PERPENDICULAR, finish};
 use crate::nurbs::NurbsSurface;
 use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, Uv};
 use std::cmp::Ordering;

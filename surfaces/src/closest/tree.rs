@@ -5,7 +5,7 @@
 //! beyond which it lies, so that it is the nearer of two points: s clamped and t the best for it, and t
 //! clamped and s the best for it. No branch depends on which of them it is.
 
-use super::index::Cell;
+use super::cell::Cell;
 use crate::quad::{self, Quad};
 use nalgebra::Vector3;
 use osculate_geom::{Box3, Point3, Vec3};
@@ -60,6 +60,13 @@ pub(super) struct Tree {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     cells: u32,
+}
+
+/// Cells and the tree over them.
+#[derive(Clone, Debug)]
+pub(crate) struct Index {
+    pub(super) cells: Vec<Cell>,
+    pub(super) tree: Tree,
 }
 
 /// A cell that may hold the nearest point.

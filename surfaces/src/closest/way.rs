@@ -2,8 +2,7 @@
 //! widest registers, so that no jet travels through memory between two steps.
 
 use super::descent::{Found, Jets, descend};
-use crate::nurbs::NurbsSurface;
-use crate::nurbs_pieces::Pieces;
+use crate::nurbs::{NurbsSurface, Pieces};
 use crate::quad::{self, Quad};
 use osculate_geom::{Domain, Jet2, Point3, Surface, Uv};
 use std::cell::Cell;

@@ -4,7 +4,7 @@ use super::params::{Spacing, averaged, closed_breaks, parameters, periodic, spre
 use super::solve::{Row, least_squares, solve};
 use super::{FitError, Misfit};
 use crate::knots::{Knots, MAX_DEGREE};
-use crate::nurbs_curve::NurbsCurve;
+use crate::nurbs::NurbsCurve;
 use nalgebra::{DMatrix, Point, SVector};
 
 /// What holds at the ends of an interpolating curve.

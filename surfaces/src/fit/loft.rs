@@ -7,8 +7,7 @@ use super::params::{Spacing, averaged, mean, parameters};
 use super::solve::{Row, solve};
 use super::{FitError, Misfit, SurfaceFit};
 use crate::knots::Knots;
-use crate::nurbs::{Net, NurbsSurface};
-use crate::nurbs_curve::NurbsCurve3;
+use crate::nurbs::{Net, NurbsCurve3, NurbsSurface};
 use nalgebra::{DMatrix, Vector4};
 use osculate_geom::{Point3, Side, Surface, uv};
 

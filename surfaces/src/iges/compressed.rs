@@ -6,7 +6,7 @@
 //! Fields are counted from 1 to 20 over the two cards of the fixed form: 1 kind, 7 transform, 9 status, 13 colour,
 //! 15 form, 18 label, 19 subscript. Source: [IGES 5.3, 2.3].
 
-use super::cards::{Line, integer};
+use super::columns::{Line, integer};
 use super::directory::{Directory, Entity, Faults, Status};
 use super::params::{Parsed, Separators, parse};
 use std::collections::BTreeMap;

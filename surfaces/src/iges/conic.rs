@@ -6,7 +6,8 @@
 
 use super::directory::Entity;
 use super::geometry::{Geometry, Space, Unread};
-use crate::trim::curve::{Curve, Ellipse, Motion, OpenConic, OpenKind, Piece};
+use crate::trim::curve::{Curve, Ellipse, OpenConic, OpenKind, Piece};
+use crate::trim::motion::Motion;
 use crate::trim::spline::Spline;
 use nalgebra::{Matrix2, Vector2};
 use osculate_geom::analytic::Placement;
@@ -39,7 +40,7 @@ impl Geometry<'_> {
 
     /// Entity 104 as a rational quadratic.
     pub(super) fn conic_spline(&self, de: i64, e: &Entity, unit: f64) -> Result<Spline, Unread> {
-        let bad = |e: crate::nurbs_curve::CurveError| self.malformed(de, e.to_string());
+        let bad = |e: crate::nurbs::CurveError| self.malformed(de, e.to_string());
         match self.conic_of(de, e, unit)? {
             Conic::Ellipse(c) => {
                 let (x, y) = (c.frame.x.into_inner(), c.frame.z.cross(&c.frame.x));

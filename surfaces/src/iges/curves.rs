@@ -3,7 +3,8 @@
 use super::directory::Entity;
 use super::geometry::{Geometry, MAX_CHAIN, Space, Unread};
 use super::parametric;
-use crate::trim::curve::{Curve, Ellipse, Line, Motion, Moved, Piece, Polyline};
+use crate::trim::curve::{Curve, Ellipse, Line, Moved, Piece, Polyline};
+use crate::trim::motion::Motion;
 use crate::trim::spline::Spline;
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Vec3};
@@ -253,7 +254,7 @@ impl Geometry<'_> {
         let e = self.entity(de)?;
         let motion = self.motion(e)?.then(outer);
         let unit = self.scale_mm;
-        let bad = |error: crate::nurbs_curve::CurveError| self.malformed(de, error.to_string());
+        let bad = |error: crate::nurbs::CurveError| self.malformed(de, error.to_string());
         let spline = match e.kind {
             100 => {
                 let arc = self.arc(de, e, unit)?;

@@ -4,7 +4,7 @@
 //! free text in columns 1 to 64; columns 66 to 72 name the directory entry in turn. Where the numbers of the cards
 //! are wrong, places count instead: entry k then has the number 2 k - 1.
 
-use super::cards::{Line, append, field, integer};
+use super::columns::{Line, append, field, integer};
 use super::params::{Params, Parsed, Separators, parse};
 use osculate_geom::Diagnostic;
 use rayon::prelude::*;

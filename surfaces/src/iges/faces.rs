@@ -7,7 +7,7 @@ use super::tree::Placed;
 use crate::part::FaceKind;
 use crate::trim::boundary::{Boundary, Built, build};
 use crate::trim::carrier::FaceSurface;
-use crate::trim::curve::Motion;
+use crate::trim::motion::Motion;
 use crate::trimmed::TrimError;
 use osculate_geom::{Side, Surface};
 

@@ -7,7 +7,7 @@ use super::cards::Cards;
 use super::directory::Entity;
 use super::names::kind_name;
 use crate::knots::MAX_DEGREE;
-use crate::trim::curve::Motion;
+use crate::trim::motion::Motion;
 use osculate_geom::Vec3;
 use std::cell::{Cell, RefCell};
 

@@ -3,8 +3,7 @@
 //! A degree is raised piece by piece on the Bezier poles, `Q_i = i / (p + 1) P_(i-1) + (1 - i / (p + 1)) P_i`, in
 //! homogeneous coordinates. Source: [Piegl & Tiller, The NURBS Book, 5.5].
 
-use crate::nurbs_curve::CurveError;
-use crate::nurbs_edit::EditError;
+use crate::nurbs::{CurveError, EditError};
 use crate::trim::spline::Spline;
 use nalgebra::Vector4;
 use osculate_geom::{Interval, Point3};
@@ -169,7 +168,6 @@ pub(crate) fn alike(both: [&Spline; 2]) -> Result<[Spline; 2], JoinError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trim::curve::Curve;
     use osculate_geom::Vec3;
     use std::f64::consts::FRAC_PI_2;
 

@@ -8,7 +8,8 @@ use super::geometry::{Geometry, Space, Unread};
 use super::pcurves::{OnCarrier, Parameters};
 use crate::trim::boundary::Boundary;
 use crate::trim::carrier::FaceSurface;
-use crate::trim::curve::{Curve, Line, Motion, Piece};
+use crate::trim::curve::{Curve, Line, Piece};
+use crate::trim::motion::Motion;
 use osculate_geom::{Box3, Point3, Surface, uv};
 use std::sync::Arc;
 

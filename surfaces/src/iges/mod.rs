@@ -12,6 +12,7 @@
 
 mod cards;
 mod carriers;
+mod columns;
 mod compressed;
 mod conic;
 mod curves;
@@ -73,7 +74,7 @@ const LOOK_AT: usize = 200;
 /// Whether the bytes have the cards of an IGES file near their start.
 pub(crate) fn looks_like(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(LOOK_AT * 82)];
-    let found: Vec<u8> = cards::cards(head).filter_map(|c| cards::section(&c.1)).collect();
+    let found: Vec<u8> = columns::cards(head).filter_map(|c| columns::section(&c.1)).collect();
     matches!(found.first(), Some(b'S' | b'G' | b'B' | b'C')) || found.contains(&b'G')
 }
 
@@ -83,12 +84,12 @@ pub(crate) fn looks_like(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`IgesError`] for bytes that are no IGES file or lack a section.
 pub fn read(bytes: &[u8]) -> Result<Part, IgesError> {
-    let lines = cards::cards(bytes).count();
+    let lines = columns::cards(bytes).count();
     if !looks_like(bytes) {
         return Err(IgesError::NotIges { searched: lines.min(LOOK_AT) });
     }
     // The flag section of the binary form.
-    if cards::cards(bytes).next().is_some_and(|c| cards::section(&c.1) == Some(b'B')) {
+    if columns::cards(bytes).next().is_some_and(|c| columns::section(&c.1) == Some(b'B')) {
         return Err(IgesError::Binary);
     }
     match Cards::read(bytes) {

@@ -4,8 +4,7 @@
 //! `A, A + B h / 3, A + 2 B h / 3 + C h^2 / 3, A + B h + C h^2 + D h^3`; a patch has them in both directions. The
 //! B-spline has each inner break three times.
 
-use crate::nurbs::{Net, NurbsError, NurbsSurface};
-use crate::nurbs_curve::CurveError;
+use crate::nurbs::{CurveError, Net, NurbsError, NurbsSurface};
 use crate::trim::spline::Spline;
 use osculate_geom::{Box3, Point3, Vec3};
 
@@ -106,7 +105,6 @@ pub(crate) fn surface(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trim::curve::Curve;
     use osculate_geom::{Surface, uv};
 
     #[test]

@@ -7,7 +7,7 @@
 use super::directory::Entity;
 use super::geometry::{Geometry, Unread};
 use super::links::parts;
-use crate::trim::curve::Motion;
+use crate::trim::motion::Motion;
 use nalgebra::Matrix3;
 use osculate_geom::Side;
 use std::collections::{BTreeMap, BTreeSet, HashSet};

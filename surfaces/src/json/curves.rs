@@ -1,7 +1,8 @@
 //! Edges and their curves to and from their specs.
 
+use super::fault::{FaceFault, finite_uv, possible};
+use super::spec;
 use super::surfaces::{of_frame, to_frame, to_point};
-use super::{FaceFault, finite_uv, possible, spec};
 use crate::part::Face;
 use crate::trim::boundary::Boundary;
 use crate::trim::curve::{Curve, Ellipse, Form, Line, OpenConic, OpenKind, Piece, Polyline};

@@ -1,17 +1,15 @@
 //! Faces as JSON, both ways: everything that a face is made of, in full precision. The form is in `spec`.
 
 mod curves;
+mod fault;
 mod spec;
 mod surfaces;
 
-use crate::knots::MAX_DEGREE;
-use crate::nurbs::NurbsError;
-use crate::nurbs_curve::CurveError;
+pub use fault::FaceFault;
+
 use crate::part::{Colour, Face, FaceKind, Format, Part};
 use crate::trim::boundary::{Boundary, build};
-use crate::trimmed::TrimError;
-use osculate_geom::analytic::BadSize;
-use osculate_geom::{Side, uv};
+use osculate_geom::Side;
 use std::sync::Arc;
 
 /// The number of the form that is written and read.
@@ -44,65 +42,6 @@ pub enum JsonError {
         /// What is wrong with it.
         why: FaceFault,
     },
-}
-
-/// What is wrong with a face.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FaceFault {
-    /// A kind that is not known.
-    #[error(
-        "kind {got:?} is none of plane, cylinder, cone, sphere, torus, bspline, bezier, revolution, extrusion, offset, ruled, other"
-    )]
-    Kind {
-        /// The word found.
-        got: String,
-    },
-    /// Axes that make no frame.
-    #[error("a frame with x = {x:?} and z = {z:?}: both must be unit vectors at right angles, to 1e-9")]
-    Frame {
-        /// First axis.
-        x: [f64; 3],
-        /// Third axis.
-        z: [f64; 3],
-    },
-    /// A number that is not finite.
-    #[error("{what} is not finite or not positive")]
-    Number {
-        /// Which one.
-        what: &'static str,
-    },
-    /// Rows of different lengths.
-    #[error("row {row} of the {what} has {got} entries, the first one {need}")]
-    Rows {
-        /// Poles or weights.
-        what: &'static str,
-        /// Which row, from 0.
-        row: usize,
-        /// Its length.
-        got: usize,
-        /// The first one's.
-        need: usize,
-    },
-    /// An edge with neither a curve and its ends nor parameters, or with both.
-    #[error("edge {edge} of loop {of}: it needs either a curve with ends or parameters (two pairs or more)")]
-    Edge {
-        /// Which loop, from 0.
-        of: usize,
-        /// Which edge, from 0.
-        edge: usize,
-    },
-    /// A size of a surface.
-    #[error(transparent)]
-    Size(#[from] BadSize),
-    /// A spline surface.
-    #[error(transparent)]
-    Surface(#[from] NurbsError),
-    /// A spline curve.
-    #[error(transparent)]
-    Curve(#[from] CurveError),
-    /// Loops.
-    #[error(transparent)]
-    Trim(#[from] TrimError),
 }
 
 /// Why faces cannot be written.
@@ -231,14 +170,4 @@ fn to_face(f: spec::Face, entity: u64) -> Result<Face, FaceFault> {
         carrier: built.assembled.carrier,
         surface: Arc::new(built.assembled.surface),
     })
-}
-
-/// A parameter pair that is two finite numbers.
-fn finite_uv([u, v]: [f64; 2]) -> Result<osculate_geom::Uv, FaceFault> {
-    if u.is_finite() && v.is_finite() { Ok(uv(u, v)) } else { Err(FaceFault::Number { what: "a parameter" }) }
-}
-
-/// Degrees are bounded before anything is made of them.
-const fn possible(degree: usize) -> bool {
-    degree >= 1 && degree <= MAX_DEGREE
 }

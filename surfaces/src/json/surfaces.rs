@@ -1,6 +1,7 @@
 //! Surfaces and frames to and from their specs.
 
-use super::{FaceFault, possible, spec};
+use super::fault::{FaceFault, possible};
+use super::spec;
 use crate::nurbs::{Net, NurbsSurface};
 use crate::trim::analytic::{Analytic, Shape};
 use crate::trim::carrier::FaceSurface;

@@ -3,8 +3,8 @@
 //! A closing side appears twice, with the same vertices on both; a pole is a line of parameters with a single vertex.
 //! What lies beyond a trim is cut away later, so that sides are drawn in full.
 
-use super::MeshOptions;
 use super::discretise::{EdgePoints, on_face};
+use super::options::MeshOptions;
 use crate::part::Face;
 use crate::topology::{Chart, Topology};
 use osculate_geom::{Axis, Point3, Surface, Uv, uv};

@@ -3,7 +3,7 @@
 //! From dense samples those are kept that the chord tolerance needs [Douglas and Peucker 1973], together with the places
 //! where the edge crosses a closing side of some face's rectangle: there the face is cut open.
 
-use super::MeshOptions;
+use super::options::MeshOptions;
 use crate::part::Face;
 use crate::topology::{Course, Follower, Spacing, Topology, Wrapped, on_polyline};
 use osculate_geom::{Point3, Uv, uv};

@@ -1,7 +1,7 @@
 //! Points inside a face: a grid by curvature first, then wherever a triangle is still too far off.
 
-use super::MeshOptions;
-use super::planar::{Node, Sheet, Triangle};
+use super::options::MeshOptions;
+use super::sheet::{Node, Sheet, Triangle};
 use osculate_geom::{Axis, Point3, Surface, Uv, uv};
 use spade::{Point2, PositionInTriangulation, Triangulation};
 

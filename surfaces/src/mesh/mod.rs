@@ -9,41 +9,22 @@ mod boundary;
 mod discretise;
 mod grid;
 mod interior;
+mod options;
 mod planar;
 mod report;
+mod sheet;
 
 pub use grid::{Mesh, tessellate};
+pub use options::MeshOptions;
 pub use report::MeshReport;
 
 use crate::part::Face;
 use crate::topology::Topology;
 use boundary::Outline;
 use discretise::EdgePoints;
-use osculate_geom::{Point3, Surface, Vec3};
+use osculate_geom::{Point3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// How fine a mesh is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeshOptions {
-    /// Largest distance between mesh and faces, mm.
-    pub chord_mm: f64,
-    /// Largest angle between the normals at the ends of a triangle's side, and between chords of an edge, rad.
-    pub angle_rad: Option<f64>,
-    /// Longest side of a triangle, mm.
-    pub max_edge_mm: Option<f64>,
-    /// Distance within which edges that the file does not call the same are taken as one; a hundred-thousandth of
-    /// the part's size where not given.
-    pub join_mm: Option<f64>,
-}
-
-impl MeshOptions {
-    /// Only a chord tolerance.
-    #[must_use]
-    pub const fn chord(chord_mm: f64) -> Self {
-        Self { chord_mm, angle_rad: None, max_edge_mm: None, join_mm: None }
-    }
-}
 
 /// Why there is no mesh.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -209,11 +190,4 @@ impl PartMesh {
         let [a, b, c] = t.map(|k| self.positions[k as usize]);
         (b - a).cross(&(c - a))
     }
-}
-
-/// Whether the triangles of a surface's parameter rectangle have to be turned over to be counter-clockwise from
-/// outside.
-fn turned(face: &Face) -> bool {
-    let d = face.surface.domain();
-    face.surface.jet2(d.at(0.5, 0.5)).side == osculate_geom::Side::Against
 }

@@ -4,34 +4,16 @@
 //! what they cut apart is inside or outside as the surface's own loops say at its largest triangle.
 
 use super::boundary::Outline;
-use super::{MeshOptions, interior, turned};
+use super::interior;
+use super::options::MeshOptions;
+use super::sheet::{Node, Sheet};
 use crate::part::Face;
 use crate::topology::Chart;
-use osculate_geom::{Point3, Surface, Uv, uv};
-use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+use osculate_geom::{Point3, Surface, uv};
+use spade::handles::FixedVertexHandle;
+use spade::{Point2, Triangulation};
 use std::cell::RefCell;
 use std::collections::HashMap;
-
-/// A vertex of the plane.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
-    place: Point2<f64>,
-    pub(super) at: Uv,
-    pub(super) point: Point3,
-    /// Number in the mesh.
-    pub(super) id: usize,
-}
-
-impl HasPosition for Node {
-    type Scalar = f64;
-    fn position(&self) -> Point2<f64> {
-        self.place
-    }
-}
-
-pub(super) type Plane = ConstrainedDelaunayTriangulation<Node>;
-pub(super) type Triangle = FixedFaceHandle<InnerTag>;
 
 /// The triangles of a face.
 pub(super) struct FaceMesh {
@@ -44,88 +26,6 @@ pub(super) struct FaceMesh {
     pub(super) unfinished: bool,
     /// Edges whose chords cross others and should be cut finer.
     pub(super) crossing: Vec<usize>,
-}
-
-/// The plane of a face while it is being filled.
-pub(super) struct Sheet<'a> {
-    pub(super) face: &'a Face,
-    pub(super) chart: &'a Chart,
-    pub(super) plane: Plane,
-    pub(super) own: Vec<Point3>,
-    pub(super) shared: usize,
-    scale: [f64; 2],
-}
-
-impl<'a> Sheet<'a> {
-    fn new(face: &'a Face, chart: &'a Chart, own: Vec<Point3>, shared: usize) -> Self {
-        let extent = [0, 1].map(|k| chart.speed[k] * chart.side(k).length());
-        let most = extent[0].max(extent[1]);
-        // A direction of no speed is stretched as if it were short, so that its parameters stay apart.
-        let scale = [0, 1].map(|k| (extent[k] / most).max(1e-3) / chart.side(k).length());
-        Self { face, chart, plane: Plane::new(), own, shared, scale }
-    }
-
-    /// The place of parameters in the plane.
-    pub(super) fn place(&self, at: Uv) -> Point2<f64> {
-        let d = self.chart.domain;
-        // Values below the triangulation's least are zero.
-        let one = |t: f64| if t.abs() < 1e-30 { 0.0 } else { t };
-        Point2::new(one((at.u - d.u.lo) * self.scale[0]), one((at.v - d.v.lo) * self.scale[1]))
-    }
-
-    /// The parameters at a place of the plane.
-    fn parameters(&self, p: Point2<f64>) -> Uv {
-        let d = self.chart.domain;
-        uv(d.u.lo + p.x / self.scale[0], d.v.lo + p.y / self.scale[1])
-    }
-
-    /// Inserts a point of the surface; `None` where its parameters are no numbers.
-    pub(super) fn add(&mut self, at: Uv) -> Option<FixedVertexHandle> {
-        let point = self.face.surface.point(at);
-        let node = Node { place: self.place(at), at, point, id: self.shared + self.own.len() };
-        let before = self.plane.num_vertices();
-        let handle = self.plane.insert(node).ok()?;
-        if self.plane.num_vertices() > before {
-            self.own.push(point);
-        }
-        Some(handle)
-    }
-
-    /// Which inner triangles are inside the face, by index.
-    pub(super) fn inside(&self) -> Vec<bool> {
-        let count = self.plane.num_inner_faces();
-        let mut part = vec![usize::MAX; count + 1];
-        let mut answers = Vec::new();
-        for start in self.plane.inner_faces() {
-            if part[start.fix().index()] != usize::MAX {
-                continue;
-            }
-            let number = answers.len();
-            let mut largest = (-1.0, start.fix());
-            let mut pending = vec![start.fix()];
-            part[start.fix().index()] = number;
-            while let Some(f) = pending.pop() {
-                let face = self.plane.face(f);
-                if face.area() > largest.0 {
-                    largest = (face.area(), f);
-                }
-                for e in face.adjacent_edges() {
-                    if e.is_constraint_edge() {
-                        continue;
-                    }
-                    if let Some(next) = e.rev().face().as_inner()
-                        && part[next.fix().index()] == usize::MAX
-                    {
-                        part[next.fix().index()] = number;
-                        pending.push(next.fix());
-                    }
-                }
-            }
-            let centre = self.parameters(self.plane.face(largest.1).center());
-            answers.push(self.face.surface.contains(centre));
-        }
-        part.into_iter().map(|p| answers.get(p).copied().unwrap_or(false)).collect()
-    }
 }
 
 /// What one try at a face goes by.
@@ -219,4 +119,11 @@ fn split(sheet: &mut Sheet<'_>, from: FixedVertexHandle, to: FixedVertexHandle) 
         Node { place: p, at, point, id: shared + before + made.borrow().len() - 1 }
     });
     sheet.own.extend(made.into_inner());
+}
+
+/// Whether the triangles of a surface's parameter rectangle have to be turned over to be counter-clockwise from
+/// outside.
+fn turned(face: &Face) -> bool {
+    let d = face.surface.domain();
+    face.surface.jet2(d.at(0.5, 0.5)).side == osculate_geom::Side::Against
 }

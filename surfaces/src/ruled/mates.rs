@@ -10,7 +10,7 @@
 //! in on between its neighbours. What comes is the best among chains on the grid, refined: not proven the best of all.
 //! Where rules need not reach the corners, the longest run of them within the tolerance is kept.
 
-use super::{Band, RulingError, RulingOptions, border};
+use super::asked::{Band, RulingError, RulingOptions, border};
 use crate::closest::{ClosestError, closest_near};
 use osculate_geom::{Point3, Surface, Uv};
 

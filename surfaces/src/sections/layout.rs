@@ -6,7 +6,7 @@
 //! and a point. Sections end where the index changes, else at lines of words, comments, counts and blank lines, else
 //! where a coordinate that is constant within each section changes.
 
-use super::SectionsError;
+use super::error::SectionsError;
 use osculate_geom::Point3;
 use std::collections::BTreeSet;
 

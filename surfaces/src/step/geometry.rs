@@ -2,7 +2,7 @@
 
 use super::graph::{Args, Graph, Record, Value, arg};
 use super::units::Units;
-use crate::trim::curve::Motion;
+use crate::trim::motion::Motion;
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Unit3, Vec3};
 use std::cell::Cell;

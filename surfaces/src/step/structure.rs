@@ -10,7 +10,7 @@
 use super::geometry::Geometry;
 use super::graph::{Graph, Record, arg};
 use super::units::Contexts;
-use crate::trim::curve::Motion;
+use crate::trim::motion::Motion;
 use osculate_geom::analytic::Placement;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! What a file has and the part has not: instances that no face, unit, name or colour led to, by keyword.
 
 use super::graph::{Graph, Record};
-use crate::part::Leftovers;
+use crate::leftovers::Leftovers;
 use std::collections::HashMap;
 
 /// Counts the records that were not asked for.

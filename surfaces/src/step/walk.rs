@@ -6,7 +6,7 @@
 use super::graph::{Graph, arg};
 use super::structure::{FACES, Web, is_face};
 use super::units::Contexts;
-use crate::trim::curve::Motion;
+use crate::trim::motion::Motion;
 use osculate_geom::Diagnostic;
 use osculate_geom::analytic::Placement;
 use std::collections::{BTreeMap, HashMap, HashSet};

@@ -1,6 +1,7 @@
 //! Faces that hang together, and whether they enclose something.
 
-use super::{Topology, loops};
+use super::loops::loops;
+use super::shared::Topology;
 use crate::part::Face;
 use osculate_geom::{Point3, Surface};
 

@@ -1,6 +1,7 @@
 //! The loops of a face for writers: closed walks over edges with the face on their left, seen from outside.
 
-use super::{FaceEdges, LocalEdge};
+use super::local::LocalEdge;
+use super::shared::FaceEdges;
 use crate::part::Face;
 use osculate_geom::{Side, Surface, Uv, uv};
 

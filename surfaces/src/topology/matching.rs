@@ -1,9 +1,10 @@
 //! Which uses are one edge, and which ends are one vertex.
 
 use super::chart::Chart;
-use super::local::LocalEdge;
-use super::{Edge, EdgeUse, FaceEdges, Topology};
-use osculate_geom::Point3;
+use super::local::{self, LocalEdge};
+use super::shared::{Edge, EdgeUse, FaceEdges, Topology};
+use crate::part::Face;
+use osculate_geom::{Box3, Point3};
 use std::collections::{BTreeMap, HashMap};
 
 /// Distance within which edges without a common identity are the same, as a part of the part's size: the sparest
@@ -62,6 +63,27 @@ fn same(a: &LocalEdge, b: &LocalEdge, slack: f64) -> Option<bool> {
 /// A group of uses: the first one, and every further one with its sense relative to the first.
 struct Group {
     members: Vec<(usize, bool)>,
+}
+
+impl Topology {
+    /// Finds the shared edges. `join_mm` is the distance within which edges without a common identity are the same.
+    pub(crate) fn new(faces: &[Face], join_mm: Option<f64>) -> Self {
+        let made: Vec<(Chart, Vec<LocalEdge>)> = faces
+            .iter()
+            .map(|f| {
+                let chart = Chart::new(f);
+                let local = local::edges(f, &chart);
+                (chart, local)
+            })
+            .collect();
+        let mut all = Box3::empty();
+        for e in made.iter().flat_map(|m| &m.1) {
+            e.ends.iter().chain(&e.middles).for_each(|p| all.add(p));
+        }
+        let size_mm = made.iter().map(|m| m.0.size_mm).fold(all.diagonal_mm().max(0.0), f64::max);
+        let join_mm = join_mm.unwrap_or(JOIN * size_mm);
+        build(made, size_mm, join_mm)
+    }
 }
 
 pub(crate) fn build(made: Vec<(Chart, Vec<LocalEdge>)>, size_mm: f64, join_mm: f64) -> Topology {

@@ -9,9 +9,10 @@
 
 use super::chart::{Chart, Wrapped};
 use super::course::{Follower, Spacing, on_polyline};
-use super::{FaceEdges, Step};
-use crate::nurbs::NurbsSurface;
-use crate::nurbs_curve::{NurbsCurve, NurbsCurve2};
+use super::loops::Step;
+use super::shared::FaceEdges;
+use super::track::Track;
+use crate::nurbs::{NurbsCurve, NurbsCurve2, NurbsSurface};
 use crate::part::Face;
 use crate::trim::analytic::Analytic;
 use crate::trim::carrier::FaceSurface;
@@ -34,16 +35,6 @@ const START: usize = 8;
 /// Parameters within this part of a side of the rectangle lie on it.
 const ON_SIDE: f64 = 1e-6;
 
-/// The way of an edge as a function of the parameter that it is written with.
-pub(crate) struct Track<'a> {
-    /// Point and derivative.
-    pub(crate) jet: Box<dyn Fn(f64) -> (Point3, Vec3) + 'a>,
-    /// Parameters between which it is smooth, ends included, ascending.
-    pub(crate) breaks: Vec<f64>,
-    /// Whether the parameter grows along the edge's own course.
-    pub(crate) forward: bool,
-}
-
 /// A face's surface as it is written.
 pub(crate) struct Ground<'a> {
     surface: &'a dyn Surface,
@@ -63,22 +54,6 @@ struct Node {
     at: Uv,
     /// Slopes before and behind it; `None` where the surface has none.
     slopes: [Option<[f64; 2]>; 2],
-}
-
-impl Track<'_> {
-    /// The breaks without those that only rounding parts from others.
-    fn apart(&self) -> Vec<f64> {
-        let [first, last] = [self.breaks[0], self.breaks[self.breaks.len() - 1]];
-        let hair = 1e-9 * (last - first);
-        let mut out = vec![first];
-        for t in &self.breaks {
-            if *t - out[out.len() - 1] > hair && last - t > hair {
-                out.push(*t);
-            }
-        }
-        out.push(last);
-        out
-    }
 }
 
 impl<'a> Ground<'a> {

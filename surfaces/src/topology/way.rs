@@ -2,8 +2,8 @@
 //! has one there, else a cubic spline through dense points.
 
 use super::course::{Course, Spacing};
-use super::pcurve::Track;
-use crate::nurbs_curve::NurbsCurve3;
+use super::track::Track;
+use crate::nurbs::NurbsCurve3;
 use crate::trim::curve::{Curve, Ellipse, Form, Line, OpenConic, OpenKind, Piece};
 use crate::trim::spline::Spline;
 use osculate_geom::{Interval, Point3, Vec3};

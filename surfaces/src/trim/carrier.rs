@@ -2,14 +2,32 @@
 //! point, and the parameters of a point near it.
 
 use super::analytic::{Analytic, Shape};
-use super::curve::Motion;
 use super::foot;
+use super::motion::Motion;
 use super::region::Known;
 use crate::nurbs::{Net, NurbsSurface};
-use crate::part::PlaceError;
 use osculate_geom::analytic::Placement;
-use osculate_geom::{Axis, Box3, Domain, Jet2, Jet3, Offset, Point3, Surface, Taylor, Unit3, Uv};
+use osculate_geom::{Axis, Box3, Domain, Offset, Point3, Surface, Unit3, Uv, forward_surface};
 use std::sync::{Arc, OnceLock};
+
+/// Why a face cannot be put into its place.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum PlaceError {
+    /// The motion scales or mirrors.
+    #[error(
+        "its place scales lengths by {scale} (negative: mirrors them), which its surface does not follow"
+    )]
+    Scaled {
+        /// Factor of lengths.
+        scale: f64,
+    },
+    /// The motion distorts.
+    #[error("its place distorts it")]
+    Distorted,
+    /// Coordinates leave the range of numbers.
+    #[error("its place leaves the range of numbers")]
+    Far,
+}
 
 /// The untrimmed surface of a face.
 #[derive(Clone, Debug)]
@@ -127,27 +145,7 @@ impl FaceSurface {
 }
 
 impl Surface for FaceSurface {
-    fn domain(&self) -> Domain {
-        self.surface().domain()
-    }
-    fn jet2(&self, uv: Uv) -> Jet2 {
-        self.surface().jet2(uv)
-    }
-    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        self.surface().taylor(uv, order)
-    }
-    fn jet3(&self, uv: Uv) -> Jet3 {
-        self.surface().jet3(uv)
-    }
-    fn point(&self, uv: Uv) -> Point3 {
-        self.surface().point(uv)
-    }
-    fn contains(&self, uv: Uv) -> bool {
-        self.surface().contains(uv)
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        self.surface().breaks(axis)
-    }
+    forward_surface!(all | s | s.surface());
 }
 
 /// A motion whose factor of lengths is this near to one is rigid: frames are made of unit vectors.

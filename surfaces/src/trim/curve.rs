@@ -2,6 +2,8 @@
 //!
 //! Spline curves are in [`super::spline`]. A parameter-space curve of IGES is a space curve with z = 0.
 
+use super::motion::Motion;
+use super::spline::Spline;
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Vec3};
 use std::f64::consts::TAU;
@@ -19,7 +21,7 @@ pub(crate) enum Form {
     /// Straight pieces.
     Polyline(Polyline),
     /// A spline.
-    Spline(super::spline::Spline),
+    Spline(Spline),
 }
 
 impl Form {
@@ -360,55 +362,24 @@ pub(crate) struct Moved {
     pub(crate) motion: Motion,
 }
 
-/// An affine map whose linear part is a rotation, a reflection or a uniform scaling of one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Motion {
-    /// Linear part.
-    pub(crate) linear: nalgebra::Matrix3<f64>,
-    /// Shift, mm.
-    pub(crate) shift: Vec3,
-}
-
-impl Motion {
-    /// The map that changes nothing.
-    pub(crate) fn identity() -> Self {
-        Self { linear: nalgebra::Matrix3::identity(), shift: Vec3::zeros() }
+impl Curve for Spline {
+    fn form(&self) -> Option<Form> {
+        Some(Form::Spline(self.clone()))
     }
-    /// The image of a point.
-    pub(crate) fn point(&self, p: &Point3) -> Point3 {
-        Point3::from(self.linear * p.coords + self.shift)
+    fn point(&self, t: f64) -> Point3 {
+        Self::point(self, t)
     }
-    /// The rigid motion that takes one frame to another; `None` where, to the digits of a file, nothing moves.
-    pub(crate) fn between(from: &Placement, to: &Placement) -> Option<Self> {
-        let columns = |f: &Placement| {
-            nalgebra::Matrix3::from_columns(&[f.x.into_inner(), f.y.into_inner(), f.z.into_inner()])
-        };
-        let linear = columns(to) * columns(from).transpose();
-        let shift = to.origin.coords - linear * from.origin.coords;
-        let size = from.origin.coords.norm() + to.origin.coords.norm();
-        let moves = (linear - nalgebra::Matrix3::identity()).amax() > 1e-12 || shift.amax() > 1e-12 * size;
-        moves.then_some(Self { linear, shift })
+    fn range(&self) -> [f64; 2] {
+        Self::range(self)
     }
-    /// The map back; `None` where there is none.
-    pub(crate) fn inverse(&self) -> Option<Self> {
-        let linear = self.linear.try_inverse()?;
-        Some(Self { linear, shift: -(linear * self.shift) })
+    fn period(&self) -> Option<f64> {
+        Self::period(self)
     }
-    /// The factor of all lengths, negative where left and right are exchanged; `None` for a map that distorts.
-    pub(crate) fn scale(&self) -> Option<f64> {
-        let gram = self.linear.transpose() * self.linear;
-        let square = gram.trace() / 3.0;
-        // Directions of files have six digits or more; the frames are made of unit vectors, though.
-        let even = (gram - nalgebra::Matrix3::identity() * square).amax() <= 1e-9 * square;
-        even.then(|| square.sqrt() * self.linear.determinant().signum())
+    fn locate(&self, p: &Point3) -> f64 {
+        Self::locate(self, p)
     }
-    /// The image of a vector.
-    pub(crate) fn vector(&self, v: &Vec3) -> Vec3 {
-        self.linear * v
-    }
-    /// First `self`, then `outer`.
-    pub(crate) fn then(&self, outer: &Self) -> Self {
-        Self { linear: outer.linear * self.linear, shift: outer.linear * self.shift + outer.shift }
+    fn breaks(&self) -> Vec<f64> {
+        Self::breaks(self)
     }
 }
 

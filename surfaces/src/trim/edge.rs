@@ -1,6 +1,7 @@
 //! The edges of a face as its file gave them, kept beside the loops: what tessellation and export share between faces.
 
-use super::curve::{Motion, Moved, Piece};
+use super::curve::{Moved, Piece};
+use super::motion::Motion;
 use osculate_geom::Uv;
 use std::sync::Arc;
 

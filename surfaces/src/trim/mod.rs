@@ -11,6 +11,7 @@ pub(crate) mod compound;
 pub(crate) mod curve;
 pub(crate) mod edge;
 pub(crate) mod foot;
+pub(crate) mod motion;
 mod outline;
 pub(crate) mod pull;
 pub(crate) mod region;

@@ -3,10 +3,9 @@
 //! Writers bound a whole patch by the curves of its outer poles. A curve with the same degree, knots (up to the
 //! parameter's scale), poles and weights (up to a common factor) as a side is that side, point by point.
 
-use super::curve::{Curve, Form, Piece};
+use super::curve::{Form, Piece};
 use crate::knots::Knots;
-use crate::nurbs::NurbsSurface;
-use crate::nurbs_curve::NurbsCurve3;
+use crate::nurbs::{NurbsCurve3, NurbsSurface};
 use osculate_geom::{Axis, Interval, Surface, Uv};
 
 /// Relative difference of numbers that were written twice, the second time after arithmetic.

@@ -3,8 +3,8 @@
 //! Conics become rational quadratics ([Piegl & Tiller, The NURBS Book, 7.3]), so that every generatrix can be swept
 //! to a spline surface.
 
-use super::curve::{Curve, Form, Motion};
-use crate::nurbs_curve::{CurveError, NurbsCurve3};
+use super::motion::Motion;
+use crate::nurbs::{CurveError, NurbsCurve3};
 use osculate_geom::{Box3, Point3, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -105,27 +105,29 @@ impl Spline {
     pub(crate) fn weight(&self, k: usize) -> f64 {
         self.curve.weights().map_or(1.0, |w| w[k])
     }
-}
 
-impl Curve for Spline {
-    fn form(&self) -> Option<Form> {
-        Some(Form::Spline(self.clone()))
-    }
-    fn point(&self, t: f64) -> Point3 {
+    /// The point at a parameter; a closed spline accepts parameters beyond its range.
+    pub(crate) fn point(&self, t: f64) -> Point3 {
         let [lo, hi] = self.range();
         if self.closed && !(t >= lo && t <= hi) {
             return self.curve.point(lo + (t - lo).rem_euclid(hi - lo));
         }
         self.curve.point(t)
     }
-    fn range(&self) -> [f64; 2] {
+
+    /// The natural range.
+    pub(crate) fn range(&self) -> [f64; 2] {
         self.curve.knots().domain()
     }
-    fn period(&self) -> Option<f64> {
+
+    /// The period of a closed spline.
+    pub(crate) fn period(&self) -> Option<f64> {
         let [lo, hi] = self.range();
         self.closed.then_some(hi - lo)
     }
-    fn locate(&self, p: &Point3) -> f64 {
+
+    /// The parameter of the point nearest to `p`.
+    pub(crate) fn locate(&self, p: &Point3) -> f64 {
         let [lo, hi] = self.range();
         let d2 = |t: f64| (self.curve.point(t) - p).norm_squared();
         let n = 4 * self.curve.degree();
@@ -164,7 +166,9 @@ impl Curve for Spline {
         }
         t
     }
-    fn breaks(&self) -> Vec<f64> {
+
+    /// Parameters strictly within the range between which it is smooth.
+    pub(crate) fn breaks(&self) -> Vec<f64> {
         let all = self.curve.knots().breaks();
         all[1..all.len() - 1].to_vec()
     }

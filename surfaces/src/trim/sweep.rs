@@ -1,8 +1,7 @@
 //! Spline surfaces swept from a generatrix: extrusion and revolution, exactly.
 
 use super::spline::Spline;
-use crate::nurbs::{Net, NurbsError, NurbsSurface};
-use crate::nurbs_curve::CurveError;
+use crate::nurbs::{CurveError, Net, NurbsError, NurbsSurface};
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Vec3};
 

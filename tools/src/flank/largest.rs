@@ -6,8 +6,9 @@
 
 use super::ruled::RuledStrip;
 use super::section::Stations;
-use super::setting::{PlaceError, Setting, Verdict, place};
+use super::setting::{Setting, Verdict, place};
 use super::tool::SideTool;
+use super::touch::PlaceError;
 
 /// What to look for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,10 +14,10 @@ use super::rule::Rule;
 use super::ruled::RuledStrip;
 use super::search::least_between;
 use super::section::{Least, Stations, least_at};
-use super::setting::{PlaceError, Touch};
 use super::standard::along_rule;
 use super::three::three_tangent;
 use super::tool::SideTool;
+use super::touch::{PlaceError, Touch};
 use nalgebra::{DMatrix, DVector, SVector};
 use osculate_geom::{Point3, Unit3, Vec3};
 

@@ -57,6 +57,7 @@ mod setting;
 mod standard;
 mod three;
 mod tool;
+mod touch;
 
 pub use axis::{AxisJet, AxisLine};
 pub use directrix::CurveJet2;
@@ -65,7 +66,8 @@ pub use minimax::{Hold, MinimaxAxis, MinimaxSearch, minimax};
 pub use rule::{Rule, RuleError, RuleFrame};
 pub use ruled::{RuledError, RuledStrip};
 pub use section::{Least, Profile, Stations, least_at, profile};
-pub use setting::{PlaceError, Placed, Setting, Touch, Verdict, place};
+pub use setting::{Placed, Setting, Verdict, place};
 pub use standard::balanced_fraction;
 pub use three::{ThreeTangent, three_tangent};
 pub use tool::{SideNear, SideTool, SideToolError};
+pub use touch::{PlaceError, Touch};

@@ -10,8 +10,8 @@ use super::rule::Rule;
 use super::ruled::RuledStrip;
 use super::search::least_between;
 use super::section::{Stations, end_deviation};
-use super::setting::PlaceError;
 use super::tool::SideTool;
+use super::touch::PlaceError;
 use osculate_geom::Vec3;
 use osculate_geom::roots::{End, bracketed};
 

@@ -21,8 +21,8 @@
 use super::axis::{AxisJet, AxisLine};
 use super::rule::Rule;
 use super::ruled::RuledStrip;
-use super::setting::{PlaceError, Touch};
 use super::tool::SideTool;
+use super::touch::{PlaceError, Touch};
 use nalgebra::{Matrix4, Vector4};
 use osculate_geom::{Unit3, Vec3};
 

@@ -4,7 +4,7 @@
 //! between is as high as the tolerance when the feed per tooth is the length of the mark. This is the exact form of the
 //! greatest feed per tooth [R97, eq. 41], the body of revolution standing for the edges.
 
-use super::exact::StripError;
+use super::asked::StripError;
 use super::knotted::Knotted;
 use super::traced::Traced;
 use crate::contact::{Contact, ContactLine};

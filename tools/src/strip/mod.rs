@@ -6,6 +6,7 @@
 //! included. The strip reaches as far as this standoff stays at or below the tolerance. Nothing is expanded in the
 //! tolerance: the closed forms of strip width are approximations of this.
 
+mod asked;
 mod chart;
 mod exact;
 mod knotted;
@@ -16,8 +17,9 @@ mod side;
 mod traced;
 mod undercut;
 
+pub use asked::{Demand, Strip, StripError};
 pub use chart::{Chart, ChartError, Nearly, Within};
-pub use exact::{Demand, Strip, StripError, exact, exact_to, standoff};
+pub use exact::{exact, exact_to, standoff};
 pub use mark::{Mark, mark};
 
 use crate::contact::ContactMotion;

@@ -223,7 +223,7 @@ impl<'a, M: SweptMotion> Side<'a, M> {
             edge: q + root.x,
             at: self.normal(self.advance(&here, root.x)?.at)?,
             t: t.t,
-            undercut: undercut.deepest(self)?,
+            undercut: self.deepest(&undercut)?,
             error: root.error + self.integration_error(here, q + root.x)?,
             at_edge: false,
         })
@@ -256,7 +256,7 @@ impl<'a, M: SweptMotion> Side<'a, M> {
                     edge: q + lo,
                     at,
                     t: t.t,
-                    undercut: undercut.deepest(self)?,
+                    undercut: self.deepest(&undercut)?,
                     error,
                     at_edge: true,
                 })
@@ -267,6 +267,14 @@ impl<'a, M: SweptMotion> Side<'a, M> {
                 shorter.edge(here, q, t, f_out, undercut)
             }
         }
+    }
+
+    /// Depth below the part of what a walk has seen.
+    fn deepest(&self, seen: &Undercut) -> Result<f64, Degenerate> {
+        seen.deepest(self.step, SHARE * self.relative.sqrt(), |from, x| {
+            let at = self.advance(&from.state, x)?.at;
+            Ok(self.standoff(at, from.t)?.map_or(f64::INFINITY, |(r, _)| r.at_mm))
+        })
     }
 
     /// Integration error of the cross line after `q`: the last step whole against two halves, for every step walked.

@@ -1,9 +1,6 @@
 //! How deep the tool goes below the part on a walk across the strip.
 
 use super::local::Near;
-use super::side::{SHARE, Side};
-use crate::sweep::SweptMotion;
-use osculate_geom::Degenerate;
 use osculate_geom::geodesic::GeodesicState;
 
 /// Most steps towards the deepest place across.
@@ -47,15 +44,19 @@ impl Undercut {
         self.last = [self.last[1], Some(new)];
     }
 
-    /// Depth below the part, the minimum between places found by golden section over the two steps around it.
-    pub fn deepest<M: SweptMotion>(&self, side: &Side<'_, M>) -> Result<f64, Degenerate> {
+    /// Depth below the part, the minimum between places found by parabolas over the two steps of `step` mm around it.
+    ///
+    /// `height` is asked for the standoff so far on from a place; `nearest` is how near in steps the parabolas come.
+    pub fn deepest<E>(
+        &self,
+        step: f64,
+        nearest: f64,
+        height: impl Fn(&Place, f64) -> Result<f64, E>,
+    ) -> Result<f64, E> {
         let Some(a) = self.before_lowest else { return Ok((-self.lowest).max(0.0)) };
-        let height = |x: f64| -> Result<f64, Degenerate> {
-            let at = side.advance(&a.state, x)?.at;
-            Ok(side.standoff(at, a.t)?.map_or(f64::INFINITY, |(r, _)| r.at_mm))
-        };
+        let height = |x: f64| height(&a, x);
         // Three places around the minimum, closed in on by parabolas, by halves where these stand still.
-        let mut x = [0.0, side.step, 2.0 * side.step];
+        let mut x = [0.0, step, 2.0 * step];
         let mut f = [a.height, height(x[1])?, height(x[2])?];
         for round in 0..MOST_PARABOLAS {
             let (da, dc) = (x[1] - x[0], x[1] - x[2]);
@@ -72,7 +73,7 @@ impl Undercut {
                 x[1] - 0.5 * dc
             };
             // A height is flat at its minimum: its place to half of double precision's digits is enough.
-            if (new - x[1]).abs() < 1e-7f64.max(SHARE * side.relative.sqrt()) * side.step {
+            if (new - x[1]).abs() < 1e-7f64.max(nearest) * step {
                 break;
             }
             let g = height(new)?;

@@ -7,7 +7,7 @@
 mod dense;
 mod speed;
 
-use crate::cmd::{Failure, cargo, root};
+use crate::cmd::{Failure, cargo, root, write};
 use dense::{Cloud, Cutter};
 use serde_json::Value;
 use std::path::Path;
@@ -440,11 +440,6 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         },
         s["wall_s"].as_object().map_or(0.0, |w| w.values().filter_map(Value::as_f64).sum())
     )
-}
-
-fn write(to: &Path, text: &str) -> Result<(), Failure> {
-    let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
-    made.and_then(|()| std::fs::write(to, text)).map_err(|why| Failure::Write { path: to.to_path_buf(), why })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! A plane of 100 x 100 mm by every strategy that has lines there, `auto` over five tools on it, and a dish by a path of a
 //! million points beside half and a quarter of it: what a point costs is to stay the same.
 
-use crate::cmd::Failure;
+use crate::cmd::{Failure, write};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -30,7 +30,7 @@ fn job(part: &str, tools: &str, strategy: &str, tolerance: &str) -> String {
 fn one(name: &str, text: &str, program: &Path, place: &Path) -> Result<(), Failure> {
     let folder = place.join(name.replace([' ', ','], "-"));
     let file = folder.join("job.toml");
-    super::write(&file, text)?;
+    write(&file, text)?;
     let begun = Instant::now();
     let mut child = Command::new(program)
         .arg("plan")

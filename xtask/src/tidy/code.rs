@@ -1,12 +1,18 @@
-//! What the libraries execute: their sources without comments, literals and tests.
+//! What crates execute: their sources without comments, literals and tests.
 
-use super::LIBRARIES;
 use super::source::{code_only, without_tests};
+use super::tree::LIBRARIES;
 use super::tree::{File, Tree};
 
-/// The sources of the libraries with comments, literals and tests blanked. Files that hold a test module are left out.
+/// The sources of the libraries with comments, literals and tests blanked.
 pub fn library_code(tree: &Tree) -> Vec<(&File, String)> {
-    let sources = LIBRARIES.iter().flat_map(|folder| tree.rust_below(&format!("{folder}/src")));
+    code_of(tree, &LIBRARIES)
+}
+
+/// The sources of the crates in these folders with comments, literals and tests blanked. Files that hold a test module
+/// are left out.
+pub fn code_of<'a>(tree: &'a Tree, folders: &[&str]) -> Vec<(&'a File, String)> {
+    let sources = folders.iter().flat_map(|folder| tree.rust_below(&format!("{folder}/src")));
     let mut kept = Vec::new();
     let mut test_modules = Vec::new();
     for file in sources {

@@ -1,6 +1,6 @@
 //! Data in the repository: not too large, and with a notice where others made it.
 
-use super::Finding;
+use super::finding::Finding;
 use super::tree::{File, Tree};
 
 /// The largest size of a file that needs no reason, bytes. A clone of the repository stays a matter of seconds.

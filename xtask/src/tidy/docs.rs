@@ -1,7 +1,8 @@
 //! Documents name what exists: files, folders, and the commands of README.md, which can be typed as they stand.
 
+use super::finding::Finding;
+use super::tree::CRATES;
 use super::tree::{File, Tree};
-use super::{CRATES, Finding};
 
 /// The folder of the examples; a path below it in README.md must exist wherever it stands.
 const EXAMPLES: &str = "examples/";

@@ -1,7 +1,7 @@
 //! Libraries compute: no files by path, no terminal, no environment. Readers take `&str`, `&[u8]` or `Read`.
 
-use super::Finding;
 use super::code::library_code;
+use super::finding::Finding;
 use super::source::has_word;
 use super::tree::Tree;
 

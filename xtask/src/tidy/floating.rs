@@ -1,8 +1,8 @@
 //! No bare fused multiply-add. Where the target lacks the instruction it becomes a call of a library function, far slower
 //! than the two operations that it replaces.
 
-use super::Finding;
 use super::code::library_code;
+use super::finding::Finding;
 use super::source::has_word;
 use super::tree::Tree;
 
@@ -21,7 +21,7 @@ pub fn no_bare_mul_add(tree: &Tree) -> Vec<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tidy::LIBRARIES;
+    use crate::tidy::tree::LIBRARIES;
 
     #[test]
     fn both_forms_are_found() {

@@ -1,6 +1,6 @@
 //! The direction of dependencies between the crates, from `cargo metadata`.
 
-use super::Finding;
+use super::finding::Finding;
 use crate::cmd::Failure;
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
 //! The code names in NOTATION.md exist.
 
-use super::Finding;
 use super::code::library_code;
+use super::finding::Finding;
 use super::source::has_word;
 use super::tree::Tree;
 

@@ -1,7 +1,8 @@
 //! What every crate and every release needs: a documented root, licences, a changelog of this version.
 
+use super::finding::Finding;
+use super::tree::CRATES;
 use super::tree::Tree;
-use super::{CRATES, Finding};
 
 /// Fewest words of a crate's documentation: less than a sentence tells nobody what the crate is for.
 const FEWEST_WORDS: usize = 6;

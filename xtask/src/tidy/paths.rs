@@ -1,6 +1,6 @@
 //! No absolute path of a machine: it would mean nothing on another one.
 
-use super::Finding;
+use super::finding::Finding;
 use super::tree::Tree;
 
 /// Beginnings of such paths, put together from two parts so that this file does not hold what it looks for.

@@ -1,7 +1,7 @@
 //! Serde on spec structs only: what a user writes has a format, what is computed has invariants.
 
-use super::Finding;
 use super::code::library_code;
+use super::finding::Finding;
 use super::source::has_word;
 use super::tree::Tree;
 

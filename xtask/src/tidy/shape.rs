@@ -1,7 +1,7 @@
 //! The shape of source files: a head that says what the file is about, and a length that one can read.
 
-use super::tree::{File, Tree};
-use super::{CRATES, Finding};
+use super::finding::Finding;
+use super::tree::{CRATES, File, Tree};
 
 /// Most lines of a Rust file. One idea takes a hundred to four hundred.
 const MOST_LINES: usize = 500;

@@ -4,6 +4,12 @@ use crate::cmd::Failure;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+/// The folders of the library crates, which compute and do nothing else.
+pub const LIBRARIES: [&str; 5] = ["geom", "surfaces", "tools", "productivity", "postproc"];
+
+/// The folders of all crates.
+pub const CRATES: [&str; 7] = ["geom", "surfaces", "tools", "productivity", "postproc", "cli", "xtask"];
+
 /// One file of the workspace.
 #[derive(Clone, Debug)]
 pub struct File {

@@ -1,6 +1,6 @@
 //! Nothing unfinished: no marks of open work, no tests that do not run.
 
-use super::Finding;
+use super::finding::Finding;
 use super::source::has_word;
 use super::tree::Tree;
 

@@ -5,8 +5,9 @@
 //! ramp to and fro along the piece itself.
 
 use super::course::Course;
-use super::layers::{Piece, Place, RoughTask, raised};
-use super::{Ground, trace};
+use super::ground::Ground;
+use super::pieces::{Piece, Place, RoughTask, raised, top_mm};
+use super::trace;
 use crate::plan::Linked;
 use osculate_tools::Pose;
 use osculate_tools::cl::Motion;
@@ -47,7 +48,7 @@ fn height(places: &[Place], x: f64) -> f64 {
 
 impl<'a> Clearing<'a> {
     pub(super) fn new(ground: &'a Ground<'a>, task: &'a RoughTask<'a>, top: f64) -> Self {
-        let obstacles = super::layers::top_mm(&task.links.obstacles, &task.axis);
+        let obstacles = top_mm(&task.links.obstacles, &task.axis);
         let safe = top.max(obstacles) + task.links.clearance_mm;
         let (linked, cut) = (Linked::default(), Vec::new());
         Self { ground, task, safe, linked, cut, here: None, left_out_mm2: 0.0 }

@@ -12,13 +12,12 @@
 //! cutter that would do.
 
 use super::course::Course;
+use super::ground::{DropTask, Ground, Lines, asked, design_mm, ground, hide, nothing, told, too_many};
 use super::laid::Laid;
 use super::rounds::{Round, in_rounds};
+use super::trace;
 use super::wants::{LEVEL, Lost, Want};
-use super::{
-    DropTask, Ground, Lines, MAX_PASSES, Pass, Passes, PlanError, asked, design_mm, ground, hide, nothing,
-    told, too_many, trace,
-};
+use crate::plan::{MAX_PASSES, Pass, Passes, PlanError};
 use osculate_geom::{Diagnostic, Point3, Surface};
 use rayon::prelude::*;
 
@@ -47,7 +46,7 @@ const MOST_STEPS: usize = 200_000;
 /// [`PlanError`]: a ball or another cutter that is neither flat nor toroidal, a tolerance that is none, no face that the tool
 /// reaches from above, or too many passes.
 pub fn gradient_3c(task: &DropTask<'_>) -> Result<Passes, PlanError> {
-    super::super::check_tolerance(&task.tolerance)?;
+    crate::plan::check_tolerance(&task.tolerance)?;
     if task.cutter.is_ball() || !task.cutter.is_end_mill() {
         return Err(PlanError::Tool { strategy: "gradient_3c", need: "flat or toroidal cutter" });
     }

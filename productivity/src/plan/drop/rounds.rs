@@ -1,7 +1,8 @@
 //! Rounds of passes: lay them out, measure with the swept cutter what they leave, and ask again, closer, where it is too much.
 
+use super::ground::{DESIGN, Ground, design_mm, nothing};
 use super::wants::Want;
-use super::{DESIGN, Ground, Pass, PlanError, design_mm, nothing};
+use crate::plan::{Pass, PlanError};
 use osculate_tools::removal::{self, Job, Sample, Swept};
 use rayon::prelude::*;
 
@@ -138,8 +139,9 @@ fn measure(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Tolerance;
-    use crate::plan::drop::{DropTask, Lines, Named, asked, ground, levels, shares};
+    use crate::plan::drop::ground::{DropTask, Lines, asked, ground};
+    use crate::plan::drop::planes::{levels, shares};
+    use crate::plan::{Named, Tolerance};
     use osculate_geom::analytic::Plane;
     use osculate_geom::{Domain, Interval, Surface, Vec3};
     use osculate_tools::{Cutter, CutterSpec};

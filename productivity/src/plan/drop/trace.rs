@@ -1,10 +1,11 @@
 //! Passes along levels: where the tool must go on each, and the path there at the chord tolerance.
 
-use super::super::cover::union;
 use super::course::Course;
+use super::ground::Ground;
 use super::height::Rest;
 use super::wants::Want;
-use super::{CcPoint, Ground, Pass};
+use crate::plan::cover::union;
+use crate::plan::{CcPoint, Pass};
 use osculate_tools::Pose;
 use rayon::prelude::*;
 

@@ -6,13 +6,12 @@
 //! need is allowed to grow as it does from node to node.
 
 use super::envelope::{Network, raise};
+use super::lean::{Feed, LeadField, LocalLead};
 use super::need::{Clearance, Stand};
-use super::{Feed, LocalLead};
-use crate::plan::level::{Spline, lengths};
-use crate::plan::line::Rectangle;
+use crate::plan::level::Spline;
+use crate::plan::line::{Rectangle, lengths};
 use crate::plan::{Passes, PlanError, Task};
 use osculate_geom::{Axis, Diagnostic, Uv};
-use osculate_tools::Lean;
 use rayon::prelude::*;
 
 /// Distance of nodes, in radii of the tool, and fewest and most along a parameter, and most of all.
@@ -25,16 +24,6 @@ const ASKED: usize = 2;
 const ROUNDS: u32 = 6;
 /// A rate along the edges and diagonals of a grid is one in any direction to this quotient; cells are no squares.
 const ANY_WAY: f64 = 1.15;
-
-/// Lead over a face, with a tilt that is held.
-#[derive(Clone, Debug)]
-pub struct LeadField {
-    spline: Spline,
-    rectangle: Rectangle,
-    tilt_rad: f64,
-    /// Places that no lead clears, and all at which one was looked for.
-    unmet: [usize; 2],
-}
 
 /// Poles of a spline over a face as nodes.
 struct Poles<'a> {
@@ -170,27 +159,6 @@ impl LeadField {
             ));
         }
         passes
-    }
-
-    /// Lead and tilt at a place, and the lead's derivatives by u and v; beyond the border of the face its border's.
-    #[must_use]
-    pub fn at(&self, at: Uv) -> (Lean, [f64; 2]) {
-        let mut within = [true; 2];
-        let held = |axis: Axis, within: &mut bool| {
-            let (i, t) = (self.rectangle.domain.get(axis), at.get(axis));
-            if t >= i.lo && t <= i.hi {
-                t
-            } else if self.rectangle.closes(axis) {
-                (t - i.lo).rem_euclid(i.length()) + i.lo
-            } else {
-                *within = false;
-                t.clamp(i.lo, i.hi)
-            }
-        };
-        let place = Uv { u: held(Axis::U, &mut within[0]), v: held(Axis::V, &mut within[1]) };
-        let jet = self.spline.jet(place);
-        let slope = [0, 1].map(|k| if within[k] { jet.slope[k] } else { 0.0 });
-        (Lean { lead_rad: jet.value, tilt_rad: self.tilt_rad }, slope)
     }
 }
 

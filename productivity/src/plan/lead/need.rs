@@ -9,10 +9,9 @@
 //! and [`super::super::seat`] raises the tool over it. A place that no lead clears asks for none and is told of: verification has
 //! the last word.
 
-use super::LocalLead;
+use super::lean::LocalLead;
 use crate::plan::Task;
-use crate::plan::level::lengths;
-use crate::plan::line::Rectangle;
+use crate::plan::line::{Rectangle, lengths};
 use osculate_geom::{Axis, Darboux, Point3, Unit3, Uv, Vec3};
 use osculate_tools::{Cutter, Lean, Pose};
 use rayon::prelude::*;

@@ -1,15 +1,15 @@
 //! The parameter rectangle in cells: what of the face lies in each, which levels of the field pass it, and how far a pass
 //! reaches there.
 
+use super::cell::{Cell, Ways};
 use super::even::closed_width_mm;
 use super::field::Face;
 use super::reach::reach;
-use super::ways::Ways;
-use crate::plan::line::Rectangle;
+use crate::plan::line::{AXES, lengths};
 use crate::plan::seat::Seat;
 use crate::plan::{PlanError, Task};
 use osculate_geom::line::LineError;
-use osculate_geom::{Axis, Surface, Uv, uv};
+use osculate_geom::{Axis, Uv, uv};
 use rayon::prelude::*;
 
 /// Cells on a face, about; more where knots stand closer.
@@ -33,49 +33,6 @@ const BENT: u32 = 18;
 /// Share of the cells without an answer above which there is no plan.
 const MOST_LOST: f64 = 0.1;
 
-/// Axes in the order of their index.
-pub(in crate::plan) const AXES: [Axis; 2] = [Axis::U, Axis::V];
-
-/// One cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cell {
-    /// Values of the field on what lies inside the face; empty (low above high) where nothing does.
-    pub low: f64,
-    pub high: f64,
-    /// Whether all of it lies inside.
-    pub full: bool,
-    /// Reaches of passes above and below as differences of the field: of those with the uphill side to the left, and of those
-    /// that run the other way.
-    pub up: [f64; 2],
-    pub down: [f64; 2],
-    /// Slope of the field, 1/mm.
-    pub slope_per_mm: f64,
-    /// Where the way up from here ends inside the face, and the way down: beyond these levels no pass lies near.
-    pub peak: f64,
-    pub floor: f64,
-}
-
-impl Cell {
-    /// How far passes may lie apart that run to and fro, as a difference of the field: the lesser of both kinds of ridges.
-    pub fn spacing(&self) -> f64 {
-        (self.down[0] + self.up[1]).min(self.down[1] + self.up[0])
-    }
-
-    /// Width of strips, mm.
-    pub fn width_mm(&self) -> f64 {
-        0.5 * (self.up[0] + self.up[1] + self.down[0] + self.down[1]) / self.slope_per_mm
-    }
-
-    pub fn inside(&self) -> bool {
-        self.low <= self.high
-    }
-
-    /// Whether the field has an extreme of the face here.
-    pub fn at_extreme(&self) -> bool {
-        self.floor == self.low || self.peak == self.high
-    }
-}
-
 /// The cells of a face.
 pub(super) struct Cells<'a> {
     pub face: Face<'a>,
@@ -94,20 +51,6 @@ pub(super) struct Cells<'a> {
 /// The place of a fractional cell index.
 pub(super) fn place(face: &Face<'_>, count: [usize; 2], i: f64, j: f64) -> Uv {
     face.rectangle.domain.at(i / count[0] as f64, j / count[1] as f64)
-}
-
-/// Greatest lengths of the face along u and along v, mm.
-pub(in crate::plan) fn lengths(surface: &dyn Surface, rectangle: &Rectangle) -> [f64; 2] {
-    AXES.map(|axis| {
-        let [i, across] = [rectangle.domain.get(axis), rectangle.domain.get(axis.other())];
-        let at = |f: f64, g: f64| surface.point(Uv::from_axis(axis, i.at(f), across.at(g)));
-        (0..=4)
-            .map(|k| {
-                let g = f64::from(k) / 4.0;
-                (0..40).map(|s| (at(f64::from(s + 1) / 40.0, g) - at(f64::from(s) / 40.0, g)).norm()).sum()
-            })
-            .fold(0.0, f64::max)
-    })
 }
 
 /// Values of the field at the corners of cells.
@@ -165,6 +108,20 @@ impl<'a> Cells<'a> {
         cells.find_rough(seat);
         cells.find_reaches(seat)?;
         Ok(cells)
+    }
+
+    /// Where no level line can close, passes run to and fro by level; else a tool with two sides is asked for the worse of them.
+    fn find_ways(&mut self, seat: &Seat<'_>) {
+        let open = self.face.rectangle.closes == [false; 2];
+        let border = |k: usize| {
+            let (i, j) = (k / self.count[1], k % self.count[1]);
+            i == 0 || j == 0 || i + 1 == self.count[0] || j + 1 == self.count[1]
+        };
+        let within = |k: usize| !border(k) && self.neighbours(k).all(|m| self.cells[m].full);
+        let bends = |k: usize| self.cells[k].inside() && self.cells[k].at_extreme() && within(k);
+        if open && !seat.task().cutter.is_ball() && !(0..self.cells.len()).any(bends) {
+            self.ways = Ways::ToAndFro { first_reversed: false };
+        }
     }
 
     fn index(&self, i: usize, j: usize) -> usize {

@@ -11,7 +11,7 @@ use super::field::Face;
 use super::fit::{Place, Problem};
 use super::spline::Spline;
 use crate::closed_form::{Section, width_37};
-use crate::plan::line::Rectangle;
+use crate::plan::line::{Rectangle, lengths};
 use crate::plan::{PlanError, Task};
 use osculate_geom::{Axis, Darboux, Forms, Jet2, Relative, Uv, Vec3};
 use rayon::prelude::*;
@@ -188,7 +188,7 @@ pub(super) fn even(
 }
 
 fn spans(task: &Task<'_>, rectangle: &Rectangle) -> [usize; 2] {
-    let [a, b] = super::cells::lengths(task.surface, rectangle);
+    let [a, b] = lengths(task.surface, rectangle);
     let most = a.max(b).max(f64::MIN_POSITIVE);
     [a, b].map(|l| (SPANS[0] * l / most).max(SPANS[1]).ceil() as usize)
 }

@@ -5,9 +5,9 @@
 //! is asked what it leaves at that ridge, and since standoffs grow with the square of the distance the levels can then be taken
 //! so that the ridges stand at the design height, no lower.
 
+use super::cell::Ways;
 use super::cells::{Cells, place};
 use super::reach::met;
-use super::ways::Ways;
 use crate::plan::PlanError;
 use crate::plan::seat::Seat;
 use rayon::prelude::*;

@@ -5,6 +5,7 @@
 //! all components of a level, and [`passes`] keeps what the trims need of them, in an order that saves links.
 
 mod band;
+mod cell;
 mod cells;
 mod correct;
 mod even;
@@ -23,7 +24,7 @@ use super::line::Rectangle;
 use super::seat::Seat;
 use super::{Passes, PlanError, Task, Tolerance, shorter};
 use cells::Cells;
-pub(super) use cells::{AXES, lengths};
+
 pub(super) use even::widest_mm;
 use even::{Even, Wish, Wishes, even};
 use field::{Face, Height, ScalarField};

@@ -9,49 +9,12 @@
 //! leaves the ground by `1/2 tau y^3 / R` more on one side. Turned round it is the other side. Passes to and fro meet with
 //! the same sides in turn, far sides and near sides, so that spacing alternates between wide and narrow and loses nothing.
 
-use super::cells::{Cell, Cells};
+use super::cell::{Cell, Ways};
+use super::cells::Cells;
 use crate::plan::seat::Seat;
 use crate::plan::{MAX_PASSES, PlanError};
 
-/// Which way passes run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ways {
-    /// Either way on any level: what holds both ways is counted on.
-    Either,
-    /// To and fro by level; the first with the uphill side to the left, or the other way.
-    ToAndFro { first_reversed: bool },
-}
-
-impl Ways {
-    /// Whether the passes on a level are reversed, where that is settled.
-    pub fn reversed(self, level: usize) -> Option<bool> {
-        match self {
-            Self::Either => None,
-            Self::ToAndFro { first_reversed } => Some(first_reversed ^ (level % 2 == 1)),
-        }
-    }
-
-    /// Which of a cell's reaches count below and above a ridge: those of the level before, and those of this one.
-    pub fn around(self, level: usize) -> [usize; 2] {
-        self.reversed(level).map_or([0, 0], |r| [usize::from(!r), usize::from(r)])
-    }
-}
-
 impl Cells<'_> {
-    /// Where no level line can close, passes run to and fro by level; else a tool with two sides is asked for the worse of them.
-    pub(super) fn find_ways(&mut self, seat: &Seat<'_>) {
-        let open = self.face.rectangle.closes == [false; 2];
-        let border = |k: usize| {
-            let (i, j) = (k / self.count[1], k % self.count[1]);
-            i == 0 || j == 0 || i + 1 == self.count[0] || j + 1 == self.count[1]
-        };
-        let within = |k: usize| !border(k) && self.neighbours(k).all(|m| self.cells[m].full);
-        let bends = |k: usize| self.cells[k].inside() && self.cells[k].at_extreme() && within(k);
-        if open && !seat.task().cutter.is_ball() && !(0..self.cells.len()).any(bends) {
-            self.ways = Ways::ToAndFro { first_reversed: false };
-        }
-    }
-
     /// The levels of the passes, ascending.
     pub fn levels(&self, seat: &Seat<'_>) -> Result<Vec<f64>, PlanError> {
         let task = seat.task();

@@ -1,6 +1,6 @@
 //! Cards of 80 columns: directory entries, parameter data, and the global section that says units and accuracy.
 
-use super::{IgesOptions, IgesWriteError};
+use super::options::{IgesOptions, IgesWriteError};
 
 /// Status of an entity that stands by itself.
 pub(super) const INDEPENDENT: &str = "00000000";

@@ -87,7 +87,7 @@ fn meridian(
     centre: Point3,
     radius_mm: f64,
     range: [f64; 2],
-) -> Result<Spline, crate::nurbs_curve::CurveError> {
+) -> Result<Spline, crate::nurbs::CurveError> {
     let frame = a.placement();
     Spline::arc(centre, frame.x.into_inner() * radius_mm, frame.z.into_inner() * radius_mm, range)
 }

@@ -1,8 +1,7 @@
 //! Edge curves as records.
 
-use super::records::{Records, knots, real, reals};
-use super::{closes, list};
-use crate::nurbs_curve::NurbsCurve3;
+use super::records::{Records, flag, knots, list, real, reals};
+use crate::nurbs::NurbsCurve3;
 use crate::topology::{Along, Way};
 use crate::trim::curve::OpenKind;
 
@@ -59,5 +58,17 @@ fn spline(out: &mut Records, s: &NurbsCurve3, closed: &str) -> usize {
              RATIONAL_B_SPLINE_CURVE({})REPRESENTATION_ITEM(''))",
             reals(w)
         )),
+    }
+}
+
+/// Whether a way ends where it begins, for the flag that nobody may rely on.
+fn closes(way: &Along) -> &'static str {
+    match way {
+        Along::Spline(s) => {
+            let (d, poles) = (s.domain(), s.poles());
+            let size = osculate_geom::Box3::around(poles).diagonal_mm();
+            flag((s.point(d.lo) - s.point(d.hi)).norm() <= 1e-9 * size)
+        }
+        _ => ".U.",
     }
 }

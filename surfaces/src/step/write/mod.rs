@@ -7,44 +7,19 @@
 //! Source: ISO 10303-21 (form), ISO 10303-42 (geometry and topology), ISO 10303-214 (product structure).
 
 mod curves;
+mod options;
 mod pcurves;
 mod records;
 mod shells;
 mod surfaces;
 
+pub use options::{StepOptions, StepWriteError};
+
 use crate::part::Face;
-use crate::topology::{Along, FaceEdges, Step, Topology, Way, natural_loops, outward, turned, way};
+use crate::topology::{FaceEdges, Step, Topology, Way, natural_loops, outward, turned, way};
 use osculate_geom::{Point3, Side};
-use records::{Records, text};
-
-/// What a file says about itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StepOptions {
-    /// Name of the product.
-    pub name: String,
-    /// Date and time as ISO 8601 writes them, empty for none: the same faces then give the same bytes.
-    pub timestamp: String,
-}
-
-impl Default for StepOptions {
-    fn default() -> Self {
-        Self { name: "part".to_owned(), timestamp: String::new() }
-    }
-}
-
-/// Why faces cannot be written.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum StepWriteError {
-    /// Nothing to write.
-    #[error("there is no face to write")]
-    NoFaces,
-    /// A face with a boundary that is not made of edges.
-    #[error("{face} has no boundary that could be written: its loops have no edge of any length")]
-    NoBoundary {
-        /// The face's id.
-        face: String,
-    },
-}
+use pcurves::Shape;
+use records::{Records, flag, list, text};
 
 /// Vertices are at the ends of their edges to at least this part of the part's size.
 const ACCURACY: f64 = 1e-7;
@@ -110,14 +85,6 @@ pub fn write(faces: &[Face], options: &StepOptions) -> Result<String, StepWriteE
     Ok(out.file(options))
 }
 
-/// What is written: faces, their edges' ways, and their loops with the face on the left seen against `S_u x S_v`.
-struct Shape<'a> {
-    faces: &'a [Face],
-    topology: &'a Topology,
-    ways: &'a [Way],
-    walks: &'a [Vec<Vec<Step>>],
-}
-
 /// A whole sphere or torus: a loop of one point stands for no boundary.
 fn vertex_loop(out: &mut Records, face: &Face, of: &FaceEdges) -> Result<usize, StepWriteError> {
     if of.chart.closes == [false, false] {
@@ -145,26 +112,4 @@ fn accuracy(topology: &Topology) -> f64 {
         .iter()
         .flat_map(|e| [gap(e.course.point(0.0), e.vertices[0]), gap(e.course.point(1.0), e.vertices[1])])
         .fold(0.0, f64::max)
-}
-
-const fn flag(value: bool) -> &'static str {
-    if value { ".T." } else { ".F." }
-}
-
-/// References in brackets.
-fn list(ids: &[usize]) -> String {
-    let each: Vec<String> = ids.iter().map(|k| format!("#{k}")).collect();
-    format!("({})", each.join(","))
-}
-
-/// Whether a way ends where it begins, for the flag that nobody may rely on.
-fn closes(way: &Along) -> &'static str {
-    match way {
-        Along::Spline(s) => {
-            let (d, poles) = (s.domain(), s.poles());
-            let size = osculate_geom::Box3::around(poles).diagonal_mm();
-            flag((s.point(d.lo) - s.point(d.hi)).norm() <= 1e-9 * size)
-        }
-        _ => ".U.",
-    }
 }

@@ -3,16 +3,23 @@
 //! A plane needs none. A curve and its parameter curves have one parameter.
 
 use super::curves;
-use super::records::{Records, knots, reals};
-use super::{Shape, list};
-use crate::nurbs_curve::NurbsCurve2;
+use super::records::{Records, knots, list, reals};
+use crate::nurbs::NurbsCurve2;
 use crate::part::Face;
-use crate::topology::{Ground, pcurves};
+use crate::topology::{Ground, Step, Topology, Way, pcurves};
 use crate::trim::analytic;
 use crate::trim::carrier::FaceSurface;
 
 /// Parameter curves of one edge: the face, and the curve.
 type Uses = Vec<(usize, NurbsCurve2)>;
+
+/// What is written: faces, their edges' ways, and their loops with the face on the left seen against `S_u x S_v`.
+pub(super) struct Shape<'a> {
+    pub(super) faces: &'a [Face],
+    pub(super) topology: &'a Topology,
+    pub(super) ways: &'a [Way],
+    pub(super) walks: &'a [Vec<Vec<Step>>],
+}
 
 /// The curves of all edges, with parameter curves on `surfaces`; their numbers.
 pub(super) fn curves(out: &mut Records, shape: &Shape<'_>, surfaces: &[usize]) -> Vec<usize> {

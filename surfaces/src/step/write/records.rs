@@ -1,6 +1,6 @@
 //! The records of a Part 21 file being written: numbers, texts, points.
 
-use super::StepOptions;
+use super::options::StepOptions;
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Vec3};
 use std::fmt::Write;
@@ -110,6 +110,16 @@ pub(super) fn knots(all: &[f64]) -> (String, String) {
     }
     let times: Vec<String> = times.iter().map(usize::to_string).collect();
     (format!("({})", times.join(",")), reals(&values))
+}
+
+pub(super) const fn flag(value: bool) -> &'static str {
+    if value { ".T." } else { ".F." }
+}
+
+/// References in brackets.
+pub(super) fn list(ids: &[usize]) -> String {
+    let each: Vec<String> = ids.iter().map(|k| format!("#{k}")).collect();
+    format!("({})", each.join(","))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Shells, solids and the product that they are the shape of.
 
-use super::records::{Records, real, text};
-use super::{StepOptions, list};
+use super::options::StepOptions;
+use super::records::{Records, list, real, text};
 use crate::part::Face;
 use crate::topology::{Topology, bodies};
 

@@ -1,7 +1,6 @@
 //! Surfaces as records.
 
-use super::flag;
-use super::records::{Records, knots, real, reals};
+use super::records::{Records, flag, knots, list, real, reals};
 use crate::nurbs::NurbsSurface;
 use crate::part::Face;
 use crate::trim::analytic::{Analytic, Shape};
@@ -65,7 +64,7 @@ fn spline(out: &mut Records, n: &NurbsSurface) -> usize {
     let net = n.net();
     let columns = net.count[1];
     let ids: Vec<usize> = net.points.iter().map(|p| out.point(p)).collect();
-    let rows: Vec<String> = ids.chunks(columns).map(super::list).collect();
+    let rows: Vec<String> = ids.chunks(columns).map(list).collect();
     let poles = format!("({})", rows.join(","));
     let [du, dv] = n.degree();
     let [cu, cv] = [Axis::U, Axis::V].map(|axis| flag(n.closed(axis)));

@@ -240,7 +240,8 @@ fn check(task: &Task<'_>, o: &Options) -> Result<(), GlobalError> {
 pub fn optimise(task: &Task<'_>, options: &Options, more: &[AxisSurface]) -> Result<Found, GlobalError> {
     check(task, options)?;
     let [along, across] = task.judged.count;
-    let judged = super::Patch { count: [(along / 3).max(5), across.min(11)], ..task.judged };
+    let judged =
+        crate::flank::deviation::Patch { count: [(along / 3).max(5), across.min(11)], ..task.judged };
     let thin = Task { judged, ..*task };
     let few = Places::new(&thin);
     let own: Vec<AxisSurface> = starts(task, options.spans)?.into_iter().map(|s| s.axes).collect();

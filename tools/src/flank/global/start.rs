@@ -1,28 +1,8 @@
 //! Where the search for the best motion begins: the cutter beside the rules, tilted more or less by the face's twist.
 
 use crate::flank::axes::{AxisPoints, AxisSurface};
-use crate::flank::global::GlobalError;
-use crate::flank::global::Task;
+use crate::flank::global::{GlobalError, StartError, Task};
 use osculate_geom::{Interval, Vec3, uv};
-
-/// Why a rule gives no first position.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum StartError {
-    /// A rule of no length, or a directrix that stands still or runs along the rule.
-    #[error(
-        "the rule at u = {u} has no tangent planes at its ends: it has no length, or a directrix has a cusp there"
-    )]
-    Degenerate {
-        /// The parameter.
-        u: f64,
-    },
-    /// The normals at the ends of a rule are opposite.
-    #[error("the rule at u = {u} is twisted by half a turn: the cutter has no side to stand on")]
-    Opposite {
-        /// The parameter.
-        u: f64,
-    },
-}
 
 /// A first motion.
 #[derive(Clone, Debug, PartialEq)]

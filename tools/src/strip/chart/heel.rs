@@ -13,9 +13,6 @@ use osculate_geom::geodesic::GeodesicState;
 use osculate_geom::{Darboux, Surface, Unit3, Vec3};
 use std::rc::Rc;
 
-/// Frames along a direction, (cos, sin), with the distance between them and how many were asked for.
-pub(super) type KeptTrail = ([f64; 2], f64, usize, Rc<Vec<Darboux>>);
-
 /// The lead's sine against the radius in the greatest hollow's below which the far side is looked at.
 const SUSPECT: f64 = 2.0;
 /// Most frames along a direction.

@@ -13,6 +13,7 @@
 //! Nodes outside the surface's rectangle, on its Taylor polynomial, do not count; feed and strips end at the rectangle. For a final
 //! figure take [`super::exact`].
 
+mod asked;
 mod heel;
 mod posture;
 mod ray;
@@ -20,7 +21,7 @@ mod ray;
 mod tests;
 mod walk;
 
-pub use posture::{ChartError, Nearly, Within};
+pub use asked::{ChartError, Nearly, Within};
 
 use crate::contact::Lean;
 use crate::cutter::{Cutter, Line};
@@ -79,7 +80,7 @@ pub struct Chart<'a> {
     table: Vec<Node>,
     /// The last lines made, and frames further along the feed.
     lines: RefCell<Vec<KeptLine>>,
-    trails: RefCell<Vec<heel::KeptTrail>>,
+    trails: RefCell<Vec<KeptTrail>>,
 }
 
 /// Errors by node, mm.
@@ -359,6 +360,9 @@ impl<'a> Chart<'a> {
 
 /// A line by its direction.
 type KeptLine = ([f64; 2], Rc<Nodes>);
+
+/// Frames along a direction, (cos, sin), with the distance between them and how many were asked for.
+type KeptTrail = ([f64; 2], f64, usize, Rc<Vec<Darboux>>);
 
 /// (cos, sin) of one of equally spaced directions.
 fn direction(k: usize, of: usize) -> [f64; 2] {

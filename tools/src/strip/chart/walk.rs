@@ -1,6 +1,6 @@
 //! The contact motion on a chart, and the walk across the strip.
 
-use super::posture::ChartError;
+use super::asked::ChartError;
 use super::{Chart, Ray};
 use crate::contact::Lean;
 use crate::cutter::{Cutter, Line};

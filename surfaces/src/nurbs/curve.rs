@@ -6,8 +6,8 @@
 //!
 //! Source: [Piegl & Tiller, The NURBS Book, chapters 3 and 4].
 
+use super::edit_error::{EditError, check_insertion, check_piece};
 use crate::knots::{KnotError, Knots};
-use crate::nurbs_edit::{EditError, check_insertion, check_piece};
 use crate::refine::{Mean, clamped_piece, inserted, means};
 use nalgebra::{Point, SVector, Vector1};
 use osculate_geom::Interval;

@@ -2,7 +2,7 @@
 //! basis functions where they would be too many or too steep.
 //!
 //! On the rectangle between neighbouring knots the numerator and the denominator are polynomials
-//! ([`crate::nurbs_pieces`]). Their coefficients are stored once, about an origin of their own near the piece, so
+//! ([`super::pieces`]). Their coefficients are stored once, about an origin of their own near the piece, so
 //! that derivatives do not lose digits to the distance from the frame's origin. For rational surfaces the
 //! quotient rule follows [The NURBS Book, eq. 4.20]:
 //!
@@ -10,9 +10,9 @@
 //! S = A / w,  S_a = (A_a - w_a S) / w,  S_ab = (A_ab - w_a S_b - w_b S_a - w_ab S) / w
 //! ```
 
+use super::net::Net;
+use super::pieces::{MAX_COEFFICIENTS, NOISE, Orders, Pieces};
 use crate::knots::{Knots, MAX_DEGREE};
-use crate::nurbs::Net;
-use crate::nurbs_pieces::{MAX_COEFFICIENTS, NOISE, Orders, Pieces};
 use crate::quad::Quad;
 use nalgebra::Vector4;
 use osculate_geom::{Point3, Uv, Vec3};

@@ -3,9 +3,9 @@
 //! Numerator and denominator are summed over the basis functions and their derivatives, about a pole near the
 //! place, and divided as power series; that is the quotient rule of [The NURBS Book, eq. 4.20] to every order.
 
+use super::curve::NurbsCurve3;
+use super::net::Net;
 use crate::knots::Knots;
-use crate::nurbs::Net;
-use crate::nurbs_curve::NurbsCurve3;
 use nalgebra::Vector4;
 use osculate_geom::{Curve, CurveTaylor, Interval, MAX_ORDER, Point3, Series, Side, Taylor, Uv, Vec3};
 
@@ -143,8 +143,7 @@ impl Curve for NurbsCurve3 {
 
 #[cfg(test)]
 mod tests {
-    use crate::nurbs::{Net, NurbsSurface};
-    use crate::nurbs_curve::NurbsCurve3;
+    use crate::nurbs::{Net, NurbsCurve3, NurbsSurface};
     use osculate_geom::{Curve, Point3, Surface, Vec3, uv};
 
     /// A bump with weights over a square of two by one spans.

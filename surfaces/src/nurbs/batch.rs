@@ -1,13 +1,13 @@
 //! Jets and curvatures of many places of a NURBS surface at once.
 //!
-//! Eight places of one piece are evaluated side by side ([`crate::nurbs_pieces`]); the loops run with the
+//! Eight places of one piece are evaluated side by side ([`super::pieces`]); the loops run with the
 //! widest vectors that the processor has, chosen once at run time. Neighbours in the input that lie in one
 //! piece are taken as they stand; what is left over is sorted by pieces first. No operation is fused or
 //! reordered, so that every jet has the bits of [`osculate_geom::Surface::jet2`], whatever the order of the
 //! input, the processor and the number of threads.
 
-use crate::nurbs::NurbsSurface;
-use crate::nurbs_pieces::{Piece, Pieces};
+use super::pieces::{Piece, Pieces};
+use super::surface::NurbsSurface;
 use osculate_geom::batch::{CurvatureBlock, JetBlock, Lane, block_count};
 use osculate_geom::lanes::{LANES, dot};
 use osculate_geom::{Jet2, Surface, Uv, uv};

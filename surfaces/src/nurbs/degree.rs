@@ -15,10 +15,10 @@
 //!
 //! of the old one at the same parameter.
 
+use super::curve::NurbsCurve;
+use super::edit_error::EditError;
+use super::surface::NurbsSurface;
 use crate::knots::{Knots, MAX_DEGREE};
-use crate::nurbs::NurbsSurface;
-use crate::nurbs_curve::NurbsCurve;
-use crate::nurbs_edit::EditError;
 use crate::refine::{clamped_piece, elevated, elevated_means};
 use nalgebra::{Point, SVector};
 use osculate_geom::{Axis, Point3};

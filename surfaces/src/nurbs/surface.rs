@@ -6,27 +6,17 @@
 //!
 //! Source: [Piegl & Tiller, The NURBS Book, chapters 3 and 4].
 
+use super::eval::{Evaluator, piece_orders};
+use super::net::Net;
+use super::pieces::{Orders, Pieces};
+use super::taylor::{taylor, third};
 use crate::closest::Index;
 use crate::knots::{KnotError, Knots, MAX_DEGREE};
-use crate::nurbs_eval::{Evaluator, piece_orders};
-use crate::nurbs_pieces::{Orders, Pieces};
-use crate::nurbs_taylor::{taylor, third};
 use crate::quad;
 use nalgebra::Vector4;
 use osculate_geom::{Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, Vec3};
 use std::fmt;
 use std::sync::OnceLock;
-
-/// The control net of a surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Net {
-    /// Number of poles along u and along v.
-    pub count: [usize; 2],
-    /// The poles, mm, v fastest: pole (i, j) is at `i * count[1] + j`.
-    pub points: Vec<Point3>,
-    /// A positive weight for each pole; `None` for a polynomial surface.
-    pub weights: Option<Vec<f64>>,
-}
 
 /// Why data are no NURBS surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -167,7 +157,8 @@ pub struct NurbsSurface {
     closed: [bool; 2],
     evaluator: Evaluator,
     /// Built when the first closest point is asked for.
-    index: OnceLock<Index>,
+    /// For closest points, made when the first is asked for.
+    pub(crate) index_cell: OnceLock<Index>,
 }
 
 impl NurbsSurface {
@@ -206,7 +197,7 @@ impl NurbsSurface {
         let domain = Domain { u: interval(&knots[0]), v: interval(&knots[1]) };
         let evaluator = Evaluator::new(&knots, &net);
         let mut surface =
-            Self { knots, net, side, domain, closed: [false; 2], evaluator, index: OnceLock::new() };
+            Self { knots, net, side, domain, closed: [false; 2], evaluator, index_cell: OnceLock::new() };
         let seams = [Axis::U, Axis::V].map(|axis| surface.seam(axis));
         surface.closed = seams.map(|s| s != Seam::Open);
         surface.domain.u.periodic = seams[0] == Seam::Smooth;
@@ -333,11 +324,6 @@ impl NurbsSurface {
     /// The precomputed pieces, where there are any.
     pub(crate) const fn pieces(&self) -> Option<&Pieces> {
         self.evaluator.pieces()
-    }
-
-    /// What the search for closest points needs, built on first use.
-    pub(crate) fn index(&self) -> &Index {
-        self.index.get_or_init(|| Index::new(self))
     }
 
     /// Both knot vectors.

@@ -10,8 +10,8 @@
 //! The kernel is written once over [`Lanes`]: over the four components of one place, or over eight places of
 //! one component. Every lane does the same operations in the same order, so that both give the same bits.
 
+use super::net::Net;
 use crate::knots::Knots;
-use crate::nurbs::Net;
 use crate::quad::Quad;
 use nalgebra::Vector4;
 use osculate_geom::lanes::Lanes;

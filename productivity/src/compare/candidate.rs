@@ -1,0 +1,108 @@
+//! What is compared, on what, and what is said of it.
+
+use super::around::Around;
+use crate::ideal::Patch;
+use crate::plan::{Strategy, Tolerance};
+use osculate_tools::{Cutter, Lean};
+
+/// A tool to choose from.
+#[derive(Clone, Copy)]
+pub struct Tool<'a> {
+    /// The cutter.
+    pub cutter: &'a Cutter,
+    /// The holder, a cylinder that begins where the cutter ends.
+    pub holder: Option<&'a Cutter>,
+    /// Feed, mm/min.
+    pub feed_mm_min: f64,
+}
+
+/// What candidates are compared on.
+pub struct Setting<'a> {
+    /// The faces to machine.
+    pub faces: &'a [Patch<'a>],
+    /// The tools.
+    pub tools: &'a [Tool<'a>],
+    /// What must hold.
+    pub tolerance: Tolerance,
+    /// Points that bodies of tools must stay out of.
+    pub around: &'a Around,
+}
+
+/// One way to machine the faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Index of the tool.
+    pub tool: usize,
+    /// Strategy with its direction.
+    pub strategy: Strategy,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// Whether the lead is the least that fits at every place, from that of `lean` on.
+    pub local: bool,
+}
+
+/// What screening says of a candidate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Screened {
+    /// Time by strips at places, min.
+    pub pointwise_min: f64,
+    /// Time with the overlap of constant spacing, min.
+    pub layout_min: f64,
+    /// Length of passes of that layout, mm.
+    pub length_mm: f64,
+    /// Why it is out; the times above are then those of the places where it would do.
+    pub out: Option<Reason>,
+}
+
+/// Why a candidate is not possible.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Reason {
+    /// The tool digs in next to the contact.
+    #[error("too large for {percent:.0} % of the area{}", largest(*largest_mm))]
+    TooLarge {
+        /// Share of the area.
+        percent: f64,
+        /// Largest diameter of a tool of this shape that fits everywhere in this posture; zero where none does.
+        largest_mm: f64,
+    },
+    /// Its body meets the part or a check face elsewhere.
+    #[error("goes {depth_mm:.2} mm into {face} while touching {percent:.0} % of the area")]
+    Body {
+        /// Share of the area.
+        percent: f64,
+        /// Depth, mm.
+        depth_mm: f64,
+        /// The face it meets.
+        face: String,
+    },
+    /// The holder meets something.
+    #[error("its holder goes {depth_mm:.2} mm into {face} while it touches {percent:.0} % of the area")]
+    Holder {
+        /// Share of the area.
+        percent: f64,
+        /// Depth, mm.
+        depth_mm: f64,
+        /// The face it meets.
+        face: String,
+    },
+    /// The face looks away from a fixed tool axis.
+    #[error("{percent:.0} % of the area look away from the tool axis")]
+    Away {
+        /// Share of the area.
+        percent: f64,
+    },
+    /// No strip within the tolerance.
+    #[error("leaves more than the scallop at {percent:.0} % of the area")]
+    NoStrip {
+        /// Share of the area.
+        percent: f64,
+    },
+}
+
+fn largest(diameter_mm: f64) -> String {
+    if diameter_mm > 0.0 {
+        format!(": {diameter_mm:.2} mm is the largest diameter that fits")
+    } else {
+        String::new()
+    }
+}
