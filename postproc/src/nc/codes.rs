@@ -63,7 +63,10 @@ impl<S: Sink> Interpreter<'_, S> {
             1530 if self.dialect == Dialect::Sinumerik => asked.machine_frame = true,
             600 | 610 => asked.path = Some(PathWord::ExactPath),
             90 | 611 | 601 => asked.path = Some(PathWord::ExactStop),
-            640..=645 => asked.path = Some(PathWord::Blend),
+            640 => asked.path = Some(PathWord::Blend),
+            6410 | 6420 | 6430 | 6440 | 6450 if self.dialect == Dialect::Sinumerik => {
+                asked.path = Some(PathWord::Blend);
+            }
             // Look-ahead, smoothing.
             51 if self.dialect == Dialect::Fanuc => asked.contour = true,
             // Compensations and cycles off, how exactly an exact stop stops.
@@ -231,7 +234,7 @@ impl<S: Sink> Interpreter<'_, S> {
     ) -> Result<(), ReadError> {
         let mm = value.max(0.0) * self.state.unit_mm;
         match name {
-            "S1" => self.state.speed = Some(value),
+            "S1" => self.spindle_speed(value),
             "M1" if value == 3.0 => return self.m(line, 3, asked),
             "M1" if value == 4.0 => return self.m(line, 4, asked),
             "M1" if value == 5.0 => return self.m(line, 5, asked),

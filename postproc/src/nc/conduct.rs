@@ -359,7 +359,8 @@ impl Judge<'_> {
             r.guessed,
         );
         let tools = &self.expected.tools;
-        let strange = |n: u32| !tools.is_empty() && !tools.iter().any(|t| t.number == n);
+        let cuts = |n: u32| r.uses.iter().any(|u| u.feed.count > 0 && u.control.tool == Tool::Number(n));
+        let strange = |n: u32| !tools.is_empty() && !tools.iter().any(|t| t.number == n) && !cuts(n);
         if let Some((number, line)) = r.selected.iter().find(|s| strange(s.0)) {
             let what = format!("tool {number} is selected, which is none of the job's");
             found.add(Grade::Warning, (&what, ""), Seen { line: *line, count: 1 });

@@ -55,6 +55,8 @@ pub(super) struct Moved {
     pub time_min: f64,
     /// Number of the tool in the spindle.
     pub tool: Option<u32>,
+    /// To a place of the machine's own frame.
+    pub own_frame: bool,
 }
 
 /// Something that happens.

@@ -184,6 +184,11 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         Ok(())
     }
 
+    pub(super) fn spindle_speed(&mut self, rpm: f64) {
+        self.state.speed = Some(rpm);
+        self.spindle_rpm = self.spindle_rpm.or(Some(rpm));
+    }
+
     /// Works through one line; true at the end of the program.
     fn line(&mut self, line: usize, words: &[Word]) -> Result<bool, ReadError> {
         let mut asked = Asked::default();
@@ -192,10 +197,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
                 Word::G(code) => self.g(line, *code, &mut asked)?,
                 Word::M(code) => self.m(line, *code, &mut asked)?,
                 Word::F(f) => asked.f = Some(*f),
-                Word::S(s) => {
-                    self.state.speed = Some(*s);
-                    self.spindle_rpm = self.spindle_rpm.or(Some(*s));
-                }
+                Word::S(s) => self.spindle_speed(*s),
                 Word::Address { name, value, manner } => {
                     self.address(line, name, (*value, *manner), &mut asked)?
                 }
@@ -281,7 +283,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             Some(rapid) => rapid,
             None => self.rapid(line)?,
         };
-        let own = asked.machine_frame || asked.builders_place;
+        let own = asked.machine_frame || asked.builders_place || asked.home;
         let Some(from) = before.filter(|_| self.placed) else {
             self.placed = true;
             if !rapid {
@@ -309,7 +311,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             let plunges = !own && z.is_some_and(|z| from.linear[z] != known.linear[z]);
             self.record.moved(line, Kind::of(rapid, plunges), &self.control);
         }
-        self.moved(line, &way, (joints, rapid))
+        self.moved(line, &way, (joints, rapid, own))
     }
 
     fn arc(&self, line: usize, from: &Known, to: &Known, asked: (bool, &Asked)) -> Result<Arc, ReadError> {
@@ -398,8 +400,8 @@ impl<'a, S: Sink> Interpreter<'a, S> {
     }
 
     /// A move along a way; nothing where it leads nowhere.
-    fn moved(&mut self, line: usize, way: &Way, end: (JointValues, bool)) -> Result<(), ReadError> {
-        let (to, mut rapid) = end;
+    fn moved(&mut self, line: usize, way: &Way, end: (JointValues, bool, bool)) -> Result<(), ReadError> {
+        let (to, mut rapid, own_frame) = end;
         let from = way.from.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
         let step = way.step();
         if step == Step::default() {
@@ -428,7 +430,17 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             self.state.feed = None;
         }
         let tool = self.control.tool_number();
-        self.tell(&Event::Moved(&Moved { line, way: *way, from, to, rapid, feed, time_min, tool }));
+        self.tell(&Event::Moved(&Moved {
+            line,
+            way: *way,
+            from,
+            to,
+            rapid,
+            feed,
+            time_min,
+            tool,
+            own_frame,
+        }));
         Ok(())
     }
 }

@@ -51,6 +51,8 @@ pub struct ReadMove {
     pub time_min: f64,
     /// Number of the tool in the spindle, where the program has called one by number.
     pub tool: Option<u32>,
+    /// To a place of the machine's own frame: G53, SUPA, M91, G28.
+    pub own_frame: bool,
 }
 
 /// One block of the text.
@@ -70,6 +72,8 @@ pub struct ReadBlock {
     pub tip_length_mm: f64,
     /// Number of the tool in the spindle, where the program has called one by number.
     pub tool: Option<u32>,
+    /// To a place of the machine's own frame: G53, SUPA, M91, G28.
+    pub own_frame: bool,
 }
 
 /// What a text makes the machine do.
@@ -312,9 +316,17 @@ impl Sink for Collect {
             Event::Placed { line, known, joints, tool } => {
                 let (from, to) = (joints, joints);
                 let pose = frame.pose(&known);
-                self.out.moves.push(ReadMove { pose, motion: Motion::Rapid, line, time_min: 0.0, tool });
-                let (time_min, tip_length_mm) = (0.0, 0.0);
-                let first = ReadBlock { line, from, to, rapid: true, time_min, tip_length_mm, tool };
+                self.out.moves.push(ReadMove {
+                    pose,
+                    motion: Motion::Rapid,
+                    line,
+                    time_min: 0.0,
+                    tool,
+                    own_frame: false,
+                });
+                let (time_min, tip_length_mm, own_frame) = (0.0, 0.0, false);
+                let first =
+                    ReadBlock { line, from, to, rapid: true, time_min, tip_length_mm, tool, own_frame };
                 self.out.blocks.push(first);
             }
             Event::Moved(m) => self.moved(frame, m),
@@ -342,8 +354,9 @@ impl Collect {
         };
         let mut t0 = 0.0;
         for (t, pose) in poses {
-            let (line, tool) = (m.line, m.tool);
-            self.out.moves.push(ReadMove { pose, motion, line, time_min: time_min * (t - t0), tool });
+            let Moved { line, tool, own_frame, .. } = *m;
+            let time_min = time_min * (t - t0);
+            self.out.moves.push(ReadMove { pose, motion, line, time_min, tool, own_frame });
             t0 = t;
         }
         self.out.blocks.push(ReadBlock {
@@ -354,6 +367,7 @@ impl Collect {
             time_min,
             tip_length_mm,
             tool: m.tool,
+            own_frame: m.own_frame,
         });
     }
 }

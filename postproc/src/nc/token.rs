@@ -370,8 +370,13 @@ mod tests {
     #[test]
     fn compact_and_commented_words() {
         let got = words("/G1X10Y-.5(go) F100. ; end", Dialect::LinuxCnc).unwrap();
-        let want =
-            [Word::Skip, Word::G(10), axis("X", 10.0, Manner::Modal), axis("Y", -0.5, Manner::Modal), Word::F(100.0)];
+        let want = [
+            Word::Skip,
+            Word::G(10),
+            axis("X", 10.0, Manner::Modal),
+            axis("Y", -0.5, Manner::Modal),
+            Word::F(100.0),
+        ];
         assert_eq!(got, want);
         assert_eq!(words("G43.4 H1", Dialect::Fanuc).unwrap()[0], Word::G(434));
         assert!(words("X[#1+2]", Dialect::LinuxCnc).is_err());
