@@ -212,7 +212,7 @@ impl<S: Sink> Interpreter<'_, S> {
         (value, asked): (f64, &mut Asked),
     ) -> Result<(), ReadError> {
         // Tools have up to eight digits.
-        if !(value >= 0.0 && value < 1e9 && value.fract() == 0.0) {
+        if !((0.0..1e9).contains(&value) && value.fract() == 0.0) {
             return self.refuse(line, &format!("{name}{value}"));
         }
         // Whole and in the range of u32, as just checked.
