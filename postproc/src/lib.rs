@@ -4,10 +4,11 @@
 //! - [`machine`] describes machine tools as chains of joints; [`machine::Machine::solve`] finds the joints of a path:
 //!   branch and turn over the whole path, poles, limits, linearisation.
 //! - [`feed`] writes F so that every block takes the time it should, [`motion`] says how long the axes need.
-//! - [`nc`] words programs in the dialects of controls and reads them back to the tool's way; [`post`] does it all.
+//! - [`nc`] words programs in the dialects of controls and reads them back to the tool's way; [`post()`] does it all.
+//! - [`conduct`] says whether a program makes its moves in the state of the control that the job means.
 //!
 //! ```
-//! use osculate_postproc::{cldata, post, readback, Dialect, FeedMode, Machine, PostOptions, Setup};
+//! use osculate_postproc::{cldata, conduct, post, readback, Dialect, FeedMode, Machine, PostOptions, Setup};
 //!
 //! let text = "RAPID\nGOTO/0,0,5,0,0.2,1\nFEDRAT/800,MMPM\nGOTO/10,0,5,0,0.3,1\nFINI\n";
 //! let path = cldata::read(text)?.path;
@@ -17,8 +18,14 @@
 //! assert!(posted.summary.tip_error_mm <= 0.002);
 //! let options = readback::ReadOptions::default();
 //! let back = readback::read(&posted.text, Dialect::Sinumerik, &machine, &setup, &options)?;
-//! let end = back.moves[back.moves.len() - 1].pose;
-//! assert!((end.tip - path.moves[1].pose.tip).norm() < 1e-3);
+//! // The last moves retract in the machine's own coordinates.
+//! let end = back.moves.iter().rfind(|m| !m.own_frame).expect("it cuts");
+//! assert!((end.pose.tip - path.moves[1].pose.tip).norm() < 1e-3);
+//!
+//! // It runs with the job's tool in its offset; the job says no speed of the spindle.
+//! let tool = conduct::ExpectedTool { number: 1, length_mm: 80.0 };
+//! let conduct = back.conduct(&conduct::Expected::new(tool, None, 0.01));
+//! assert_eq!(conduct.worst(), Some(conduct::Grade::Warning));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -44,8 +51,9 @@ mod turn;
 pub use feed::{FeedMode, PathMetric};
 pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
 pub use machine::{Machine, MachineError, built_in_names};
+pub use nc::conduct;
 pub use nc::readback;
-pub use nc::{Coolant, Dialect, Orientation};
+pub use nc::{Coolant, Dialect, Orientation, WorkOffset};
 pub use post::{PostError, PostOptions, PostReport, PostSummary, Posted, post, post_from, post_to};
 pub use setup::{Setup, SetupError};
 pub use setup_comment::SetupCommentError;

@@ -12,7 +12,7 @@ use crate::joint_path::JointBlock;
 use crate::machine::Machine;
 use crate::nc::block::RotaryName;
 use crate::nc::writer::Writer;
-use crate::nc::{Coolant, Dialect, FeedWord, Orientation, Program, WriteError};
+use crate::nc::{Coolant, Dialect, FeedWord, Orientation, Program, WorkOffset, WriteError};
 use crate::setup::Setup;
 use crate::setup_comment;
 use crate::solve::SolveOptions;
@@ -36,8 +36,12 @@ pub struct PostOptions {
     pub blend_mm: f64,
     /// Name of the program.
     pub program_name: String,
-    /// Number of the tool.
+    /// Number of the program, where the dialect has one (Fanuc).
+    pub program_number: u32,
+    /// Number of the tool, and of its length offset.
     pub tool_number: u32,
+    /// Work offset; absent: `G54`, or with Heidenhain the preset that is active.
+    pub work_offset: Option<WorkOffset>,
     /// Coolant.
     pub coolant: Option<Coolant>,
     /// Spindle speed; absent: the path's own.
@@ -56,7 +60,9 @@ impl PostOptions {
             solve: SolveOptions::default(),
             blend_mm: SolveOptions::default().tip_tol_mm,
             program_name: "OSCULATE".into(),
+            program_number: 1,
             tool_number: 1,
+            work_offset: None,
             coolant: None,
             spindle_rpm: None,
         }
@@ -239,7 +245,9 @@ where
         tcp: tcp && !planes,
         subprogram: options.subprogram,
         linuxcnc_tcp: machine.control().linuxcnc_tcp.clone(),
+        number: options.program_number,
         tool_number: options.tool_number,
+        work_offset: options.work_offset,
         spindle_rpm,
         coolant: options.coolant,
         feed_word: feed_word(options, machine),

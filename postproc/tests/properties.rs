@@ -20,6 +20,8 @@ fn linear(letter: &str, direction: [f64; 3], side: CarriedSide) -> JointSpec {
         sense: Sense::Iso,
         min_mm: None,
         max_mm: None,
+        machine_zero_mm: None,
+        home_mm: None,
         // Fast enough that no block is slowed.
         max_velocity_mm_s: 1e5,
         max_acceleration_mm_s2: 1e6,

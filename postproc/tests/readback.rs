@@ -184,12 +184,62 @@ fn unnamed_axes() {
     tip(&back, [5.0, 0.0, 0.0]);
 }
 
+/// Z of the machine's own frame is zero at the top of the slide, 500 mm; the other joints stay.
 #[test]
-fn machine_coordinates_lose_the_place() {
-    let text = "G90\nG0 X0 Y0 Z0\nG53 G0 Z0\nG0 X5\nZ3\nG1 X6 F10\nM30";
+fn machine_coordinates_are_joints() {
+    let text = "G90\nG0 X1 Y2 Z0\nG53 G0 Z-20\nG0 X5\nZ3\nG1 X6 F10\nM30";
     let back = go(text, Dialect::LinuxCnc, "3-axis").unwrap();
-    // Known at line 2, unknown until Z is named again, known at line 5.
-    assert_eq!(back.blocks.iter().map(|b| b.line).collect::<Vec<_>>(), [2, 5, 6]);
+    assert_eq!(back.blocks.iter().map(|b| b.line).collect::<Vec<_>>(), [2, 3, 4, 5, 6]);
+    assert!(back.blocks[1].rapid && back.blocks[1].own_frame && back.blocks[1].time_min > 0.0);
+    let tips: Vec<[f64; 3]> = back.moves.iter().map(|m| m.pose.tip.coords.into()).collect();
+    let want = [[1.0, 2.0, 0.0], [1.0, 2.0, 480.0], [5.0, 2.0, 480.0], [5.0, 2.0, 3.0], [6.0, 2.0, 3.0]];
+    assert_eq!(tips, want);
+    // Before anything else it makes Z known: the first place is up there.
+    let text = "G90 G53 G0 Z0\nG0 X1 Y2\nZ3\nM30";
+    let back = go(text, Dialect::Fanuc, "3-axis").unwrap();
+    let tips: Vec<[f64; 3]> = back.moves.iter().map(|m| m.pose.tip.coords.into()).collect();
+    assert_eq!(tips, [[1.0, 2.0, 500.0], [1.0, 2.0, 3.0]]);
+}
+
+/// With tool-centre-point control on and the table tilted, a retract is still one joint's, and X Y Z of the tip follow.
+#[test]
+fn machine_coordinates_with_tool_centre_point_control() {
+    let text =
+        "G90 G710\nG0 X1 Y2 Z3 A30 C=DC(40)\nTRAORI\nG0 SUPA Z-2950\nG91 G1 X1 F100\nTRAFOOF\nG90 X0\nM30";
+    let m = machine("trunnion-ac");
+    let setup = Setup::at(Vec3::new(5.0, -6.0, 7.0), 100.0);
+    let back = read(text, Dialect::Sinumerik, &m, &setup, &ReadOptions::default()).unwrap();
+    let place = |letter: &str| m.joint_named(letter).unwrap();
+    let [first, up, along, ..] = back.blocks[..] else { panic!("{:?}", back.blocks) };
+    let mut want = first.to;
+    // The top of Z is at 3000 mm.
+    want[place("Z")] = 50.0;
+    // Through the tip and back: the rounding of a few products of some 100 mm.
+    let near = |a: &[f64; 5], b: &[f64; 5]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-11);
+    assert!(near(&up.from, &first.to) && near(&up.to, &want), "{up:?}");
+    let raised = back.moves.iter().rfind(|m| m.line == up.line).unwrap();
+    assert!((raised.pose.tip - m.forward(&want, &setup).tip).norm() < 1e-9);
+    // The next move starts there, along X of the part.
+    let (a, b) = (m.forward(&along.from, &setup).tip, m.forward(&along.to, &setup).tip);
+    assert!((a - raised.pose.tip).norm() < 1e-9 && ((b - a) - Vec3::x()).norm() < 1e-9, "{a} {b}");
+    assert_eq!(along.to[place("A")], first.to[place("A")]);
+}
+
+/// Where home is says the machine file; where it does not, the place is lost until the axis is named again.
+#[test]
+fn home() {
+    let text = "G90\nG0 X0 Y0 Z0\nG91 G28 Z10\nG90 G0 X5\nZ3\nG1 X6 F10\nM30";
+    let back = go(text, Dialect::Fanuc, "3-axis").unwrap();
+    assert_eq!(back.blocks.iter().map(|b| b.line).collect::<Vec<_>>(), [2, 3, 5, 6]);
+    let toml = include_str!("../machines/3-axis.toml").replacen(
+        "letter = \"Z\"",
+        "letter = \"Z\"\nhome_mm = -50",
+        1,
+    );
+    let told = Machine::from_toml(&toml).unwrap();
+    let back = read(text, Dialect::Fanuc, &told, &Setup::default(), &ReadOptions::default()).unwrap();
+    let tips: Vec<[f64; 3]> = back.moves.iter().map(|m| m.pose.tip.coords.into()).collect();
+    assert_eq!(tips[..4], [[0.0, 0.0, 0.0], [0.0, 0.0, 10.0], [0.0, 0.0, 450.0], [5.0, 0.0, 450.0]]);
 }
 
 /// Joints at their limits slow blocks down; the post says so, keeps the durations honest and stays in F's format.
@@ -211,7 +261,8 @@ fn caps() {
         // 54 deg at 180 deg/s against 0.54 mm at 1000 mm/min.
         let cutting: f64 = back.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum();
         assert!((cutting * 60.0 - 0.3).abs() < 1e-4, "{feed:?}: {} s", cutting * 60.0);
-        let time = program_time(&m, back.timed_moves());
+        let way = common::way_of(&path, &back, 1e-3);
+        let time = program_time(&m, way.timed_moves());
         assert!((time.cutting_min / cutting - 1.0).abs() < 1e-4 && time.rapid_min == 0.0);
     }
     // Without correction F is as asked, and it is the machine that takes longer.

@@ -19,7 +19,8 @@ fn there_and_back(
     let posted = post(path, machine, setup, &PostOptions::new(dialect, feed)).expect("a path within limits");
     let back = read(&posted.text, dialect, machine, setup, &ReadOptions::default()).expect("text of our own");
     assert!(back.diagnostics.is_empty(), "{:?}", back.diagnostics);
-    (posted, back)
+    let way = common::way_of(path, &back, rounding_mm(400.0));
+    (posted, way)
 }
 
 /// What rounding to 4 decimals does to the tip at most, mm: half a count on three axes, and half a count of angle on

@@ -61,6 +61,10 @@ pub struct Joint {
     pub min: Option<f64>,
     /// Largest value, mm or rad.
     pub max: Option<f64>,
+    /// Value where the control's own coordinate reads zero, mm or rad, where the machine file says it.
+    pub machine_zero: Option<f64>,
+    /// Where `G28` leads, in the control's own coordinate, where the machine file says it.
+    pub home: Option<f64>,
     /// Speed, acceleration, jerk.
     pub drive: Drive,
 }
@@ -78,6 +82,14 @@ impl Joint {
         let below = self.min.map_or(0.0, |m| m - value);
         let above = self.max.map_or(0.0, |m| value - m);
         below.max(above).max(0.0)
+    }
+
+    /// The value where the control's own coordinate reads zero: as the machine file says; else the top of a slide called
+    /// Z, not known where that has no limit, and zero of any other joint.
+    #[must_use]
+    pub fn own_zero(&self) -> Option<f64> {
+        let top = self.kind == JointKind::Linear && self.letter == "Z";
+        self.machine_zero.or(if top { self.max } else { Some(0.0) })
     }
 
     /// `mm` or `deg`.

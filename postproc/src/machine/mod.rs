@@ -320,6 +320,15 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
             wanted: "finite coordinates",
         });
     }
+    let (machine_zero, home) = match *spec {
+        JointSpec::Linear { machine_zero_mm, home_mm, .. } => (machine_zero_mm, home_mm),
+        JointSpec::Rotary { .. } => (None, None),
+    };
+    for (what, value) in [("machine_zero_mm", machine_zero), ("home_mm", home)] {
+        if let Some(value) = value.filter(|v| !v.is_finite()) {
+            return Err(MachineError::Value { whose, what, value, wanted: "a finite number" });
+        }
+    }
     Ok(Joint {
         letter: letter.clone(),
         kind,
@@ -329,6 +338,8 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
         point: Point3::from(point),
         min: min.map(|m| m * to),
         max: max.map(|m| m * to),
+        machine_zero,
+        home,
         drive: Drive {
             velocity_per_s: positive(&whose, "max_velocity", v)? * to,
             acceleration_per_s2: positive(&whose, "max_acceleration", a)? * to,

@@ -10,7 +10,8 @@
 //!
 //! Places: a table joint's `point_mm` is measured from the table's reference point, a head joint's from the gauge
 //! point (the spindle nose on the tool axis), both with all joints at zero. Limits of linear joints are measured
-//! from where the tip of the tool, with its length taken into account, touches the table's reference point.
+//! from where the tip of the tool, with its length taken into account, touches the table's reference point; so is the
+//! zero of the control's own coordinates.
 
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +55,13 @@ pub enum JointSpec {
         min_mm: Option<f64>,
         /// Largest value; absent: no limit.
         max_mm: Option<f64>,
+        /// Its value where the control's own coordinate of it (`G53`, `SUPA`, `M91`) reads zero. Absent: the upper limit
+        /// of a joint called Z, whose zero is the top of its travel, and zero of any other.
+        #[serde(default)]
+        machine_zero_mm: Option<f64>,
+        /// Where `G28` leads it, in the control's own coordinate; absent: not known.
+        #[serde(default)]
+        home_mm: Option<f64>,
         /// Greatest speed.
         max_velocity_mm_s: f64,
         /// Greatest acceleration.

@@ -202,6 +202,8 @@ fn random_machine() -> impl Strategy<Value = Machine> {
                 sense: Sense::Iso,
                 min_mm: None,
                 max_mm: None,
+                machine_zero_mm: None,
+                home_mm: None,
                 max_velocity_mm_s: 100.0,
                 max_acceleration_mm_s2: 1000.0,
                 max_jerk_mm_s3: None,

@@ -1,6 +1,8 @@
 //! A program before any dialect: moves in counts of the output resolution, and what stands around them.
 
+use super::Dialect;
 use super::orientation::Orientation;
+use super::work_offset::WorkOffset;
 use crate::feed::PathMetric;
 use crate::machine::spec::TcpWords;
 
@@ -74,8 +76,12 @@ pub struct Program {
     pub linuxcnc_tcp: Option<TcpWords>,
     /// The moves stand in a subprogram of their own.
     pub subprogram: bool,
+    /// Its number, where the dialect has one.
+    pub number: u32,
     /// Tool in the spindle.
     pub tool_number: u32,
+    /// Where program zero is; `None`: [`WorkOffset::usual`].
+    pub work_offset: Option<WorkOffset>,
     /// Spindle speed, clockwise; `None` leaves the spindle alone.
     pub spindle_rpm: Option<f64>,
     /// Coolant, from the first approach to the end.
@@ -119,6 +125,22 @@ pub enum WriteError {
         /// What it lacks.
         what: &'static str,
     },
+    /// A work offset that the control does not have.
+    #[error("{dialect} has no work offset {offset}")]
+    WorkOffset {
+        /// The dialect.
+        dialect: &'static str,
+        /// The offset.
+        offset: WorkOffset,
+    },
+    /// A program number that the control does not take.
+    #[error("{dialect} takes no program number {number}: from 1 to 9999")]
+    Number {
+        /// The dialect.
+        dialect: &'static str,
+        /// The number.
+        number: u32,
+    },
     /// No subprograms.
     #[error("{dialect} programs are written as one: subprograms are for sinumerik")]
     Subprogram {
@@ -148,6 +170,17 @@ impl Program {
     /// The name of the linear word along the spindle for the retracts at start and end, if there is one called Z.
     pub(crate) fn has_z(&self) -> bool {
         self.linear_names.iter().any(|n| n == "Z")
+    }
+
+    /// The words of its work offset; none where the dialect's usual one needs none.
+    pub(crate) fn work_offset_words(&self, dialect: Dialect) -> Result<Option<String>, WriteError> {
+        match self.work_offset.or(WorkOffset::usual(dialect)) {
+            None => Ok(None),
+            Some(offset) => match offset.words(dialect) {
+                Some(words) => Ok(Some(words)),
+                None => Err(WriteError::WorkOffset { dialect: dialect.name(), offset }),
+            },
+        }
     }
 
     /// It works in tilted planes.

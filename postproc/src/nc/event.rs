@@ -53,13 +53,17 @@ pub(super) struct Moved {
     pub feed: Option<FeedNow>,
     /// Time by F, min; 0 in rapid moves.
     pub time_min: f64,
+    /// Number of the tool in the spindle.
+    pub tool: Option<u32>,
+    /// To a place of the machine's own frame.
+    pub own_frame: bool,
 }
 
 /// Something that happens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event<'e> {
-    /// Every axis has been named for the first time, or again after a move in the machine's own frame.
-    Placed { line: usize, known: Known, joints: JointValues },
+    /// Every axis has been named for the first time, or again after a move to a place that is not known.
+    Placed { line: usize, known: Known, joints: JointValues, tool: Option<u32> },
     /// A move.
     Moved(&'e Moved),
     /// The machine waits, min.

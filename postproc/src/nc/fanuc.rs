@@ -8,6 +8,7 @@
 //! - `G5.1 Q1` is contour control with look-ahead over many blocks, off by `G5.1 Q0`.
 //! - F in G94 is read over all axes, a degree as a mm. G93 wants F in every block.
 
+use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
 use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
@@ -23,7 +24,11 @@ fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
 pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
     program.single_letters("fanuc")?;
     lines.line("%");
-    lines.line(&format!("O0001 ({})", program.safe_name()));
+    if !(1..=9999).contains(&program.number) {
+        return Err(WriteError::Number { dialect: "fanuc", number: program.number });
+    }
+    let work_offset = program.work_offset_words(Dialect::Fanuc)?;
+    lines.line(&format!("O{:04} ({})", program.number, program.safe_name()));
     for comment in program.safe_comments() {
         lines.line(&format!("({comment})"));
     }
@@ -32,7 +37,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
         lines.line("G53 G0 Z0");
     }
     lines.line(&format!("T{} M6", program.tool_number));
-    lines.line("G54");
+    work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} M3", number::feed(rpm)));
     }

@@ -4,8 +4,9 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
 use osculate_geom::{Unit3, Vec3};
 
 use super::Dialect;
+use super::asked::Asked;
 use super::event::{Event, Sink};
-use super::interpret::{Asked, Interpreter};
+use super::interpret::Interpreter;
 use super::orientation::plane;
 use super::readback::ReadError;
 use crate::machine::{NearWish, angle_between};

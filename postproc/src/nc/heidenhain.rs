@@ -8,6 +8,7 @@
 //! - `CYCL DEF 32` bounds what smoothing may do to the path (finishing).
 //! - `M126` makes endless axes take the shortest way. There is no inverse time feed. `M91` is machine coordinates.
 
+use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
 use super::modal::{Modal, Position, Which, Wording};
 use super::number;
@@ -36,6 +37,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if program.feed_word == FeedWord::Inverse {
         return Err(WriteError::Feed { dialect: "heidenhain", what: "inverse time feed (G93)" });
     }
+    let work_offset = program.work_offset_words(Dialect::Heidenhain)?;
     (lines.numbered, lines.step) = (Some(""), 1);
     lines.line(&format!("BEGIN PGM {} MM", program.safe_name()));
     for comment in program.safe_comments() {
@@ -43,6 +45,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     }
     lines.line("FUNCTION RESET TCPM");
     lines.line("M126");
+    work_offset.iter().for_each(|words| lines.line(words));
     let speed = program.spindle_rpm.map_or(String::new(), |rpm| format!(" S{}", number::feed(rpm)));
     if program.has_z() {
         lines.line("L Z+0.0000 R0 FMAX M91");

@@ -8,6 +8,8 @@ use std::collections::BTreeSet;
 use osculate_geom::{Diagnostic, Unit3, Vec3};
 
 use super::Dialect;
+use super::asked::{Asked, PathWord};
+use super::control::{Control, Kind, Record, Tool};
 use super::event::{Event, FeedNow, Frame, Moved, Sink};
 use super::readback::ReadError;
 use super::sections::Sections;
@@ -37,37 +39,11 @@ pub(super) struct Interpreter<'a, S> {
     pub(super) sections: Sections,
     /// The sink knows where the machine stands.
     placed: bool,
-}
-
-/// What one line asks for, once all its words are seen.
-#[derive(Default)]
-pub(super) struct Asked {
-    /// Axis words.
-    pub axes: Vec<(String, f64, Manner)>,
-    /// Positions are the machine's own.
-    pub machine_frame: bool,
-    /// G4.
-    pub dwell: bool,
-    /// A word that makes the axis words of the line something other than a move.
-    pub other_use: bool,
-    pub klartext_move: bool,
-    pub rapid_once: bool,
-    /// I, J, K and R (or CR), mm.
-    pub centre: [Option<f64>; 3],
-    pub radius: Option<f64>,
-    /// G68.2, G53.1.
-    pub plane: bool,
-    pub turn_to_plane: bool,
-    /// A3, B3, C3, or what else gives the tool's direction.
-    pub vector: [Option<f64>; 3],
-    /// F, P, Q, L, S in the program's units.
-    pub f: Option<f64>,
-    pub p: Option<f64>,
-    pub q: Option<f64>,
-    pub l: Option<f64>,
-    /// A path control word of this line.
-    pub path: Option<PathWord>,
-    pub end: bool,
+    /// The state beside the way.
+    pub(super) control: Control,
+    pub(super) record: Record,
+    /// The tool that the next change puts into the spindle.
+    pub(super) selected: Option<Tool>,
 }
 
 /// Adds the names of the axes in a line.
@@ -96,6 +72,9 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             unlisted: (0, 0, 0),
             sections: Sections::default(),
             placed: false,
+            control: Control::default(),
+            record: Record { dialect: Some(dialect), ..Record::default() },
+            selected: None,
         }
     }
 
@@ -205,6 +184,11 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         Ok(())
     }
 
+    pub(super) fn spindle_speed(&mut self, rpm: f64) {
+        self.state.speed = Some(rpm);
+        self.spindle_rpm = self.spindle_rpm.or(Some(rpm));
+    }
+
     /// Works through one line; true at the end of the program.
     fn line(&mut self, line: usize, words: &[Word]) -> Result<bool, ReadError> {
         let mut asked = Asked::default();
@@ -213,17 +197,17 @@ impl<'a, S: Sink> Interpreter<'a, S> {
                 Word::G(code) => self.g(line, *code, &mut asked)?,
                 Word::M(code) => self.m(line, *code, &mut asked)?,
                 Word::F(f) => asked.f = Some(*f),
-                Word::S(s) => {
-                    self.state.speed = Some(*s);
-                    self.spindle_rpm = self.spindle_rpm.or(Some(*s));
-                }
+                Word::S(s) => self.spindle_speed(*s),
                 Word::Address { name, value, manner } => {
                     self.address(line, name, (*value, *manner), &mut asked)?
                 }
                 Word::Name { name, arguments } => self.name(line, name, arguments, &mut asked)?,
+                Word::Skip => asked.skipped = true,
             }
+            asked.acts |= word.acts();
         }
         self.settle(&asked);
+        self.settle_control(line, &asked);
         if asked.plane {
             self.g68_2(line, &asked)?;
             return Ok(false);
@@ -241,6 +225,9 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         if (circles || turns || !asked.axes.is_empty()) && !(asked.other_use || asked.dwell) {
             self.go(line, &asked)?;
         }
+        if asked.home {
+            self.go_home(line, &asked)?;
+        }
         if asked.end {
             self.tell(&Event::Halt);
         }
@@ -254,34 +241,61 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             }
             self.state.rapid = Some(asked.rapid_once);
         }
+        if asked.machine_frame || asked.builders_place {
+            return self.go_in_own_frame(line, asked);
+        }
         let before = self.state.known(self.machine);
         for (name, value, manner) in &asked.axes {
-            self.position(line, name, (*value, *manner), asked.machine_frame)?;
+            self.position(line, name, (*value, *manner))?;
         }
         if asked.vector.iter().any(Option::is_some) {
             self.point(line, &asked.vector)?;
         }
-        if asked.machine_frame {
-            // The linear axes go to places of the machine's own frame, which the text does not relate to the part:
-            // `position` has made them unknown.
-            return Ok(());
+        let rapid = asked.home.then_some(true);
+        self.arrive(line, (before, self.state.known(self.machine)), (rapid, asked))
+    }
+
+    /// Rapid or feed, as the word in force says.
+    pub(super) fn rapid(&mut self, line: usize) -> Result<bool, ReadError> {
+        if let Some(rapid) = self.state.rapid {
+            return Ok(rapid);
         }
-        let Some(known) = self.state.known(self.machine) else { return Ok(()) };
-        let joints = known.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
-        let rapid = match self.state.rapid {
-            Some(rapid) => rapid,
-            None => {
-                let error = ReadError::NoFeed { line, what: "G0 or G1 before it" };
-                self.or_lost(error, line, "a move before any G0 or G1")?;
-                true
+        let error = ReadError::NoFeed { line, what: "G0 or G1 before it" };
+        self.or_lost(error, line, "a move before any G0 or G1")?;
+        Ok(true)
+    }
+
+    /// A move from one place to another, as far as they are known.
+    pub(super) fn arrive(
+        &mut self,
+        line: usize,
+        (before, to): (Option<Known>, Option<Known>),
+        (rapid, asked): (Option<bool>, &Asked),
+    ) -> Result<(), ReadError> {
+        let Some(known) = to else {
+            if rapid.or(self.state.rapid) == Some(false) {
+                self.record.nowhere.again(line);
             }
+            return Ok(());
         };
+        let joints = known.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
+        let rapid = match rapid {
+            Some(rapid) => rapid,
+            None => self.rapid(line)?,
+        };
+        let own = asked.machine_frame || asked.builders_place || asked.home;
         let Some(from) = before.filter(|_| self.placed) else {
             self.placed = true;
-            self.tell(&Event::Placed { line, known, joints });
+            if !rapid {
+                self.record.from_nowhere.again(line);
+            }
+            let plunges = !own && asked.axes.iter().any(|a| a.0 == "Z");
+            self.record.moved(line, Kind::of(rapid, plunges), &self.control);
+            let tool = self.control.tool_number();
+            self.tell(&Event::Placed { line, known, joints, tool });
             return Ok(());
         };
-        let arc = match self.state.clockwise.filter(|_| self.dialect != Dialect::Heidenhain) {
+        let arc = match self.state.clockwise.filter(|_| self.dialect != Dialect::Heidenhain && !rapid) {
             Some(clockwise) => match self.arc(line, &from, &known, (clockwise, asked)) {
                 Ok(arc) => Some(arc),
                 Err(error) => {
@@ -291,7 +305,13 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             },
             None => None,
         };
-        self.moved(line, &Way { from, to: known, arc }, (joints, rapid))
+        let way = Way { from, to: known, arc };
+        if way.step() != Step::default() {
+            let z = self.linear_names().iter().position(|n| *n == "Z");
+            let plunges = !own && z.is_some_and(|z| from.linear[z] != known.linear[z]);
+            self.record.moved(line, Kind::of(rapid, plunges), &self.control);
+        }
+        self.moved(line, &way, (joints, rapid, own))
     }
 
     fn arc(&self, line: usize, from: &Known, to: &Known, asked: (bool, &Asked)) -> Result<Arc, ReadError> {
@@ -345,13 +365,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         }
     }
 
-    fn position(
-        &mut self,
-        line: usize,
-        name: &str,
-        given: (f64, Manner),
-        machine_frame: bool,
-    ) -> Result<(), ReadError> {
+    fn position(&mut self, line: usize, name: &str, given: (f64, Manner)) -> Result<(), ReadError> {
         let s = &mut self.state;
         let (value, manner) = given;
         let incremental = manner == Manner::Incremental || (manner == Manner::Modal && !s.absolute);
@@ -377,23 +391,17 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         let Some(slot) = slot else { return self.refuse(line, name) };
         let s = &mut self.state;
         let mm = value * s.unit_mm;
-        s.linear[slot] = match (machine_frame, incremental, s.linear[slot]) {
-            (true, ..) => None,
-            (false, true, None) => return self.lost_increment(line, name),
-            (false, true, Some(before)) => Some(before + mm),
-            (false, false, _) => Some(mm),
+        s.linear[slot] = match (incremental, s.linear[slot]) {
+            (true, None) => return self.lost_increment(line, name),
+            (true, Some(before)) => Some(before + mm),
+            (false, _) => Some(mm),
         };
         Ok(())
     }
 
     /// A move along a way; nothing where it leads nowhere.
-    pub(super) fn moved(
-        &mut self,
-        line: usize,
-        way: &Way,
-        end: (JointValues, bool),
-    ) -> Result<(), ReadError> {
-        let (to, mut rapid) = end;
+    fn moved(&mut self, line: usize, way: &Way, end: (JointValues, bool, bool)) -> Result<(), ReadError> {
+        let (to, mut rapid, own_frame) = end;
         let from = way.from.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
         let step = way.step();
         if step == Step::default() {
@@ -421,18 +429,18 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             // G93's F holds for its own block.
             self.state.feed = None;
         }
-        self.tell(&Event::Moved(&Moved { line, way: *way, from, to, rapid, feed, time_min }));
+        let tool = self.control.tool_number();
+        self.tell(&Event::Moved(&Moved {
+            line,
+            way: *way,
+            from,
+            to,
+            rapid,
+            feed,
+            time_min,
+            tool,
+            own_frame,
+        }));
         Ok(())
     }
-}
-
-/// A word that says how the control goes from block to block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PathWord {
-    /// G61, G60.
-    ExactPath,
-    /// G61.1, G9.
-    ExactStop,
-    /// G64 and its like.
-    Blend,
 }

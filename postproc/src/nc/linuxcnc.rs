@@ -6,6 +6,7 @@
 //! - Rotary axes count on through whole turns; nothing is wrapped.
 //! - `G64 P` bounds how far blending may leave the programmed corner. `G53` moves in machine coordinates.
 
+use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
 use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
@@ -33,6 +34,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if program.tcp && switch.is_none() {
         return Err(WriteError::NoTcpSwitch);
     }
+    let work_offset = program.work_offset_words(Dialect::LinuxCnc)?;
     lines.line(&format!("({})", program.safe_name()));
     for comment in program.safe_comments() {
         lines.line(&format!("({comment})"));
@@ -47,7 +49,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     }
     lines.line(&format!("T{} M6", program.tool_number));
     lines.line(&format!("G43 H{}", program.tool_number));
-    lines.line("G54");
+    work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} M3", number::feed(rpm)));
     }

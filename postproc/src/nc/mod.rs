@@ -1,13 +1,18 @@
 //! NC programs: dialect-free moves, their wording in each dialect, and the way back.
 
+mod asked;
 pub mod block;
 mod codes;
+mod conditions;
+pub mod conduct;
+mod control;
 mod event;
 mod fanuc;
 mod frames;
 mod heidenhain;
 mod interpret;
 mod linuxcnc;
+mod machine_frame;
 mod modal;
 pub mod number;
 pub mod orientation;
@@ -19,13 +24,16 @@ mod state;
 pub mod timing;
 mod token;
 mod way;
+mod work_offset;
 pub(crate) mod writer;
 
 use std::fmt;
 use std::str::FromStr;
 
 pub use block::{Coolant, FeedWord, NcMove, Program, WriteError};
+pub use control::Record;
 pub use orientation::Orientation;
+pub use work_offset::{UnknownWorkOffset, WorkOffset};
 
 /// The language of a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,6 +10,8 @@ use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 
 use super::Dialect;
+use super::conduct::{Conduct, Expected};
+use super::control::Record;
 use super::event::{Event, Frame, Moved, Sink};
 use super::interpret::Interpreter;
 use super::state::FeedReading;
@@ -47,6 +49,10 @@ pub struct ReadMove {
     pub line: usize,
     /// How long it takes, min.
     pub time_min: f64,
+    /// Number of the tool in the spindle, where the program has called one by number.
+    pub tool: Option<u32>,
+    /// To a place of the machine's own frame: G53, SUPA, M91, G28.
+    pub own_frame: bool,
 }
 
 /// One block of the text.
@@ -64,6 +70,10 @@ pub struct ReadBlock {
     pub time_min: f64,
     /// Length of the tip's way relative to the part, mm.
     pub tip_length_mm: f64,
+    /// Number of the tool in the spindle, where the program has called one by number.
+    pub tool: Option<u32>,
+    /// To a place of the machine's own frame: G53, SUPA, M91, G28.
+    pub own_frame: bool,
 }
 
 /// What a text makes the machine do.
@@ -77,9 +87,17 @@ pub struct ReadBack {
     pub spindle_rpm: Option<f64>,
     /// Findings, with line numbers.
     pub diagnostics: Vec<Diagnostic>,
+    /// In which states of the control it moves.
+    pub record: Record,
 }
 
 impl ReadBack {
+    /// What in the state of the control is not as the job means it.
+    #[must_use]
+    pub fn conduct(&self, expected: &Expected) -> Conduct {
+        self.record.conduct(expected)
+    }
+
     /// The tool's way as a CL path; cutter and holder are not in an NC text.
     #[must_use]
     pub fn cl_path(&self) -> ClPath {
@@ -195,6 +213,7 @@ pub fn read(
     let mut out = control.sink.out;
     out.spindle_rpm = control.spindle_rpm;
     out.diagnostics = control.diagnostics;
+    out.record = control.record;
     Ok(out)
 }
 
@@ -272,6 +291,12 @@ impl<'a> Reader<'a> {
         self.control.spindle_rpm
     }
 
+    /// What in the state of the control, so far, is not as the job means it.
+    #[must_use]
+    pub fn conduct(&self, expected: &Expected) -> Conduct {
+        self.control.record.conduct(expected)
+    }
+
     /// Findings so far, with line numbers.
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
@@ -288,11 +313,20 @@ struct Collect {
 impl Sink for Collect {
     fn take(&mut self, frame: Frame<'_>, event: &Event<'_>) {
         match *event {
-            Event::Placed { line, known, joints } => {
+            Event::Placed { line, known, joints, tool } => {
                 let (from, to) = (joints, joints);
                 let pose = frame.pose(&known);
-                self.out.moves.push(ReadMove { pose, motion: Motion::Rapid, line, time_min: 0.0 });
-                let first = ReadBlock { line, from, to, rapid: true, time_min: 0.0, tip_length_mm: 0.0 };
+                self.out.moves.push(ReadMove {
+                    pose,
+                    motion: Motion::Rapid,
+                    line,
+                    time_min: 0.0,
+                    tool,
+                    own_frame: false,
+                });
+                let (time_min, tip_length_mm, own_frame) = (0.0, 0.0, false);
+                let first =
+                    ReadBlock { line, from, to, rapid: true, time_min, tip_length_mm, tool, own_frame };
                 self.out.blocks.push(first);
             }
             Event::Moved(m) => self.moved(frame, m),
@@ -320,7 +354,9 @@ impl Collect {
         };
         let mut t0 = 0.0;
         for (t, pose) in poses {
-            self.out.moves.push(ReadMove { pose, motion, line: m.line, time_min: time_min * (t - t0) });
+            let Moved { line, tool, own_frame, .. } = *m;
+            let time_min = time_min * (t - t0);
+            self.out.moves.push(ReadMove { pose, motion, line, time_min, tool, own_frame });
             t0 = t;
         }
         self.out.blocks.push(ReadBlock {
@@ -330,6 +366,8 @@ impl Collect {
             rapid: m.rapid,
             time_min,
             tip_length_mm,
+            tool: m.tool,
+            own_frame: m.own_frame,
         });
     }
 }

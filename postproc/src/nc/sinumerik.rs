@@ -13,7 +13,8 @@
 //! - `CYCLE832` bounds what the control's compressor and smoothing may do to the path (finishing).
 //! - `SUPA` with `D0` moves in machine coordinates without tool length: Z0 is the top of the Z axis.
 
-use super::block::{FeedWord, NcMove, Program, RotaryName};
+use super::Dialect;
+use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
 use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
 use super::writer::Lines;
@@ -40,7 +41,8 @@ fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     }
 }
 
-pub(super) fn head(program: &Program, lines: &mut Lines) {
+pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
+    let work_offset = program.work_offset_words(Dialect::Sinumerik)?;
     (lines.numbered, lines.next, lines.step) = (Some("N"), 10, 10);
     if program.subprogram {
         lines.plain(&format!("%_N_{}_MPF", program.safe_name()));
@@ -55,13 +57,14 @@ pub(super) fn head(program: &Program, lines: &mut Lines) {
     lines.line(&format!("T{}", program.tool_number));
     lines.line("M6");
     lines.line("D1");
-    lines.line("G54");
+    work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} M3", number::feed(rpm)));
     }
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
     }
+    Ok(())
 }
 
 pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines: &mut Lines) {
@@ -71,7 +74,12 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
     if program.tcp {
         lines.line("TRAORI");
         lines.line(if program.in_vectors() { "ORIWKS ORIVECT" } else { "ORIMKS ORIAXES" });
-        lines.line("G54");
+        // Its head has refused what has no words.
+        program
+            .work_offset_words(Dialect::Sinumerik)
+            .into_iter()
+            .flatten()
+            .for_each(|words| lines.line(&words));
     }
     if program.in_planes() {
         lines.line(&plane(first));

@@ -126,13 +126,24 @@ impl State {
         }
         let joints = self.known(machine).and_then(|k| k.joints(machine, setup));
         self.tcp = on;
-        self.linear = match joints.filter(|_| self.plane.is_none()) {
-            None => [None; 3],
-            Some(q) if on => {
-                let xyz = setup.to_program(&machine.forward(&q, setup).tip);
-                [Some(xyz.x), Some(xyz.y), Some(xyz.z)]
-            }
-            Some(q) => machine.linear().map(|place| Some(q[place])),
+        match joints.filter(|_| self.plane.is_none()) {
+            None => self.linear = [None; 3],
+            Some(q) => self.stand_at(&q, machine, setup),
+        }
+    }
+
+    /// The machine stands at these joints: what X Y Z and the rotary words are there.
+    pub fn stand_at(&mut self, joints: &JointValues, machine: &Machine, setup: &Setup) {
+        for (slot, place) in machine.rotary().iter().enumerate() {
+            self.rotary[slot] = Some(joints[*place]);
+        }
+        self.linear = if self.of_tip() {
+            let xyz = setup.to_program(&machine.forward(joints, setup).tip);
+            let xyz =
+                self.plane.map_or(xyz, |plane| plane.rotation.inverse() * (xyz - plane.translation.vector));
+            [Some(xyz.x), Some(xyz.y), Some(xyz.z)]
+        } else {
+            machine.linear().map(|place| Some(joints[place]))
         };
     }
 
@@ -179,6 +190,12 @@ impl State {
 }
 
 impl Known {
+    /// A place in words of the joints.
+    pub fn of_joints(machine: &Machine, joints: &JointValues) -> Self {
+        let linear = machine.linear().map(|place| joints[place]);
+        Self { linear, rotary: machine.rotary_of(joints), tcp: false, plane: None, axis: None }
+    }
+
     /// The place between two of one kind.
     pub fn between(&self, to: &Self, t: f64) -> Self {
         let mut at = *self;

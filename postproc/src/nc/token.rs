@@ -46,6 +46,20 @@ pub(super) enum Word {
         /// Arguments as text.
         arguments: String,
     },
+    /// A slash: the block is left out where a switch is set. Stands first.
+    Skip,
+}
+
+impl Word {
+    /// It does something: it is no number of a block, no slash and no message.
+    pub fn acts(&self) -> bool {
+        match self {
+            Self::Skip => false,
+            Self::Address { name, .. } => name != "N" && name != "O",
+            Self::Name { name, .. } => name != "MSG",
+            Self::G(_) | Self::M(_) | Self::F(_) | Self::S(_) => true,
+        }
+    }
 }
 
 /// A line that is no NC.
@@ -61,15 +75,19 @@ pub(super) fn words(line: &str, dialect: Dialect) -> Result<Vec<Word>, BadWord> 
     let line = if dialect == Dialect::Sinumerik { line.split(';').next().unwrap_or_default() } else { line };
     let mut scan = Scan { text: line, at: 0, round_comments: dialect != Dialect::Sinumerik };
     let mut words = Vec::with_capacity(8);
-    // A slash marks an optional block, which is run unless a switch is set.
-    if scan.peek() == Some('/') || scan.peek() == Some('%') {
-        scan.at += 1;
-        if line.starts_with('%') {
-            return Ok(words);
-        }
+    if line.starts_with('%') {
+        return Ok(words);
+    }
+    // A slash marks an optional block, which is run unless a switch is set. It stands before or behind the block's number.
+    if scan.slash() {
+        words.push(Word::Skip);
     }
     while let Some(word) = scan.word()? {
+        let numbered = matches!(&word, Word::Address { name, .. } if name == "N");
         words.push(word);
+        if numbered && words.len() == 1 && scan.slash() {
+            words.insert(0, Word::Skip);
+        }
     }
     Ok(words)
 }
@@ -87,6 +105,17 @@ impl Scan<'_> {
             b if b.is_ascii() => Some(char::from(*b)),
             _ => self.text.get(self.at..)?.chars().next(),
         }
+    }
+
+    /// A slash with the number of its switch, if it has one.
+    fn slash(&mut self) -> bool {
+        self.blanks();
+        if self.peek() != Some('/') {
+            return false;
+        }
+        self.at += 1;
+        self.while_is(|c| c.is_ascii_digit());
+        true
     }
 
     fn bad(&self, from: usize) -> BadWord {
@@ -253,20 +282,33 @@ fn lettered(name: &str, value: f64) -> Word {
 
 /// Klartext: words between blanks; an axis carries its sign, `IX` is incremental.
 fn klartext(line: &str) -> Result<Vec<Word>, BadWord> {
-    let line = line.split(';').next().unwrap_or_default();
-    let mut parts = line.split_whitespace().peekable();
-    if parts.peek().is_some_and(|p| p.bytes().all(|b| b.is_ascii_digit())) {
-        parts.next();
+    let line = line.split(';').next().unwrap_or_default().trim();
+    let after = |line: &'_ str, number: bool| {
+        let rest = if number { line.trim_start_matches(|c: char| c.is_ascii_digit()) } else { line };
+        let plain = rest.is_empty() || rest.starts_with(|c: char| c.is_whitespace() || c == '/');
+        if plain { line.len() - rest.trim_start().len() } else { 0 }
+    };
+    let mut rest = &line[after(line, true)..];
+    // A slash before or behind the block's number: it may be left out.
+    if let Some(hidden) = rest.strip_prefix('/') {
+        rest = hidden.trim_start();
+        let words = klartext(&rest[after(rest, true)..])?;
+        return Ok(if words.is_empty() { words } else { std::iter::once(Word::Skip).chain(words).collect() });
     }
-    let parts: Vec<String> = parts.map(str::to_ascii_uppercase).collect();
+    rest = rest.trim_start();
+    let parts: Vec<String> = rest.split_whitespace().map(str::to_ascii_uppercase).collect();
     let Some(first) = parts.first() else { return Ok(Vec::new()) };
     let name = |name: &str, rest: &[String]| Word::Name { name: name.into(), arguments: rest.join(" ") };
     match first.as_str() {
         "L" | "LN" => {}
         "BEGIN" | "END" | "FUNCTION" => return Ok(vec![name(first, &parts[1..])]),
         "TOOL" => {
-            let speed = parts.iter().filter_map(|p| p.strip_prefix('S')).find_map(|s| s.parse().ok());
-            return Ok(std::iter::once(name("TOOL", &parts[1..])).chain(speed.map(Word::S)).collect());
+            let number = |letter: char| {
+                let numbers = parts.iter().filter_map(|p| p.strip_prefix(letter));
+                numbers.filter_map(|n| n.parse::<f64>().ok()).find(|n| n.is_finite())
+            };
+            let call = std::iter::once(name("TOOL", &parts[1..]));
+            return Ok(call.chain(number('S').map(Word::S)).chain(number('F').map(Word::F)).collect());
         }
         other if other.starts_with('M') && other.len() > 1 => {
             return parts.iter().map(|p| klartext_word(p)).collect();
@@ -328,8 +370,13 @@ mod tests {
     #[test]
     fn compact_and_commented_words() {
         let got = words("/G1X10Y-.5(go) F100. ; end", Dialect::LinuxCnc).unwrap();
-        let want =
-            [Word::G(10), axis("X", 10.0, Manner::Modal), axis("Y", -0.5, Manner::Modal), Word::F(100.0)];
+        let want = [
+            Word::Skip,
+            Word::G(10),
+            axis("X", 10.0, Manner::Modal),
+            axis("Y", -0.5, Manner::Modal),
+            Word::F(100.0),
+        ];
         assert_eq!(got, want);
         assert_eq!(words("G43.4 H1", Dialect::Fanuc).unwrap()[0], Word::G(434));
         assert!(words("X[#1+2]", Dialect::LinuxCnc).is_err());

@@ -55,7 +55,7 @@ impl<'a> Writer<'a> {
             return Err(WriteError::Subprogram { dialect: dialect.name() });
         }
         match dialect {
-            Dialect::Sinumerik => sinumerik::head(program, &mut lines),
+            Dialect::Sinumerik => sinumerik::head(program, &mut lines)?,
             Dialect::Heidenhain => heidenhain::head(program, &mut lines)?,
             Dialect::Fanuc => fanuc::head(program, &mut lines)?,
             Dialect::LinuxCnc => linuxcnc::head(program, &mut lines)?,

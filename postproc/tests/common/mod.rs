@@ -4,6 +4,7 @@
 pub mod blade;
 
 use osculate_geom::{Point3, Unit3, Vec3};
+use osculate_postproc::readback::ReadBack;
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 
@@ -28,6 +29,18 @@ pub fn wave(points: u32, phase: f64) -> ClPath {
         pose([40.0 * t - 20.0, 15.0 * w.sin(), 5.0 * w.cos() + 10.0], axis)
     };
     path((0..points).map(at), 300.0)
+}
+
+/// What is read back of the way itself: from the line in which the first pose is reached, without what retracts in the
+/// machine's own coordinates.
+pub fn way_of(path: &ClPath, back: &ReadBack, tol_mm: f64) -> ReadBack {
+    let first = path.moves[0].pose.tip;
+    let reached = back.moves.iter().position(|m| (m.pose.tip - first).norm() <= tol_mm);
+    let at = reached.expect("the first pose is reached");
+    let line = back.moves[at].line;
+    let moves = back.moves[at..].iter().filter(|m| !m.own_frame).copied().collect();
+    let blocks = back.blocks.iter().filter(|b| b.line > line && !b.own_frame).copied().collect();
+    ReadBack { moves, blocks, ..back.clone() }
 }
 
 /// Distance from a point to the polyline of a path's tips.
