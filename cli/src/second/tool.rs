@@ -355,3 +355,7 @@ fn apt(radius: f64, corner: f64, [bottom, side]: [f64; 2], top: f64) -> Option<(
     ];
     Some((pieces.into_iter().flatten().collect(), end[0].max(centre[0] + corner).max(begin[0])))
 }
+
+#[cfg(test)]
+#[path = "tool_tests.rs"]
+mod tests;
