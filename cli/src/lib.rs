@@ -5,6 +5,7 @@ pub mod figure;
 pub mod job;
 pub mod part;
 pub mod report;
+pub mod second;
 pub mod watch;
 pub mod words;
 pub mod work;
