@@ -12,6 +12,7 @@ use crate::job::Job;
 use crate::part::{self, JobFaces};
 use crate::work::nc;
 use osculate_postproc::SolveOptions;
+use osculate_postproc::nc::Dialect;
 use osculate_productivity::plan::Tolerance;
 
 /// How far the tip may stray, of the chords; at the cutter's radius the axis as far again.
@@ -47,16 +48,23 @@ fn words_mm(job: &Job) -> Result<f64, Failure> {
     Ok(0.5 * 10f64.powi(-(decimals.min(16) as i32)))
 }
 
+/// By how much the control of a job leaves corners out, mm: verdicts add it.
+fn blend_mm(job: &Job) -> Result<f64, Failure> {
+    let blends = nc::control(job)?.0.dialect == Dialect::LinuxCnc;
+    // It blends corners and joins short pieces, each as closely as programs ask for.
+    Ok(if blends { 2.0 * solve(job)?.tip_tol_mm } else { 0.0 })
+}
+
 /// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
 pub fn leaning(job: &Job, faces: &JobFaces, share: f64) -> Result<Tolerance, Failure> {
     let s = solve(job)?;
     let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter()?.radius_mm());
-    kept_back(job, faces, share, words_mm(job)? + ways_mm)
+    kept_back(job, faces, share, words_mm(job)? + ways_mm + blend_mm(job)?)
 }
 
 /// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
 pub fn upright(job: &Job, faces: &JobFaces) -> Result<Tolerance, Failure> {
-    kept_back(job, faces, 1.0, words_mm(job)?)
+    kept_back(job, faces, 1.0, words_mm(job)? + blend_mm(job)?)
 }
 
 /// The highest mark that teeth leave on the faces at the feed of a job, to leading order, mm; zero where it is not known.

@@ -5,12 +5,13 @@ use crate::job::Job;
 use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
 use osculate_postproc::cldata::{self, ClWriteOptions};
+use osculate_postproc::conduct::{Conduct, Expected, ExpectedTool, Grade};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
 use osculate_tools::cl::{ClPath, Motion};
-use osculate_tools::removal::{GoalControl, Program, Swept};
+use osculate_tools::removal::{GoalControl, Gravity, Program, Remark, Swept};
 use std::path::Path;
 
 /// Largest rise of F from block to block for `kz` where the job gives none, mm/min.
@@ -147,7 +148,8 @@ pub fn post_options(control: &Control, name: &str) -> PostOptions {
 
 /// The options of a post of a job's path, as close to it as its tolerance wants.
 pub fn job_options(job: &Job, control: &Control, name: &str) -> Result<PostOptions, Failure> {
-    Ok(PostOptions { solve: crate::work::budget::solve(job)?, ..post_options(control, name) })
+    let solve = crate::work::budget::solve(job)?;
+    Ok(PostOptions { blend_mm: solve.tip_tol_mm, solve, ..post_options(control, name) })
 }
 
 /// What an NC program does, in the part's frame.
@@ -181,8 +183,50 @@ impl Motions {
     }
 }
 
-/// Reads an NC program back through the machine.
-pub fn read_back(text: &str, control: &Control, setup: &Setup, lenient: bool) -> Result<Motions, String> {
+/// The state of the control that a job means its programs to run in.
+pub fn expected(job: &Job, gauge_length_mm: f64) -> Result<Expected, Failure> {
+    let tool = ExpectedTool { number: TOOL_NUMBER, length_mm: gauge_length_mm };
+    Ok(Expected::new(tool, job.spindle_rpm()?, job.tolerance()?.gouge_mm))
+}
+
+/// The number of the tool of a job that names none.
+const TOOL_NUMBER: u32 = 1;
+
+/// A conduct as a verdict takes it.
+fn judged(conduct: &Conduct) -> GoalControl {
+    let remarks = conduct.findings.iter().map(|f| {
+        let (gravity, word) = match f.grade {
+            Grade::Warning => (Gravity::Told, "warning: "),
+            Grade::Open => (Gravity::Open, ""),
+            Grade::Breaks => (Gravity::Breaks, ""),
+        };
+        let at = if f.line == 0 { String::new() } else { format!("line {}: ", f.line) };
+        Remark { gravity, text: format!("{word}{at}{}", f.what) }
+    });
+    let blend = match conduct.blend_line {
+        Some(line) if conduct.blend_mm > 0.0 => {
+            format!(
+                "; corners are blended by up to {} mm (line {line}), which bounds have added",
+                conduct.blend_mm
+            )
+        }
+        _ => "; corners are not blended".to_owned(),
+    };
+    GoalControl {
+        words: format!("tool, length, work offset and spindle in every feed move, retracts{blend}"),
+        remarks: remarks.collect(),
+        blend_mm: conduct.blend_mm,
+    }
+}
+
+/// Reads an NC program back through the machine; it is to run in the state that is expected.
+pub fn read_back(
+    text: &str,
+    control: &Control,
+    setup: &Setup,
+    expected: &Expected,
+    lenient: bool,
+) -> Result<Motions, String> {
     let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
     let read = readback::read(text, control.dialect, &control.machine, setup, &options)
         .map_err(|e| match e {
@@ -198,7 +242,7 @@ pub fn read_back(text: &str, control: &Control, setup: &Setup, lenient: bool) ->
         time_min: read.time_min(),
         cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),
         spindle_rpm: read.spindle_rpm,
-        control: GoalControl::default(),
+        control: judged(&read.conduct(expected)),
         diagnostics: read.diagnostics,
     };
     let mut clock = 0.0;

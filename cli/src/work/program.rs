@@ -86,7 +86,8 @@ impl Posted {
         let options = nc::job_options(job, &control, &title)?;
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
             let program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
-            let read = nc::read_back(&program.text, &control, setup, false)
+            let expected = nc::expected(job, setup.gauge_length_mm)?;
+            let read = nc::read_back(&program.text, &control, setup, &expected, false)
                 .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
             Ok((program, read))
         };

@@ -102,7 +102,8 @@ pub fn program(
     lenient: bool,
 ) -> Result<(Motions, Vec<Diagnostic>), Failure> {
     let (setup, notes) = posted_setup::of_program(job, faces, text, control.dialect)?;
-    let motions = nc::read_back(text, control, &setup, lenient).map_err(Failure::job)?;
+    let expected = nc::expected(job, setup.gauge_length_mm)?;
+    let motions = nc::read_back(text, control, &setup, &expected, lenient).map_err(Failure::job)?;
     Ok((motions, notes))
 }
 
