@@ -9,8 +9,20 @@ use crate::machine::{JointValues, Machine};
 use crate::motion::rapid_time_min;
 use crate::nc::orientation::{plane, plane_counts, vector_counts};
 use crate::nc::{Dialect, NcMove, Orientation, Program, number};
-use crate::post::{PostError, PostOptions, linear_decimals};
+use crate::post_error::PostError;
+use crate::post_options::PostOptions;
 use crate::setup::Setup;
+
+/// Decimals of the linear words: of the joints, or of those called X, Y, Z where the words are the tip's.
+pub(crate) fn linear_decimals(machine: &Machine, of_tip: bool) -> [usize; 3] {
+    let joints = machine.joints();
+    let own = machine.linear().map(|p| joints[p].decimals);
+    if !of_tip {
+        return own;
+    }
+    let finest = own.into_iter().fold(1, usize::max);
+    ["X", "Y", "Z"].map(|name| machine.joint_named(name).map_or(finest, |p| joints[p].decimals))
+}
 
 /// Moves being made from joints, with what is counted on the way.
 pub(crate) struct Draft<'a> {

@@ -13,8 +13,8 @@ use osculate_tools::{Pose, cl::Motion};
 use crate::joint_path::{BlockKind, JointBlock, JointPath};
 use crate::machine::{JointValues, Machine, NearWish, angle_between};
 use crate::setup::Setup;
-use crate::solve::SolveOptions;
 use crate::solve_error::SolveError;
+use crate::solve_options::SolveOptions;
 
 /// Rotary joints never move further in one block, rad. Controls that take the shortest way need less than half a turn.
 const LARGEST_ROTARY_STEP_RAD: f64 = 0.5 * std::f64::consts::PI;

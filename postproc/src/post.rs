@@ -5,69 +5,19 @@ use std::io;
 use osculate_geom::Diagnostic;
 use osculate_tools::cl::ClPath;
 
-use crate::cldata::ClStreamError;
-use crate::draft::Draft;
+use crate::draft::{Draft, linear_decimals};
 use crate::feed::{FeedMode, fastest_durations_min};
 use crate::joint_path::JointBlock;
 use crate::machine::Machine;
 use crate::nc::block::RotaryName;
 use crate::nc::writer::Writer;
-use crate::nc::{Coolant, Dialect, FeedWord, Orientation, Program, WorkOffset, WriteError};
+use crate::nc::{FeedWord, Orientation, Program};
+use crate::post_error::PostError;
+use crate::post_options::{PostOptions, check};
 use crate::setup::Setup;
 use crate::setup_comment;
-use crate::solve::SolveOptions;
-use crate::solve_error::SolveError;
+use crate::solve_options::SolveOptions;
 use crate::source::MoveSource;
-
-/// How a path is to be posted.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PostOptions {
-    /// The language.
-    pub dialect: Dialect,
-    /// How F is written; [`FeedMode::Tcp`] turns tool-centre-point control on.
-    pub feed: FeedMode,
-    /// How the program says where the tool points; other than by joints only with [`FeedMode::Tcp`].
-    pub orientation: Orientation,
-    /// The moves stand in a subprogram that the main program calls (Sinumerik).
-    pub subprogram: bool,
-    /// Tolerances and what else the kinematics need. Its `tcp` is not read: the feed mode says it.
-    pub solve: SolveOptions,
-    /// How far the control may round corners, mm.
-    pub blend_mm: f64,
-    /// Name of the program.
-    pub program_name: String,
-    /// Number of the program, where the dialect has one (Fanuc).
-    pub program_number: u32,
-    /// Number of the tool, and of its length offset.
-    pub tool_number: u32,
-    /// Work offset; absent: `G54`, or with Heidenhain the preset that is active.
-    pub work_offset: Option<WorkOffset>,
-    /// Coolant.
-    pub coolant: Option<Coolant>,
-    /// Spindle speed; absent: the path's own.
-    pub spindle_rpm: Option<f64>,
-}
-
-impl PostOptions {
-    /// Default tolerances, tool 1, the path's own speed.
-    #[must_use]
-    pub fn new(dialect: Dialect, feed: FeedMode) -> Self {
-        Self {
-            dialect,
-            feed,
-            orientation: Orientation::Joints,
-            subprogram: false,
-            solve: SolveOptions::default(),
-            blend_mm: SolveOptions::default().tip_tol_mm,
-            program_name: "OSCULATE".into(),
-            program_number: 1,
-            tool_number: 1,
-            work_offset: None,
-            coolant: None,
-            spindle_rpm: None,
-        }
-    }
-}
 
 /// What became of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -97,86 +47,6 @@ pub struct Posted {
     pub summary: PostSummary,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
-}
-
-/// Why a path cannot be posted.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PostError {
-    /// The machine cannot run the path.
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    /// The dialect cannot say the program.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// The moves cannot be had.
-    #[error(transparent)]
-    Source(#[from] ClStreamError),
-    /// The sink takes no more.
-    #[error("the program cannot be written: {kind}")]
-    Sink {
-        /// What the sink says.
-        kind: io::ErrorKind,
-    },
-    /// An orientation that the feed mode does not allow.
-    #[error("the tool's orientation as vectors or planes needs feed mode tcp: there X Y Z are the tip")]
-    Orientation,
-    /// A rewind, which directions cannot say.
-    #[error(
-        "CL move {index}: the rotary joints must be rewound here, and directions of the tool do not say to which turn: \
-         write joints instead of vectors"
-    )]
-    Rewind {
-        /// The CL move.
-        index: usize,
-    },
-    /// The tool turns at feed.
-    #[error(
-        "CL move {index}: the tool axis turns at feed, which tilted planes cannot say: write joints or vectors"
-    )]
-    Turns {
-        /// The CL move.
-        index: usize,
-    },
-    /// A position beyond what an axis word holds.
-    #[error("CL move {index}: a position of {value} does not fit an axis word")]
-    Position {
-        /// The CL move.
-        index: usize,
-        /// The position, mm or deg.
-        value: f64,
-    },
-    /// A feed option that makes no sense.
-    #[error("feed option {what} is {value}: it must be finite and above zero")]
-    Feed {
-        /// The option.
-        what: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// A spindle speed that makes no sense.
-    #[error("a spindle speed of {rpm} rpm: it must be finite and above zero")]
-    Spindle {
-        /// What was given.
-        rpm: f64,
-    },
-}
-
-impl From<std::convert::Infallible> for PostError {
-    fn from(never: std::convert::Infallible) -> Self {
-        match never {}
-    }
-}
-
-impl PostError {
-    /// The CL move that it speaks of, from 0.
-    #[must_use]
-    pub const fn index(&self) -> Option<usize> {
-        match self {
-            Self::Solve(e) => e.index(),
-            Self::Position { index, .. } | Self::Rewind { index } | Self::Turns { index } => Some(*index),
-            _ => None,
-        }
-    }
 }
 
 /// What became of a path whose text went into a sink.
@@ -314,50 +184,12 @@ fn flush(writer: &mut Writer, sink: &mut dyn io::Write) -> Result<(), PostError>
     Ok(())
 }
 
-fn check(options: &PostOptions) -> Result<(), PostError> {
-    if options.orientation != Orientation::Joints && options.feed != FeedMode::Tcp {
-        return Err(PostError::Orientation);
-    }
-    let radius = match options.feed {
-        FeedMode::Kv { fgref_mm } | FeedMode::Kz { fgref_mm, .. } => fgref_mm,
-        _ => None,
-    };
-    let step = match options.feed {
-        FeedMode::Kz { step_mm_min, .. } => Some(step_mm_min),
-        _ => None,
-    };
-    let tip = match options.feed {
-        FeedMode::Fastest { tip_mm_min } => tip_mm_min,
-        _ => None,
-    };
-    for (what, value) in [("fgref_mm", radius), ("step_mm_min", step), ("tip_mm_min", tip)] {
-        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-            return Err(PostError::Feed { what, value });
-        }
-    }
-    match options.spindle_rpm.filter(|r| !(r.is_finite() && *r > 0.0)) {
-        Some(rpm) => Err(PostError::Spindle { rpm }),
-        None => Ok(()),
-    }
-}
-
 fn feed_word(options: &PostOptions, machine: &Machine) -> FeedWord {
     match options.feed {
         FeedMode::InverseTime => FeedWord::Inverse,
         FeedMode::Fastest { .. } => FeedWord::PerMinute(Some(machine.control().feed_reading.into())),
         mode => FeedWord::PerMinute(mode.metric()),
     }
-}
-
-/// Decimals of the linear words: of the joints, or of those called X, Y, Z where the words are the tip's.
-pub(crate) fn linear_decimals(machine: &Machine, of_tip: bool) -> [usize; 3] {
-    let joints = machine.joints();
-    let own = machine.linear().map(|p| joints[p].decimals);
-    if !of_tip {
-        return own;
-    }
-    let finest = own.into_iter().fold(1, usize::max);
-    ["X", "Y", "Z"].map(|name| machine.joint_named(name).map_or(finest, |p| joints[p].decimals))
 }
 
 fn rotary_name(machine: &Machine, place: usize) -> RotaryName {

@@ -6,8 +6,8 @@
 //! `BRKCHP` only breaks the chip. Forms without `FEDTO` differ from system to system and are not interpreted.
 
 use super::error::ClReadError;
+use super::feed::Feed;
 use super::fields::numbers;
-use super::read::Feed;
 use super::statement::Statement;
 
 /// How far above the last depth the feed starts again, and how far a chip is broken, mm.

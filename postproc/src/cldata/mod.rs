@@ -7,6 +7,7 @@ mod arc;
 mod cutter;
 mod cycle;
 mod error;
+mod feed;
 mod fields;
 mod read;
 mod statement;

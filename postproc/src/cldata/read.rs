@@ -17,6 +17,7 @@ use osculate_tools::{CutterSpec, Pose};
 use super::arc::Arc;
 use super::cycle::Cycle;
 use super::error::ClReadError;
+use super::feed::Feed;
 use super::fields::{axis, count, is_identity, numbers, place, unit, vector};
 use super::statement::{Item, Joiner, Statement};
 use crate::nc::Coolant;
@@ -87,14 +88,6 @@ impl Default for ClReadOptions {
     fn default() -> Self {
         Self { arc_tol_mm: 0.001 }
     }
-}
-
-/// A feed: per revolution it waits for the spindle's speed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Feed {
-    pub mm: f64,
-    pub per_turn: bool,
-    pub line: usize,
 }
 
 /// How a word that is not a plain point was taken.

@@ -4,8 +4,9 @@ use osculate_geom::{Diagnostic, Point3};
 
 use super::cutter::{self, Found};
 use super::error::ClReadError;
+use super::feed::Feed;
 use super::fields::{count, is_word, numbers, place};
-use super::read::{ClReader, Feed, LEAST_RADIUS_MM, Taken};
+use super::read::{ClReader, LEAST_RADIUS_MM, Taken};
 use super::statement::Statement;
 use crate::nc::Coolant;
 

@@ -5,7 +5,7 @@ use super::asked::{Asked, LengthWord, PathWord};
 use super::control::{Corner, Spindle, Tool};
 use super::event::{Event, Sink};
 use super::interpret::Interpreter;
-use super::readback::ReadError;
+use super::read_error::ReadError;
 use super::state::{FeedReading, Group};
 use super::token::Manner;
 use super::work_offset::WorkOffset;

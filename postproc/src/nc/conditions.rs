@@ -7,7 +7,7 @@ use super::asked::{Asked, LengthWord, PathWord};
 use super::control::{Corner, Length, Spindle, Tool};
 use super::event::Sink;
 use super::interpret::Interpreter;
-use super::readback::ReadError;
+use super::read_error::ReadError;
 use super::work_offset::WorkOffset;
 
 impl<S: Sink> Interpreter<'_, S> {

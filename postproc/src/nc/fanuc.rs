@@ -10,9 +10,9 @@
 
 use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
+use super::lines::Lines;
 use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
-use super::writer::Lines;
 
 pub(super) const WORDING: Wording =
     Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary, vector: (["I", "J", "K"], false) };

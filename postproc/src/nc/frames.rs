@@ -8,7 +8,7 @@ use super::asked::Asked;
 use super::event::{Event, Sink};
 use super::interpret::Interpreter;
 use super::orientation::plane;
-use super::readback::ReadError;
+use super::read_error::ReadError;
 use crate::machine::{NearWish, angle_between};
 
 /// The tool may lean by this against the plane that the rotary axes are said to stand at, rad: four decimals of three

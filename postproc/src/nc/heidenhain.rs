@@ -10,9 +10,9 @@
 
 use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
+use super::lines::Lines;
 use super::modal::{Modal, Position, Which, Wording};
 use super::number;
-use super::writer::Lines;
 
 pub(super) const WORDING: Wording =
     Wording { rapid: "L", feed: "L", modal: false, axis, rotary, vector: (["TX", "TY", "TZ"], true) };

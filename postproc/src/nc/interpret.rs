@@ -11,7 +11,7 @@ use super::Dialect;
 use super::asked::{Asked, PathWord};
 use super::control::{Control, Kind, Record, Tool};
 use super::event::{Event, FeedNow, Frame, Moved, Sink};
-use super::readback::ReadError;
+use super::read_error::ReadError;
 use super::sections::Sections;
 use super::state::{FeedReading, Known, State};
 use super::token::{BadWord, Manner, Word, words};
@@ -44,18 +44,6 @@ pub(super) struct Interpreter<'a, S> {
     pub(super) record: Record,
     /// The tool that the next change puts into the spindle.
     pub(super) selected: Option<Tool>,
-}
-
-/// Adds the names of the axes in a line.
-pub(super) fn note_names(line: &str, dialect: Dialect, named: &mut BTreeSet<String>) {
-    for word in words(line, dialect).unwrap_or_default() {
-        match word {
-            Word::Address { name, .. } if !named.contains(&name) => {
-                named.insert(name);
-            }
-            _ => {}
-        }
-    }
 }
 
 impl<'a, S: Sink> Interpreter<'a, S> {

@@ -8,10 +8,10 @@
 
 use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
+use super::lines::Lines;
 use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
 use super::orientation::Orientation;
-use super::writer::Lines;
 
 pub(super) const WORDING: Wording =
     Wording { rapid: "G0", feed: "G1", modal: true, axis: plain, rotary, vector: (["", "", ""], false) };

@@ -9,7 +9,7 @@ use super::Dialect;
 use super::asked::Asked;
 use super::event::Sink;
 use super::interpret::Interpreter;
-use super::readback::ReadError;
+use super::read_error::ReadError;
 use super::state::Known;
 use super::token::Manner;
 use crate::machine::{JointKind, JointValues, nearest_turn};

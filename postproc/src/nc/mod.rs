@@ -1,5 +1,6 @@
 //! NC programs: dialect-free moves, their wording in each dialect, and the way back.
 
+mod archive;
 mod asked;
 pub mod block;
 mod codes;
@@ -11,11 +12,14 @@ mod fanuc;
 mod frames;
 mod heidenhain;
 mod interpret;
+mod lines;
 mod linuxcnc;
 mod machine_frame;
 mod modal;
+mod names;
 pub mod number;
 pub mod orientation;
+mod read_error;
 pub mod readback;
 pub mod reading;
 mod sections;

@@ -14,11 +14,12 @@ use super::conduct::{Conduct, Expected};
 use super::control::Record;
 use super::event::{Event, Frame, Moved, Sink};
 use super::interpret::Interpreter;
+use super::names::Names;
+pub use super::read_error::ReadError;
 use super::state::FeedReading;
-use super::timing::Names;
 use crate::machine::{JointValues, Machine};
 use crate::motion::{TimedMove, rapid_time_min};
-use crate::setup::{Setup, SetupError};
+use crate::setup::Setup;
 
 /// How a text is to be read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,80 +116,6 @@ impl ReadBack {
     pub fn time_min(&self) -> f64 {
         self.blocks.iter().map(|b| b.time_min).fold(0.0, |sum, t| sum + t)
     }
-}
-
-/// Why a text cannot be read. Lines count from 1.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ReadError {
-    /// Text that is no word of the dialect.
-    #[error("line {line}: '{text}' is no word that can be read")]
-    Syntax {
-        /// Line.
-        line: usize,
-        /// Where it stops making sense.
-        text: String,
-    },
-    /// A word that may change the tool's way and is not understood.
-    #[error(
-        "line {line}: {word} is not interpreted and may change the tool's way; read without `strict` to leave it out"
-    )]
-    Word {
-        /// Line.
-        line: usize,
-        /// The word.
-        word: String,
-    },
-    /// A feed move without F.
-    #[error("line {line}: a feed move without {what}")]
-    NoFeed {
-        /// Line.
-        line: usize,
-        /// What is missing.
-        what: &'static str,
-    },
-    /// An arc whose ends lie on no common circle.
-    #[error("line {line}: the ends of the arc miss one circle about its centre by {off_mm:.4} mm")]
-    Arc {
-        /// Line.
-        line: usize,
-        /// Difference of the radii, mm.
-        off_mm: f64,
-    },
-    /// An incremental position from an unknown place.
-    #[error("line {line}: {axis} moves by an increment, but where it stands is not known")]
-    Increment {
-        /// Line.
-        line: usize,
-        /// The axis.
-        axis: String,
-    },
-    /// The linear joints cannot hold the tip.
-    #[error("line {line}: the machine's linear joints lie in one plane here")]
-    Flat {
-        /// Line.
-        line: usize,
-    },
-    /// The setup is none.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// A tolerance that is none.
-    #[error("read option {what} is {value}: it must be finite and above zero")]
-    Tolerance {
-        /// The option.
-        what: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// Nothing moves.
-    #[error(
-        "no complete position in {lines} lines: does the text name all axes of {machine}, and is the dialect right?"
-    )]
-    NoMoves {
-        /// Lines read.
-        lines: usize,
-        /// The machine.
-        machine: String,
-    },
 }
 
 /// Reads a whole text.

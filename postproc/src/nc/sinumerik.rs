@@ -15,9 +15,9 @@
 
 use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
+use super::lines::Lines;
 use super::modal::{Modal, Position, Which, Wording, plain};
 use super::number;
-use super::writer::Lines;
 use crate::feed::PathMetric;
 
 pub(super) const WORDING: Wording = Wording {

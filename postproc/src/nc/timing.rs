@@ -6,49 +6,15 @@
 
 use super::Dialect;
 use super::event::{Event, FeedNow, Frame, Moved, Sink};
-use super::interpret::{Interpreter, note_names};
-use super::readback::ReadError;
+use super::interpret::Interpreter;
+pub use super::names::Names;
+use super::read_error::ReadError;
 use super::state::{FeedReading, Known};
 use crate::machine::{MAX_JOINTS, Machine};
 use crate::motion::linuxcnc::{Canon, CanonArc, CanonFeed, CanonMove, Limits, PathControl};
 use crate::motion::{LookAhead, ProgramTime, Stretch, rapid_time_min};
 use crate::setup::Setup;
 use osculate_geom::Diagnostic;
-use std::collections::BTreeSet;
-
-/// The names of the axes in a text: an axis that is never named rests at zero.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Names {
-    dialect: Dialect,
-    all: BTreeSet<String>,
-    /// Axes of the machine that no line has named yet.
-    missing: Vec<String>,
-}
-
-impl Names {
-    /// Before the first line.
-    #[must_use]
-    pub fn new(dialect: Dialect, machine: &Machine) -> Self {
-        let missing = machine.joints().iter().map(|j| j.letter.clone()).collect();
-        Self { dialect, all: BTreeSet::new(), missing }
-    }
-
-    pub(super) const fn dialect(&self) -> Dialect {
-        self.dialect
-    }
-
-    pub(super) const fn all(&self) -> &BTreeSet<String> {
-        &self.all
-    }
-
-    /// One line.
-    pub fn line(&mut self, line: &str) {
-        if !self.missing.is_empty() {
-            note_names(line, self.dialect, &mut self.all);
-            self.missing.retain(|letter| !self.all.contains(letter));
-        }
-    }
-}
 
 /// What a text takes.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -79,9 +45,9 @@ impl<'a> Clock<'a> {
     ) -> Result<Self, ReadError> {
         setup.check()?;
         let frame = Frame { machine, setup };
-        let planned = Planned::new(names.dialect, machine);
-        let mut control = Interpreter::new(names.dialect, frame, strict, planned);
-        control.rest_unnamed(&names.all);
+        let planned = Planned::new(names.dialect(), machine);
+        let mut control = Interpreter::new(names.dialect(), frame, strict, planned);
+        control.rest_unnamed(names.all());
         Ok(Self { control, lines: 0, ended: false })
     }
 

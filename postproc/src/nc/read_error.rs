@@ -1,0 +1,77 @@
+//! Why an NC text cannot be read.
+
+use crate::setup::SetupError;
+
+/// Why a text cannot be read. Lines count from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReadError {
+    /// Text that is no word of the dialect.
+    #[error("line {line}: '{text}' is no word that can be read")]
+    Syntax {
+        /// Line.
+        line: usize,
+        /// Where it stops making sense.
+        text: String,
+    },
+    /// A word that may change the tool's way and is not understood.
+    #[error(
+        "line {line}: {word} is not interpreted and may change the tool's way; read without `strict` to leave it out"
+    )]
+    Word {
+        /// Line.
+        line: usize,
+        /// The word.
+        word: String,
+    },
+    /// A feed move without F.
+    #[error("line {line}: a feed move without {what}")]
+    NoFeed {
+        /// Line.
+        line: usize,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// An arc whose ends lie on no common circle.
+    #[error("line {line}: the ends of the arc miss one circle about its centre by {off_mm:.4} mm")]
+    Arc {
+        /// Line.
+        line: usize,
+        /// Difference of the radii, mm.
+        off_mm: f64,
+    },
+    /// An incremental position from an unknown place.
+    #[error("line {line}: {axis} moves by an increment, but where it stands is not known")]
+    Increment {
+        /// Line.
+        line: usize,
+        /// The axis.
+        axis: String,
+    },
+    /// The linear joints cannot hold the tip.
+    #[error("line {line}: the machine's linear joints lie in one plane here")]
+    Flat {
+        /// Line.
+        line: usize,
+    },
+    /// The setup is none.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A tolerance that is none.
+    #[error("read option {what} is {value}: it must be finite and above zero")]
+    Tolerance {
+        /// The option.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// Nothing moves.
+    #[error(
+        "no complete position in {lines} lines: does the text name all axes of {machine}, and is the dialect right?"
+    )]
+    NoMoves {
+        /// Lines read.
+        lines: usize,
+        /// The machine.
+        machine: String,
+    },
+}

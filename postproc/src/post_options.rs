@@ -1,0 +1,85 @@
+//! How a path is to be posted.
+
+use crate::feed::FeedMode;
+use crate::nc::{Coolant, Dialect, Orientation, WorkOffset};
+use crate::post_error::PostError;
+use crate::solve_options::SolveOptions;
+
+/// How a path is to be posted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PostOptions {
+    /// The language.
+    pub dialect: Dialect,
+    /// How F is written; [`FeedMode::Tcp`] turns tool-centre-point control on.
+    pub feed: FeedMode,
+    /// How the program says where the tool points; other than by joints only with [`FeedMode::Tcp`].
+    pub orientation: Orientation,
+    /// The moves stand in a subprogram that the main program calls (Sinumerik).
+    pub subprogram: bool,
+    /// Tolerances and what else the kinematics need. Its `tcp` is not read: the feed mode says it.
+    pub solve: SolveOptions,
+    /// How far the control may round corners, mm.
+    pub blend_mm: f64,
+    /// Name of the program.
+    pub program_name: String,
+    /// Number of the program, where the dialect has one (Fanuc).
+    pub program_number: u32,
+    /// Number of the tool, and of its length offset.
+    pub tool_number: u32,
+    /// Work offset; absent: `G54`, or with Heidenhain the preset that is active.
+    pub work_offset: Option<WorkOffset>,
+    /// Coolant.
+    pub coolant: Option<Coolant>,
+    /// Spindle speed; absent: the path's own.
+    pub spindle_rpm: Option<f64>,
+}
+
+impl PostOptions {
+    /// Default tolerances, tool 1, the path's own speed.
+    #[must_use]
+    pub fn new(dialect: Dialect, feed: FeedMode) -> Self {
+        Self {
+            dialect,
+            feed,
+            orientation: Orientation::Joints,
+            subprogram: false,
+            solve: SolveOptions::default(),
+            blend_mm: SolveOptions::default().tip_tol_mm,
+            program_name: "OSCULATE".into(),
+            program_number: 1,
+            tool_number: 1,
+            work_offset: None,
+            coolant: None,
+            spindle_rpm: None,
+        }
+    }
+}
+
+/// # Errors
+/// Where an option makes no sense.
+pub(crate) fn check(options: &PostOptions) -> Result<(), PostError> {
+    if options.orientation != Orientation::Joints && options.feed != FeedMode::Tcp {
+        return Err(PostError::Orientation);
+    }
+    let radius = match options.feed {
+        FeedMode::Kv { fgref_mm } | FeedMode::Kz { fgref_mm, .. } => fgref_mm,
+        _ => None,
+    };
+    let step = match options.feed {
+        FeedMode::Kz { step_mm_min, .. } => Some(step_mm_min),
+        _ => None,
+    };
+    let tip = match options.feed {
+        FeedMode::Fastest { tip_mm_min } => tip_mm_min,
+        _ => None,
+    };
+    for (what, value) in [("fgref_mm", radius), ("step_mm_min", step), ("tip_mm_min", tip)] {
+        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
+            return Err(PostError::Feed { what, value });
+        }
+    }
+    match options.spindle_rpm.filter(|r| !(r.is_finite() && *r > 0.0)) {
+        Some(rpm) => Err(PostError::Spindle { rpm }),
+        None => Ok(()),
+    }
+}
