@@ -2,6 +2,7 @@
 
 use crate::forms::Degenerate;
 use crate::point::{Uv, Vec3, uv};
+use crate::solve::symmetric;
 use crate::surface::Surface;
 
 /// A geodesic's state: parameters and their rate per mm of arc length.
@@ -24,7 +25,8 @@ fn acceleration(surface: &dyn Surface, s: GeodesicState) -> Result<Uv, Degenerat
     }
     let second = jet.second(s.rate);
     let (a, b) = (-second.dot(&jet.du), -second.dot(&jet.dv));
-    Ok(uv((a * g - b * f) / det, (b * e - a * f) / det))
+    let [u, v] = symmetric([e, f, g], [a, b]);
+    Ok(uv(u, v))
 }
 
 impl GeodesicState {

@@ -29,6 +29,7 @@
 use crate::forms::{Forms, Principal};
 use crate::point::{Unit3, Vec3};
 use crate::relative::{Relative, ToolCurvature};
+use crate::roots::{FLAT, minimum};
 
 /// The shape of Dupin's indicatrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +88,7 @@ pub struct Claim {
     pub off_rad: f64,
 }
 
-/// Directions over half a turn that are looked at for the smallest radius, each settled by golden section: the
+/// Directions over half a turn that are looked at for the smallest radius, the least of them settled between its neighbours: the
 /// indicatrix has at most eight extremes over a turn.
 const DIRECTIONS: usize = 360;
 
@@ -127,18 +128,7 @@ impl Conformity {
                 best = (size(t), t);
             }
         }
-        // Golden section between the neighbours.
-        let ratio = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut lo, mut hi) = (best.1 - step, best.1 + step);
-        while hi - lo > 1e-9 {
-            let (a, b) = (hi - ratio * (hi - lo), lo + ratio * (hi - lo));
-            if size(a) < size(b) {
-                hi = b;
-            } else {
-                lo = a;
-            }
-        }
-        let across = tangent(0.5 * (lo + hi));
+        let across = tangent(minimum([best.1 - step, best.1 + step], FLAT, size).x);
         let widest = Relative::new(&self.part, &self.tool).d_min;
         let off_rad = across.cross(&widest).norm().atan2(across.dot(&widest).abs());
         Claim { across, radius_root_mm: self.root_mm(&across).abs(), widest, off_rad }

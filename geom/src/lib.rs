@@ -40,6 +40,7 @@ pub mod quadrature;
 mod relative;
 pub mod roots;
 mod series;
+pub mod solve;
 mod surface;
 mod swept;
 mod taylor;

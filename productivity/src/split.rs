@@ -5,6 +5,7 @@
 //! the cap. The exact widths move both by terms of order h; [`best_share`] maximises with whatever widths it is given.
 
 use crate::rate::Share;
+use osculate_geom::roots::try_minimum;
 
 /// The best share by leading orders: 1/2, or less where `cap_mm` is reached before.
 ///
@@ -29,8 +30,10 @@ pub struct Best {
     pub capped: bool,
 }
 
-/// Bisections and golden sections: the optimum is flat, so that half of double precision's digits settle it.
+/// Bisections towards the cap: half of double precision's digits settle it.
 const STEPS: u32 = 40;
+/// The optimum without the cap is flat: this share of its range loses less than the tenth digit of the product.
+const SHARE: f64 = 3e-5;
 
 /// The share that makes `min(S_L, cap) S_C` greatest, for any two widths that grow with their part of the tolerance.
 ///
@@ -42,34 +45,18 @@ pub fn best_share<E>(
     along: impl Fn(f64) -> Result<f64, E>,
     across: impl Fn(f64) -> Result<f64, E>,
 ) -> Result<Best, E> {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
     let share = |chi: f64| Share { tolerance_mm, chi };
     let made = |chi: f64, capped: bool| -> Result<Best, E> {
         let s = share(chi);
         let feed = if capped { cap_mm } else { along(s.along_mm())?.min(cap_mm) };
         Ok(Best { share: s, feed_per_tooth_mm: feed, width_mm: across(s.across_mm())?, capped })
     };
-    // Without the cap: golden section on a product that has one maximum.
+    // Without the cap: a product that has one maximum.
     let area = |chi: f64| -> Result<f64, E> {
         let s = share(chi);
         Ok(along(s.along_mm())? * across(s.across_mm())?)
     };
-    let (mut lo, mut hi) = (0.02, 0.98);
-    let (mut x, mut y) = (hi - RATIO * (hi - lo), lo + RATIO * (hi - lo));
-    let (mut fx, mut fy) = (area(x)?, area(y)?);
-    // A third of the sections do: the cap, where it binds, is found sharply below.
-    for _ in 0..STEPS / 2 {
-        if fx > fy {
-            (hi, y, fy) = (y, x, fx);
-            x = hi - RATIO * (hi - lo);
-            fx = area(x)?;
-        } else {
-            (lo, x, fx) = (x, y, fy);
-            y = lo + RATIO * (hi - lo);
-            fy = area(y)?;
-        }
-    }
-    let free = 0.5 * (lo + hi);
+    let free = try_minimum([0.02, 0.98], SHARE, |chi| area(chi).map(|a| -a))?.x;
     if along(share(free).along_mm())? <= cap_mm {
         return made(free, false);
     }

@@ -7,6 +7,8 @@
 use crate::trim::edge::FaceEdge;
 use crate::trim::integrate;
 use crate::trim::region::{Chain, Known, Region};
+use osculate_geom::roots::{FLAT, minimum};
+use osculate_geom::solve::symmetric;
 use osculate_geom::{
     Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, forward_surface, uv,
 };
@@ -293,20 +295,10 @@ impl TrimmedSurface {
             {
                 found.add(&p);
             }
-            // Along the boundary: golden section between the neighbours of the best sample.
+            // Along the boundary: between the neighbours of the best sample.
             let [a, b] = rim[slot].1;
             let on = |t: f64| self.point(uv(a.u + t * (b.u - a.u), a.v + t * (b.v - a.v)));
-            let (mut lo, mut hi) = (0.0, 1.0);
-            let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-            for _ in 0..40 {
-                let (c, d) = (hi - ratio * (hi - lo), lo + ratio * (hi - lo));
-                if value(&on(c), slot) > value(&on(d), slot) {
-                    hi = d;
-                } else {
-                    lo = c;
-                }
-            }
-            found.add(&on(0.5 * (lo + hi)));
+            found.add(&on(minimum([0.0, 1.0], FLAT, |t| -value(&on(t), slot)).x));
         }
         found
     }
@@ -320,11 +312,11 @@ impl TrimmedSurface {
             let jet = self.jet2(at);
             let g = [sign * jet.du[coordinate], sign * jet.dv[coordinate]];
             let h = [jet.duu, jet.duv, jet.dvv].map(|d| sign * d[coordinate]);
-            let det = h[0] * h[2] - h[1] * h[1];
-            if !(h[0] < 0.0 && det > 0.0) {
+            if !(h[0] < 0.0 && h[0] * h[2] - h[1] * h[1] > 0.0) {
                 return None;
             }
-            let next = uv(at.u - (g[0] * h[2] - g[1] * h[1]) / det, at.v - (g[1] * h[0] - g[0] * h[1]) / det);
+            let step = symmetric(h, g);
+            let next = uv(at.u - step[0], at.v - step[1]);
             if !(next.u.is_finite() && next.v.is_finite() && self.contains(next)) {
                 return None;
             }

@@ -214,13 +214,8 @@ impl Meridian {
         let meet_z = a.radius * a.bottom.tan();
         // The corner's centre: r inside both lines, along their bisector from where they meet.
         let (down, out) = ([a.bottom.sin(), -a.bottom.cos()], [a.side.cos(), -a.side.sin()]);
-        let det = down[0] * out[1] - down[1] * out[0];
-        let (p, q) = (
-            down[0] * a.radius + down[1] * meet_z - a.corner,
-            out[0] * a.radius + out[1] * meet_z - a.corner,
-        );
-        let core = (p * out[1] - q * down[1]) / det;
-        let height = (down[0] * q - out[0] * p) / det;
+        let off = [down, out].map(|d| d[0] * a.radius + d[1] * meet_z - a.corner);
+        let [core, height] = osculate_geom::solve::general([down, out], off);
         // How far the corner moves its centre inwards, per mm of its radius.
         let per_corner = if a.corner > 0.0 { (a.radius - core) / a.corner } else { 0.0 };
         // To rounding of the coordinates: a ball's centre is computed.

@@ -8,7 +8,7 @@
 use crate::cutter::{Cutter, Line, Part};
 use crate::pose::Pose;
 use osculate_geom::Vec3;
-use osculate_geom::roots::{End, bracketed};
+use osculate_geom::roots::{End, FLAT, bracketed, minimum};
 
 /// A pose and its velocity per unit of the motion's parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,22 +106,12 @@ pub(crate) fn state(cutter: &Cutter, line: &Line, motion: &impl SweptMotion, t: 
     }
 }
 
-/// The point of a missing line nearest to the cutter, by golden section on the convex distance.
+/// The point of a missing line nearest to the cutter: the distance is convex along it.
 fn nearest_on_line(cutter: &Cutter, pose: &Pose, line: &Line) -> osculate_geom::Point3 {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
     let centre = (pose.tip - line.origin).dot(&line.direction);
     let reach = cutter.length_mm() + cutter.radius_mm();
-    let (mut a, mut b) = (centre - reach, centre + reach);
-    // 48 sections shrink the bracket by 1e-10: enough for a sign.
-    for _ in 0..48 {
-        let (x, y) = (b - RATIO * (b - a), a + RATIO * (b - a));
-        if cutter.endless_distance(pose, &line.point(x)) < cutter.endless_distance(pose, &line.point(y)) {
-            b = y;
-        } else {
-            a = x;
-        }
-    }
-    line.point(0.5 * (a + b))
+    let far = |s: f64| cutter.endless_distance(pose, &line.point(s));
+    line.point(minimum([centre - reach, centre + reach], FLAT, far).x)
 }
 
 /// Relative accuracy of the motion parameter at a minimum. The entry is flat there, so that its own error is of

@@ -13,9 +13,7 @@ use super::lead::{Clearance, LeadField, Leaning};
 use super::seat::Seat;
 use super::{Along, MAX_PASSES, Passes, PlanError, Task, shorter};
 use osculate_geom::line::LineError;
-use osculate_geom::{
-    Axis, Diagnostic, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv, forward_surface,
-};
+use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Surface, Uv, forward_surface};
 use rayon::prelude::*;
 
 /// Most regions: each costs a retract, and wide regions have most of the gain.

@@ -9,6 +9,7 @@
 //! matrix of second derivatives is positive definite, Gauss's (without the second term) elsewhere, and is
 //! shortened until `f` falls, so that the distance never grows.
 
+use osculate_geom::solve::definite;
 use osculate_geom::{Domain, Interval, Jet2, Point3, Surface, Uv, uv};
 
 /// Where jets come from.
@@ -242,29 +243,15 @@ fn next_step(here: &State, query: &Point3) -> ([f64; 2], bool) {
     let [e, g] = here.metric;
     let f = j.du.dot(&j.dv);
     let full = [e + r.dot(&j.duu), f + r.dot(&j.duv), g + r.dot(&j.dvv)];
-    match solve(full, here.gradient, here.held) {
+    match definite(full, here.gradient, here.held, SINGULAR) {
         Some(step) => (step, true),
         None => {
             // Lifted by a little of itself, so that a direction without length moves by a finite amount.
             let lift = 1e-12 * (e + g);
-            (solve([e + lift, f, g + lift], here.gradient, here.held).unwrap_or([0.0, 0.0]), false)
-        }
-    }
-}
-
-/// Solves `[[a, b], [b, c]] x = g` with held unknowns zero; `None` unless it is positive definite.
-#[inline(always)]
-fn solve([a, b, c]: [f64; 3], g: [f64; 2], held: [bool; 2]) -> Option<[f64; 2]> {
-    match held {
-        [true, true] => Some([0.0, 0.0]),
-        [true, false] => (c > 0.0).then(|| [0.0, g[1] / c]),
-        [false, true] => (a > 0.0).then(|| [g[0] / a, 0.0]),
-        [false, false] => {
-            let det = a * c - b * b;
-            (a > 0.0 && c > 0.0 && det > SINGULAR * a * c).then(|| {
-                let r = 1.0 / det;
-                [(g[0] * c - g[1] * b) * r, (g[1] * a - g[0] * b) * r]
-            })
+            (
+                definite([e + lift, f, g + lift], here.gradient, here.held, SINGULAR).unwrap_or([0.0, 0.0]),
+                false,
+            )
         }
     }
 }

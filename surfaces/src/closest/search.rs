@@ -18,6 +18,7 @@ use super::foot::{ClosestError, Foot, FootKind, PERPENDICULAR, finish};
 use super::tree::{Seen, sharpened};
 use super::way::descend_surface;
 use crate::nurbs::NurbsSurface;
+use osculate_geom::solve::definite;
 use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Surface, Uv};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -284,12 +285,11 @@ impl Model {
             least = least.min(quadratic(end, place(h + b * end, c)));
             least = least.min(quadratic(place(g + b * end, a), end));
         }
-        let det = a * c - b * b;
-        if a > 0.0 && det > 0.0 {
-            let (s, t) = ((b * h - c * g) / det, (b * g - a * h) / det);
-            if s.abs() <= 1.0 && t.abs() <= 1.0 {
-                least = least.min(quadratic(s, t));
-            }
+        if let Some([s, t]) = definite([a, b, c], [-g, -h], [false; 2], 0.0)
+            && s.abs() <= 1.0
+            && t.abs() <= 1.0
+        {
+            least = least.min(quadratic(s, t));
         }
         let [d0, d1, d2] = self.change;
         (2.0 * (self.value + least - (d0 + 2.0 * d1 + d2) / 6.0)).max(0.0).sqrt()

@@ -16,6 +16,7 @@ use super::stitch::chains;
 use super::trace::{LineEnd, LinePoint, SurfacePolyline};
 use super::web::{Extreme, Web, edge, same_sense};
 use osculate_geom::roots::{End, bracketed};
+use osculate_geom::solve::symmetric;
 use osculate_geom::{Axis, Uv, Vec3, uv};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -173,8 +174,8 @@ impl Level<'_> {
             let jet = surface.jet2(at);
             let (e, f, k) = (jet.du.dot(&jet.du), jet.du.dot(&jet.dv), jet.dv.dot(&jet.dv));
             // I^-1 g, the gradient on the surface, as a parameter rate.
-            let det = e * k - f * f;
-            let rate = uv((k * g[0] - f * g[1]) / det, (e * g[1] - f * g[0]) / det);
+            let [du, dv] = symmetric([e, f, k], g);
+            let rate = uv(du, dv);
             let steep = rate.u * g[0] + rate.v * g[1];
             let step = uv(-v * rate.u / steep, -v * rate.v / steep);
             if !(step.u.is_finite() && step.v.is_finite()) {

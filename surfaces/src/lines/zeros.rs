@@ -9,6 +9,7 @@
 //! Nothing here trusts the count: the sum of the rotations is to be compared with [`boundary_rotation`].
 
 use super::chart::Chart;
+use osculate_geom::solve::general;
 use osculate_geom::{Axis, Interval, Uv, uv};
 use rayon::prelude::*;
 use std::collections::{HashMap, VecDeque};
@@ -208,8 +209,7 @@ fn judge(chart: &Chart, field: Plane, floor: f64, cell: &Cell) -> Verdict {
     if det.abs() <= 1e-10 * size {
         return Verdict::Open;
     }
-    let solve =
-        |b: [f64; 2]| [(j[1][1] * b[0] - j[0][1] * b[1]) / det, (j[0][0] * b[1] - j[1][0] * b[0]) / det];
+    let solve = |b: [f64; 2]| general(j, b);
     let bend = BETWEEN * worst(&|m| solve(m)[0]).max(worst(&|m| solve(m)[1]));
     let p = solve(g[0]);
     if p[0].abs().max(p[1].abs()) > 1.0 + bend {
@@ -247,8 +247,8 @@ fn newton(chart: &Chart, field: Plane, start: Uv, half: [f64; 2]) -> Option<Uv> 
         let (r, l) = (side(step[0], 0.0)?, side(-step[0], 0.0)?);
         let (t, b) = (side(0.0, step[1])?, side(0.0, -step[1])?);
         let j = [0, 1].map(|k| [0.5 * (r[k] - l[k]) / step[0], 0.5 * (t[k] - b[k]) / step[1]]);
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        let d = uv((j[1][1] * g[0] - j[0][1] * g[1]) / det, (j[0][0] * g[1] - j[1][0] * g[0]) / det);
+        let [du, dv] = general(j, g);
+        let d = uv(du, dv);
         if !(d.u.is_finite() && d.v.is_finite()) {
             return None;
         }

@@ -6,6 +6,7 @@
 use super::options::MeshOptions;
 use crate::part::Face;
 use crate::topology::{Course, Follower, Spacing, Topology, Wrapped, on_polyline};
+use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::{Point3, Uv, uv};
 
 /// The points of an edge along its course.
@@ -225,7 +226,7 @@ fn off_chord(x: &Point3, p: &Point3, q: &Point3) -> f64 {
     (p + d * t - x).norm()
 }
 
-/// The parameter of the course nearest to a point: the best chord of the samples, then a golden section around it.
+/// The parameter of the course nearest to a point: the best chord of the samples, then the minimum along it.
 fn nearest(course: &Course, dense: &[(f64, Point3)], p: &Point3) -> f64 {
     let best = (1..dense.len())
         .min_by(|a, b| {
@@ -233,17 +234,10 @@ fn nearest(course: &Course, dense: &[(f64, Point3)], p: &Point3) -> f64 {
             d(*a).total_cmp(&d(*b))
         })
         .unwrap_or(1);
-    let (mut lo, mut hi) = (dense[best - 1].0, dense[best].0);
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let d = |t: f64| (course.point(t) - p).norm_squared();
-    for _ in 0..40 {
-        let (a, b) = (hi - ratio * (hi - lo), lo + ratio * (hi - lo));
-        if d(a) <= d(b) { hi = b } else { lo = a }
-    }
-    let t = 0.5 * (lo + hi);
+    let ends = [dense[best - 1].0, dense[best].0];
+    let t = minimum(ends, FLAT, |t| (course.point(t) - p).norm_squared()).x;
     // The ends are met exactly where they are as near.
-    [dense[best - 1].0, dense[best].0]
-        .into_iter()
+    ends.into_iter()
         .find(|end| (course.point(*end) - p).norm() <= (course.point(t) - p).norm() + 1e-12 * p.coords.norm())
         .unwrap_or(t)
 }

@@ -12,6 +12,7 @@
 
 use super::asked::{Band, RulingError, RulingOptions, border};
 use crate::closest::{ClosestError, closest_near};
+use osculate_geom::roots::try_minimum;
 use osculate_geom::{Point3, Surface, Uv};
 
 /// One rule: where it begins and ends on the borders of a band, and how far it strays from the face.
@@ -127,9 +128,8 @@ fn longest_run(all: Vec<Mate>, tolerance_mm: f64) -> Vec<Mate> {
 /// Every mate moved to its least error between its neighbours, a few times over.
 fn refine(segments: &Segments<'_>, how: &RulingOptions, mates: &mut [f64]) -> Result<(), RulingError> {
     const ROUNDS: usize = 2;
-    /// Sections that shrink a cell to a hundred-thousandth.
-    const SECTIONS: usize = 24;
-    const RATIO: f64 = 0.618_033_988_749_894_9;
+    /// Mates are found to this share of a cell.
+    const SHARE: f64 = 1e-5;
     let n = mates.len() - 1;
     let cell = 1.0 / (2 * n) as f64;
     for round in 0..ROUNDS {
@@ -140,27 +140,14 @@ fn refine(segments: &Segments<'_>, how: &RulingOptions, mates: &mut [f64]) -> Re
             }
             let low = if i == 0 { 0.0 } else { mates[i - 1] + 0.2 * cell };
             let high = if i == n { 1.0 } else { mates[i + 1] - 0.2 * cell };
-            let (mut a, mut b) = ((mates[i] - width).max(low), (mates[i] + width).min(high));
+            let (a, b) = ((mates[i] - width).max(low), (mates[i] + width).min(high));
             if b <= a {
                 continue;
             }
             let t = i as f64 / n as f64;
-            let (mut x, mut y) = (b - RATIO * (b - a), a + RATIO * (b - a));
-            let (mut fx, mut fy) = (segments.error(t, x)?, segments.error(t, y)?);
-            for _ in 0..SECTIONS {
-                if fx <= fy {
-                    (b, y, fy) = (y, x, fx);
-                    x = b - RATIO * (b - a);
-                    fx = segments.error(t, x)?;
-                } else {
-                    (a, x, fx) = (x, y, fy);
-                    y = a + RATIO * (b - a);
-                    fy = segments.error(t, y)?;
-                }
-            }
-            let found = if fx <= fy { (x, fx) } else { (y, fy) };
-            if found.1 < segments.error(t, mates[i])? {
-                mates[i] = found.0;
+            let found = try_minimum([a, b], SHARE, |x| segments.error(t, x))?;
+            if found.f < segments.error(t, mates[i])? {
+                mates[i] = found.x;
             }
         }
     }

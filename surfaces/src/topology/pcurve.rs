@@ -17,6 +17,7 @@ use crate::part::Face;
 use crate::trim::analytic::Analytic;
 use crate::trim::carrier::FaceSurface;
 use crate::trim::foot;
+use osculate_geom::solve::symmetric;
 use osculate_geom::{Axis, Domain, Interval, Point3, Surface, Uv, Vec3, uv};
 
 /// Splines keep to the feet within this part of the face's size, mm on the surface.
@@ -137,8 +138,7 @@ impl<'a> Ground<'a> {
         let f = jet.du.dot(&jet.dv) + r.dot(&jet.duv);
         let h = jet.dv.norm_squared() + r.dot(&jet.dvv);
         let g = [d.dot(&jet.du), d.dot(&jet.dv)];
-        let det = e * h - f * f;
-        (det > 1e-10 * e * h).then(|| [(g[0] * h - g[1] * f) / det, (g[1] * e - g[0] * f) / det])
+        (e * h - f * f > 1e-10 * e * h).then(|| symmetric([e, f, h], g))
     }
 
     /// Length on the surface of a step between parameters, mm.

@@ -2,6 +2,7 @@
 
 use super::carrier::FaceSurface;
 use super::curve::{Curve, Piece};
+use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::{Point3, Surface, Unit3, Vec3, uv};
 use std::sync::Arc;
 
@@ -137,18 +138,8 @@ impl Curve for Lifted {
         let step = (hi - lo) / f64::from(SAMPLES);
         let best = (0..=SAMPLES).map(|k| lo + step * f64::from(k)).min_by(|a, b| d2(*a).total_cmp(&d2(*b)));
         let middle = best.unwrap_or(lo);
-        // Golden section between the neighbours of the best sample.
-        let (mut a, mut b) = ((middle - step).max(lo), (middle + step).min(hi));
-        let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-        for _ in 0..60 {
-            let (c, d) = (b - ratio * (b - a), a + ratio * (b - a));
-            if d2(c) < d2(d) {
-                b = d;
-            } else {
-                a = c;
-            }
-        }
-        let found = 0.5 * (a + b);
+        // Between the neighbours of the best sample.
+        let found = minimum([(middle - step).max(lo), (middle + step).min(hi)], FLAT, d2).x;
         [lo, hi].into_iter().fold(found, |best, end| if d2(end) <= d2(best) { end } else { best })
     }
     fn breaks(&self) -> Vec<f64> {

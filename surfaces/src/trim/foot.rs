@@ -5,6 +5,7 @@
 //! one. [`crate::closest`] answers the general question; this one is for the hundreds of thousands of boundary points
 //! of a part, all with a neighbour at hand.
 
+use osculate_geom::solve::definite;
 use osculate_geom::{Axis, Interval, Point3, Surface, Uv, uv};
 
 /// What is searched.
@@ -16,6 +17,9 @@ pub(crate) struct Target<'a> {
     /// The point in space.
     pub(crate) point: Point3,
 }
+
+/// Squared sine between the directions of the two parameters below which the matrix counts as singular.
+const SINGULAR: f64 = 1e-14;
 
 /// Newton steps at most. From a neighbour on the same curve three are usual; a start from a grid takes ten.
 const MAX_STEPS: u32 = 40;
@@ -46,12 +50,12 @@ pub(crate) fn newton(target: &Target<'_>, start: Uv) -> (Uv, f64) {
             !target.closes[0] && ((at.u <= domain.u.lo && g[0] > 0.0) || (at.u >= domain.u.hi && g[0] < 0.0)),
             !target.closes[1] && ((at.v <= domain.v.lo && g[1] > 0.0) || (at.v >= domain.v.hi && g[1] < 0.0)),
         ];
-        let full = [[e + r.dot(&jet.duu), f + r.dot(&jet.duv)], [f + r.dot(&jet.duv), h + r.dot(&jet.dvv)]];
-        let step = solve(full, g, held)
+        let full = [e + r.dot(&jet.duu), f + r.dot(&jet.duv), h + r.dot(&jet.dvv)];
+        let step = definite(full, g, held, SINGULAR)
             .or_else(|| {
                 // Gauss and Newton's matrix, lifted where the surface has no tangent plane.
                 let lift = 1e-12 * (e + h) + 1e-300;
-                solve([[e + lift, f], [f, h + lift]], g, held)
+                definite([e + lift, f, h + lift], g, held, SINGULAR)
             })
             .unwrap_or([0.0, 0.0]);
         // Halve until the distance shrinks.
@@ -76,21 +80,6 @@ pub(crate) fn newton(target: &Target<'_>, start: Uv) -> (Uv, f64) {
         }
     }
     (at, distance)
-}
-
-/// Solves the symmetric 2x2 system with some unknowns held at zero; `None` unless positive definite.
-fn solve(m: [[f64; 2]; 2], g: [f64; 2], held: [bool; 2]) -> Option<[f64; 2]> {
-    match held {
-        [true, true] => Some([0.0, 0.0]),
-        [true, false] => (m[1][1] > 0.0).then(|| [0.0, g[1] / m[1][1]]),
-        [false, true] => (m[0][0] > 0.0).then(|| [g[0] / m[0][0], 0.0]),
-        [false, false] => {
-            let det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-            // Relative to the product of the diagonal the determinant is the squared sine between the directions.
-            (m[0][0] > 0.0 && m[1][1] > 0.0 && det > 1e-14 * m[0][0] * m[1][1])
-                .then(|| [(g[0] * m[1][1] - g[1] * m[0][1]) / det, (g[1] * m[0][0] - g[0] * m[1][0]) / det])
-        }
-    }
 }
 
 /// Points of a surface on a grid, for a start without neighbour.

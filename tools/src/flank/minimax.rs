@@ -12,13 +12,13 @@ use super::axis::{AxisJet, AxisLine};
 use super::lp::{Rows, solve};
 use super::rule::Rule;
 use super::ruled::RuledStrip;
-use super::search::least_between;
 use super::section::{Least, Stations, least_at};
 use super::standard::along_rule;
 use super::three::three_tangent;
 use super::tool::SideTool;
 use super::touch::{PlaceError, Touch};
 use nalgebra::{DMatrix, DVector, SVector};
+use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::{Point3, Unit3, Vec3};
 
 /// Unknowns of a step: the axis moved along x and y, turned about x and y, slid along itself, and the value.
@@ -102,8 +102,8 @@ impl Search<'_> {
             let [a, b, c] = [k - 1, k, k + 1].map(|k| all[k].deviation_mm);
             for sign in [1.0, -1.0] {
                 if sign * b <= sign * a && sign * b <= sign * c {
-                    let at = least_between(v(k - 1), v(k + 1), |v| sign * self.at(axis, v).deviation_mm);
-                    all.push(self.at(axis, at.0));
+                    let at = minimum([v(k - 1), v(k + 1)], FLAT, |v| sign * self.at(axis, v).deviation_mm);
+                    all.push(self.at(axis, at.x));
                 }
             }
         }
@@ -210,7 +210,7 @@ impl Search<'_> {
     fn off_rule(&self, axis: &AxisLine) -> (f64, Step) {
         // The least deviation on the line is where its slope vanishes; a cylinder's is a parabola's near the foot.
         let distance = |v: f64| self.tool.deviation_mm(axis, &self.rule.point(v));
-        let v = least_between(0.0, 1.0, distance).0;
+        let v = minimum([0.0, 1.0], FLAT, distance).x;
         let p = self.rule.point(v);
         (distance(v), self.gradient_at(axis, &p))
     }

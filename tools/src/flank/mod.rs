@@ -51,7 +51,6 @@ mod minimax;
 pub mod path;
 mod rule;
 mod ruled;
-mod search;
 mod section;
 mod setting;
 mod standard;

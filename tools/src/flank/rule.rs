@@ -1,7 +1,7 @@
 //! One rule of a strip: its ends, the normals there, and the frame in which a cutter is put against it.
 
 use super::directrix::CurveJet2;
-use super::search::least_between;
+use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::{Point3, Side, Unit3, Vec3};
 
 /// Why a rule gives no frame.
@@ -197,7 +197,7 @@ impl Rule {
         let seen: [f64; LOOKS + 1] = std::array::from_fn(|k| hollow(at(k)));
         let most = (0..=LOOKS).max_by(|a, b| seen[*a].total_cmp(&seen[*b])).unwrap_or(0);
         let (lo, hi) = (at(most.saturating_sub(1)), at((most + 1).min(LOOKS)));
-        let found = -least_between(lo, hi, |v| -hollow(v)).1;
+        let found = -minimum([lo, hi], FLAT, |v| -hollow(v)).f;
         let most = found.max(seen[most]);
         if most > 0.0 { 1.0 / most } else { f64::INFINITY }
     }

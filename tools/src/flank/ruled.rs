@@ -2,7 +2,7 @@
 
 use super::directrix::{CurveJet2, Directrix, Source};
 use super::rule::{Rule, RuleError};
-use super::search::least_between;
+use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::{
     Axis, Curve, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Uv, Vec3, uv,
 };
@@ -142,8 +142,8 @@ impl<'a> RuledStrip<'a> {
                 if seen[k] > seen[before] || seen[k] > seen[after] {
                     continue;
                 }
-                let found = least_between(at(before), at(after), |u| length(u).unwrap_or(f64::NAN));
-                for (u, l) in [(at(k), seen[k]), found] {
+                let found = minimum([at(before), at(after)], FLAT, |u| length(u).unwrap_or(f64::NAN));
+                for (u, l) in [(at(k), seen[k]), (found.x, found.f)] {
                     if l < best.1 {
                         best = (u, l);
                     }

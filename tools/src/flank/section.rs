@@ -10,8 +10,8 @@
 use super::axis::AxisLine;
 use super::directrix::CurveJet2;
 use super::ruled::RuledStrip;
-use super::search::least_between;
 use super::tool::SideTool;
+use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::{Axis, Point3, Surface};
 
 /// Points of both directrices at rising parameters, from which searches over u start.
@@ -203,8 +203,8 @@ pub fn profile(
     let extreme = |sign: f64| {
         let value = |k: usize| sign * samples[k].deviation_mm;
         let k = (0..=cells).min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or(0);
-        let around = (v(k.saturating_sub(1)), v((k + 1).min(cells)));
-        let found = at(least_between(around.0, around.1, |v| sign * at(v).deviation_mm).0);
+        let around = [v(k.saturating_sub(1)), v((k + 1).min(cells))];
+        let found = at(minimum(around, FLAT, |v| sign * at(v).deviation_mm).x);
         if sign * found.deviation_mm < value(k) { found } else { samples[k] }
     };
     let (lowest, highest) = (extreme(1.0), extreme(-1.0));

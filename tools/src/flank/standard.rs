@@ -8,12 +8,11 @@
 use super::axis::AxisJet;
 use super::rule::Rule;
 use super::ruled::RuledStrip;
-use super::search::least_between;
 use super::section::{Stations, end_deviation};
 use super::tool::SideTool;
 use super::touch::PlaceError;
 use osculate_geom::Vec3;
-use osculate_geom::roots::{End, bracketed};
+use osculate_geom::roots::{End, FLAT, bracketed, minimum};
 
 /// The normal n at an angle about z from the frame's y, and its derivative by u when the angle moves.
 fn normal(rule: &Rule, angle: f64, angle_rate: f64) -> (Vec3, Vec3) {
@@ -149,7 +148,7 @@ pub fn balanced_fraction(rule: &Rule, tool: SideTool) -> Result<f64, PlaceError>
         double_point(rule, &tool, t).map_or(f64::NAN, |jet| {
             let on_rule = |v: f64| tool.deviation_mm(&jet.line, &rule.point(v));
             // The distance of two straight lines has one minimum: the ends are highest.
-            on_rule(0.0).max(on_rule(1.0)) + least_between(0.0, 1.0, on_rule).1
+            on_rule(0.0).max(on_rule(1.0)) + minimum([0.0, 1.0], FLAT, on_rule).f
         })
     };
     let at = |x: f64| End { x, f: balance(x) };

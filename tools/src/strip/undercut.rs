@@ -2,9 +2,7 @@
 
 use super::local::Near;
 use osculate_geom::geodesic::GeodesicState;
-
-/// Most steps towards the deepest place across.
-const MOST_PARABOLAS: u32 = 30;
+use osculate_geom::roots::try_minimum;
 
 /// The lowest standoff seen on a walk, with the stretch in which the true minimum lies.
 #[derive(Clone, Copy)]
@@ -44,9 +42,9 @@ impl Undercut {
         self.last = [self.last[1], Some(new)];
     }
 
-    /// Depth below the part, the minimum between places found by parabolas over the two steps of `step` mm around it.
+    /// Depth below the part, the minimum between places looked for over the two steps of `step` mm around it.
     ///
-    /// `height` is asked for the standoff so far on from a place; `nearest` is how near in steps the parabolas come.
+    /// `height` is asked for the standoff so far on from a place; `nearest` is how near in steps its place is asked for.
     pub fn deepest<E>(
         &self,
         step: f64,
@@ -54,44 +52,9 @@ impl Undercut {
         height: impl Fn(&Place, f64) -> Result<f64, E>,
     ) -> Result<f64, E> {
         let Some(a) = self.before_lowest else { return Ok((-self.lowest).max(0.0)) };
-        let height = |x: f64| height(&a, x);
-        // Three places around the minimum, closed in on by parabolas, by halves where these stand still.
-        let mut x = [0.0, step, 2.0 * step];
-        let mut f = [a.height, height(x[1])?, height(x[2])?];
-        for round in 0..MOST_PARABOLAS {
-            let (da, dc) = (x[1] - x[0], x[1] - x[2]);
-            let (fa, fc) = (f[1] - f[0], f[1] - f[2]);
-            let bottom = da * fc - dc * fa;
-            let by = 0.5 * (da * da * fc - dc * dc * fa) / bottom;
-            let inside = bottom != 0.0 && x[1] - by > x[0] && x[1] - by < x[2];
-            // Every third step halves the longer side.
-            let new = if inside && round % 3 != 2 {
-                x[1] - by
-            } else if da > -dc {
-                x[1] - 0.5 * da
-            } else {
-                x[1] - 0.5 * dc
-            };
-            // A height is flat at its minimum: its place to half of double precision's digits is enough.
-            if (new - x[1]).abs() < 1e-7f64.max(nearest) * step {
-                break;
-            }
-            let g = height(new)?;
-            let above = new > x[1];
-            if g < f[1] {
-                if above {
-                    (x[0], f[0]) = (x[1], f[1]);
-                } else {
-                    (x[2], f[2]) = (x[1], f[1]);
-                }
-                (x[1], f[1]) = (new, g);
-            } else if above {
-                (x[2], f[2]) = (new, g);
-            } else {
-                (x[0], f[0]) = (new, g);
-            }
-        }
-        let lowest = self.lowest.min(f[1]);
+        // A height is flat at its minimum: its place to half of double precision's digits is enough.
+        let share = 0.5 * nearest.max(1e-7);
+        let lowest = self.lowest.min(try_minimum([0.0, 2.0 * step], share, |x| height(&a, x))?.f);
         Ok((-lowest).max(0.0))
     }
 }

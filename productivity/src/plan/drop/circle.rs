@@ -5,6 +5,7 @@
 //! `z_u q_v - z_v q_u = 0`, `q = x^2 + y^2 = R^2`, two equations that Newton solves with the face's second derivatives.
 
 use super::frame::Frame;
+use osculate_geom::solve::general;
 use osculate_geom::{Surface, Uv, uv};
 
 /// Steps of Newton: quadratic convergence needs a few.
@@ -39,9 +40,7 @@ pub(super) fn highest(surface: &dyn Surface, frame: &Frame, circle: &Circle, at:
             duu[2] * qv + du[2] * quv - duv[2] * qu - dv[2] * quu,
             duv[2] * qv + du[2] * qvv - dvv[2] * qu - dv[2] * quv,
         ];
-        let det = qu * bend[1] - qv * bend[0];
-        let step =
-            [(off[0] * bend[1] - off[1] * qv) / det, (off[1] * qu - off[0] * bend[0]) / det].map(|x| -x);
+        let step = general([[qu, qv], bend], off).map(|x| -x);
         if !(step[0].is_finite() && step[1].is_finite()) {
             return None;
         }

@@ -6,6 +6,7 @@
 
 use crate::plan::line::Rectangle;
 use osculate_geom::line::LineError;
+use osculate_geom::solve::symmetric;
 use osculate_geom::{Darboux, Degenerate, Jet2, Surface, Unit3, Uv, Vec3, geodesic_curvature, uv};
 
 /// A field's value and derivatives by the parameters.
@@ -88,10 +89,9 @@ impl<'a> Face<'a> {
     /// Steepest ascent: the parameter direction, and the field's slope along it for a mm.
     pub fn ascent(jet: &Jet2, phi: &FieldJet) -> Result<(Uv, f64), LineError> {
         let forms = jet.forms()?;
-        let [e, f, g] = forms.first;
-        let det = e * g - f * f;
         let [a, b] = phi.slope;
-        let way = uv((g * a - f * b) / det, (e * b - f * a) / det);
+        let [du, dv] = symmetric(forms.first, phi.slope);
+        let way = uv(du, dv);
         let square = a * way.u + b * way.v;
         let slope = square.max(0.0).sqrt();
         if !(slope > 0.0 && slope.is_finite()) {

@@ -5,6 +5,7 @@
 use crate::strip::knotted::Knotted;
 use crate::strip::traced::{Kept, between};
 use osculate_geom::geodesic::GeodesicState;
+use osculate_geom::solve::symmetric;
 use osculate_geom::{Degenerate, Domain, Forms, Jet2, Surface, Taylor, Unit3, Uv, Vec3, uv};
 use std::rc::Rc;
 use std::sync::OnceLock;
@@ -209,8 +210,8 @@ fn bend_of(here: &Jet2, rate: Uv) -> Uv {
     let (su, sv) = (&here.du, &here.dv);
     let (e, f, g) = (su.norm_squared(), su.dot(sv), sv.norm_squared());
     let second = here.second(rate);
-    let (a, b, det) = (-second.dot(su), -second.dot(sv), e * g - f * f);
-    uv((a * g - b * f) / det, (b * e - a * f) / det)
+    let [u, v] = symmetric([e, f, g], [-second.dot(su), -second.dot(sv)]);
+    uv(u, v)
 }
 
 /// A place on a line.
