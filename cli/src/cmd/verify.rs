@@ -59,8 +59,8 @@ pub struct Options<'a> {
 const FEED_EXCESS: f64 = 1.05;
 
 /// Reports feed moves whose tip goes faster than the job says: the fastest, with its line.
-fn feeds(job: &Job, read: &nc::Motions) -> Result<Option<Diagnostic>, Failure> {
-    let wanted = job.feed_mm_min()?;
+fn feeds(job: &Job, read: &nc::Motions) -> Option<Diagnostic> {
+    let wanted = job.feed_mm_min();
     let (mut fastest, mut line, mut fast) = (0.0, 0, 0usize);
     let mut before = 0.0;
     for (m, clock) in read.motions.iter().zip(&read.times_min) {
@@ -79,12 +79,12 @@ fn feeds(job: &Job, read: &nc::Motions) -> Result<Option<Diagnostic>, Failure> {
             (fastest, line) = (feed, m.block);
         }
     }
-    Ok((fast > 0).then(|| {
+    (fast > 0).then(|| {
         let text = format!(
             "the tip moves faster than feed_mm_min = {wanted:.0} in {fast} moves, most in line {line}: {fastest:.0} mm/min"
         );
         Diagnostic::warning("feed", text)
-    }))
+    })
 }
 
 /// Moves that are too short to tell their feed, mm.
@@ -95,7 +95,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     let job = Job::load_with_one_tool(job_path)?;
     let faces = part::of_job(&job)?;
     let text = read_text(file)?;
-    if options.blocks.is_some() && job.stock.is_none() {
+    if options.blocks.is_some() && job.stock().is_none() {
         return Err(Failure::file(
             job_path,
             "--blocks tells what blocks take from raw material: give a [stock]",
@@ -105,7 +105,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     let (motions, source) = if is_cl(file, &text) {
         let cl = cldata::read(&text).map_err(|e| Failure::file(file, e))?;
         diagnostics.extend(cl.diagnostics);
-        let own = job.cutter_spec()?;
+        let own = job.cutter_spec();
         if let Some(other) = cl.path.cutter.filter(|c| Cutter::try_from(*c) != Cutter::try_from(own)) {
             let text =
                 format!("the CL data is for another cutter: {other:?}; verified with the job's, {own:?}");
@@ -113,8 +113,8 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         }
         (Swept::along(&cl.path), "cl")
     } else {
-        let (control, notes) = nc::control(&job)?;
-        if job.machine.is_none() {
+        let control = job.control();
+        if !job.names_machine() {
             diagnostics.push(Diagnostic::warning(
                 "machine",
                 format!(
@@ -123,14 +123,12 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
                     control.machine.name()
                 ),
             ));
-        } else {
-            diagnostics.extend(notes);
         }
-        let (setup, notes) = posted_setup::of_program(&job, &faces, &text, control.dialect)?;
+        let (setup, notes) = posted_setup::of_program(&job, &faces, &text, control.dialect);
         diagnostics.extend(notes);
         let read =
-            nc::read_back(&text, &control, &setup, options.lenient).map_err(|e| Failure::file(file, e))?;
-        diagnostics.extend(feeds(&job, &read)?);
+            nc::read_back(&text, control, &setup, options.lenient).map_err(|e| Failure::file(file, e))?;
+        diagnostics.extend(feeds(&job, &read));
         diagnostics.extend(read.diagnostics);
         (read.motions, "nc")
     };

@@ -1,10 +1,8 @@
 //! Parts as commands see them: faces with names, from a file or built in.
 
-pub mod builtin;
-
-use crate::failure::{Failure, beside, read};
-use crate::job::{FaceChoice, Job, Normals};
-use builtin::Builtin;
+use crate::failure::{Failure, read};
+use crate::job::builtin::{self, Builtin};
+use crate::job::{FaceChoice, Job, Normals, Source};
 use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::orient::Enclosure;
@@ -110,23 +108,19 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
 fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
     let bytes = read(path)?;
     let mut part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
-    match unit_mm {
-        None => {}
-        Some(u) if !(u.is_finite() && u > 0.0) => {
-            return Err(Failure::file(path, format!("[part] unit_mm = {u} must be a positive number")));
-        }
-        Some(_) => {
-            part = match part.format {
-                osculate_surfaces::Format::Sections => osculate_surfaces::sections::read_in(&bytes, unit_mm)
-                    .map_err(|e| Failure::file(path, e))?,
-                osculate_surfaces::Format::Patches => osculate_surfaces::patches::read_in(&bytes, unit_mm)
-                    .map_err(|e| Failure::file(path, e))?,
-                _ => {
-                    let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
-                    return Err(Failure::file(path, text));
-                }
-            };
-        }
+    if unit_mm.is_some() {
+        part = match part.format {
+            osculate_surfaces::Format::Sections => {
+                osculate_surfaces::sections::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?
+            }
+            osculate_surfaces::Format::Patches => {
+                osculate_surfaces::patches::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?
+            }
+            _ => {
+                let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
+                return Err(Failure::file(path, text));
+            }
+        };
     }
     let format = match part.format {
         osculate_surfaces::Format::Step => "step",
@@ -204,33 +198,28 @@ impl JobFaces {
 
 /// The faces of a job, with their material sides settled.
 pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
-    let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
-    let mut part = match (&job.part.file, &job.part.builtin, &job.part.ruled) {
-        (Some(file), ..) => whole(from_file(&beside(&job.path, file), job.part.unit_mm)?)?,
-        (None, Some(table), _) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?)?,
-        (None, None, Some(table)) => {
-            let strip = crate::job::flank::strip(table).map_err(|e| Failure::file(&job.path, e))?;
-            from_builtin(Builtin { kind: "ruled", surface: strip, spline: None })?
-        }
-        (None, None, None) => return Err(Failure::file(&job.path, "[part] needs file, builtin or ruled")),
+    let here = |e: Failure| Failure::file(job.path(), format!("[part] {}", e.message()));
+    let mut part = match job.part().source() {
+        Source::File { path, unit_mm } => whole(from_file(path, *unit_mm)?)?,
+        Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
-    let mut faces = choose(&part, job.part.faces.as_ref(), "faces").map_err(here)?;
+    let mut faces = choose(&part, job.part().faces(), "faces").map_err(here)?;
     if faces.is_empty() {
-        return Err(Failure::file(&job.path, "[part] faces chooses no face"));
+        return Err(Failure::file(job.path(), "[part] faces chooses no face"));
     }
     settle_sides(job, &mut part, &mut faces)?;
     doubt_sides(job, &mut part, &faces);
-    let check = match &job.part.check_faces {
+    let check = match job.part().check_faces() {
         None => Vec::new(),
         some => {
-            let mut check = choose(&part, some.as_ref(), "check_faces").map_err(here)?;
+            let mut check = choose(&part, some, "check_faces").map_err(here)?;
             let machined = |f: &LoadedFace| faces.iter().any(|m| m.id == f.id);
             // "all" means all others; who names a face means it.
             if matches!(some, Some(FaceChoice::Word(w)) if w == "all") {
                 check.retain(|f| !machined(f));
             } else if let Some(both) = check.iter().find(|f| machined(f)) {
                 return Err(Failure::file(
-                    &job.path,
+                    job.path(),
                     format!(
                         "[part] check_faces names {0}, which is also a face to machine: the tool must touch it. \
                          Take {0} out of one of them, or say check_faces = \"all\" for all other faces",
@@ -260,7 +249,7 @@ pub fn one_face(job: &Job) -> Result<LoadedFace, Failure> {
     match (all.pop(), all.len()) {
         (Some(one), 0) => Ok(one),
         (_, more) => Err(Failure::file(
-            &job.path,
+            job.path(),
             format!("[part] faces chooses {} faces where one is needed", more + 1),
         )),
     }
@@ -345,7 +334,7 @@ fn unsaid(faces: &[LoadedFace]) -> Vec<usize> {
 fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<(), Failure> {
     let open = unsaid(faces);
     let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
-    match job.part.normals {
+    match job.part().normals() {
         Normals::File => return Ok(()),
         Normals::Reversed => {
             faces.iter_mut().for_each(flip);
@@ -373,7 +362,7 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
             }
             None => {
                 return Err(Failure::file(
-                    &job.path,
+                    job.path(),
                     format!(
                         "[part] {}: neither the file nor the shape of the part says on which side of the face the \
                          material is; say normals = \"file\" or normals = \"reversed\" (probe shows the normal)",
@@ -390,7 +379,7 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
 /// where the file itself says no side, as a job may well turn over what a file says.
 fn doubt_sides(job: &Job, part: &mut Loaded, faces: &[LoadedFace]) {
     let open = unsaid(faces);
-    if open.is_empty() || job.part.normals == Normals::Auto {
+    if open.is_empty() || job.part().normals() == Normals::Auto {
         return;
     }
     let triangles = soup(part);

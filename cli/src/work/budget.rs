@@ -6,9 +6,7 @@
 //! turns about the tip at the cutter's radius. Such a stray is greatest in the middle of a block, points any way, and at a crest is the
 //! mean of two passes that stray to either side: a quarter of the most that the post allows is counted.
 
-use crate::failure::Failure;
 use crate::job::Job;
-use crate::work::nc;
 use osculate_postproc::SolveOptions;
 use osculate_productivity::plan::Tolerance;
 
@@ -24,37 +22,37 @@ const CONE: f64 = 0.5;
 const MOST: f64 = 0.3;
 
 /// How closely the joints follow the path of a job.
-pub fn solve(job: &Job) -> Result<SolveOptions, Failure> {
-    let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter()?.radius_mm(), job.tolerance()?);
+pub fn solve(job: &Job) -> SolveOptions {
+    let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter().radius_mm(), job.tolerance());
     let tip_tol_mm = (WAYS * t.chord_mm).clamp(LEAST_TIP_MM, coarse.tip_tol_mm);
     let axis_tol_rad = (tip_tol_mm / radius_mm).min(coarse.axis_tol_rad);
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
-    Ok(SolveOptions { tip_tol_mm, axis_tol_rad, singular_cone_rad, ..coarse })
+    SolveOptions { tip_tol_mm, axis_tol_rad, singular_cone_rad, ..coarse }
 }
 
 /// Half a unit of the last decimal of the coarsest slide, mm.
-fn words_mm(job: &Job) -> Result<f64, Failure> {
-    let machine = nc::control(job)?.0.machine;
+fn words_mm(job: &Job) -> f64 {
+    let machine = &job.control().machine;
     let decimals =
         machine.linear().map(|p| machine.joints()[p].decimals).into_iter().fold(usize::MAX, usize::min);
     // A machine has few decimals.
-    Ok(0.5 * 10f64.powi(-(decimals.min(16) as i32)))
+    0.5 * 10f64.powi(-(decimals.min(16) as i32))
 }
 
 /// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
-pub fn leaning(job: &Job, share: f64) -> Result<Tolerance, Failure> {
-    let s = solve(job)?;
-    let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter()?.radius_mm());
-    kept_back(job, share, words_mm(job)? + ways_mm)
+pub fn leaning(job: &Job, share: f64) -> Tolerance {
+    let s = solve(job);
+    let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter().radius_mm());
+    kept_back(job, share, words_mm(job) + ways_mm)
 }
 
 /// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
-pub fn upright(job: &Job) -> Result<Tolerance, Failure> {
-    kept_back(job, 1.0, words_mm(job)?)
+pub fn upright(job: &Job) -> Tolerance {
+    kept_back(job, 1.0, words_mm(job))
 }
 
-fn kept_back(job: &Job, share: f64, by_mm: f64) -> Result<Tolerance, Failure> {
-    let given = job.tolerance()?;
+fn kept_back(job: &Job, share: f64, by_mm: f64) -> Tolerance {
+    let given = job.tolerance();
     let scallop_mm = share * (given.scallop_mm - by_mm.min(MOST * given.scallop_mm));
-    Ok(Tolerance { scallop_mm, ..given })
+    Tolerance { scallop_mm, ..given }
 }

@@ -17,6 +17,5 @@ pub mod program;
 pub mod rough;
 pub mod setup;
 pub mod stock;
-pub mod strategy;
 pub mod summary;
 pub mod verify;

@@ -1,46 +1,19 @@
 //! The `[stock]` and `[fixture]` tables: raw material and what holds the part.
 
-use crate::failure::{Failure, beside, read};
-use crate::job::Job;
+use crate::failure::{Failure, read};
+use crate::job::{Blank as Raw, Job};
 use crate::part::{self, JobFaces};
-use osculate_geom::{Box3, Diagnostic, Point3};
+use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::stock::{Blank, Carved, Resolution, Stock, StockJob, Upper, read_stl};
 use osculate_tools::removal::{Body, Sample, Swept, sample_triangles};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use std::path::Path;
 
 /// Cells along the longest side of the stock where the job gives none.
 const DEFAULT_CELLS: f64 = 256.0;
-/// Memory for the stock where the job gives none.
-const DEFAULT_MEMORY_MB: f64 = 512.0;
 /// Blocks listed by what they took.
 const LISTED: usize = 10;
-
-/// `[stock]`: one of `box_mm`, `file` and `allowance_mm` (with `file`: a layer around it).
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StockTable {
-    /// Lower and upper corner in the part's frame.
-    pub box_mm: Option<[f64; 6]>,
-    /// A closed STL mesh in the part's frame, mm, relative to the job file.
-    pub file: Option<String>,
-    /// A layer of this thickness around the faces of the job, or around the file's solid.
-    pub allowance_mm: Option<f64>,
-    /// Sides of cells.
-    pub cell_mm: Option<f64>,
-    /// Memory for it.
-    pub memory_mb: Option<f64>,
-}
-
-/// `[fixture]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FixtureTable {
-    /// STL meshes in the part's frame, mm, relative to the job file.
-    pub files: Vec<String>,
-    /// Distance of the places looked at; 1 mm where not given.
-    pub spacing_mm: Option<f64>,
-}
 
 /// The `stock` object of `verify --json`.
 #[derive(Debug, Serialize, Clone)]
@@ -110,23 +83,46 @@ pub struct StockCollision {
     pub at_mm: [f64; 3],
 }
 
-fn mesh(job: &Job, file: &str) -> Result<Vec<[Point3; 3]>, Failure> {
-    let path = beside(&job.path, file);
-    read_stl(&read(&path)?).map_err(|e| Failure::file(&path, e))
+fn mesh(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
+    read_stl(&read(path)?).map_err(|e| Failure::file(path, e))
 }
 
 /// Places on the fixtures, as faces that carry no material, numbered from `face` on.
 pub fn fixtures(job: &Job, face: u32) -> Result<Vec<Sample>, Failure> {
-    let Some(table) = &job.fixture else { return Ok(Vec::new()) };
-    let spacing = table.spacing_mm.unwrap_or(1.0);
-    if !(spacing.is_finite() && spacing > 0.0) {
-        return Err(Failure::file(&job.path, format!("[fixture] spacing_mm = {spacing} must be positive")));
-    }
+    let Some(table) = job.fixture() else { return Ok(Vec::new()) };
     let mut out = Vec::new();
     for (k, file) in table.files.iter().enumerate() {
-        out.extend(sample_triangles(&mesh(job, file)?, face + k as u32, spacing));
+        out.extend(sample_triangles(&mesh(file)?, face + k as u32, table.spacing_mm));
     }
     Ok(out)
+}
+
+/// Sides of the prism that stands for a round blank.
+const SIDES: usize = 360;
+
+/// A round blank as a closed prism around it.
+fn prism(axis: Unit3, diameter_mm: f64, along_mm: [f64; 2]) -> Vec<[Point3; 3]> {
+    let first = any_perpendicular(&axis);
+    let second = axis.cross(&first);
+    let turn = std::f64::consts::TAU / SIDES as f64;
+    let radius = 0.5 * diameter_mm / (0.5 * turn).cos();
+    let at = |k: usize, z: f64| {
+        let (s, c) = (k as f64 * turn).sin_cos();
+        Point3::from(first.into_inner() * (radius * c) + second * (radius * s) + axis.into_inner() * z)
+    };
+    let [lo, hi] = along_mm;
+    let middle = along_mm.map(|z| Point3::from(axis.into_inner() * z));
+    (0..SIDES)
+        .flat_map(|k| {
+            let n = (k + 1) % SIDES;
+            [
+                [at(k, lo), at(n, lo), at(n, hi)],
+                [at(k, lo), at(n, hi), at(k, hi)],
+                [middle[0], at(n, lo), at(k, lo)],
+                [middle[1], at(k, hi), at(n, hi)],
+            ]
+        })
+        .collect()
 }
 
 /// The box around the faces of a job.
@@ -166,13 +162,17 @@ fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
 
 /// The box around the raw material of a job, where it has one.
 pub fn bounds(job: &Job, faces: &JobFaces) -> Result<Option<Box3>, Failure> {
-    let Some(table) = &job.stock else { return Ok(None) };
-    let solid = match (&table.box_mm, &table.file) {
-        (Some(b), _) => Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) },
-        (None, Some(file)) => Box3::around(mesh(job, file)?.iter().flatten()),
-        (None, None) => around(faces),
-    };
-    Ok(Some(solid.grown(table.allowance_mm.unwrap_or(0.0))))
+    let Some(stock) = job.stock() else { return Ok(None) };
+    Ok(Some(match &stock.blank {
+        Raw::Box(b) => *b,
+        Raw::Cylinder { axis, diameter_mm, along_mm } => {
+            Box3::around(prism(*axis, *diameter_mm, *along_mm).iter().flatten())
+        }
+        Raw::File { path, layer_mm } => {
+            Box3::around(mesh(path)?.iter().flatten()).grown(layer_mm.unwrap_or(0.0))
+        }
+        Raw::Layer(thickness_mm) => around(faces).grown(*thickness_mm),
+    }))
 }
 
 /// Moves the tool through the raw material of a job, where it has one.
@@ -182,13 +182,14 @@ pub fn run(
     motions: &[Swept],
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Option<(StockSummary, Vec<Diagnostic>)>, Failure> {
-    let Some(table) = &job.stock else { return Ok(None) };
-    let wrong = |text: String| Failure::file(&job.path, format!("[stock] {text}"));
-    let triangles = match (&table.box_mm, &table.file, table.allowance_mm) {
-        (Some(_), None, None) => Vec::new(),
-        (None, Some(file), _) => mesh(job, file)?,
-        (None, None, Some(_)) => {
-            let chord = 0.5 * job.tolerance()?.scallop_mm;
+    let Some(given) = job.stock() else { return Ok(None) };
+    let wrong = |text: String| Failure::file(job.path(), format!("[stock] {text}"));
+    let triangles = match &given.blank {
+        Raw::Box(_) => Vec::new(),
+        Raw::Cylinder { axis, diameter_mm, along_mm } => prism(*axis, *diameter_mm, *along_mm),
+        Raw::File { path, .. } => mesh(path)?,
+        Raw::Layer(_) => {
+            let chord = 0.5 * job.tolerance().scallop_mm;
             let mut out = Vec::new();
             for f in &faces.faces {
                 let m = tessellate(&f.surface, chord, None);
@@ -197,17 +198,14 @@ pub fn run(
             }
             out
         }
-        (None, None, None) => return Err(wrong("needs box_mm, file or allowance_mm".to_owned())),
-        _ => return Err(wrong("box_mm goes with neither file nor allowance_mm; keep one".to_owned())),
     };
-    let blank = match (&table.box_mm, table.allowance_mm) {
-        (Some(b), _) => {
-            Blank::Box(Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) })
-        }
-        (None, Some(thickness_mm)) => {
-            Blank::Layer { triangles: &triangles, thickness_mm, filled: table.file.is_some() }
-        }
-        (None, None) => Blank::Mesh(&triangles),
+    let layer =
+        |thickness_mm: f64, filled: bool| Blank::Layer { triangles: &triangles, thickness_mm, filled };
+    let blank = match &given.blank {
+        Raw::Box(b) => Blank::Box(*b),
+        Raw::File { layer_mm: Some(thickness_mm), .. } => layer(*thickness_mm, true),
+        Raw::Layer(thickness_mm) => layer(*thickness_mm, false),
+        Raw::Cylinder { .. } | Raw::File { .. } => Blank::Mesh(&triangles),
     };
     let size = match &blank {
         Blank::Box(b) => b.max - b.min,
@@ -216,12 +214,9 @@ pub fn run(
             b.max - b.min
         }
     };
-    let memory = table.memory_mb.unwrap_or(DEFAULT_MEMORY_MB);
-    if !(memory.is_finite() && memory > 0.0) {
-        return Err(wrong(format!("memory_mb = {memory} must be positive")));
-    }
+    let memory = given.memory_mb;
     let resolution = Resolution {
-        cell_mm: table.cell_mm.unwrap_or(size.amax() / DEFAULT_CELLS),
+        cell_mm: given.cell_mm.unwrap_or(size.amax() / DEFAULT_CELLS),
         tri: true,
         // Beyond what a machine can address there is no limit.
         budget_bytes: (memory * 1e6).min(1e15) as usize,
@@ -238,8 +233,8 @@ pub fn run(
     let mut stock = made.stock;
     notes.extend(holds(stock.bounds(), &around(faces)));
     let volume_mm3 = stock.volume().mm3;
-    let (cutter, shank) = job.flutes()?;
-    let holder = job.holder()?;
+    let (cutter, shank) = job.flutes();
+    let holder = job.holder();
     let mut uppers = Vec::new();
     let mut above_mm = cutter.length_mm();
     for (body, kind) in [(shank.as_ref(), Body::Shank), (holder.as_ref(), Body::Holder)] {
@@ -248,7 +243,7 @@ pub fn run(
             above_mm += body.length_mm();
         }
     }
-    let touch_mm = job.tolerance()?.gouge_mm;
+    let touch_mm = job.tolerance().gouge_mm;
     let work = StockJob { cutter: &cutter, uppers: &uppers, motions, touch_mm };
     let carved = stock.carve(&work, progress).map_err(Failure::job)?;
     Ok(Some((summary(&stock, volume_mm3, &carved), notes)))

@@ -163,26 +163,14 @@ pub fn run(
     strip_mm: Option<f64>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verified, Failure> {
-    let cutter = job.cutter()?;
-    let holder = job.holder()?;
-    let tolerance = job.tolerance()?;
-    let max = job.verification.max_samples.unwrap_or(MAX_SAMPLES);
-    if max < 100 {
-        return Err(Failure::file(&job.path, "[verification] max_samples must be 100 or more"));
-    }
+    let cutter = job.cutter();
+    let holder = job.holder();
+    let tolerance = job.tolerance();
+    let max = job.verification().max_samples.unwrap_or(MAX_SAMPLES);
     let strip = strip_mm
         .filter(|s| s.is_finite() && *s > 0.0)
         .unwrap_or_else(|| 2.0 * (2.0 * tolerance.scallop_mm * cutter.radius_mm()).sqrt());
-    let wanted = match job.verification.spacing_mm {
-        Some(s) if s.is_finite() && s > 0.0 => s,
-        Some(s) => {
-            return Err(Failure::file(
-                &job.path,
-                format!("[verification] spacing_mm = {s} must be positive"),
-            ));
-        }
-        None => strip / SAMPLES_ACROSS,
-    };
+    let wanted = job.verification().spacing_mm.unwrap_or(strip / SAMPLES_ACROSS);
     let all: Vec<_> =
         faces.faces.iter().map(|f| (f, false)).chain(faces.check.iter().map(|f| (f, true))).collect();
     // A roughing is measured against its allowance.

@@ -69,7 +69,7 @@ pub fn settle(
     best.map(|b| b.1).ok_or_else(|| {
         let job = &choice.jobs[0];
         let table = text_table(&choice.rows());
-        Failure::file(&job.path, format!("no tool and strategy holds the tolerance:\n\n{table}"))
+        Failure::file(job.path(), format!("no tool and strategy holds the tolerance:\n\n{table}"))
     })
 }
 
@@ -78,7 +78,7 @@ fn off_by(job: &Job, v: &Verification) -> Result<f64, Failure> {
     if v.within_tolerance {
         return Ok(0.0);
     }
-    let t = job.tolerance()?;
+    let t = job.tolerance();
     Ok((v.scallop_max_mm / t.scallop_mm).max(v.gouge_max_mm / t.gouge_mm).max(1.0))
 }
 
@@ -87,7 +87,7 @@ fn objection(job: &Job, v: &Verification) -> Result<Option<Objection>, Failure> 
     if v.within_tolerance {
         return Ok(None);
     }
-    let t = job.tolerance()?;
+    let t = job.tolerance();
     let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
     let figures = [
         ("gouge", v.gouge_max_mm, t.gouge_mm, "mm"),
@@ -110,7 +110,7 @@ fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Res
     let area_mm2 = choice.faces.faces.iter().map(part::area).sum();
     let totals = Totals { area_mm2, time_min: contender.posted.time_min() };
     let passes = &contender.planned.passes;
-    let l = levels(&passes.passes, contender.job.feed_mm_min()?, totals);
+    let l = levels(&passes.passes, contender.job.feed_mm_min(), totals);
     let lengths: Vec<f64> = passes.passes.iter().map(|p| p.length_mm()).collect();
     let whole: f64 = lengths.iter().sum();
     let regional = l.regional.iter().zip(&lengths).map(|(r, l)| r * l).sum::<f64>();
