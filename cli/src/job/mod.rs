@@ -12,6 +12,8 @@ pub mod reference;
 pub mod schema;
 pub mod stock;
 pub mod strategy;
+#[cfg(test)]
+mod tests;
 pub mod tool;
 pub mod words;
 
