@@ -1,5 +1,6 @@
 //! What ends a command early, and with which exit code.
 
+use crate::job::problem::Problem;
 use osculate_geom::{Diagnostic, Severity};
 use std::path::{Path, PathBuf};
 
@@ -8,6 +9,8 @@ use std::path::{Path, PathBuf};
 pub enum Failure {
     /// Exit code 1: the job cannot be done as asked.
     Job(String),
+    /// Exit code 1: a key or value of a job cannot be meant.
+    Input(Box<Problem>),
     /// Exit code 2: wrong usage.
     Usage(String),
 }
@@ -29,14 +32,14 @@ impl Failure {
         let warnings: String = heavy.map(|d| format!("\n{d}")).collect();
         match self {
             Self::Job(text) => Self::Job(text + &warnings),
-            usage @ Self::Usage(_) => usage,
+            other => other,
         }
     }
 
     /// The exit code.
     pub const fn code(&self) -> u8 {
         match self {
-            Self::Job(_) => 1,
+            Self::Job(_) | Self::Input(_) => 1,
             Self::Usage(_) => 2,
         }
     }
@@ -45,6 +48,18 @@ impl Failure {
     pub fn message(&self) -> &str {
         match self {
             Self::Job(m) | Self::Usage(m) => m,
+            Self::Input(p) => &p.message,
+        }
+    }
+
+    /// What is wrong, in parts.
+    #[must_use]
+    pub fn problem(&self) -> Problem {
+        match self {
+            Self::Input(p) => (**p).clone(),
+            Self::Job(m) | Self::Usage(m) => {
+                Problem { what: m.clone(), message: m.clone(), ..Problem::default() }
+            }
         }
     }
 }

@@ -40,6 +40,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Dialects => cmd::list::dialects(cli.json),
         Verb::Tools => cmd::list::tools(cli.json),
         Verb::Gallery => cmd::gallery::run(cli.json),
+        Verb::Keys { template } => cmd::keys::run(*template, cli.json),
     }
 }
 
@@ -55,6 +56,10 @@ fn main() -> ExitCode {
         Ok(Done::Yes) => ExitCode::SUCCESS,
         Ok(Done::NotWithinTolerance) => ExitCode::from(NOT_WITHIN),
         Err(f) => {
+            if cli.json {
+                // A failure to print it leaves the message on stderr.
+                let _ = screen::render::json(&serde_json::json!({ "error": f.problem() }));
+            }
             eprintln!("osculate: {}", f.message());
             ExitCode::from(f.code())
         }

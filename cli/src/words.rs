@@ -5,12 +5,18 @@ use osculate_geom::Diagnostic;
 /// A table with right-aligned columns but the first.
 pub struct Table {
     rows: Vec<Vec<String>>,
+    left: bool,
 }
 
 impl Table {
     /// A table with these headings, units in them.
     pub fn new<'a>(headings: impl IntoIterator<Item = &'a str>) -> Self {
-        Self { rows: vec![headings.into_iter().map(ToString::to_string).collect()] }
+        Self { rows: vec![headings.into_iter().map(ToString::to_string).collect()], left: false }
+    }
+
+    /// A table of words, all columns left-aligned.
+    pub fn left<'a>(headings: impl IntoIterator<Item = &'a str>) -> Self {
+        Self { left: true, ..Self::new(headings) }
     }
 
     /// Adds a row.
@@ -30,6 +36,8 @@ impl Table {
                 let pad = " ".repeat(w.saturating_sub(cell.chars().count()));
                 if c == 0 {
                     line.push_str(&format!(" {cell}{pad}"));
+                } else if self.left {
+                    line.push_str(&format!("  {cell}{pad}"));
                 } else {
                     line.push_str(&format!("  {pad}{cell}"));
                 }

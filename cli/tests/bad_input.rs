@@ -2,6 +2,9 @@
 
 mod common;
 use common::{Scratch, job, osculate};
+use osculate::job::Job;
+use std::path::Path;
+use std::time::Instant;
 
 #[test]
 fn wrong_usage_is_exit_code_two() {
@@ -118,4 +121,208 @@ fn faces_that_are_not_there() {
     let probe = osculate(&["probe", hull.to_str().unwrap(), "--face", "F2", "--at", "0,0"]);
     probe.refused(&["F2", "F1"]);
     osculate(&["probe", hull.to_str().unwrap(), "--face", "F1", "--at", "0,7"]).refused(&["0,7", "outside"]);
+}
+
+/// Longest time in which a job that cannot be meant is refused, s.
+const AT_ONCE_S: f64 = 0.2;
+
+/// Wrong inputs: what stands in the job, what stands there instead, and words of the answer, the key first.
+const WRONG: &[(&str, &str, &[&str])] = &[
+    ("format = 1", "format = 2", &["format = 2", "line 1", "1"]),
+    ("format = 1", "format = \"1\"", &["format"]),
+    ("format = 1\n", "", &["needs format"]),
+    ("[tolerance]\n", "[tolerances]\n", &["tolerances", "is tolerance meant?"]),
+    ("[strategy]", "[stratgy]", &["stratgy", "is strategy meant?"]),
+    ("[cutting]", "[cuting]", &["cuting", "is cutting meant?"]),
+    ("[machine]", "[machines]", &["machines", "is machine meant?"]),
+    ("[verification]", "[verify]\na = 1\n[verification]", &["verify"]),
+    ("scallop_mm = 0.02", "scallop_um = 20", &["scallop_um", "line 9", "is scallop_mm meant?"]),
+    ("scallop_mm = 0.02", "", &["needs scallop_mm"]),
+    ("scallop_mm = 0.02", "scallop_mm = nan", &["scallop_mm = NaN", "positive"]),
+    ("scallop_mm = 0.02", "scallop_mm = inf", &["scallop_mm = inf", "positive"]),
+    ("scallop_mm = 0.02", "scallop_mm = 0", &["scallop_mm = 0", "positive"]),
+    ("scallop_mm = 0.02", "scallop_mm = 0.02\nscallop_mm = 1", &["scallop_mm", "line 10"]),
+    ("gouge_mm = 0.005", "gouge_mm = -1", &["gouge_mm = -1", "line 10"]),
+    ("gouge_mm = 0.005", "gouge_mm = true", &["gouge_mm = true"]),
+    ("chord_mm = 0.003", "chord_mm = 0", &["chord_mm = 0", "line 11"]),
+    ("chord_mm = 0.003", "chord_mm = [1]", &["chord_mm = [1]"]),
+    ("chord_mm = 0.003", "unreached_mm2 = -1", &["unreached_mm2 = -1"]),
+    ("diameter_mm = 10", "diameter_mm = -10", &["diameter_mm = -10", "[tool]", "line 6"]),
+    ("diameter_mm = 10", "diameter = 10", &["diameter", "is diameter_mm meant?"]),
+    ("diameter_mm = 10\n", "", &["needs diameter_mm"]),
+    ("length_mm = 50", "length_mm = 0", &["length_mm = 0"]),
+    ("length_mm = 50", "flute_length_mm = 60", &["flute_length_mm = 60", "50"]),
+    ("length_mm = 50", "number = 0", &["number = 0", "1 to 9999"]),
+    ("length_mm = 50", "number = 10000", &["number = 10000"]),
+    ("length_mm = 50", "teeth = 1.5", &["teeth = 1.5", "whole"]),
+    ("length_mm = 50", "taper_deg = 10", &["taper_deg", "leave it out"]),
+    ("length_mm = 50", "holder = { diameter_mm = 40 }", &["tool.holder", "needs length_mm"]),
+    ("length_mm = 50", "holder = { diameter_mm = -40, length_mm = 1 }", &["diameter_mm = -40"]),
+    ("length_mm = 50", "holder = { diameter = 40, length_mm = 1 }", &["diameter", "is diameter_mm meant?"]),
+    ("length_mm = 50", "holder = 40", &["holder", "table"]),
+    ("kind = \"ball\"", "kind = \"bal\"", &["kind", "is \"ball\" meant?"]),
+    ("kind = \"ball\"", "kind = 3", &["kind = 3", "toroidal"]),
+    ("kind = \"ball\"", "kind = \"cone\"", &["needs taper_deg"]),
+    ("kind = \"isoparametric\"", "kind = \"isoparametrc\"", &["is \"isoparametric\" meant?", "line 13"]),
+    ("kind = \"isoparametric\"", "kind = \"z_level\"", &["lead_deg"]),
+    ("kind = \"isoparametric\"\nlead_deg = 15", "kind = \"z_level\"", &["needs stepdown_mm"]),
+    (
+        "kind = \"isoparametric\"",
+        "kind = \"isoplanar\"\nalong = \"u\"",
+        &["along", "isoparametric and regions"],
+    ),
+    ("kind = \"isoparametric\"", "kind = \"isoplanar\"\nnormal = [0, 0, 0]", &["normal", "direction"]),
+    (
+        "kind = \"isoparametric\"\nlead_deg = 15",
+        "kind = \"contour_2cl\"\ntilt_deg = 3",
+        &["tilt_deg", "leave out"],
+    ),
+    (
+        "kind = \"isoparametric\"\nlead_deg = 15",
+        "kind = \"gradient_3c\"\nfeed_direction = [0, 0, 2]",
+        &["feed_direction", "across"],
+    ),
+    ("lead_deg = 15", "lead_deg = 90", &["lead_deg = 90", "-90"]),
+    ("lead_deg = 15", "lead_deg = nan", &["lead_deg = NaN"]),
+    ("lead_deg = 15", "lead_deg = \"locl\"", &["lead_deg", "is \"local\" meant?"]),
+    ("lead_deg = 15", "tilt_deg = inf", &["tilt_deg = inf"]),
+    ("lead_deg = 15", "stepdown_mm = 1", &["stepdown_mm", "z_level"]),
+    ("lead_deg = 15", "keep_off_mm = 1", &["keep_off_mm", "leave_out"]),
+    ("lead_deg = 15", "gouges = \"leave out\"", &["gouges", "is \"leave_out\" meant?"]),
+    ("lead_deg = 15", "hop_mm = 1", &["hop_mm", "[setup] hop_mm"]),
+    ("kind = \"isoparametric\"", "kind = \"auto\"\ngouges = \"leave_out\"", &["gouges", "strategy by name"]),
+    ("spindle_rpm = 8000", "spindle_rpm = 0", &["spindle_rpm = 0"]),
+    ("feed_mm_min = 2000", "feed_mm_min = nan", &["feed_mm_min = NaN"]),
+    ("feed_mm_min = 2000", "feed_per_tooth_mm = 0.1", &["feed_per_tooth_mm", "teeth"]),
+    ("feed_mm_min = 2000", "coolant = \"flod\"", &["coolant", "is \"flood\" meant?"]),
+    ("trunnion-ac", "trunion-ac", &["name", "is \"trunnion-ac\" meant?"]),
+    ("name = \"trunnion-ac\"", "file = \"none.toml\"", &["file", "none.toml", "cannot be read"]),
+    ("name = \"trunnion-ac\"\n", "", &["[machine]", "needs name"]),
+    ("name = \"trunnion-ac\"", "name = \"trunnion-ac\"\nfile = \"m.toml\"", &["file", "keep one"]),
+    ("\"trunnion-ac\"", "\"head-ca\"", &["feed", "linuxcnc_tcp"]),
+    ("linuxcnc", "linux", &["dialect", "is \"linuxcnc\" meant?"]),
+    ("feed = \"tcp\"", "feed = \"inverse-time\"", &["feed", "is \"inverse_time\" meant?"]),
+    ("feed = \"tcp\"", "feed = \"kz\"\nkz_step = 0", &["kz_step = 0"]),
+    ("feed = \"tcp\"", "work_offset = \"G53\"", &["work_offset", "G54"]),
+    ("feed = \"tcp\"", "program_number = 0", &["program_number = 0"]),
+    ("\"linuxcnc\"\nfeed = \"tcp\"", "\"heidenhain\"\nfeed = \"inverse_time\"", &["feed", "heidenhain"]),
+    ("max_samples = 20000", "max_samples = 5", &["max_samples = 5", "100"]),
+    ("max_samples = 20000", "max_samples = 1e5", &["max_samples", "whole"]),
+    ("max_samples = 20000", "spacing_mm = nan", &["spacing_mm = NaN"]),
+    ("max_samples = 20000", "accept = \"sample\"", &["accept", "is \"samples\" meant?"]),
+    ("[verification]", "[setup]\nhop_mm = -1\n[verification]", &["[setup] hop_mm = -1", "line 22"]),
+    ("[verification]", "[setup]\nhop_mm = 3\n[verification]", &["hop_mm = 3", "approach_mm = 2"]),
+    ("[verification]", "[setup]\nrotate_deg = [nan, 0, 0]\n[verification]", &["rotate_deg", "line 22"]),
+    ("[verification]", "[setup]\npart_zero_mm = [0, 0]\n[verification]", &["part_zero_mm = [0, 0]"]),
+    ("[verification]", "[stock]\nbox_mm = [0, 0, 0, 1, -1, 1]\n[verification]", &["box_mm", "lower corner"]),
+    ("[verification]", "[stock]\n[verification]", &["[stock]", "needs one of"]),
+    (
+        "[verification]",
+        "[stock]\nfile = \"none.stl\"\n[verification]",
+        &["file", "none.stl", "cannot be read"],
+    ),
+    ("[verification]", "[stock]\nfile = \"job.toml\"\n[verification]", &["file", "no STL"]),
+    (
+        "[verification]",
+        "[stock]\nallowance_mm = 1\nbox_mm = [0, 0, 0, 1, 1, 1]\n[verification]",
+        &["allowance_mm", "keep one"],
+    ),
+    (
+        "[verification]",
+        "[stock.cylinder]\ndiameter_mm = 1\nz_mm = [1, 0]\n[verification]",
+        &["z_mm = [1, 0]", "lower one first"],
+    ),
+    ("[verification]", "[stock.cylinder]\ndiameter_mm = 1\n[verification]", &["needs z_mm"]),
+    ("[verification]", "[fixture]\nfiles = [\"none.stl\"]\n[verification]", &["files", "none.stl"]),
+    ("[verification]", "[contact]\nat = [0, 0]\n[verification]", &["[contact]", "along"]),
+    ("[verification]", "[contact]\nat = [0, nan]\nalong = \"u\"\n[verification]", &["at = [0, nan]"]),
+    ("[verification]", "[contact]\nat = [0, 0]\nalong = \"w\"\n[verification]", &["along = \"w\""]),
+    ("[verification]", "[flank]\nmethod = \"optimun\"\n[verification]", &["method", "is \"optimum\" meant?"]),
+    ("[verification]", "[flank]\npositions = 3\n[verification]", &["positions = 3"]),
+    ("[verification]", "[flank]\nside = 0\n[verification]", &["side = 0", "1 or -1"]),
+    ("[verification]", "[flank]\njudge_u = [1, 0]\n[verification]", &["judge_u = [1, 0]"]),
+    ("[verification]", "[flank]\ntip = \"v2\"\n[verification]", &["tip = \"v2\""]),
+    ("half_size_mm = 6", "half_size = 6", &["builtin", "half_size", "line 3"]),
+    ("half_size_mm = 6", "half_size_mm = -6", &["builtin", "half_size_mm"]),
+    ("builtin", "faces = []\nbuiltin", &["faces = []"]),
+    ("builtin", "faces = { largest = 0 }\nbuiltin", &["faces", "largest"]),
+    ("builtin", "may_hit = { largest = 2 }\nbuiltin", &["may_hit", "ids"]),
+    ("builtin", "faces = [\"F1\"]\nmay_hit = [\"F1\"]\nbuiltin", &["may_hit names F1"]),
+    ("builtin", "normals = \"reverse\"\nbuiltin", &["normals", "is \"reversed\" meant?"]),
+    ("builtin", "unit_mm = 2\nbuiltin", &["unit_mm", "leave it out"]),
+    ("[tool]", "file = \"none.step\"\n[tool]", &["several of file, builtin and ruled"]),
+    ("[tool]", "[[tool]]", &["tool", "[tool]"]),
+    ("[tool]", "[tools]", &["tools", "[[tools]]"]),
+];
+
+#[test]
+fn wrong_values_are_refused_at_once_with_file_line_and_key() {
+    let scratch = Scratch::new();
+    scratch.write("job.toml", &job(|j| j));
+    let path = scratch.path("job.toml");
+    let refused = |text: &str, words: &[&str]| {
+        let begun = Instant::now();
+        let error = Job::from_toml(text, &path).err().unwrap_or_else(|| panic!("taken: {text}"));
+        let took_s = begun.elapsed().as_secs_f64();
+        assert!(took_s < AT_ONCE_S, "{took_s} s: {text}");
+        assert_eq!(error.code(), 1);
+        for word in words.iter().chain(&["job.toml"]) {
+            assert!(error.message().contains(word), "'{word}' is missing in: {}\n{text}", error.message());
+        }
+    };
+    assert!(WRONG.len() >= 60);
+    for (from, to, words) in WRONG {
+        let text = job(|j| {
+            assert!(j.contains(from), "{from}");
+            j.replacen(from, to, 1)
+        });
+        refused(&text, words);
+    }
+    let builtin = job(|j| j).lines().nth(2).unwrap().to_owned();
+    refused(
+        &job(|j| j.replace(&builtin, "file = \"none.step\"")),
+        &["file", "none.step", "cannot be read", "line 3"],
+    );
+    refused(&job(|j| j.replace(&builtin, "")), &["[part]", "needs file"]);
+    refused(&job(|j| j.replace("[part]\n", "").replace(&builtin, "")), &["needs a table [part]"]);
+    refused(&job(|j| j.replace("[part]", "[part")), &["line 2"]);
+    refused("", &["needs"]);
+    // The job that all of them are made of is one.
+    assert!(Job::from_toml(&job(|j| j), &path).is_ok());
+}
+
+#[test]
+fn what_cannot_be_meant_ends_before_the_part_is_read() {
+    let scratch = Scratch::new();
+    let out = scratch.path("out");
+    let plan = |from: &str, to: &str, out: &Path| {
+        let path = scratch.write("job.toml", &job(|j| j.replacen(from, to, 1)));
+        let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+        assert!(!run.err.contains("import"), "{}", run.err);
+        let answer = run.json();
+        for key in ["what", "where", "expected", "nearest"] {
+            assert!(answer["error"][key].is_string(), "{answer}");
+        }
+        run
+    };
+    let setup = |key: &str| format!("[setup]\n{key}\n[verification]");
+    plan("[verification]", &setup("hop_mm = -1"), &out).refused(&["hop_mm = -1", "positive"]);
+    plan("[verification]", &setup("rotate_deg = [nan, 0, 0]"), &out).refused(&["rotate_deg"]);
+    plan("max_samples = 20000", "max_samples = 5", &out).refused(&["max_samples = 5"]);
+    plan("\"trunnion-ac\"", "\"head-ca\"", &out).refused(&["linuxcnc_tcp", "feed"]);
+    let file = scratch.write("taken", "");
+    plan("", "", &file).refused(&["taken", "is a file", "--out"]);
+    assert!(!out.exists());
+}
+
+#[test]
+fn keys_are_listed_and_the_template_loads() {
+    let scratch = Scratch::new();
+    let text = osculate(&["keys", "--template"]);
+    assert_eq!(text.code, 0, "{}", text.err);
+    assert!(Job::load(&scratch.write("job.toml", &text.out)).is_ok());
+    let listed = osculate(&["keys", "--json"]).json();
+    let keys = listed["keys"].as_array().unwrap();
+    assert!(keys.len() > 90 && keys.iter().any(|k| k["table"] == "tolerance" && k["key"] == "scallop_mm"));
+    assert!(osculate(&["keys"]).out.contains("scallop_mm"));
 }

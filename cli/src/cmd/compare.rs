@@ -64,7 +64,11 @@ struct BestField {
 
 /// Runs the verb.
 pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome {
+    if let Some(out) = out {
+        output::folder(out)?;
+    }
     let job = Job::load(path)?;
+    choice::check(&job)?;
     let stage = Stage::begin(&SCREEN, "import");
     let faces = part::of_job(&job)?;
     stage.end();
@@ -133,11 +137,11 @@ fn of_face(
     out: &Path,
     at: &dyn Fn(usize),
 ) -> Result<FaceFields, Failure> {
-    let refuse = |e: String| Failure::file(&job.path, format!("{}: {e}", face.id));
+    let refuse = |e: String| Failure::file(job.path(), format!("{}: {e}", face.id));
     let wanted = Wanted { axis: Unit3::new_normalize(Vec3::z()), spacing_mm: None, levels: LEVELS };
     let study = Study::of(&face.surface, face.nurbs(), &wanted).map_err(|e| refuse(e.to_string()))?;
     let scene = sheet::beside_bar(&study, None);
-    let tolerance = job.tolerance()?;
+    let tolerance = job.tolerance();
     let write = |picture: &str, postures: &Postures<'_>, tool: &str| {
         let page = postures.page(&study, &scene, &format!("{}, {tool}", face.id));
         output::write(&out.join(picture), page.as_bytes())
@@ -145,8 +149,8 @@ fn of_face(
     let (mut all, mut tools) = (Vec::with_capacity(jobs.len()), Vec::with_capacity(jobs.len()));
     for (k, one) in jobs.iter().enumerate() {
         at(k);
-        let cutter = one.cutter()?;
-        let feeding = Feeding { cutter: &cutter, feed_mm_min: one.feed_mm_min()? };
+        let cutter = one.cutter();
+        let feeding = Feeding { cutter: &cutter, feed_mm_min: one.feed_mm_min() };
         let limits = osculate_productivity::ideal::limits(&feeding, &tolerance, ideal::tilts(job).0);
         let postures =
             Postures::of(&face.surface, &cutter, &limits, nodes).map_err(|e| refuse(e.to_string()))?;

@@ -5,14 +5,15 @@ use crate::screen::output;
 use crate::screen::progress::SCREEN;
 use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
-use osculate::job::Job;
 use osculate::job::flank::least_mm;
+use osculate::job::words::FlankShape;
+use osculate::job::{Job, Source};
 use osculate::part;
 use osculate::report::{self, Column};
 use osculate::watch::Stage;
 use osculate::words::{Table, number};
 use osculate::work::extras::{Extras, Field};
-use osculate::work::flank::face::{FlankFace, judged, range};
+use osculate::work::flank::face::{FlankFace, judged};
 use osculate::work::flank::methods::{Answer, Method, Motion, NAMES, Study};
 use osculate::work::flank::path::{self, Work};
 use osculate::work::passes;
@@ -46,18 +47,13 @@ struct Comparison {
 
 /// Runs the verb.
 pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
+    if let Some(out) = out {
+        output::folder(out)?;
+    }
     let job = Job::load_with_one_tool(path)?;
-    let table = &job.flank;
-    let wrong = |text: String| Failure::file(&job.path, format!("[flank] {text}"));
-    let Some(chosen) = NAMES.iter().position(|n| *n == table.method) else {
-        return Err(wrong(format!("method = \"{}\" is none of {}", table.method, NAMES.join(", "))));
-    };
-    if !(4..=20_000).contains(&table.positions) {
-        return Err(wrong(format!("positions = {} must lie between 4 and 20000", table.positions)));
-    }
-    if !(table.below_mm.is_finite() && table.below_mm >= 0.0) {
-        return Err(wrong(format!("below_mm = {} must be a number of 0 or more", table.below_mm)));
-    }
+    let table = job.flank();
+    let wrong = |text: String| Failure::file(job.path(), format!("[flank] {text}"));
+    let chosen = table.method as usize;
     let mut wall_s = WallS::default();
     let stage = Stage::begin(&SCREEN, "import");
     let faces = part::of_job(&job)?;
@@ -67,8 +63,8 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
 
     let stage = Stage::begin(&SCREEN, "plan");
     let whole = face.domain().u;
-    let span = range(&job, "span_u", table.span_u, whole)?;
-    let judge = range(&job, "judge_u", table.judge_u, whole)?;
+    let span = table.span_u.unwrap_or(whole);
+    let judge = table.judge_u.unwrap_or(whole);
     let at_u = table.at_u.unwrap_or_else(|| whole.at(0.5));
     if !(at_u >= whole.lo && at_u <= whole.hi) {
         return Err(wrong(format!(
@@ -79,12 +75,12 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let length = |u: f64| (face.point(uv(u, 1.0)) - face.point(uv(u, 0.0))).norm();
     let longest = [0.0, 0.5, 1.0].map(|t| length(whole.at(t))).into_iter().fold(0.0, f64::max);
     let strip = RuledStrip::between_borders(&*face, Axis::U, least_mm(longest)).map_err(|e| {
-        Failure::file(&job.path, format!("[part] {e}: choose another range, or along = \"u\" or \"v\""))
+        Failure::file(job.path(), format!("[part] {e}: choose another range, or along = \"u\" or \"v\""))
     })?;
     let rule = strip.rule(at_u).map_err(|e| wrong(e.to_string()))?;
-    let cutter = job.cutter()?;
-    let tolerance = job.tolerance()?;
-    let bulge_per_mm = match job.cutter_spec()? {
+    let cutter = job.cutter();
+    let tolerance = job.tolerance();
+    let bulge_per_mm = match job.cutter_spec() {
         CutterSpec::Barrel { barrel_radius_mm, .. } => 1.0 / barrel_radius_mm,
         _ => 0.0,
     };
@@ -104,7 +100,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         longer: longer(table.span_u.is_some(), span, &*face, cutter.radius_mm()),
         judge,
         // A formula goes on as it is written; what stands in a file ends where it ends.
-        beyond: if job.part.builtin.is_some() { 0.25 } else { 0.0 },
+        beyond: if matches!(job.part().source(), Source::Builtin(_)) { 0.25 } else { 0.0 },
         positions: table.positions,
         spans: table.spans,
         options,
@@ -129,7 +125,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         along: if along == Axis::U { "u" } else { "v" },
         ruled_error_mm: straying_mm,
         methods: answers.iter().map(|a| a.row.clone()).collect(),
-        chosen: table.method.clone(),
+        chosen: table.method.word().to_owned(),
         program: None,
         diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
     };
@@ -140,7 +136,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         return Ok(Done::Yes);
     };
     let Some(motion) = &answer.motion else {
-        return Err(wrong(format!("method = \"{}\": {}", table.method, answer.row.why)));
+        return Err(wrong(format!("method = \"{}\": {}", table.method.word(), answer.row.why)));
     };
     let motion = path::oriented(&job, motion)?;
     let work = Work {
@@ -158,13 +154,13 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let axes = passes.passes.iter().flat_map(|p| &p.points).map(|p| p.pose.axis).collect();
     let tables = vec![page_table(&comparison)];
     let extras = Extras { axes, maps: maps(&answers), tables, left_out: Vec::new(), diagnostics };
-    let strategy = format!("flank, {}", table.method);
+    let strategy = format!("flank, {}", table.method.word());
     let planned =
         Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: false };
     SCREEN.saves_into(out);
     let plan = prove(&job, &faces, planned, wall_s, &SCREEN)?;
     plan::write(&plan, out)?;
-    comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter)?, &plan.verified));
+    comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter), &plan.verified));
     let text_json = serde_json::to_string_pretty(&comparison).map_err(Failure::job)? + "\n";
     output::write(&out.join("flank.json"), text_json.as_bytes())?;
     show(&comparison, json, &plan::describe(&plan, out))?;
@@ -203,12 +199,12 @@ fn outside(row: &Method) -> Option<Diagnostic> {
 /// What is to be known about the face.
 fn notes(job: &Job, straying_mm: f64, rule: &osculate_tools::flank::Rule) -> Vec<Diagnostic> {
     let mut out = Vec::new();
-    if job.flank.face == "borders" {
+    if job.flank().face == FlankShape::Borders {
         out.push(Diagnostic::warning(
             "flank",
             format!("milled as the straight lines between the face's borders; the face itself strays from them by up to {straying_mm:.4} mm"),
         ));
-    } else if straying_mm > job.flank.ruled_tolerance_mm {
+    } else if straying_mm > job.flank().ruled_tolerance_mm {
         out.push(Diagnostic::warning(
             "flank",
             format!(

@@ -22,6 +22,7 @@ const MOST_NODES: usize = 200;
 
 /// Runs the verb.
 pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
+    output::folder(&args.out)?;
     let wanted = wanted(args)?;
     let tool = args.postures.tool.as_deref().map(|keys| limits(keys, &args.postures)).transpose()?;
     let loaded = part::whole(args.part.load()?)?;

@@ -2,7 +2,7 @@
 
 use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
-use osculate::job::cutter;
+use osculate::job::tool;
 use osculate::words;
 use osculate::words::Table;
 use osculate_postproc::machine::spec::CarriedSide;
@@ -104,10 +104,10 @@ pub fn dialects(json: bool) -> Outcome {
 
 /// Runs `tools`.
 pub fn tools(json: bool) -> Outcome {
-    let rows = cutter::KINDS.map(|(kind, needs, may)| {
+    let rows = tool::KINDS.map(|(kind, needs, may)| {
         let optional = may.iter().copied().chain(["length_mm"]).map(|k| format!("[{k}]"));
         let keys: Vec<String> = needs.iter().map(ToString::to_string).chain(optional).collect();
-        (kind, keys.join(", "))
+        (kind.word(), keys.join(", "))
     });
     if json {
         render::json(&rows.map(|(kind, keys)| serde_json::json!({ "kind": kind, "keys": keys })))?;

@@ -5,6 +5,7 @@ pub mod export;
 pub mod flank;
 pub mod gallery;
 pub mod inspect;
+pub mod keys;
 pub mod lines;
 pub mod list;
 pub mod plan;

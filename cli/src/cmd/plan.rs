@@ -8,19 +8,19 @@ use osculate::job::Job;
 use osculate::part;
 use osculate::watch::Stage;
 use osculate::words::{Table, findings, number};
+use osculate::work::choice;
 use osculate::work::flank::face::judged;
-use osculate::work::plan::{Plan, plan};
+use osculate::work::plan::{self, Plan, plan};
 use osculate::work::verify::Verified;
-use osculate::work::{choice, left_out};
 use std::io::IsTerminal;
 use std::path::Path;
 
 /// Runs the verb.
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
-    let job = Job::load(path)?;
     output::folder(out)?;
+    let job = Job::load(path)?;
+    plan::check(&job)?;
     let stage = Stage::begin(&SCREEN, "import");
-    left_out::check(&job)?;
     let faces = judged(&job, part::of_job(&job)?)?;
     let import_s = stage.end();
     SCREEN.saves_into(out);

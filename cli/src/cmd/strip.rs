@@ -2,10 +2,10 @@
 
 use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
-use osculate::job::{ContactTable, Job, LeadKey};
+use osculate::job::{ContactFeed, Job, LeadKey};
 use osculate::part;
 use osculate::words::{Table, number};
-use osculate_geom::{Axis, Surface, uv};
+use osculate_geom::{Surface, uv};
 use osculate_productivity::closed_form::{self, DomainError, Section};
 use osculate_tools::{Contact, FeedLine, strip};
 use serde::Serialize;
@@ -57,15 +57,18 @@ struct Answer {
 /// Runs the verb.
 pub fn run(path: &Path, json: bool) -> Outcome {
     let job = Job::load_with_one_tool(path)?;
-    let table = job.contact.as_ref().ok_or_else(|| {
+    let table = job.contact().ok_or_else(|| {
         Failure::file(path, "strip needs a [contact] table: at = [u, v] and along or angle_deg")
     })?;
-    let cutter = job.cutter()?;
-    let scallop_mm = job.tolerance()?.scallop_mm;
+    let cutter = job.cutter();
+    let scallop_mm = job.tolerance().scallop_mm;
     let face = part::one_face(&job)?;
-    let feed = feed_line(&job, table)?;
+    let feed = match table.feed {
+        ContactFeed::Along(axis) => FeedLine::Iso(axis),
+        ContactFeed::Angle(rad) => FeedLine::Angle(rad),
+    };
     let at = uv(table.at[0], table.at[1]);
-    if !table.at.iter().all(|c| c.is_finite()) || !face.surface.domain().contains(at) {
+    if !face.surface.domain().contains(at) {
         let d = face.surface.domain();
         return Err(Failure::file(
             path,
@@ -75,14 +78,11 @@ pub fn run(path: &Path, json: bool) -> Outcome {
             ),
         ));
     }
-    if !table.lift_mm.is_finite() {
-        return Err(Failure::file(path, "[contact] lift_mm must be a finite number"));
-    }
-    if job.strategy.lead_deg == LeadKey::Local {
+    if job.strategy().lead == LeadKey::Local {
         let why = "[strategy] lead_deg = \"local\" is for paths: one contact needs a number";
-        return Err(Failure::file(&job.path, why));
+        return Err(Failure::file(job.path(), why));
     }
-    let contact = Contact::new(&*face.surface, at, &cutter, feed, job.lean(0.0)?)
+    let contact = Contact::new(&*face.surface, at, &cutter, feed, job.lean(0.0))
         .map_err(|e| Failure::file(path, e))?
         .lifted(table.lift_mm);
     let exact = strip::exact(&contact, scallop_mm).map_err(|e| Failure::file(path, e))?;
@@ -93,21 +93,6 @@ pub fn run(path: &Path, json: bool) -> Outcome {
         render::text(&describe(&answer, scallop_mm));
     }
     Ok(Done::Yes)
-}
-
-fn feed_line(job: &Job, table: &ContactTable) -> Result<FeedLine, Failure> {
-    match (table.along.as_deref(), table.angle_deg) {
-        (Some("u"), None) => Ok(FeedLine::Iso(Axis::U)),
-        (Some("v"), None) => Ok(FeedLine::Iso(Axis::V)),
-        (None, Some(a)) if a.is_finite() => Ok(FeedLine::Angle(a.to_radians())),
-        (Some(other), None) => {
-            Err(Failure::file(&job.path, format!("[contact] along = \"{other}\" must be \"u\" or \"v\"")))
-        }
-        _ => Err(Failure::file(
-            &job.path,
-            "[contact] needs either along = \"u\" or \"v\", or a finite angle_deg",
-        )),
-    }
 }
 
 fn answer(contact: &Contact<'_>, exact: &strip::Strip, scallop_mm: f64) -> Answer {

@@ -41,7 +41,7 @@ pub struct Options<'a> {
 /// Runs the verb.
 pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> Outcome {
     let job = Job::load_with_one_tool(job_path)?;
-    if options.blocks.is_some() && job.stock.is_none() {
+    if options.blocks.is_some() && job.stock().is_none() {
         let text = "--blocks tells what blocks take from raw material: give a [stock]";
         return Err(Failure::file(job_path, text));
     }

@@ -1,553 +1,557 @@
-//! The job file: TOML with units in its keys, checked as a whole before any work begins.
+//! The job file: TOML with units in its keys, read into one value in which everything is checked.
 
-pub mod cutter;
+pub mod builtin;
+mod check;
+pub mod control;
 pub mod flank;
-mod lead;
+mod keys;
+pub mod part;
+pub mod problem;
+mod raw;
+pub mod reference;
+pub mod schema;
+pub mod stock;
+pub mod strategy;
+#[cfg(test)]
+mod tests;
+pub mod tool;
+pub mod words;
 
 use crate::failure::{Failure, read_text};
-use crate::work::setup::SetupTable;
-pub use lead::LeadKey;
-use osculate_geom::{Unit3, Vec3};
-use osculate_tools::{Cutter, CutterSpec, HolderSpec, Lean};
-use serde::Deserialize;
-use std::path::{Path, PathBuf};
+pub use control::Control;
+pub use flank::Flank;
+use osculate_geom::{Axis, Diagnostic, Unit3};
+use osculate_postproc::nc::Coolant;
+use osculate_productivity::plan::Tolerance;
+use osculate_tools::{Cutter, CutterSpec, Lean};
+pub use part::{FaceChoice, Part, Source};
+use problem::Places;
+use raw::Raw;
+use std::path::Path;
+use std::sync::Arc;
+pub use stock::{Blank, Fixture, Stock};
+pub use strategy::Strategy;
+pub use tool::Tool;
+pub use words::{Accept, Gouges, LeadKey, Normals};
 
-/// Greatest change of a local lead where the job says none: at 2000 mm/min some 30 degrees a second, as rotary axes can.
-const LEAD_RATE_DEG_PER_MM: f64 = 1.0;
+/// Feed of a job that gives none, mm/min.
+const FEED_MM_MIN: f64 = 1000.0;
+/// Gouge and chord of a job that gives none, of the scallop.
+const SHARES: [f64; 2] = [0.5, 0.2];
 /// Material that is assumed on faces where no raw material is declared: this many scallops, so that heights are told far above
 /// what is accepted, and no less than this, mm, ...
 const LAYER_SCALLOPS: f64 = 20.0;
 const LEAST_LAYER_MM: f64 = 0.5;
 /// ... but no more than this share of the approach height, at which rapid moves end.
-pub const LAYER_OF_APPROACH: f64 = 0.75;
+const LAYER_OF_APPROACH: f64 = 0.75;
+/// Height from which the tool goes down at feed where nothing higher stands on the faces, mm.
+const APPROACH_MM: f64 = 2.0;
 /// The share of the scallop tolerance that tooth marks take at most.
 const MARK_SHARE: f64 = 0.5;
-/// The format that this version reads.
-const FORMAT: u32 = 1;
+/// The lift of the lowest hops, of `approach_mm`, where the job does not say it.
+const HOP_SHARE: f64 = 0.125;
+/// What the tool keeps from check faces in hops, of `approach_mm`: below the height of a hop, which passes over neighbours.
+const CHECK_SHARE: f64 = 0.5;
 
-/// A job file as written.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// A job in which everything is checked, with one of its tools in hand.
+#[derive(Debug, Clone)]
 pub struct Job {
-    format: u32,
-    /// The part and which of its faces.
-    pub part: PartTable,
-    /// The cutter; of several, the one in hand.
-    tool: Option<ToolTable>,
-    /// Cutters to choose from, instead of one.
-    tools: Option<Vec<ToolTable>>,
-    /// What must hold.
-    pub tolerance: ToleranceTable,
-    /// How to cut.
-    #[serde(default)]
-    pub strategy: StrategyTable,
-    /// Spindle and feed.
-    #[serde(default)]
-    pub cutting: CuttingTable,
-    /// Machine and control.
-    pub machine: Option<MachineTable>,
-    /// Where the part sits on the machine.
-    #[serde(default)]
-    pub setup: SetupTable,
-    /// One contact, for `strip`.
-    pub contact: Option<ContactTable>,
-    /// Raw material, for `verify`.
-    pub stock: Option<crate::work::stock::StockTable>,
-    /// What holds the part, for `verify`.
-    pub fixture: Option<crate::work::stock::FixtureTable>,
-    /// For `flank`.
-    #[serde(default)]
-    pub flank: flank::FlankTable,
-    /// How densely to verify.
-    #[serde(default)]
-    pub verification: VerificationTable,
-    /// The file it came from.
-    #[serde(skip)]
-    pub path: PathBuf,
+    told: Arc<Told>,
+    hand: usize,
 }
 
-/// `[part]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PartTable {
-    /// STEP or IGES file, relative to the job file.
-    pub file: Option<String>,
-    /// Millimetres in a unit of a file of point sections or patches that names none, or another than is meant.
-    pub unit_mm: Option<f64>,
-    /// Faces to machine.
-    pub faces: Option<FaceChoice>,
-    /// Faces that the tool must not touch; all others of the part are none the less.
-    pub check_faces: Option<FaceChoice>,
-    /// Faces that the tool may hit: they are not looked at, and the verdict says so.
-    pub may_hit: Option<FaceChoice>,
-    /// Which side the material is on, for faces whose file does not say.
-    #[serde(default)]
-    pub normals: Normals,
-    /// A built-in surface instead of a file.
-    pub builtin: Option<toml::Table>,
-    /// The surface between two curves instead of a file.
-    pub ruled: Option<flank::RuledTable>,
+/// What a file tells.
+#[derive(Debug)]
+struct Told {
+    places: Places,
+    part: Part,
+    tools: Vec<Tool>,
+    /// Of each tool.
+    feeds_mm_min: Vec<f64>,
+    /// With each tool.
+    layers_mm: Vec<f64>,
+    tolerance: Tolerance,
+    unreached_mm2: f64,
+    strategy: Strategy,
+    spindle_rpm: Option<f64>,
+    coolant: Option<Coolant>,
+    control: Control,
+    /// Whether the control is the job's own.
+    names_machine: bool,
+    work_offset: Option<String>,
+    program_number: Option<u32>,
+    setup: Setup,
+    contact: Option<Contact>,
+    stock: Option<Stock>,
+    fixture: Option<Fixture>,
+    flank: Flank,
+    verification: Verification,
 }
 
-/// Which side of a face the outward normal is on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Normals {
-    /// As the file says; where it does not, by looking which side is enclosed.
-    #[default]
-    Auto,
-    /// Along S_u x S_v as the file has it.
-    File,
-    /// Against it.
-    Reversed,
+/// Where the part sits and how rapid moves go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    /// Where the part's origin sits from the table's reference point; chosen from the part's box where not given.
+    pub part_zero_mm: Option<[f64; 3]>,
+    /// The part's axes turned on the table, about x, then y, then z; chosen from the faces' normals where not given.
+    pub rotate_deg: Option<[f64; 3]>,
+    /// Clearance of rapid moves over the sphere around the part.
+    pub clearance_mm: f64,
+    /// Distance from the surface at which rapid moves end.
+    pub approach_mm: f64,
+    /// The least lift in hops from pass to pass.
+    pub hop_mm: f64,
+    /// What the tool keeps from check faces in hops from pass to pass.
+    pub check_clearance_mm: f64,
 }
 
-/// A choice of faces.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
-pub enum FaceChoice {
-    /// `"all"` or one id.
-    Word(String),
-    /// Ids as `inspect` prints them.
-    Ids(Vec<String>),
-    /// `{ largest = n }`
-    Largest(LargestTable),
+/// The feed at one contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactFeed {
+    /// Along the line of constant parameter.
+    Along(Axis),
+    /// Along the geodesic at this angle from S_u towards S_v, rad.
+    Angle(f64),
 }
 
-impl FaceChoice {
-    /// Whether all faces are meant.
-    #[must_use]
-    pub fn is_all(&self) -> bool {
-        matches!(self, Self::Word(w) if w == "all")
-    }
-}
-
-/// `{ largest = n }`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LargestTable {
-    /// How many of the largest faces.
-    pub largest: usize,
-}
-
-/// `[tool]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ToolTable {
-    /// One of [`crate::job::cutter::KINDS`].
-    pub kind: String,
-    /// Outer diameter; of `apt`, d.
-    pub diameter_mm: f64,
-    /// Radius of the rounded end or corner.
-    pub corner_radius_mm: Option<f64>,
-    /// From the tip to the holder.
-    pub length_mm: Option<f64>,
-    /// From the tip to where the cutting edges end and the shank begins; the whole length where not given.
-    pub flute_length_mm: Option<f64>,
-    /// Of a cone, half its angle.
-    pub taper_deg: Option<f64>,
-    /// Of a cone without a ball tip.
-    pub tip_diameter_mm: Option<f64>,
-    /// Of a barrel's large arc.
-    pub barrel_radius_mm: Option<f64>,
-    /// Of `apt`: rise of the bottom.
-    pub bottom_angle_deg: Option<f64>,
-    /// Of `apt`: opening of the side.
-    pub side_angle_deg: Option<f64>,
-    /// Number of teeth.
-    pub teeth: Option<u32>,
-    /// Holder above the cutter.
-    pub holder: Option<HolderSpec>,
-}
-
-/// `[tolerance]`
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ToleranceTable {
-    /// Highest material left.
-    pub scallop_mm: f64,
-    /// Uncut area that is accepted, mm2; none where not given.
-    pub unreached_mm2: Option<f64>,
-    /// Deepest undercut accepted; half the scallop where not given.
-    pub gouge_mm: Option<f64>,
-    /// Chord tolerance of the path; a fifth of the scallop where not given.
-    pub chord_mm: Option<f64>,
-}
-
-/// `[strategy]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StrategyTable {
-    /// `auto` or the name of a strategy.
-    #[serde(default = "auto")]
-    pub kind: String,
-    /// Lead.
-    #[serde(default)]
-    pub lead_deg: LeadKey,
-    /// Of a local lead: its greatest change per mm of the face.
-    pub lead_rate_deg_per_mm: Option<f64>,
-    /// Tilt.
-    #[serde(default)]
-    pub tilt_deg: f64,
-    /// `u`, `v` or `auto`: the parameter that isoparametric passes run along.
-    #[serde(default = "auto")]
-    pub along: String,
-    /// The tool axis of passes that keep it.
-    pub axis: Option<[f64; 3]>,
-    /// The way of three-axis passes, across the axis; the longest side of the faces where not given.
-    pub feed_direction: Option<[f64; 3]>,
-    /// Normal of the planes of isoplanar passes.
-    pub normal: Option<[f64; 3]>,
-    /// Of a roughing: deepest cut along the axis.
-    pub stepdown_mm: Option<f64>,
-    /// Of a roughing: distance of rows.
-    pub stepover_mm: Option<f64>,
-    /// Of a roughing: what it leaves on the faces; nothing where not given.
-    pub allowance_mm: Option<f64>,
-    /// Of a roughing: steepest way down into material.
-    pub ramp_deg: Option<f64>,
-    /// What becomes of places where the tool would go into the part or a check face.
-    #[serde(default)]
-    pub gouges: Gouges,
-    /// Of places left out: what cutter and holder keep from check faces, and the holder from faces to machine.
-    pub keep_off_mm: Option<f64>,
-}
-
-/// What becomes of places where the tool would go into the part.
-#[derive(Debug, Clone, Copy, Deserialize, Default, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum Gouges {
-    /// They are machined, and verification says that the path does not hold.
-    #[default]
-    Report,
-    /// Passes end before them; verification counts what stands as uncut.
-    LeaveOut,
-}
-
-fn auto() -> String {
-    "auto".to_owned()
-}
-
-impl Default for StrategyTable {
-    fn default() -> Self {
-        Self {
-            kind: auto(),
-            lead_deg: LeadKey::Auto,
-            lead_rate_deg_per_mm: None,
-            tilt_deg: 0.0,
-            along: auto(),
-            axis: None,
-            feed_direction: None,
-            normal: None,
-            stepdown_mm: None,
-            stepover_mm: None,
-            allowance_mm: None,
-            ramp_deg: None,
-            gouges: Gouges::Report,
-            keep_off_mm: None,
-        }
-    }
-}
-
-/// `[cutting]`
-#[derive(Debug, Clone, Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub struct CuttingTable {
-    /// Spindle speed.
-    pub spindle_rpm: Option<f64>,
-    /// Feed of the tool tip on the part.
-    pub feed_mm_min: Option<f64>,
-    /// Cap on the feed per tooth.
-    pub feed_per_tooth_mm: Option<f64>,
-}
-
-/// `[machine]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MachineTable {
-    /// A built-in machine.
-    pub name: Option<String>,
-    /// A machine file, relative to the job file.
-    pub file: Option<String>,
-    /// The control's language.
-    pub dialect: Option<String>,
-    /// How the feed is programmed.
-    pub feed: Option<String>,
-    /// Largest growth of the feed correction between blocks, for `kz`.
-    pub kz_step: Option<f64>,
-}
-
-/// `[contact]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ContactTable {
+/// One contact, for `strip`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
     /// Surface parameters.
     pub at: [f64; 2],
     /// Height above the contact.
-    #[serde(default)]
     pub lift_mm: f64,
-    /// `u` or `v`: feed along the isoparametric line.
-    pub along: Option<String>,
-    /// Or the geodesic at this angle from S_u towards S_v.
-    pub angle_deg: Option<f64>,
+    /// The feed.
+    pub feed: ContactFeed,
 }
 
-/// `[verification]`
-#[derive(Debug, Clone, Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub struct VerificationTable {
+/// How densely to verify, and what a verdict must rest on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Verification {
     /// Distance between samples; from the strip width where not given.
     pub spacing_mm: Option<f64>,
     /// Most samples.
     pub max_samples: Option<usize>,
-    /// `samples`: limits that are met at the samples are enough.
-    pub accept: Option<String>,
+    /// What a verdict must rest on.
+    pub accept: Accept,
 }
 
-/// A length that must be positive.
-fn positive(path: &Path, key: &str, value: f64) -> Result<f64, Failure> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(Failure::file(path, format!("{key} = {value} must be a positive number")))
+impl Setup {
+    /// `highest_mm` is what stands on the faces to machine at most.
+    fn of(places: &Places, t: &raw::Setup, strategy: &Strategy, highest_mm: f64) -> Result<Self, Failure> {
+        // Rapid moves end above what stands on the faces.
+        let approach_mm = t.approach_mm.unwrap_or_else(|| APPROACH_MM.max(highest_mm / LAYER_OF_APPROACH));
+        let own = if strategy.layers().is_some() { approach_mm } else { HOP_SHARE * approach_mm };
+        let hop_mm = t.hop_mm.unwrap_or(own);
+        if hop_mm > approach_mm {
+            let what = format!(
+                "hop_mm = {hop_mm} is more than approach_mm = {approach_mm}: hops rise by no more than that"
+            );
+            return Err(places.refuse("setup", "hop_mm", what));
+        }
+        Ok(Self {
+            part_zero_mm: t.part_zero_mm,
+            rotate_deg: t.rotate_deg,
+            clearance_mm: t.clearance_mm.unwrap_or(10.0),
+            approach_mm,
+            hop_mm,
+            check_clearance_mm: t.check_clearance_mm.unwrap_or(CHECK_SHARE * approach_mm),
+        })
+    }
+}
+
+impl Contact {
+    fn of(places: &Places, t: &raw::Contact) -> Result<Self, Failure> {
+        let feed = match (t.along, t.angle_deg) {
+            (Some(words::AxisWord::U), None) => ContactFeed::Along(Axis::U),
+            (Some(words::AxisWord::V), None) => ContactFeed::Along(Axis::V),
+            (None, Some(deg)) => ContactFeed::Angle(deg.to_radians()),
+            _ => {
+                let what = "needs either along = \"u\" or \"v\", or angle_deg";
+                return Err(places.refuse("contact", "", what));
+            }
+        };
+        Ok(Self { at: t.at, lift_mm: t.lift_mm, feed })
+    }
+}
+
+/// The tools, of which there is at least one.
+fn tools(places: &Places, raw: &Raw) -> Result<Vec<Tool>, Failure> {
+    match (&raw.tool, raw.tools.as_deref()) {
+        (Some(one), None) => Ok(vec![Tool::of(places, "tool", one, 1)?]),
+        (Some(_), Some(_)) => {
+            Err(places.refuse("", schema::TOOLS, "has both [tool] and [[tools]]; keep one of them"))
+        }
+        (None, None) => Err(places.refuse("", "", "needs a [tool] table, or [[tools]] to choose from")),
+        (None, Some([])) => {
+            let what = "tools = []: the list of tools is empty; give at least one";
+            Err(places.refuse("", schema::TOOLS, what))
+        }
+        (None, Some(all)) => {
+            let made: Vec<Tool> = all
+                .iter()
+                .zip(1..)
+                .map(|(t, k)| Tool::of(places, &format!("{}[{k}]", schema::TOOLS), t, k))
+                .collect::<Result<_, _>>()?;
+            for (k, tool) in made.iter().enumerate() {
+                if made[..k].iter().any(|t| t.number() == tool.number()) {
+                    let table = format!("{}[{}]", schema::TOOLS, k + 1);
+                    let what = format!("number = {} is that of a tool before it", tool.number());
+                    return Err(places.refuse(&table, "number", what));
+                }
+            }
+            Ok(made)
+        }
+    }
+}
+
+/// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
+fn layer_mm(raw: &Raw, tool: &Tool) -> f64 {
+    if let Some(allowance) = raw.stock.as_ref().and_then(|s| s.allowance_mm.filter(|_| s.file.is_none())) {
+        return allowance;
+    }
+    let layer =
+        (LAYER_SCALLOPS * raw.tolerance.scallop_mm).max(LEAST_LAYER_MM).min(0.5 * tool.cutter().radius_mm());
+    raw.setup.approach_mm.map_or(layer, |approach| layer.min(LAYER_OF_APPROACH * approach))
+}
+
+/// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.
+///
+/// A corner of radius r leaves `h = r - sqrt(r^2 - f^2/4)`; an edge that leans by the lead L leaves `h = f sin L cos L`.
+fn feed_per_tooth_mm(tool: &Tool, strategy: &Strategy, mark_mm: f64) -> Option<f64> {
+    let r = tool.cutter().corner_mm();
+    if r > 0.0 {
+        let h = mark_mm.min(r);
+        return Some(2.0 * (h * (2.0 * r - h)).sqrt());
+    }
+    let LeadKey::Given(deg) = strategy.lead else { return None };
+    let slope = (deg.to_radians().sin() * deg.to_radians().cos()).abs();
+    (slope > 0.0).then(|| mark_mm / slope)
+}
+
+/// The feed of a tool, capped by the feed per tooth where the job gives both.
+fn feed_mm_min(places: &Places, raw: &Raw, (tool, strategy): (&Tool, &Strategy)) -> Result<f64, Failure> {
+    let c = &raw.cutting;
+    let mut feed = c.feed_mm_min.unwrap_or(FEED_MM_MIN);
+    // The feed at which the marks of teeth take half of the scallop tolerance on a plane. Half is best where the feed is free: the
+    // width of a strip goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97,
+    // eq. 41]. Layers of a roughing stand higher than marks.
+    if let (Some(rpm), None) = (c.spindle_rpm, strategy.layers()) {
+        let mark_mm = MARK_SHARE * raw.tolerance.scallop_mm;
+        let teeth = f64::from(tool.teeth().unwrap_or(1));
+        feed = feed_per_tooth_mm(tool, strategy, mark_mm).map_or(feed, |f| feed.min(f * teeth * rpm));
+    }
+    match (c.feed_per_tooth_mm, c.spindle_rpm, tool.teeth()) {
+        (None, ..) => Ok(feed),
+        (Some(f), Some(n), Some(z)) => Ok(feed.min(f * n * f64::from(z))),
+        _ => {
+            let what = "feed_per_tooth_mm needs spindle_rpm and [tool] teeth to become a feed";
+            Err(places.refuse("cutting", "feed_per_tooth_mm", what))
+        }
+    }
+}
+
+impl Told {
+    fn of(places: Places, raw: &Raw) -> Result<Self, Failure> {
+        let tools = tools(&places, raw)?;
+        let strategy = Strategy::of(&places, &raw.strategy, tools.len())?;
+        let t = &raw.tolerance;
+        let feeds_mm_min =
+            tools.iter().map(|t| feed_mm_min(&places, raw, (t, &strategy))).collect::<Result<_, _>>()?;
+        let highest_mm = tools.iter().map(|tool| layer_mm(raw, tool)).fold(0.0, f64::max);
+        let setup = Setup::of(&places, &raw.setup, &strategy, highest_mm)?;
+        let contact = raw.contact.as_ref().map(|c| Contact::of(&places, c)).transpose()?;
+        let control = Control::of(&places, raw.machine.as_ref(), &tools[0])?;
+        let machine = raw.machine.as_ref();
+        let offset = machine.and_then(|m| m.work_offset.as_deref());
+        let work_offset = offset.map(|w| control::work_offset(&places, control.dialect, w)).transpose()?;
+        let stock = raw.stock.as_ref().map(|s| Stock::of(&places, s)).transpose()?;
+        let fixture = raw.fixture.as_ref().map(|f| Fixture::of(&places, f)).transpose()?;
+        let part = Part::of(&places, &raw.part)?;
+        if strategy.layers().is_some() && stock.is_none() {
+            let what = format!(
+                "{} needs the raw material: add [stock] with box_mm, cylinder, file or allowance_mm",
+                strategy.name()
+            );
+            return Err(places.refuse("strategy", "kind", what));
+        }
+        Ok(Self {
+            part,
+            feeds_mm_min,
+            layers_mm: tools.iter().map(|tool| layer_mm(raw, tool)).collect(),
+            tools,
+            tolerance: Tolerance {
+                scallop_mm: t.scallop_mm,
+                gouge_mm: t.gouge_mm.unwrap_or(SHARES[0] * t.scallop_mm),
+                chord_mm: t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm),
+            },
+            unreached_mm2: t.unreached_mm2.unwrap_or(0.0),
+            strategy,
+            spindle_rpm: raw.cutting.spindle_rpm,
+            coolant: raw.cutting.coolant.and_then(control::coolant),
+            names_machine: machine.is_some(),
+            work_offset,
+            program_number: machine.and_then(|m| m.program_number),
+            control,
+            setup,
+            contact,
+            stock,
+            fixture,
+            flank: Flank::of(&raw.flank),
+            verification: Verification {
+                spacing_mm: raw.verification.spacing_mm,
+                max_samples: raw.verification.max_samples,
+                accept: raw.verification.accept.unwrap_or_default(),
+            },
+            places,
+        })
     }
 }
 
 impl Job {
-    /// Reads and checks a job file.
+    /// The job of a text. Files that it names are looked for beside `path`.
+    ///
+    /// # Errors
+    /// Names line, key, value and what was expected; everything that can be told without the part is.
+    pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {
+        let places = check::places(text, path)?;
+        let raw: Raw = toml::from_str(text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
+        Ok(Self { told: Arc::new(Told::of(places, &raw)?), hand: 0 })
+    }
+
+    /// The job of a file.
+    ///
+    /// # Errors
+    /// As [`Job::from_toml`].
     pub fn load(path: &Path) -> Result<Self, Failure> {
-        let text = read_text(path)?;
-        let mut job: Self =
-            toml::from_str(&text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
-        job.path = path.to_path_buf();
-        if job.format != FORMAT {
-            return Err(Failure::file(
-                path,
-                format!("format = {}: this version reads format = {FORMAT}", job.format),
-            ));
-        }
-        let p = &job.part;
-        match [p.file.is_some(), p.builtin.is_some(), p.ruled.is_some()].iter().filter(|x| **x).count() {
-            0 => {
-                let need = "[part] needs file = \"...\", builtin = { ... } or [part.ruled]";
-                return Err(Failure::file(path, need));
-            }
-            1 => {}
-            _ => {
-                return Err(Failure::file(
-                    path,
-                    "[part] has several of file, builtin and ruled; keep one of them",
-                ));
-            }
-        }
-        match (&job.tool, job.tools.as_deref()) {
-            (Some(_), None) => {}
-            (Some(_), Some(_)) => {
-                return Err(Failure::file(path, "has both [tool] and [[tools]]; keep one of them"));
-            }
-            (None, None) => {
-                return Err(Failure::file(path, "needs a [tool] table, or [[tools]] to choose from"));
-            }
-            (None, Some([])) => {
-                return Err(Failure::file(path, "tools = []: the list of tools is empty; give at least one"));
-            }
-            (None, Some([first, ..])) => job.tool = Some(first.clone()),
-        }
-        job.tolerance()?;
-        job.lean(0.0)?;
-        job.lead_rate_rad_per_mm()?;
-        job.spindle_rpm()?;
-        let all = job.each_tool();
-        for (k, one) in all.iter().enumerate() {
-            one.check_tool().map_err(|e| match all.len() {
-                1 => e,
-                // The keys are those of [tool]; which table is meant must be said.
-                _ => Failure::Job(e.message().replacen(
-                    "[tool",
-                    &format!("[[tools]] number {}: [tool", k + 1),
-                    1,
-                )),
-            })?;
+        Self::from_toml(&read_text(path)?, path)
+    }
+
+    /// The job of a file, which must have a single tool.
+    ///
+    /// # Errors
+    /// As [`Job::from_toml`], and where there are several tools.
+    pub fn load_with_one_tool(path: &Path) -> Result<Self, Failure> {
+        let job = Self::load(path)?;
+        if job.told.tools.len() > 1 {
+            let what = "has several [[tools]] where one is needed: copy the job with the one meant as [tool]";
+            return Err(job.refuse("", schema::TOOLS, what));
         }
         Ok(job)
     }
 
-    /// Whether the tool in hand is one.
-    fn check_tool(&self) -> Result<(), Failure> {
-        self.cutter()?;
-        self.feed_mm_min()?;
-        self.holder()?;
-        self.flutes()?;
-        Ok(())
+    /// All tables and keys of job files: what the checks, the reference and the template are made of.
+    #[must_use]
+    pub fn schema() -> &'static [schema::Table] {
+        keys::TABLES
     }
 
-    /// Reads and checks a job file of a single tool.
-    pub fn load_with_one_tool(path: &Path) -> Result<Self, Failure> {
-        let job = Self::load(path)?;
-        match job.tools.as_deref() {
-            Some([_, _, ..]) => Err(Failure::file(
-                path,
-                "has several [[tools]] where one is needed: copy the job with the one meant as [tool]",
-            )),
-            _ => Ok(job),
-        }
+    /// A failure at a key of the file.
+    #[must_use]
+    pub fn refuse(&self, table: &str, key: &str, what: impl std::fmt::Display) -> Failure {
+        self.told.places.refuse(table, key, what)
     }
 
     /// The job once with each of its tools in hand.
+    #[must_use]
     pub fn each_tool(&self) -> Vec<Self> {
-        let with = |t: &ToolTable| Self { tool: Some(t.clone()), ..self.clone() };
-        self.tools.as_ref().map_or_else(|| vec![self.clone()], |all| all.iter().map(with).collect())
+        (0..self.told.tools.len()).map(|hand| Self { told: Arc::clone(&self.told), hand }).collect()
+    }
+
+    /// The file it came from.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.told.places.path()
+    }
+
+    /// The part and which of its faces.
+    #[must_use]
+    pub fn part(&self) -> &Part {
+        &self.told.part
+    }
+
+    /// All tools.
+    #[must_use]
+    pub fn tools(&self) -> &[Tool] {
+        &self.told.tools
     }
 
     /// The tool in hand.
-    pub fn tool(&self) -> &ToolTable {
-        self.tool.as_ref().expect("loading puts a tool in hand")
+    #[must_use]
+    pub fn tool(&self) -> &Tool {
+        &self.told.tools[self.hand]
     }
 
     /// The tool in hand in words, as tables show it.
+    #[must_use]
     pub fn tool_words(&self) -> String {
-        let t = self.tool();
-        let corner = t.corner_radius_mm.filter(|_| t.kind != "ball").map(|r| format!(" r {r}"));
-        format!("{} {}{}", t.kind, t.diameter_mm, corner.unwrap_or_default())
-    }
-
-    /// The tolerances, checked and completed.
-    pub fn tolerance(&self) -> Result<osculate_productivity::plan::Tolerance, Failure> {
-        let t = &self.tolerance;
-        let check = |key: &str, v: f64| positive(&self.path, &format!("[tolerance] {key}"), v);
-        let scallop_mm = check("scallop_mm", t.scallop_mm)?;
-        Ok(osculate_productivity::plan::Tolerance {
-            scallop_mm,
-            gouge_mm: check("gouge_mm", t.gouge_mm.unwrap_or(0.5 * scallop_mm))?,
-            chord_mm: check("chord_mm", t.chord_mm.unwrap_or(0.2 * scallop_mm))?,
-        })
+        self.tool().words().to_owned()
     }
 
     /// The cutter's description.
-    pub fn cutter_spec(&self) -> Result<CutterSpec, Failure> {
-        cutter::spec(&self.path, self.tool())
+    #[must_use]
+    pub fn cutter_spec(&self) -> CutterSpec {
+        self.tool().spec()
     }
 
     /// The cutter.
-    pub fn cutter(&self) -> Result<Cutter, Failure> {
-        Cutter::try_from(self.cutter_spec()?).map_err(|e| Failure::file(&self.path, format!("[tool] {e}")))
+    #[must_use]
+    pub fn cutter(&self) -> Cutter {
+        self.tool().cutter()
     }
 
     /// The part of the cutter that cuts, and the shank above it where the flutes end below the length.
-    pub fn flutes(&self) -> Result<(Cutter, Option<Cutter>), Failure> {
-        let whole = self.cutter()?;
-        let Some(flute_mm) = self.tool().flute_length_mm else { return Ok((whole, None)) };
-        let wrong =
-            |why: String| Failure::file(&self.path, format!("[tool] flute_length_mm = {flute_mm}: {why}"));
-        let shank_mm = whole.length_mm() - flute_mm;
-        if !(flute_mm > 0.0 && shank_mm >= 0.0) {
-            return Err(wrong(format!("must lie between 0 and the length, {} mm", whole.length_mm())));
-        }
-        let short = whole.shortened(flute_mm).map_err(|e| wrong(e.to_string()))?;
-        let shank = if shank_mm > 0.0 {
-            Some(Cutter::cylinder(2.0 * whole.radius_mm(), shank_mm).map_err(|e| wrong(e.to_string()))?)
-        } else {
-            None
-        };
-        Ok((short, shank))
+    #[must_use]
+    pub fn flutes(&self) -> (Cutter, Option<Cutter>) {
+        self.tool().flutes()
     }
 
     /// The holder as a cylinder.
-    pub fn holder(&self) -> Result<Option<Cutter>, Failure> {
-        let Some(h) = &self.tool().holder else { return Ok(None) };
-        Cutter::cylinder(h.diameter_mm, h.length_mm).map(Some).map_err(|e| {
-            Failure::file(&self.path, format!("[tool.holder] {}", e.to_string().replace("cutter", "holder")))
-        })
+    #[must_use]
+    pub fn holder(&self) -> Option<Cutter> {
+        self.tool().holder()
+    }
+
+    /// The tolerances.
+    #[must_use]
+    pub fn tolerance(&self) -> Tolerance {
+        self.told.tolerance
+    }
+
+    /// Area that no tool reaches and that is accepted.
+    #[must_use]
+    pub fn unreached_mm2(&self) -> f64 {
+        self.told.unreached_mm2
+    }
+
+    /// How to cut.
+    #[must_use]
+    pub fn strategy(&self) -> &Strategy {
+        &self.told.strategy
+    }
+
+    /// Whether something is left to be chosen: the strategy, or one of several tools.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.strategy().is_open() || self.told.tools.len() > 1
     }
 
     /// Lead and tilt, with this lead where the job leaves it to the program.
-    pub fn lean(&self, auto_lead_rad: f64) -> Result<Lean, Failure> {
-        let lead_rad = match self.strategy.lead_deg {
+    #[must_use]
+    pub fn lean(&self, auto_lead_rad: f64) -> Lean {
+        let s = self.strategy();
+        let lead_rad = match s.lead {
             LeadKey::Auto | LeadKey::Local => auto_lead_rad,
             LeadKey::Given(deg) => deg.to_radians(),
         };
-        Lean { lead_rad, tilt_rad: self.strategy.tilt_deg.to_radians() }
-            .checked()
-            .map_err(|e| Failure::file(&self.path, format!("[strategy] {e}")))
+        Lean { lead_rad, tilt_rad: s.tilt_deg.to_radians() }
     }
 
     /// Greatest change of a local lead per mm of the face.
-    pub fn lead_rate_rad_per_mm(&self) -> Result<f64, Failure> {
-        let deg = self.strategy.lead_rate_deg_per_mm.unwrap_or(LEAD_RATE_DEG_PER_MM);
-        Ok(positive(&self.path, "[strategy] lead_rate_deg_per_mm", deg)?.to_radians())
+    #[must_use]
+    pub fn lead_rate_rad_per_mm(&self) -> f64 {
+        self.strategy().lead_rate_rad_per_mm
     }
 
-    /// The feed, capped by the feed per tooth where the job gives both.
-    pub fn feed_mm_min(&self) -> Result<f64, Failure> {
-        let c = &self.cutting;
-        let given = positive(&self.path, "[cutting] feed_mm_min", c.feed_mm_min.unwrap_or(1000.0))?;
-        let feed = self.mark_cap_mm_min()?.map_or(given, |cap| given.min(cap));
-        match (c.feed_per_tooth_mm, c.spindle_rpm, self.tool().teeth) {
-            (Some(f), Some(n), Some(z)) => {
-                let f = positive(&self.path, "[cutting] feed_per_tooth_mm", f)?;
-                Ok(feed.min(f * n * f64::from(z)))
-            }
-            (Some(_), _, _) => Err(Failure::file(
-                &self.path,
-                "[cutting] feed_per_tooth_mm needs spindle_rpm and [tool] teeth to become a feed",
-            )),
-            _ => Ok(feed),
-        }
+    /// The tool axis of passes that keep it.
+    #[must_use]
+    pub fn contour_axis(&self) -> Unit3 {
+        self.strategy().axis
     }
 
-    /// The feed at which the marks of teeth take half of the scallop tolerance on a plane; None where nothing tells how often teeth
-    /// pass, or what they leave depends on a lead that is not known yet. Half is best where the feed is free: the width of a strip
-    /// goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97, eq. 41].
-    pub fn mark_cap_mm_min(&self) -> Result<Option<f64>, Failure> {
-        let Some(rpm) = self.spindle_rpm()? else { return Ok(None) };
-        let teeth = f64::from(self.tool().teeth.unwrap_or(1).max(1));
-        let mark_mm = MARK_SHARE * self.tolerance()?.scallop_mm;
-        Ok(self.feed_per_tooth_mm(mark_mm)?.map(|f| f * teeth * rpm))
-    }
-
-    /// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.
-    ///
-    /// A corner of radius r leaves `h = r - sqrt(r^2 - f^2/4)`; an edge that leans by the lead L leaves `h = f sin L cos L`.
-    pub fn feed_per_tooth_mm(&self, mark_mm: f64) -> Result<Option<f64>, Failure> {
-        let r = self.cutter()?.corner_mm();
-        if r > 0.0 {
-            let h = mark_mm.min(r);
-            return Ok(Some(2.0 * (h * (2.0 * r - h)).sqrt()));
-        }
-        let lead = match self.strategy.lead_deg {
-            LeadKey::Given(deg) => deg.to_radians().abs(),
-            LeadKey::Auto | LeadKey::Local => return Ok(None),
-        };
-        let slope = lead.sin() * lead.cos();
-        Ok((slope > 0.0).then(|| mark_mm / slope))
-    }
-
-    /// The spindle speed.
-    pub fn spindle_rpm(&self) -> Result<Option<f64>, Failure> {
-        self.cutting.spindle_rpm.map(|n| positive(&self.path, "[cutting] spindle_rpm", n)).transpose()
+    /// The feed of the tool in hand, capped by the feed per tooth where the job gives one.
+    #[must_use]
+    pub fn feed_mm_min(&self) -> f64 {
+        self.told.feeds_mm_min[self.hand]
     }
 
     /// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
-    pub fn layer_mm(&self) -> Result<f64, Failure> {
-        if let Some(allowance) = self.stock.as_ref().and_then(|s| s.allowance_mm.filter(|_| s.file.is_none()))
-        {
-            return positive(&self.path, "[stock] allowance_mm", allowance);
-        }
-        let (scallop_mm, radius_mm) = (self.tolerance()?.scallop_mm, self.cutter()?.radius_mm());
-        let layer = (LAYER_SCALLOPS * scallop_mm).max(LEAST_LAYER_MM).min(0.5 * radius_mm);
-        Ok(match self.setup.approach_mm {
-            Some(approach) if approach.is_finite() && approach > 0.0 => {
-                layer.min(LAYER_OF_APPROACH * approach)
-            }
-            _ => layer,
-        })
+    #[must_use]
+    pub fn layer_mm(&self) -> f64 {
+        self.told.layers_mm[self.hand]
     }
 
-    /// The tool axis of contour passes.
-    pub fn contour_axis(&self) -> Result<Unit3, Failure> {
-        let a = self.strategy.axis.unwrap_or([0.0, 0.0, 1.0]);
-        Unit3::try_new(Vec3::from(a), 1e-9)
-            .filter(|u| u.iter().all(|c| c.is_finite()))
-            .ok_or_else(|| Failure::file(&self.path, format!("[strategy] axis = {a:?} has no direction")))
+    /// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.
+    #[must_use]
+    pub fn feed_per_tooth_mm(&self, mark_mm: f64) -> Option<f64> {
+        feed_per_tooth_mm(self.tool(), self.strategy(), mark_mm)
+    }
+
+    /// The spindle speed.
+    #[must_use]
+    pub fn spindle_rpm(&self) -> Option<f64> {
+        self.told.spindle_rpm
+    }
+
+    /// The coolant.
+    #[must_use]
+    pub fn coolant(&self) -> Option<Coolant> {
+        self.told.coolant
+    }
+
+    /// Machine and control.
+    #[must_use]
+    pub fn control(&self) -> &Control {
+        &self.told.control
+    }
+
+    /// Whether the job says what machine it is for.
+    #[must_use]
+    pub fn names_machine(&self) -> bool {
+        self.told.names_machine
+    }
+
+    /// What is to be known of the control: that the job names none.
+    #[must_use]
+    pub fn control_notes(&self) -> Vec<Diagnostic> {
+        if self.names_machine() { Vec::new() } else { vec![control::assumed(self.control())] }
+    }
+
+    /// The work offset as the dialect says it.
+    #[must_use]
+    pub fn work_offset(&self) -> Option<&str> {
+        self.told.work_offset.as_deref()
+    }
+
+    /// The number of the program.
+    #[must_use]
+    pub fn program_number(&self) -> Option<u32> {
+        self.told.program_number
+    }
+
+    /// Where the part sits and how rapid moves go.
+    #[must_use]
+    pub fn setup(&self) -> &Setup {
+        &self.told.setup
+    }
+
+    /// One contact.
+    #[must_use]
+    pub fn contact(&self) -> Option<&Contact> {
+        self.told.contact.as_ref()
+    }
+
+    /// Raw material.
+    #[must_use]
+    pub fn stock(&self) -> Option<&Stock> {
+        self.told.stock.as_ref()
+    }
+
+    /// What holds the part.
+    #[must_use]
+    pub fn fixture(&self) -> Option<&Fixture> {
+        self.told.fixture.as_ref()
+    }
+
+    /// How a ruled face is milled with the side of the cutter.
+    #[must_use]
+    pub fn flank(&self) -> &Flank {
+        &self.told.flank
+    }
+
+    /// How densely to verify.
+    #[must_use]
+    pub fn verification(&self) -> &Verification {
+        &self.told.verification
     }
 }

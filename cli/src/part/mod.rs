@@ -1,10 +1,8 @@
 //! Parts as commands see them: faces with names, from a file or built in.
 
-pub mod builtin;
-
-use crate::failure::{Failure, beside, read};
-use crate::job::{FaceChoice, Job, Normals};
-use builtin::Builtin;
+use crate::failure::{Failure, read};
+use crate::job::builtin::{self, Builtin};
+use crate::job::{FaceChoice, Job, Normals, Source};
 use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::orient::Enclosure;
@@ -114,23 +112,19 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
 fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
     let bytes = read(path)?;
     let mut part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
-    match unit_mm {
-        None => {}
-        Some(u) if !(u.is_finite() && u > 0.0) => {
-            return Err(Failure::file(path, format!("[part] unit_mm = {u} must be a positive number")));
-        }
-        Some(_) => {
-            part = match part.format {
-                osculate_surfaces::Format::Sections => osculate_surfaces::sections::read_in(&bytes, unit_mm)
-                    .map_err(|e| Failure::file(path, e))?,
-                osculate_surfaces::Format::Patches => osculate_surfaces::patches::read_in(&bytes, unit_mm)
-                    .map_err(|e| Failure::file(path, e))?,
-                _ => {
-                    let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
-                    return Err(Failure::file(path, text));
-                }
-            };
-        }
+    if unit_mm.is_some() {
+        part = match part.format {
+            osculate_surfaces::Format::Sections => {
+                osculate_surfaces::sections::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?
+            }
+            osculate_surfaces::Format::Patches => {
+                osculate_surfaces::patches::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?
+            }
+            _ => {
+                let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
+                return Err(Failure::file(path, text));
+            }
+        };
     }
     let format = match part.format {
         osculate_surfaces::Format::Step => "step",
@@ -211,23 +205,18 @@ impl JobFaces {
 
 /// The faces of a job, with their material sides settled.
 pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
-    let here = |e: Failure| Failure::file(&job.path, format!("[part] {}", e.message()));
-    let mut part = match (&job.part.file, &job.part.builtin, &job.part.ruled) {
-        (Some(file), ..) => whole(from_file(&beside(&job.path, file), job.part.unit_mm)?)?,
-        (None, Some(table), _) => from_builtin(builtin::build(table).map_err(Failure::Job).map_err(here)?)?,
-        (None, None, Some(table)) => {
-            let strip = crate::job::flank::strip(table).map_err(|e| Failure::file(&job.path, e))?;
-            from_builtin(Builtin { kind: "ruled", surface: strip, spline: None })?
-        }
-        (None, None, None) => return Err(Failure::file(&job.path, "[part] needs file, builtin or ruled")),
+    let here = |e: Failure| Failure::file(job.path(), format!("[part] {}", e.message()));
+    let mut part = match job.part().source() {
+        Source::File { path, unit_mm } => whole(from_file(path, *unit_mm)?)?,
+        Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
-    let mut faces = choose(&part, job.part.faces.as_ref(), "faces").map_err(here)?;
+    let mut faces = choose(&part, job.part().faces(), "faces").map_err(here)?;
     if faces.is_empty() {
-        return Err(Failure::file(&job.path, "[part] faces chooses no face"));
+        return Err(Failure::file(job.path(), "[part] faces chooses no face"));
     }
     if let Some(k) = settle_sides(job, &mut part, &mut faces)?.first() {
         return Err(Failure::file(
-            &job.path,
+            job.path(),
             format!(
                 "[part] {}: neither the file nor the shape of the part says on which side of the face the material is; say \
                  normals = \"file\" or normals = \"reversed\" (probe shows the normal)",
@@ -237,18 +226,18 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
     }
     doubt_sides(job, &mut part, &faces);
     let machined = |f: &LoadedFace| faces.iter().any(|m| m.id == f.id);
-    if let Some(named) = job.part.check_faces.as_ref().filter(|c| !c.is_all()) {
+    if let Some(named) = job.part().check_faces().filter(|c| !c.is_all()) {
         let named = choose(&part, Some(named), "check_faces").map_err(here)?;
         if let Some(both) = named.iter().find(|f| machined(f)) {
             return Err(both_kinds(job, "check_faces", &both.id, "the tool must touch it"));
         }
     }
-    let may_hit = match &job.part.may_hit {
+    let may_hit = match job.part().may_hit() {
         None => Vec::new(),
-        some => choose(&part, some.as_ref(), "may_hit").map_err(here)?,
+        some => choose(&part, some, "may_hit").map_err(here)?,
     };
     if let Some(both) =
-        may_hit.iter().find(|f| machined(f) && !job.part.may_hit.as_ref().is_some_and(FaceChoice::is_all))
+        may_hit.iter().find(|f| machined(f) && !job.part().may_hit().is_some_and(FaceChoice::is_all))
     {
         return Err(both_kinds(job, "may_hit", &both.id, "it is cut to its tolerance"));
     }
@@ -279,7 +268,7 @@ fn both_kinds(job: &Job, key: &str, id: &str, why: &str) -> Failure {
         "[part] {key} names {id}, which is also a face to machine: {why}. Take {id} out of one of them; all other faces of the \
          part are checked whether they are named or not"
     );
-    Failure::file(&job.path, text)
+    Failure::file(job.path(), text)
 }
 
 /// The single face of a job.
@@ -288,7 +277,7 @@ pub fn one_face(job: &Job) -> Result<LoadedFace, Failure> {
     match (all.pop(), all.len()) {
         (Some(one), 0) => Ok(one),
         (_, more) => Err(Failure::file(
-            &job.path,
+            job.path(),
             format!("[part] faces chooses {} faces where one is needed", more + 1),
         )),
     }
@@ -374,7 +363,7 @@ fn unsaid(faces: &[LoadedFace]) -> Vec<usize> {
 fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<Vec<usize>, Failure> {
     let open = unsaid(faces);
     let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
-    match job.part.normals {
+    match job.part().normals() {
         Normals::File => return Ok(Vec::new()),
         Normals::Reversed => {
             faces.iter_mut().for_each(flip);
@@ -411,7 +400,7 @@ fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Resul
 /// where the file itself says no side, as a job may well turn over what a file says.
 fn doubt_sides(job: &Job, part: &mut Loaded, faces: &[LoadedFace]) {
     let open = unsaid(faces);
-    if open.is_empty() || job.part.normals == Normals::Auto {
+    if open.is_empty() || job.part().normals() == Normals::Auto {
         return;
     }
     let triangles = soup(part);

@@ -154,7 +154,7 @@ fn histogram_edges(story: &Story<'_>) -> Vec<f64> {
 
 fn verdict(story: &Story<'_>) -> Verdict {
     let v = &story.summary.verification;
-    let t = &story.job.tolerance;
+    let t = story.job.tolerance();
     let answer = story.verified.verdict.answer();
     let mut words = story.verified.verdict.words();
     if let Some(w) = story.verified.worst.first().filter(|_| answer == Answer::NotHeld) {
@@ -183,7 +183,7 @@ fn verdict(story: &Story<'_>) -> Verdict {
         gouge_max_mm: v.gouge_max_mm,
         uncut_area_mm2: v.uncut_area_mm2,
         scallop_tolerance_mm: t.scallop_mm,
-        gouge_tolerance_mm: story.job.tolerance().map_or(f64::NAN, |t| t.gouge_mm),
+        gouge_tolerance_mm: t.gouge_mm,
         worst: story
             .verified
             .worst
@@ -251,9 +251,9 @@ fn links(linked: &Linked) -> Vec<Link> {
 const OUTLINE_TURN_RAD: f64 = 0.03;
 
 fn tool(job: &Job) -> Option<Tool> {
-    let c = job.cutter().ok()?;
+    let c = job.cutter();
     let kind = if !c.is_end_mill() {
-        job.tool().kind.clone()
+        job.tool().kind().word().to_owned()
     } else if c.is_ball() {
         "ball".to_owned()
     } else if c.corner_mm() == 0.0 {
@@ -267,7 +267,10 @@ fn tool(job: &Job) -> Option<Tool> {
         corner_radius_mm: c.corner_mm(),
         length_mm: c.length_mm(),
         flute_mm: None,
-        holder: job.tool().holder.map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
+        holder: job
+            .tool()
+            .holder_spec()
+            .map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
         meridian_mm: if c.is_end_mill() { Vec::new() } else { c.outline_mm(OUTLINE_TURN_RAD) },
     })
 }

@@ -105,6 +105,12 @@ pub enum Verb {
     Tools,
     /// The surfaces with a name, for --builtin and for jobs.
     Gallery,
+    /// All keys of a job file: what each takes, what holds where it is left out, and what it means.
+    Keys {
+        /// Print a commented job file instead, which can be run.
+        #[arg(long)]
+        template: bool,
+    },
 }
 
 /// A part: a file or a built-in surface.

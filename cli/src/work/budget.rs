@@ -7,10 +7,8 @@
 //! mean of two passes that stray to either side: a quarter of the most that the post allows is counted. What teeth leave at the
 //! feed of the job is kept back before both.
 
-use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{self, JobFaces};
-use crate::work::nc;
 use osculate_postproc::SolveOptions;
 use osculate_postproc::nc::Dialect;
 use osculate_productivity::plan::Tolerance;
@@ -31,65 +29,65 @@ const MOST: f64 = 0.3;
 const MARKS: f64 = 0.6;
 
 /// How closely the joints follow the path of a job.
-pub fn solve(job: &Job) -> Result<SolveOptions, Failure> {
-    let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter()?.radius_mm(), job.tolerance()?);
+pub fn solve(job: &Job) -> SolveOptions {
+    let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter().radius_mm(), job.tolerance());
     let tip_tol_mm = (WAYS * t.chord_mm).clamp(LEAST_TIP_MM, coarse.tip_tol_mm);
     let axis_tol_rad = (tip_tol_mm / radius_mm).min(coarse.axis_tol_rad);
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
-    Ok(SolveOptions { tip_tol_mm, axis_tol_rad, singular_cone_rad, ..coarse })
+    SolveOptions { tip_tol_mm, axis_tol_rad, singular_cone_rad, ..coarse }
 }
 
 /// Half a unit of the last decimal of the coarsest slide, mm.
-fn words_mm(job: &Job) -> Result<f64, Failure> {
-    let machine = nc::control(job)?.0.machine;
+fn words_mm(job: &Job) -> f64 {
+    let machine = &job.control().machine;
     let decimals =
         machine.linear().map(|p| machine.joints()[p].decimals).into_iter().fold(usize::MAX, usize::min);
     // A machine has few decimals.
-    Ok(0.5 * 10f64.powi(-(decimals.min(16) as i32)))
+    0.5 * 10f64.powi(-(decimals.min(16) as i32))
 }
 
 /// By how much the control of a job leaves corners out, mm: verdicts add it.
-fn blend_mm(job: &Job) -> Result<f64, Failure> {
-    let blends = nc::control(job)?.0.dialect == Dialect::LinuxCnc;
+fn blend_mm(job: &Job) -> f64 {
+    let blends = job.control().dialect == Dialect::LinuxCnc;
     // It blends corners and joins short pieces, each as closely as programs ask for.
-    Ok(if blends { 2.0 * solve(job)?.tip_tol_mm } else { 0.0 })
+    if blends { 2.0 * solve(job).tip_tol_mm } else { 0.0 }
 }
 
 /// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
-pub fn leaning(job: &Job, faces: &JobFaces, share: f64) -> Result<Tolerance, Failure> {
-    let s = solve(job)?;
-    let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter()?.radius_mm());
-    kept_back(job, faces, share, words_mm(job)? + ways_mm + blend_mm(job)?)
+pub fn leaning(job: &Job, faces: &JobFaces, share: f64) -> Tolerance {
+    let s = solve(job);
+    let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter().radius_mm());
+    kept_back(job, faces, share, words_mm(job) + ways_mm + blend_mm(job))
 }
 
 /// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
-pub fn upright(job: &Job, faces: &JobFaces) -> Result<Tolerance, Failure> {
-    kept_back(job, faces, 1.0, words_mm(job)? + blend_mm(job)?)
+pub fn upright(job: &Job, faces: &JobFaces) -> Tolerance {
+    kept_back(job, faces, 1.0, words_mm(job) + blend_mm(job))
 }
 
 /// The highest mark that teeth leave on the faces at the feed of a job, to leading order, mm; zero where it is not known.
 ///
 /// Where the part's curvature along the feed is k the tip goes `1 + k r` times as fast as the contact, and tool and part close
 /// with `1/r + k`: the mark is `f^2 / (8 r (1 + k r))`, highest where the part is most hollow.
-fn mark_mm(job: &Job, faces: &JobFaces) -> Result<f64, Failure> {
-    let (Some(rpm), r) = (job.spindle_rpm()?, job.cutter()?.corner_mm()) else { return Ok(0.0) };
-    let teeth = f64::from(job.tool().teeth.unwrap_or(1).max(1));
-    let f = job.feed_mm_min()? / (rpm * teeth);
+fn mark_mm(job: &Job, faces: &JobFaces) -> f64 {
+    let (Some(rpm), r) = (job.spindle_rpm(), job.cutter().corner_mm()) else { return 0.0 };
+    let teeth = f64::from(job.tool().teeth().unwrap_or(1).max(1));
+    let f = job.feed_mm_min() / (rpm * teeth);
     if r <= 0.0 {
-        let per_mm = job.feed_per_tooth_mm(1.0)?;
-        return Ok(per_mm.map_or(0.0, |one| f / one));
+        let per_mm = job.feed_per_tooth_mm(1.0);
+        return per_mm.map_or(0.0, |one| f / one);
     }
     let ranges = faces.faces.iter().filter_map(|face| part::curvature_range(&*face.surface));
     let hollow = ranges.map(|[low, _]| low).fold(0.0, f64::min);
-    Ok(f * f / (8.0 * r * (1.0 + hollow * r).max(MOST_HOLLOW)))
+    f * f / (8.0 * r * (1.0 + hollow * r).max(MOST_HOLLOW))
 }
 
 /// Hollows that come closer to the tool's corner than this are no longer of leading order: there verification tells.
 const MOST_HOLLOW: f64 = 0.5;
 
-fn kept_back(job: &Job, faces: &JobFaces, share: f64, by_mm: f64) -> Result<Tolerance, Failure> {
-    let given = job.tolerance()?;
-    let marks_mm = mark_mm(job, faces)?.min(MARKS * given.scallop_mm);
+fn kept_back(job: &Job, faces: &JobFaces, share: f64, by_mm: f64) -> Tolerance {
+    let given = job.tolerance();
+    let marks_mm = mark_mm(job, faces).min(MARKS * given.scallop_mm);
     let scallop_mm = share * (given.scallop_mm - marks_mm - by_mm.min(MOST * given.scallop_mm));
-    Ok(Tolerance { scallop_mm, ..given })
+    Tolerance { scallop_mm, ..given }
 }

@@ -1,7 +1,7 @@
 //! What a job demands of a program: the goal that its verdict is made against. The same for every verb.
 
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Accept, Job};
 use crate::part::{JobFaces, LoadedFace};
 use crate::work::rough;
 use crate::work::stock::{self, RawMaterial};
@@ -23,22 +23,22 @@ pub struct Aim<'a> {
     holder: Option<Cutter>,
     /// Of a roughing, the faces to machine, outside by its allowance.
     offsets: Vec<Offset<TrimmedSurface>>,
-    raw: Option<RawMaterial>,
+    raw: Option<RawMaterial<'a>>,
     fixtures: Vec<Sample>,
 }
 
 impl<'a> Aim<'a> {
     /// Everything that the job's files say of it.
     pub fn of(job: &'a Job, faces: &'a JobFaces) -> Result<Self, Failure> {
-        let (flutes, shank) = job.flutes()?;
+        let (flutes, shank) = job.flutes();
         let number = (faces.faces.len() + faces.check.len()) as u32;
         Ok(Self {
             job,
             faces,
-            cutter: job.cutter()?,
+            cutter: job.cutter(),
             flutes,
             shank,
-            holder: job.holder()?,
+            holder: job.holder(),
             offsets: rough::measured(job, faces)?,
             raw: RawMaterial::of(job, faces)?,
             fixtures: stock::fixtures(job, number)?,
@@ -46,9 +46,9 @@ impl<'a> Aim<'a> {
     }
 
     /// The goal, with the state of the control as a program has it.
-    pub fn goal(&self, control: GoalControl, spindle_rpm: Option<f64>) -> Result<Goal<'_>, Failure> {
+    pub fn goal(&self, control: GoalControl, spindle_rpm: Option<f64>) -> Goal<'_> {
         let job = self.job;
-        let tolerance = job.tolerance()?;
+        let tolerance = job.tolerance();
         let face = |k: usize, f: &'a LoadedFace| GoalFace {
             name: &f.id,
             surface: self.offsets.get(k).map_or(&*f.surface as &dyn Surface, |o| o),
@@ -62,8 +62,8 @@ impl<'a> Aim<'a> {
         let machined: Vec<GoalFace<'_>> =
             self.faces.faces.iter().enumerate().map(|(k, f)| face(k, f)).collect();
         let checked = self.faces.check.iter().map(|f| face(usize::MAX, f)).collect();
-        let layer_mm = job.layer_mm()?;
-        Ok(Goal {
+        let layer_mm = job.layer_mm();
+        Goal {
             machined,
             checked,
             unseen: self.faces.unseen.clone(),
@@ -73,23 +73,23 @@ impl<'a> Aim<'a> {
                 flutes: &self.flutes,
                 shank: self.shank.as_ref(),
                 holder: self.holder.as_ref(),
-                teeth: job.tool().teeth,
-                spindle_rpm: spindle_rpm.or(job.spindle_rpm()?),
+                teeth: job.tool().teeth(),
+                spindle_rpm: spindle_rpm.or(job.spindle_rpm()),
             },
             stock: self.raw.as_ref().map_or(GoalStock::Assumed { layer_mm }, |raw| raw.goal(layer_mm)),
             limits: GoalLimits {
                 scallop_mm: tolerance.scallop_mm,
                 gouge_mm: tolerance.gouge_mm,
-                unreached_mm2: job.tolerance.unreached_mm2.unwrap_or(0.0),
-                at_samples: job.verification.accept.is_some(),
+                unreached_mm2: job.unreached_mm2(),
+                at_samples: job.verification().accept == Accept::Samples,
             },
             looks: Looks {
-                spacing_mm: job.verification.spacing_mm,
-                max_samples: job.verification.max_samples.unwrap_or(MAX_SAMPLES),
+                spacing_mm: job.verification().spacing_mm,
+                max_samples: job.verification().max_samples.unwrap_or(MAX_SAMPLES),
             },
-            roughing_mm: if rough::is(job) { Some(rough::allowance_mm(job)?) } else { None },
+            roughing_mm: job.strategy().layers().map(|l| l.allowance_mm),
             control,
-        })
+        }
     }
 
     /// The name of a face by its number in a goal; places on fixtures have none of their own.

@@ -50,15 +50,15 @@ pub struct IdealTime {
 /// The bound over the faces of a job with all its tools.
 pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
     let jobs = job.each_tool();
-    let cutters = jobs.iter().map(Job::cutter).collect::<Result<Vec<_>, _>>()?;
+    let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();
     let mut tools = Vec::with_capacity(jobs.len());
     for (one, cutter) in jobs.iter().zip(&cutters) {
-        tools.push(Feeding { cutter, feed_mm_min: one.feed_mm_min()? });
+        tools.push(Feeding { cutter, feed_mm_min: one.feed_mm_min() });
     }
     let (tilt, tilts) = tilts(job);
     let search = Search { places: PLACES, tilt };
-    let found = ideal::ideal(&patches(faces), &tools, &job.tolerance()?, search)
-        .map_err(|e| Failure::file(&job.path, e))?;
+    let found = ideal::ideal(&patches(faces), &tools, &job.tolerance(), search)
+        .map_err(|e| Failure::file(job.path(), e))?;
     Ok(Bound {
         time_min: found.time_min,
         error_min: found.error_min,
@@ -74,7 +74,7 @@ pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
 
 /// Tilts of the bound, and in words: where the job does not tilt, nor does the bound, as the feed is free to turn instead.
 pub fn tilts(job: &Job) -> (Range, &'static str) {
-    if job.strategy.tilt_deg == 0.0 {
+    if job.strategy().tilt_deg == 0.0 {
         (Range::only(0.0), "no tilt")
     } else {
         (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt")
@@ -91,7 +91,7 @@ pub fn of_plan(
     let ideal = of_job(job, faces)?;
     let contact_length_mm = planned.passes.length_mm();
     // The tip may be slower than the contact or faster: the bound is one of contacts.
-    let cutting = posted.read.cutting_time_min.max(contact_length_mm / job.feed_mm_min()?);
+    let cutting = posted.read.cutting_time_min.max(contact_length_mm / job.feed_mm_min());
     let efficiency_percent = if cutting > 0.0 { 100.0 * ideal.time_min / cutting } else { 0.0 };
     Ok(IdealTime { ideal, contact_length_mm, efficiency_percent })
 }

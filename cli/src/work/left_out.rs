@@ -13,41 +13,21 @@ use osculate_productivity::plan::{Guard, LeftOut, Linked, Passes, leave_out};
 
 /// Whether the job wants places left out at which the tool would go into the part.
 pub fn is_wanted(job: &Job) -> bool {
-    job.strategy.gouges == Gouges::LeaveOut
-}
-
-/// Refuses the keys where they say nothing.
-pub fn check(job: &Job) -> Result<(), Failure> {
-    let refuse = |text: String| Err(Failure::file(&job.path, format!("[strategy] {text}")));
-    let kind = job.strategy.kind.as_str();
-    match (is_wanted(job), job.strategy.keep_off_mm) {
-        (false, Some(_)) => refuse("keep_off_mm needs gouges = \"leave_out\"".to_owned()),
-        (true, _) if kind == "auto" || job.each_tool().len() > 1 => refuse(
-            "gouges = \"leave_out\" needs one tool and a strategy by name: what is chosen from leaves nothing out"
-                .to_owned(),
-        ),
-        (true, _) if kind == "z_level" || kind == "flank" => {
-            refuse(format!("gouges = \"leave_out\" is for passes of finishing, not for {kind}"))
-        }
-        (true, Some(v)) if !(v.is_finite() && v >= 0.0) => {
-            refuse(format!("keep_off_mm = {v} must be zero or a positive number"))
-        }
-        _ => Ok(()),
-    }
+    job.strategy().gouges == Gouges::LeaveOut
 }
 
 /// What remains of passes with the tool of the job, whatever its keys say.
 pub fn of(job: &Job, faces: &JobFaces, passes: &Passes) -> Result<LeftOut, Failure> {
-    let holder = job.holder()?;
+    let holder = job.holder();
     let guard = Guard {
         faces: &names(&faces.faces),
         check: &names(&faces.check),
-        cutter: &job.cutter()?,
+        cutter: &job.cutter(),
         holder: holder.as_ref(),
-        tolerance: job.tolerance()?,
-        keep_off_mm: job.strategy.keep_off_mm.unwrap_or(0.0),
+        tolerance: job.tolerance(),
+        keep_off_mm: job.strategy().keep_off_mm,
     };
-    leave_out(passes, &guard).map_err(|e| Failure::file(&job.path, e))
+    leave_out(passes, &guard).map_err(|e| Failure::file(job.path(), e))
 }
 
 /// Passes with what the job wants left out of them, joined, and what the report says of it.
@@ -56,7 +36,7 @@ pub fn linked(
     faces: &JobFaces,
     passes: Passes,
 ) -> Result<(Passes, Linked, Extras<'static>), Failure> {
-    let cutter = &job.cutter()?;
+    let cutter = &job.cutter();
     let mut extras = Extras::default();
     if !is_wanted(job) {
         let linked = passes::linked(job, faces, &passes, cutter)?;
@@ -66,7 +46,7 @@ pub fn linked(
     if rest.passes.is_empty() {
         let text = "[strategy] gouges = \"leave_out\": nothing remains: the tool goes into the part or a check face all along \
                     the passes";
-        return Err(Failure::file(&job.path, text));
+        return Err(Failure::file(job.path(), text));
     }
     if touched > 0 {
         let found = faces.faces.iter().zip(area_mm2).filter(|(_, a)| *a > 0.0);

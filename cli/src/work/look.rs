@@ -26,7 +26,7 @@ pub struct Look {
 impl Look {
     /// Looks at a path.
     pub fn at(job: &Job, faces: &JobFaces, linked: &Linked) -> Result<Self, Failure> {
-        let (cutter, holder, tolerance) = (job.cutter()?, job.holder()?, job.tolerance()?);
+        let (cutter, holder, tolerance) = (job.cutter(), job.holder(), job.tolerance());
         let mut samples = Vec::new();
         let mut number = 0;
         for (all, count, check_only) in [(&faces.faces, SAMPLES, false), (&faces.check, CHECK_SAMPLES, true)]
@@ -70,7 +70,7 @@ impl Look {
 
     /// Why the path cannot be within tolerance; None where it may be.
     pub fn objection(&self, job: &Job) -> Result<Option<Objection>, Failure> {
-        let t = job.tolerance()?;
+        let t = job.tolerance();
         let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
         let found = [
             ("gouges", self.gouge_mm, t.gouge_mm),

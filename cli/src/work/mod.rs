@@ -19,6 +19,5 @@ pub mod reading;
 pub mod rough;
 pub mod setup;
 pub mod stock;
-pub mod strategy;
 pub mod summary;
 pub mod verify;

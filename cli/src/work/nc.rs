@@ -1,94 +1,18 @@
 //! Between jobs and the postprocessor: machine, dialect, setup, text out and motions back.
 
-use crate::failure::{Failure, beside, read_text};
-use crate::job::Job;
+use crate::failure::{Failure, read_text};
+use crate::job::{Control, Job};
 use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::conduct::{Conduct, Expected, ExpectedTool, Grade};
-use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::Dialect;
+use osculate_postproc::nc::WorkOffset;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::{GoalControl, Gravity, Program, Remark, Swept};
 use std::path::Path;
-
-/// Largest rise of F from block to block for `kz` where the job gives none, mm/min.
-const DEFAULT_KZ_STEP: f64 = 200.0;
-
-/// A machine with the control's language and feed mode.
-pub struct Control {
-    /// The machine.
-    pub machine: Machine,
-    /// The language.
-    pub dialect: Dialect,
-    /// How F is programmed.
-    pub feed: FeedMode,
-    /// As the job names it.
-    pub dialect_name: String,
-    /// As the job names it.
-    pub feed_name: String,
-    /// Extension of program files.
-    pub extension: &'static str,
-}
-
-/// The words of a control, from a job or a command line.
-pub struct Words<'a> {
-    /// A built-in name.
-    pub name: Option<&'a str>,
-    /// A machine file.
-    pub file: Option<&'a Path>,
-    /// The language.
-    pub dialect: &'a str,
-    /// The feed mode.
-    pub feed: &'a str,
-    /// For `kz`.
-    pub kz_step: Option<f64>,
-}
-
-impl Control {
-    /// The control that the words describe.
-    pub fn from_words(words: &Words<'_>) -> Result<Self, Failure> {
-        let machine = match (words.name, words.file) {
-            (_, Some(file)) => Machine::from_toml(&read_text(file)?)
-                .map_err(|e| Failure::file(file, e.to_string().trim_end()))?,
-            (Some(name), None) => Machine::built_in(name).map_err(Failure::job)?,
-            (None, None) => {
-                return Err(Failure::job(format!(
-                    "a machine is needed: name = one of {} or file = \"...\"",
-                    built_in_names().join(", ")
-                )));
-            }
-        };
-        let dialect: Dialect = words.dialect.parse().map_err(Failure::job)?;
-        let kz = words.kz_step.unwrap_or(DEFAULT_KZ_STEP);
-        let feed = match words.feed {
-            "tcp" => FeedMode::Tcp,
-            "none" => FeedMode::None,
-            "kf" => FeedMode::Kf,
-            "kv" => FeedMode::Kv { fgref_mm: None },
-            "kz" => FeedMode::Kz { step_mm_min: kz, fgref_mm: None },
-            "inverse_time" => FeedMode::InverseTime,
-            "rotary" => FeedMode::RotaryOnly,
-            "fastest" => FeedMode::Fastest { tip_mm_min: None },
-            other => {
-                return Err(Failure::job(format!(
-                    "feed = \"{other}\" is no feed mode; there are tcp, none, kv, kf, kz, inverse_time, \
-                     rotary, fastest"
-                )));
-            }
-        };
-        Ok(Self {
-            machine,
-            dialect,
-            feed,
-            dialect_name: words.dialect.to_owned(),
-            feed_name: words.feed.to_owned(),
-            extension: dialect.extension(),
-        })
-    }
-}
 
 /// The machine of a command line: a built-in name or a file.
 pub fn machine(word: &str) -> Result<Machine, Failure> {
@@ -111,30 +35,6 @@ pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
     })
 }
 
-/// What a job without a machine is posted for: name, dialect, feed.
-const DEFAULT: [&str; 3] = ["trunnion-ac", "sinumerik", "tcp"];
-
-/// The control of a job, with a finding where the job leaves it to the program.
-pub fn control(job: &Job) -> Result<(Control, Vec<Diagnostic>), Failure> {
-    let here = |f: Failure| Failure::file(&job.path, format!("[machine] {}", f.message()));
-    let [name, dialect, feed] = DEFAULT;
-    let Some(m) = &job.machine else {
-        let words = Words { name: Some(name), file: None, dialect, feed, kz_step: None };
-        let text = format!("the job names none: posted for {name}, {dialect}, feed {feed}");
-        return Ok((Control::from_words(&words)?, vec![Diagnostic::warning("machine", text)]));
-    };
-    let file = m.file.as_ref().map(|f| beside(&job.path, f));
-    let control = Control::from_words(&Words {
-        name: m.name.as_deref(),
-        file: file.as_deref(),
-        dialect: m.dialect.as_deref().unwrap_or(dialect),
-        feed: m.feed.as_deref().unwrap_or(feed),
-        kz_step: m.kz_step,
-    })
-    .map_err(here)?;
-    Ok((control, Vec::new()))
-}
-
 /// CL data as text.
 pub fn cl_text(path: &ClPath, part_name: &str) -> Result<String, String> {
     let options = ClWriteOptions { part_name: part_name.to_owned(), ..ClWriteOptions::default() };
@@ -147,9 +47,18 @@ pub fn post_options(control: &Control, name: &str) -> PostOptions {
 }
 
 /// The options of a post of a job's path, as close to it as its tolerance wants.
-pub fn job_options(job: &Job, control: &Control, name: &str) -> Result<PostOptions, Failure> {
-    let solve = crate::work::budget::solve(job)?;
-    Ok(PostOptions { blend_mm: solve.tip_tol_mm, solve, ..post_options(control, name) })
+pub fn job_options(job: &Job, control: &Control, name: &str) -> PostOptions {
+    let solve = crate::work::budget::solve(job);
+    let usual = post_options(control, name);
+    PostOptions {
+        blend_mm: solve.tip_tol_mm,
+        solve,
+        tool_number: job.tool().number(),
+        coolant: job.coolant(),
+        work_offset: work_offset(job),
+        program_number: job.program_number().unwrap_or(usual.program_number),
+        ..usual
+    }
 }
 
 /// What an NC program does, in the part's frame.
@@ -184,13 +93,18 @@ impl Motions {
 }
 
 /// The state of the control that a job means its programs to run in.
-pub fn expected(job: &Job, gauge_length_mm: f64) -> Result<Expected, Failure> {
-    let tool = ExpectedTool { number: TOOL_NUMBER, length_mm: gauge_length_mm };
-    Ok(Expected::new(tool, job.spindle_rpm()?, job.tolerance()?.gouge_mm))
+pub fn expected(job: &Job, gauge_length_mm: f64) -> Expected {
+    let tool = ExpectedTool { number: job.tool().number(), length_mm: gauge_length_mm };
+    let (work_offset, coolant) = (work_offset(job), job.coolant());
+    Expected { work_offset, coolant, ..Expected::new(tool, job.spindle_rpm(), job.tolerance().gouge_mm) }
 }
 
-/// The number of the tool of a job that names none.
-const TOOL_NUMBER: u32 = 1;
+/// The work offset that a job names.
+fn work_offset(job: &Job) -> Option<WorkOffset> {
+    let word = job.work_offset()?;
+    // Loading has seen that the dialect has it; Heidenhain's presets have numbers only.
+    word.parse().or_else(|_| format!("preset {word}").parse()).ok()
+}
 
 /// A conduct as a verdict takes it.
 fn judged(conduct: &Conduct) -> GoalControl {

@@ -1,14 +1,13 @@
 //! Passes over the faces of a job by one strategy, joined to a path.
 
 use crate::failure::Failure;
-use crate::job::{Job, LAYER_OF_APPROACH, LeadKey};
+use crate::job::{Job, LeadKey};
 use crate::part::{self, JobFaces, LoadedFace};
 use crate::watch::Watch;
 use crate::work::budget;
 use crate::work::left_out;
 use crate::work::look::Look;
 use crate::work::nc;
-use crate::work::rough;
 use osculate_geom::{Box3, Diagnostic, Surface};
 use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
@@ -25,69 +24,30 @@ pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
 /// Lead of a ball where the job leaves the choice: enough to keep the tip, which does not cut, off the part.
 pub const BALL_LEAD_DEG: f64 = 15.0;
 
-/// Height from which the tool goes down at feed where nothing higher stands on the faces, mm.
-const APPROACH_MM: f64 = 2.0;
-
 /// How the passes of a job are joined.
-pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Result<Links, Failure> {
+pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Links {
     let mut obstacles = Box3::empty();
     for f in faces.faces.iter().chain(&faces.check) {
         obstacles = obstacles.union(&part::bounds(f));
     }
-    let feed_mm_min = job.feed_mm_min()?;
-    Ok(Links {
+    let feed_mm_min = job.feed_mm_min();
+    Links {
         obstacles,
-        clearance_mm: length(job, "clearance_mm", job.setup.clearance_mm)?.unwrap_or(10.0),
-        approach_mm: approach_mm(job)?,
-        hop_mm: hop_mm(job)?,
+        clearance_mm: job.setup().clearance_mm,
+        approach_mm: job.setup().approach_mm,
+        hop_mm: job.setup().hop_mm,
         cutter: *cutter,
-        holder: job.holder()?,
+        holder: job.holder(),
         feed_mm_min,
         plunge_mm_min: 0.5 * feed_mm_min,
-    })
-}
-
-/// A length of `[setup]`, which must be positive.
-fn length(job: &Job, key: &str, given: Option<f64>) -> Result<Option<f64>, Failure> {
-    match given {
-        Some(v) if !(v.is_finite() && v > 0.0) => {
-            Err(Failure::file(&job.path, format!("[setup] {key} = {v} must be a positive number")))
-        }
-        other => Ok(other),
     }
-}
-
-fn approach_mm(job: &Job) -> Result<f64, Failure> {
-    let given = length(job, "approach_mm", job.setup.approach_mm)?;
-    // Rapid moves end above what stands on the faces.
-    let above = job.layer_mm()? / LAYER_OF_APPROACH;
-    Ok(given.unwrap_or_else(|| APPROACH_MM.max(above)))
-}
-
-/// The lift of the lowest hops, of `approach_mm`, where the job does not say it.
-const HOP_SHARE: f64 = 0.125;
-
-fn hop_mm(job: &Job) -> Result<f64, Failure> {
-    let approach = approach_mm(job)?;
-    let own = if rough::is(job) { approach } else { HOP_SHARE * approach };
-    let hop = length(job, "hop_mm", job.setup.hop_mm)?.unwrap_or(own);
-    if hop > approach {
-        let why = format!(
-            "[setup] hop_mm = {hop} is more than approach_mm = {approach}: hops rise by no more than that"
-        );
-        return Err(Failure::file(&job.path, why));
-    }
-    Ok(hop)
 }
 
 /// Faces as hops see them.
 fn walls_of<'a>(job: &Job, faces: impl Iterator<Item = &'a LoadedFace>) -> Result<Walls, Failure> {
-    // Below the height of a hop, which passes over neighbours of the faces to machine.
-    let clearance_mm = length(job, "check_clearance_mm", job.setup.check_clearance_mm)?
-        .map_or_else(|| approach_mm(job).map(|a| 0.5 * a), Ok)?;
     let named: Vec<Named<'_>> = faces.map(|f| Named { face: &f.id, surface: &*f.surface }).collect();
-    Walls::of(&named, clearance_mm)
-        .map_err(|e| Failure::file(&job.path, format!("faces that hops keep off: {e}")))
+    Walls::of(&named, job.setup().check_clearance_mm)
+        .map_err(|e| Failure::file(job.path(), format!("faces that hops keep off: {e}")))
 }
 
 /// The check faces as hops see them, made once for all plans of a job.
@@ -101,7 +61,7 @@ fn walls(job: &Job, faces: &JobFaces) -> Result<Arc<Walls>, Failure> {
 
 /// Passes joined to a path.
 pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
-    Ok(link(&passes.passes, &links(job, faces, cutter)?, &*walls(job, faces)?))
+    Ok(link(&passes.passes, &links(job, faces, cutter), &*walls(job, faces)?))
 }
 
 /// Passes joined to a path whose hops keep off faces to machine too: over places that passes leave out.
@@ -112,21 +72,21 @@ pub fn linked_around_all(
     cutter: &Cutter,
 ) -> Result<Linked, Failure> {
     let walls = walls_of(job, faces.faces.iter().chain(&faces.check))?;
-    Ok(link(&passes.passes, &links(job, faces, cutter)?, &walls))
+    Ok(link(&passes.passes, &links(job, faces, cutter), &walls))
 }
 
 /// A linked path with the tool and spindle of the job.
-pub fn cl_path(job: &Job, linked: &Linked) -> Result<ClPath, Failure> {
+pub fn cl_path(job: &Job, linked: &Linked) -> ClPath {
     let mut cl = linked.path.clone();
-    cl.cutter = Some(job.cutter_spec()?);
-    cl.holder = job.tool().holder;
-    cl.spindle_rpm = job.spindle_rpm()?;
-    Ok(cl)
+    cl.cutter = Some(job.cutter_spec());
+    cl.holder = job.tool().holder_spec();
+    cl.spindle_rpm = job.spindle_rpm();
+    cl
 }
 
 /// The name of a job in programs and reports: that of its folder, or else of the file.
 pub fn title(job: &Job) -> String {
-    let path = job.path.as_path();
+    let path = job.path();
     let name = path.parent().and_then(Path::file_name).or_else(|| path.file_stem());
     name.map_or_else(|| "osculate".to_owned(), |t| t.to_string_lossy().into_owned())
 }
@@ -152,16 +112,16 @@ pub fn each_face(
     way: &Way<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
-    let tolerance = budget::leaning(job, faces, way.share)?;
-    let cutter = &job.cutter()?;
-    let holder = job.holder()?;
+    let tolerance = budget::leaning(job, faces, way.share);
+    let cutter = &job.cutter();
+    let holder = job.holder();
     let all = faces.faces.iter().chain(&faces.check);
     let around = way.local.then(|| Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str()))));
     let local = LocalLead {
         tilt_rad: way.lean.tilt_rad,
         least_rad: way.lean.lead_rad,
         most_rad: LocalLead::MOST_RAD,
-        rate_rad_per_mm: job.lead_rate_rad_per_mm()?,
+        rate_rad_per_mm: job.lead_rate_rad_per_mm(),
         holder: holder.as_ref(),
         around: around.as_ref(),
     };
@@ -172,12 +132,12 @@ pub fn each_face(
         let here = move |f: f64| progress((k as f64 + f) / n as f64);
         let (surface, face) = (&*face.surface, face.id.as_str());
         let task = Task { surface, face, cutter, lean, tolerance, progress: &here };
-        let p = plan_face(&task, way.strategy).map_err(|e| Failure::file(&job.path, e))?;
+        let p = plan_face(&task, way.strategy).map_err(|e| Failure::file(job.path(), e))?;
         out.passes.extend(p.passes);
         out.diagnostics.extend(p.diagnostics);
         if way.watch.wants_partial() && k + 1 < n {
-            let empty = cl_path(job, &Linked::default())?;
-            let (done, links, name) = (out.passes.clone(), links(job, faces, cutter)?, title(job));
+            let empty = cl_path(job, &Linked::default());
+            let (done, links, name) = (out.passes.clone(), links(job, faces, cutter), title(job));
             let walls = walls(job, faces)?;
             let text = move || {
                 nc::cl_text(&ClPath { moves: link(&done, &links, &walls).path.moves, ..empty }, &name)
@@ -196,25 +156,25 @@ pub fn with_best_lead(
     watch: &dyn Watch,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<(Passes, Lean), Failure> {
-    let cutter = &job.cutter()?;
+    let cutter = &job.cutter();
     let way = |lean: Lean, local: bool| Way { strategy, lean, local, share: 1.0, watch };
-    if job.strategy.lead_deg == LeadKey::Local {
-        let lean = job.lean(LocalLead::LEAST_RAD)?;
+    if job.strategy().lead == LeadKey::Local {
+        let lean = job.lean(LocalLead::LEAST_RAD);
         return Ok((each_face(job, faces, &way(lean, true), progress)?, lean));
     }
-    let mut leads: Vec<f64> = match job.strategy.lead_deg {
+    let mut leads: Vec<f64> = match job.strategy().lead {
         LeadKey::Given(deg) => vec![deg],
         _ if cutter.is_ball() => vec![BALL_LEAD_DEG],
         _ => LEADS_DEG.to_vec(),
     };
     let choice = leads.len() > 1;
     if choice {
-        leads = ranked(job, faces, cutter, &leads)?;
+        leads = ranked(job, faces, cutter, &leads);
     }
     let mut best: Option<(f64, Passes, Lean)> = None;
     let mut refused: Option<Failure> = None;
     for deg in leads {
-        let lean = job.lean(deg.to_radians())?;
+        let lean = job.lean(deg.to_radians());
         match each_face(job, faces, &way(lean, false), progress) {
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
@@ -225,7 +185,7 @@ pub fn with_best_lead(
                     let area: f64 = left.area_mm2.iter().sum();
                     (area, format!("area left out ({area:.3} mm2)"), left.touched == 0)
                 } else {
-                    (gouge, format!("gouge ({gouge:.4} mm)"), gouge <= job.tolerance()?.gouge_mm)
+                    (gouge, format!("gouge ({gouge:.4} mm)"), gouge <= job.tolerance().gouge_mm)
                 };
                 p.diagnostics.push(Diagnostic::note(
                     "lead",
@@ -251,11 +211,11 @@ pub fn with_best_lead(
 }
 
 /// Leads by the length of path that they promise, shortest first.
-fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Result<Vec<f64>, Failure> {
-    let tolerance = job.tolerance()?;
+fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Vec<f64> {
+    let tolerance = job.tolerance();
     let mut out = Vec::with_capacity(leads.len());
     for deg in leads {
-        let lean = job.lean(deg.to_radians())?.into();
+        let lean = job.lean(deg.to_radians()).into();
         let length: f64 = faces
             .faces
             .iter()
@@ -267,5 +227,5 @@ fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Result
         out.push((length, *deg));
     }
     out.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(out.into_iter().map(|o| o.1).collect())
+    out.into_iter().map(|o| o.1).collect()
 }

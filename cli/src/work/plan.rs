@@ -1,6 +1,7 @@
 //! The main job, from the part to a verified NC program with a report.
 
 use crate::failure::Failure;
+use crate::job::strategy::Kind;
 use crate::job::{Job, LeadKey};
 use crate::part::{self, JobFaces};
 use crate::report::fill::{self, Story};
@@ -10,7 +11,7 @@ use crate::work::passes::{self, Way};
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::summary::{Productivity, Summary};
 use crate::work::verify::{VerdictKeys, Verified};
-use crate::work::{drop, ideal, left_out, rough, strategy};
+use crate::work::{drop, ideal, left_out, rough};
 use osculate_geom::Diagnostic;
 use osculate_productivity::levels::{Totals, levels};
 use osculate_tools::Lean;
@@ -51,14 +52,26 @@ impl Plan {
     }
 }
 
+/// Refuses a job that is for another verb, before its part is read.
+///
+/// # Errors
+/// Where the strategy is that of `flank`.
+pub fn check(job: &Job) -> Result<(), Failure> {
+    if job.strategy().kind == Kind::Flank { Err(not_planned(job)) } else { Ok(()) }
+}
+
+fn not_planned(job: &Job) -> Failure {
+    let name = job.strategy().name();
+    job.refuse("strategy", "kind", format!("kind = \"{name}\" is not planned here: it is for the verb flank"))
+}
+
 /// Plans a job on its faces.
 ///
 /// # Errors
 /// Where no path can be planned or posted. A plan that does not hold is none: its verdict says so.
 pub fn plan(job: &Job, faces: &JobFaces, import_s: f64, watch: &dyn Watch) -> Result<Plan, Failure> {
     let mut wall_s = WallS { import: import_s, ..WallS::default() };
-    let open = job.strategy.kind == "auto" || job.each_tool().len() > 1;
-    if open {
+    if job.is_open() {
         let (job, chosen) = chosen(job, faces, &mut wall_s, watch).map_err(|why| faces.warned(why))?;
         return chosen.told(&job, faces, wall_s, watch);
     }
@@ -144,7 +157,7 @@ impl Proved<'_> {
             .chain(verified.diagnostics.iter().cloned())
             .collect();
         let area_mm2: f64 = faces.faces.iter().map(part::area).sum();
-        let feed = job.feed_mm_min()?;
+        let feed = job.feed_mm_min();
         let left_mm2: f64 = planned.extras.left_out.iter().map(|f| f.area_mm2).sum();
         let totals = Totals { area_mm2: area_mm2 - left_mm2, time_min: read.time_min };
         let l = levels(&planned.passes.passes, feed, totals);
@@ -152,7 +165,7 @@ impl Proved<'_> {
         let mut summary = Summary {
             format: 1,
             strategy: planned.strategy.clone(),
-            tool: serde_json::to_value(job.cutter_spec()?).map_err(Failure::job)?,
+            tool: serde_json::to_value(job.cutter_spec()).map_err(Failure::job)?,
             tool_words: job.tool_words(),
             lead_deg: found.map_or(planned.lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
             lead_range_deg: found.map(|[least, _, most]| [least, most].map(f64::to_degrees)),
@@ -216,17 +229,17 @@ fn planned(
     watch: &dyn Watch,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
-    if drop::KINDS.contains(&job.strategy.kind.as_str()) {
-        let passes = drop::passes(job, faces, progress)?;
-        let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
-        let strategy = job.strategy.kind.clone();
-        let lean = Lean::default();
-        return Ok(Planned { passes, linked, strategy, lean, local: false, extras, with_strips: true });
-    }
-    if rough::is(job) {
-        return rough::planned(job, faces, progress);
-    }
-    let strategy = &strategy::of_job(job)?;
+    let strategy = match &job.strategy().kind {
+        Kind::Faces(strategy) => strategy,
+        Kind::Drop(kind) => {
+            let passes = drop::passes(job, faces, *kind, progress)?;
+            let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+            let (strategy, lean) = (job.strategy().name().to_owned(), Lean::default());
+            return Ok(Planned { passes, linked, strategy, lean, local: false, extras, with_strips: true });
+        }
+        Kind::Layers(layers) => return rough::planned(job, faces, layers, progress),
+        Kind::Auto | Kind::Flank => return Err(not_planned(job)),
+    };
     let (passes, lean) = match strategy.fixed_axis() {
         Some(_) => {
             let way = Way { strategy, lean: Lean::default(), local: false, share: 1.0, watch };
@@ -236,6 +249,6 @@ fn planned(
     };
     let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
     let strategy = strategy.name().to_owned();
-    let local = job.strategy.lead_deg == LeadKey::Local;
+    let local = job.strategy().lead == LeadKey::Local;
     Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
 }

@@ -16,9 +16,9 @@ const COARSER: f64 = 2.0;
 
 /// Cuts the vertices of the job's faces and makes the file of them.
 pub fn bytes(job: &Job, faces: &JobFaces, motions: &[Swept], spacing_mm: f64) -> Result<Vec<u8>, Failure> {
-    let tolerance = job.tolerance()?;
-    let cutter = job.cutter()?;
-    let holder = job.holder()?;
+    let tolerance = job.tolerance();
+    let cutter = job.cutter();
+    let holder = job.holder();
     let (mut samples, mut triangles) = (Vec::new(), Vec::<[u32; 3]>::new());
     for (k, face) in faces.faces.iter().enumerate() {
         let mesh = tessellate(&face.surface, tolerance.scallop_mm, Some(COARSER * spacing_mm));
@@ -42,7 +42,7 @@ pub fn bytes(job: &Job, faces: &JobFaces, motions: &[Swept], spacing_mm: f64) ->
         holder: holder.as_ref(),
         motions,
         samples: &samples,
-        stock_mm: job.layer_mm()?,
+        stock_mm: job.layer_mm(),
         depth_mm: cutter.radius_mm(),
     };
     let cuts = removal::cut(&work, &|_| {}).map_err(Failure::job)?;

@@ -1,6 +1,5 @@
 //! Where the part of a program sits: as its head says it was posted for, unless the job says another place.
 
-use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::JobFaces;
 use crate::work::setup;
@@ -16,20 +15,15 @@ const TURNED_RAD: f64 = 1e-6;
 
 /// The setup for reading a program back. What `[setup]` gives of place and turn counts, the rest is what the head of the
 /// program says; where that says nothing it is found from the faces. What contradicts is warned of.
-pub fn of_program(
-    job: &Job,
-    faces: &JobFaces,
-    text: &str,
-    dialect: Dialect,
-) -> Result<(Setup, Vec<Diagnostic>), Failure> {
-    let (own, mut own_notes) = setup::of(job, faces, &[])?;
+pub fn of_program(job: &Job, faces: &JobFaces, text: &str, dialect: Dialect) -> (Setup, Vec<Diagnostic>) {
+    let (own, mut own_notes) = setup::of(job, faces, &[]);
     let posted = match Setup::of_program(text, dialect) {
         Ok(Some(posted)) => posted,
-        Ok(None) => return Ok((own, own_notes)),
+        Ok(None) => return (own, own_notes),
         Err(e) => {
             let text = format!("the program's head: {e}; taken from the job");
             own_notes.push(Diagnostic::warning("setup", text));
-            return Ok((own, own_notes));
+            return (own, own_notes);
         }
     };
     let mut notes = Vec::new();
@@ -49,31 +43,31 @@ pub fn of_program(
         Diagnostic::warning("setup", text)
     };
     let [own_deg, posted_deg] = [own, posted].map(|s| triple(angles_deg(&s)));
-    if job.setup.rotate_deg.is_some() && own.part_zero.rotation.angle_to(&turn) > TURNED_RAD {
+    if job.setup().rotate_deg.is_some() && own.part_zero.rotation.angle_to(&turn) > TURNED_RAD {
         // A place found for another turn says nothing: where the job gives none it is found anew.
         notes.push(contradicts("rotate_deg", own_deg, posted_deg));
         notes.extend(own_notes);
-        return Ok((own, notes));
+        return (own, notes);
     }
     let own_place = own.part_zero.translation;
     let mut taken = posted;
-    if job.setup.part_zero_mm.is_some() {
+    if job.setup().part_zero_mm.is_some() {
         taken.part_zero.translation = own_place;
         if (own_place.vector - place.vector).norm() > APART_MM {
             let [is, said] = [own_place, place].map(|t| triple([t.x, t.y, t.z]));
             notes.push(contradicts("part_zero_mm", is, said));
         }
     }
-    if job.setup.rotate_deg.is_some() {
+    if job.setup().rotate_deg.is_some() {
         taken.part_zero = Isometry3::from_parts(taken.part_zero.translation, own.part_zero.rotation);
     }
     taken.gauge_length_mm = own.gauge_length_mm;
     let said: Vec<String> = [
-        job.setup
+        job.setup()
             .part_zero_mm
             .is_none()
             .then(|| format!("part_zero_mm = {}", triple([place.x, place.y, place.z]))),
-        job.setup.rotate_deg.is_none().then(|| format!("rotate_deg = {posted_deg}")),
+        job.setup().rotate_deg.is_none().then(|| format!("rotate_deg = {posted_deg}")),
     ]
     .into_iter()
     .flatten()
@@ -82,7 +76,7 @@ pub fn of_program(
         let text = format!("{}, as the program's head says it is posted for", said.join(", "));
         notes.push(Diagnostic::note("setup", text));
     }
-    Ok((taken, notes))
+    (taken, notes)
 }
 
 /// The turn as `rotate_deg` has it: about x, then y, then z.

@@ -1,11 +1,11 @@
 //! A plan, its program, and what verification of the program measured.
 
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Control, Job};
 use crate::part::JobFaces;
 use crate::watch::{Stage, Watch};
 use crate::work::extras::Extras;
-use crate::work::nc::{self, Control, Motions};
+use crate::work::nc::{self, Motions};
 use crate::work::passes;
 use crate::work::verify::{self, Verified};
 use crate::work::{reading, setup};
@@ -73,20 +73,21 @@ impl Posted {
         wall_s: &mut WallS,
         watch: &dyn Watch,
     ) -> Result<Self, Failure> {
-        let (control, control_notes) = nc::control(job)?;
+        let control = job.control().clone();
+        let control_notes = job.control_notes();
         let stage = Stage::begin(watch, "post");
-        let (base, mut setup_notes) = setup::of(job, faces, &axes_of(planned))?;
-        let cl = passes::cl_path(job, &planned.linked)?;
+        let (base, mut setup_notes) = setup::of(job, faces, &axes_of(planned));
+        let cl = passes::cl_path(job, &planned.linked);
         let title = passes::title(job);
         let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
         if watch.wants_partial() {
             let text = cl_text.clone();
             watch.partial(Box::new(move || Ok(text)), "the whole path".to_owned());
         }
-        let options = nc::job_options(job, &control, &title)?;
+        let options = nc::job_options(job, &control, &title);
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
             let program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
-            let expected = nc::expected(job, setup.gauge_length_mm)?;
+            let expected = nc::expected(job, setup.gauge_length_mm);
             let read = nc::read_back(&program.text, &control, setup, &expected, false)
                 .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
             Ok((program, read))

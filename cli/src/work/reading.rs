@@ -1,9 +1,10 @@
 //! Programs and CL data read for their verdict: motions, times, and the state of the control. The same for every verb.
 
 use crate::failure::Failure;
+use crate::job::Control;
 use crate::job::Job;
 use crate::part::JobFaces;
-use crate::work::nc::{self, Control, Motions};
+use crate::work::nc::{self, Motions};
 use crate::work::{posted_setup, stock};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_postproc::cldata;
@@ -41,7 +42,7 @@ pub fn read(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool)
 fn of_cl(file: &Path, text: &str, job: &Job) -> Result<Read, Failure> {
     let cl = cldata::read(text).map_err(|e| Failure::file(file, e))?;
     let mut diagnostics = cl.diagnostics;
-    let own = job.cutter_spec()?;
+    let own = job.cutter_spec();
     if let Some(other) = cl.path.cutter.filter(|c| Cutter::try_from(*c) != Cutter::try_from(own)) {
         let text = format!("the CL data is for another cutter: {other:?}; verified with the job's, {own:?}");
         diagnostics.push(Diagnostic::warning("tool", text));
@@ -68,9 +69,9 @@ fn timed(path: &ClPath) -> Motions {
 }
 
 fn of_nc(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool) -> Result<Read, Failure> {
-    let (control, notes) = nc::control(job)?;
+    let control = job.control();
     let mut diagnostics = Vec::new();
-    if job.machine.is_none() {
+    if !job.names_machine() {
         diagnostics.push(Diagnostic::warning(
             "machine",
             format!(
@@ -79,11 +80,9 @@ fn of_nc(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool) ->
                 control.machine.name()
             ),
         ));
-    } else {
-        diagnostics.extend(notes);
     }
     let (motions, notes) =
-        program(text, &control, job, faces, lenient).map_err(|e| Failure::file(file, e.message()))?;
+        program(text, control, job, faces, lenient).map_err(|e| Failure::file(file, e.message()))?;
     diagnostics.extend(notes);
     diagnostics.extend(feeds(job, &motions)?);
     diagnostics.extend(motions.diagnostics.iter().cloned());
@@ -101,8 +100,8 @@ pub fn program(
     faces: &JobFaces,
     lenient: bool,
 ) -> Result<(Motions, Vec<Diagnostic>), Failure> {
-    let (setup, notes) = posted_setup::of_program(job, faces, text, control.dialect)?;
-    let expected = nc::expected(job, setup.gauge_length_mm)?;
+    let (setup, notes) = posted_setup::of_program(job, faces, text, control.dialect);
+    let expected = nc::expected(job, setup.gauge_length_mm);
     let motions = nc::read_back(text, control, &setup, &expected, lenient).map_err(Failure::job)?;
     Ok((motions, notes))
 }
@@ -124,7 +123,7 @@ const FEED_EXCESS: f64 = 1.05;
 
 /// Reports feed moves whose tip goes faster than the job says: the fastest, with its line.
 fn feeds(job: &Job, read: &Motions) -> Result<Option<Diagnostic>, Failure> {
-    let wanted = job.feed_mm_min()?;
+    let wanted = job.feed_mm_min();
     let (mut fastest, mut line, mut fast) = (0.0, 0, 0usize);
     let mut before = 0.0;
     for (m, clock) in read.motions.iter().zip(&read.times_min) {

@@ -1,45 +1,18 @@
 //! Where the part of a job sits on the machine.
 
-use crate::failure::Failure;
+use crate::job::Control;
 use crate::job::Job;
 use crate::part::{self, JobFaces};
-use crate::work::nc::Control;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
 use osculate_postproc::{Setup, quicker_turns, suggest};
 use osculate_tools::cl::ClPath;
-use serde::Deserialize;
-
-/// `[setup]`
-#[derive(Debug, Clone, Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub struct SetupTable {
-    /// Where the part's origin sits from the table's reference point; chosen from the part's box where not given.
-    pub part_zero_mm: Option<[f64; 3]>,
-    /// The part's axes turned on the table, about x, then y, then z; chosen from the faces' normals where not given.
-    pub rotate_deg: Option<[f64; 3]>,
-    /// Clearance of rapid moves over the sphere around the part.
-    pub clearance_mm: Option<f64>,
-    /// Distance from the surface at which rapid moves end.
-    pub approach_mm: Option<f64>,
-    /// The least lift in hops from pass to pass.
-    pub hop_mm: Option<f64>,
-    /// What the tool keeps from check faces in hops from pass to pass.
-    pub check_clearance_mm: Option<f64>,
-}
 
 /// Where the part of a job sits on the machine, as the job says or as [`suggest`] has it: turned so that the faces look up, or
 /// the tool axes where there are any.
-pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<Diagnostic>), Failure> {
-    let s = &job.setup;
-    let finite = |key: &str, v: &[f64; 3]| {
-        if v.iter().all(|c| c.is_finite()) {
-            Ok(())
-        } else {
-            Err(Failure::file(&job.path, format!("[setup] {key} = {v:?} must be three finite numbers")))
-        }
-    };
-    let gauge = job.cutter()?.length_mm() + job.holder()?.map_or(0.0, |h| h.length_mm());
+pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> (Setup, Vec<Diagnostic>) {
+    let s = job.setup();
+    let gauge = job.cutter().length_mm() + job.holder().map_or(0.0, |h| h.length_mm());
     let (points, mut normals): (Vec<Point3>, Vec<Unit3>) = looks(faces).unzip();
     if !axes.is_empty() {
         normals = axes.to_vec();
@@ -50,9 +23,6 @@ pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<Dia
         let turn = |axis: Vec3, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
         turn(Vec3::z(), c) * turn(Vec3::y(), b) * turn(Vec3::x(), a)
     });
-    if let Some(deg) = &s.rotate_deg {
-        finite("rotate_deg", deg)?;
-    }
     let mut notes = Vec::new();
     let mut setup = match given {
         Some(rotation) => standing(rotation, &points, gauge),
@@ -65,12 +35,11 @@ pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> Result<(Setup, Vec<Dia
         }
     };
     if let Some(zero) = s.part_zero_mm {
-        finite("part_zero_mm", &zero)?;
         setup.part_zero.translation = Translation3::from(Vec3::from(zero));
     } else {
         notes.push(note_of_place(&setup));
     }
-    Ok((setup, notes))
+    (setup, notes)
 }
 
 /// Points of the faces to machine, with their normals.
@@ -105,7 +74,7 @@ pub const WORTH_A_TURN: f64 = 0.03;
 /// Setups with the part turned so that the joints seem to hold the path up less than in `setup`; none where the job says where
 /// the part is.
 pub fn turned(job: &Job, faces: &JobFaces, path: &ClPath, control: &Control, setup: &Setup) -> Vec<Setup> {
-    if job.setup.rotate_deg.is_some() || job.setup.part_zero_mm.is_some() {
+    if job.setup().rotate_deg.is_some() || job.setup().part_zero_mm.is_some() {
         return Vec::new();
     }
     let points: Vec<Point3> = looks(faces).map(|l| l.0).collect();

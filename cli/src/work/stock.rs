@@ -1,60 +1,19 @@
 //! The `[stock]` and `[fixture]` tables: raw material and what holds the part.
 
-use crate::failure::{Failure, beside, read};
-use crate::job::Job;
+use crate::failure::{Failure, read};
+use crate::job::{Blank as Raw, Job};
 use crate::part::{self, JobFaces};
-use osculate_geom::{Box3, Diagnostic, Point3, Unit3, Vec3};
+use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::stock::{Blank, Resolution, read_stl};
 use osculate_tools::removal::{Body, GoalStock, Sample, StockFound, sample_triangles};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use std::path::Path;
 
 /// Cells along the longest side of the stock where the job gives none.
 const DEFAULT_CELLS: f64 = 256.0;
-/// Memory for the stock where the job gives none.
-const DEFAULT_MEMORY_MB: f64 = 512.0;
 /// Blocks listed by what they took.
 const LISTED: usize = 10;
-
-/// `[stock]`: one of `box_mm`, `file` and `allowance_mm` (with `file`: a layer around it).
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StockTable {
-    /// Lower and upper corner in the part's frame.
-    pub box_mm: Option<[f64; 6]>,
-    /// A closed STL mesh in the part's frame, mm, relative to the job file.
-    pub file: Option<String>,
-    /// A cylinder.
-    pub cylinder: Option<CylinderTable>,
-    /// A layer of this thickness around the faces of the job, or around the file's solid.
-    pub allowance_mm: Option<f64>,
-    /// Sides of cells.
-    pub cell_mm: Option<f64>,
-    /// Memory for it.
-    pub memory_mb: Option<f64>,
-}
-
-/// `cylinder` of `[stock]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CylinderTable {
-    /// Its axis, through the part's origin; z where not given.
-    pub axis: Option<[f64; 3]>,
-    /// Diameter.
-    pub diameter_mm: f64,
-    /// Where it begins and ends along the axis.
-    pub z_mm: [f64; 2],
-}
-
-/// `[fixture]`
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FixtureTable {
-    /// STL meshes in the part's frame, mm, relative to the job file.
-    pub files: Vec<String>,
-    /// Distance of the places looked at; 1 mm where not given.
-    pub spacing_mm: Option<f64>,
-}
 
 /// The `stock` object of `verify --json`.
 #[derive(Debug, Serialize, Clone)]
@@ -124,23 +83,46 @@ pub struct StockCollision {
     pub at_mm: [f64; 3],
 }
 
-fn mesh(job: &Job, file: &str) -> Result<Vec<[Point3; 3]>, Failure> {
-    let path = beside(&job.path, file);
-    read_stl(&read(&path)?).map_err(|e| Failure::file(&path, e))
+fn mesh(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
+    read_stl(&read(path)?).map_err(|e| Failure::file(path, e))
 }
 
 /// Places on the fixtures, as faces that carry no material, numbered from `face` on.
 pub fn fixtures(job: &Job, face: u32) -> Result<Vec<Sample>, Failure> {
-    let Some(table) = &job.fixture else { return Ok(Vec::new()) };
-    let spacing = table.spacing_mm.unwrap_or(1.0);
-    if !(spacing.is_finite() && spacing > 0.0) {
-        return Err(Failure::file(&job.path, format!("[fixture] spacing_mm = {spacing} must be positive")));
-    }
+    let Some(table) = job.fixture() else { return Ok(Vec::new()) };
     let mut out = Vec::new();
     for (k, file) in table.files.iter().enumerate() {
-        out.extend(sample_triangles(&mesh(job, file)?, face + k as u32, spacing));
+        out.extend(sample_triangles(&mesh(file)?, face + k as u32, table.spacing_mm));
     }
     Ok(out)
+}
+
+/// Sides of the prism that stands for a round blank.
+const SIDES: usize = 360;
+
+/// A round blank as a closed prism around it.
+fn prism(axis: Unit3, diameter_mm: f64, along_mm: [f64; 2]) -> Vec<[Point3; 3]> {
+    let first = any_perpendicular(&axis);
+    let second = axis.cross(&first);
+    let turn = std::f64::consts::TAU / SIDES as f64;
+    let radius = 0.5 * diameter_mm / (0.5 * turn).cos();
+    let at = |k: usize, z: f64| {
+        let (s, c) = (k as f64 * turn).sin_cos();
+        Point3::from(first.into_inner() * (radius * c) + second * (radius * s) + axis.into_inner() * z)
+    };
+    let [lo, hi] = along_mm;
+    let middle = along_mm.map(|z| Point3::from(axis.into_inner() * z));
+    (0..SIDES)
+        .flat_map(|k| {
+            let n = (k + 1) % SIDES;
+            [
+                [at(k, lo), at(n, lo), at(n, hi)],
+                [at(k, lo), at(n, hi), at(k, hi)],
+                [middle[0], at(n, lo), at(k, lo)],
+                [middle[1], at(k, hi), at(n, hi)],
+            ]
+        })
+        .collect()
 }
 
 /// The box around the faces of a job.
@@ -180,133 +162,80 @@ fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
 
 /// The box around the raw material of a job, where it has one.
 pub fn bounds(job: &Job, faces: &JobFaces) -> Result<Option<Box3>, Failure> {
-    let Some(table) = &job.stock else { return Ok(None) };
-    let solid = match (&table.box_mm, &table.file, &table.cylinder) {
-        (Some(b), ..) => Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) },
-        (None, Some(file), _) => Box3::around(mesh(job, file)?.iter().flatten()),
-        (None, None, Some(c)) => {
-            let prism = c.prism().map_err(|e| Failure::file(&job.path, format!("[stock] {e}")))?;
-            Box3::around(prism.iter().flatten())
+    let Some(stock) = job.stock() else { return Ok(None) };
+    Ok(Some(match &stock.blank {
+        Raw::Box(b) => *b,
+        Raw::Cylinder { axis, diameter_mm, along_mm } => {
+            Box3::around(prism(*axis, *diameter_mm, *along_mm).iter().flatten())
         }
-        (None, None, None) => around(faces),
-    };
-    Ok(Some(solid.grown(table.allowance_mm.unwrap_or(0.0))))
+        Raw::File { path, layer_mm } => {
+            Box3::around(mesh(path)?.iter().flatten()).grown(layer_mm.unwrap_or(0.0))
+        }
+        Raw::Layer(thickness_mm) => around(faces).grown(*thickness_mm),
+    }))
 }
 
-/// Raw material as the job declares it.
-pub struct RawMaterial {
-    boxed: Option<Box3>,
+/// Raw material as the job declares it, ready to be filled.
+pub struct RawMaterial<'a> {
+    blank: &'a Raw,
     triangles: Vec<[Point3; 3]>,
-    /// Thickness of the layer around the triangles, mm, and whether they are filled.
-    layer: Option<(f64, bool)>,
     resolution: Resolution,
     words: String,
 }
 
-/// Sides of the prism that stands around a cylinder: it is a ten-thousandth of the radius wider.
-const SIDES: u32 = 256;
-
-impl RawMaterial {
+impl<'a> RawMaterial<'a> {
     /// The raw material of a job, where it declares one.
-    pub fn of(job: &Job, faces: &JobFaces) -> Result<Option<Self>, Failure> {
-        let Some(table) = &job.stock else { return Ok(None) };
-        let wrong = |text: String| Failure::file(&job.path, format!("[stock] {text}"));
-        let (mut boxed, mut triangles, mut layer) = (None, Vec::new(), None);
-        let words = match (&table.box_mm, &table.file, &table.cylinder, table.allowance_mm) {
-            (Some(b), None, None, None) => {
-                let b = Box3 { min: Point3::new(b[0], b[1], b[2]), max: Point3::new(b[3], b[4], b[5]) };
-                boxed = Some(b);
-                format!("a box, {} mm", corners(&b))
+    pub fn of(job: &'a Job, faces: &JobFaces) -> Result<Option<Self>, Failure> {
+        let Some(given) = job.stock() else { return Ok(None) };
+        let (triangles, words) = match &given.blank {
+            Raw::Box(b) => (Vec::new(), format!("a box, {} mm", corners(b))),
+            Raw::Cylinder { axis, diameter_mm, along_mm: [from, to] } => (
+                prism(*axis, *diameter_mm, [*from, *to]),
+                format!("a cylinder of {diameter_mm} mm from {from} to {to} mm"),
+            ),
+            Raw::File { path, layer_mm } => {
+                let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+                let more = layer_mm.map_or_else(String::new, |a| format!(" and {a} mm around it"));
+                (mesh(path)?, format!("the solid of {name}{more}"))
             }
-            (None, Some(file), None, allowance) => {
-                triangles = mesh(job, file)?;
-                layer = allowance.map(|a| (a, true));
-                let more = allowance.map_or_else(String::new, |a| format!(" and {a} mm around it"));
-                format!("the solid of {file}{more}")
-            }
-            (None, None, Some(c), None) => {
-                triangles = c.prism().map_err(wrong)?;
-                format!("a cylinder of {} mm from {} to {} mm", c.diameter_mm, c.z_mm[0], c.z_mm[1])
-            }
-            (None, None, None, Some(allowance)) => {
-                let chord = 0.5 * job.tolerance()?.scallop_mm;
+            Raw::Layer(thickness) => {
+                let chord = 0.5 * job.tolerance().scallop_mm;
+                let mut out = Vec::new();
                 for f in &faces.faces {
                     let m = tessellate(&f.surface, chord, None);
                     let p = |k: u32| Point3::from(m.positions[k as usize]);
-                    triangles.extend(m.triangles.iter().map(|t| t.map(p)));
+                    out.extend(m.triangles.iter().map(|t| t.map(p)));
                 }
-                layer = Some((allowance, false));
-                format!("a layer of {allowance} mm on the faces to machine")
-            }
-            (None, None, None, None) => {
-                return Err(wrong("needs box_mm, cylinder, file or allowance_mm".to_owned()));
-            }
-            _ => {
-                return Err(wrong(
-                    "has several of box_mm, cylinder, file and allowance_mm; keep one (allowance_mm goes with file)".to_owned(),
-                ));
+                (out, format!("a layer of {thickness} mm on the faces to machine"))
             }
         };
-        let size = boxed.unwrap_or_else(|| Box3::around(triangles.iter().flatten()));
-        let memory = table.memory_mb.unwrap_or(DEFAULT_MEMORY_MB);
-        if !(memory.is_finite() && memory > 0.0) {
-            return Err(wrong(format!("memory_mb = {memory} must be positive")));
-        }
+        let size = match &given.blank {
+            Raw::Box(b) => *b,
+            _ => Box3::around(triangles.iter().flatten()),
+        };
         let resolution = Resolution {
-            cell_mm: table.cell_mm.unwrap_or((size.max - size.min).amax() / DEFAULT_CELLS),
+            cell_mm: given.cell_mm.unwrap_or((size.max - size.min).amax() / DEFAULT_CELLS),
             tri: true,
             // Beyond what a machine can address there is no limit.
-            budget_bytes: (memory * 1e6).min(1e15) as usize,
+            budget_bytes: (given.memory_mb * 1e6).min(1e15) as usize,
         };
-        Ok(Some(Self { boxed, triangles, layer, resolution, words }))
+        Ok(Some(Self { blank: &given.blank, triangles, resolution, words }))
     }
 
     /// The raw material of a goal, with the layer on the faces to machine as far as they are judged.
     pub fn goal(&self, layer_mm: f64) -> GoalStock<'_> {
-        let blank = match (&self.boxed, self.layer) {
-            (Some(b), _) => Blank::Box(*b),
-            (None, Some((thickness_mm, filled))) => {
-                Blank::Layer { triangles: &self.triangles, thickness_mm, filled }
-            }
-            (None, None) => Blank::Mesh(&self.triangles),
+        let layer = |thickness_mm: f64, filled: bool| Blank::Layer {
+            triangles: &self.triangles,
+            thickness_mm,
+            filled,
+        };
+        let blank = match self.blank {
+            Raw::Box(b) => Blank::Box(*b),
+            Raw::File { layer_mm: Some(thickness_mm), .. } => layer(*thickness_mm, true),
+            Raw::Layer(thickness_mm) => layer(*thickness_mm, false),
+            Raw::Cylinder { .. } | Raw::File { .. } => Blank::Mesh(&self.triangles),
         };
         GoalStock::Declared { blank, resolution: self.resolution, layer_mm, words: &self.words }
-    }
-}
-
-impl CylinderTable {
-    /// The axis of the cylinder through the part's origin.
-    fn axis(&self) -> Result<Unit3, String> {
-        let a = self.axis.unwrap_or([0.0, 0.0, 1.0]);
-        Unit3::try_new(Vec3::from(a), 1e-9)
-            .filter(|u| u.iter().all(|c| c.is_finite()))
-            .ok_or_else(|| format!("cylinder axis = {a:?} has no direction"))
-    }
-
-    /// A closed prism around the cylinder, its triangles counter-clockwise from outside.
-    fn prism(&self) -> Result<Vec<[Point3; 3]>, String> {
-        let (d, [low, high]) = (self.diameter_mm, self.z_mm);
-        if !(d.is_finite() && d > 0.0 && low.is_finite() && high.is_finite() && low < high) {
-            return Err("cylinder needs diameter_mm above zero and z_mm = [lower, upper]".to_owned());
-        }
-        let axis = self.axis()?.into_inner();
-        let side = if axis.z.abs() < 0.9 { Vec3::z() } else { Vec3::x() };
-        let x = axis.cross(&side).normalize();
-        let y = axis.cross(&x);
-        let step = std::f64::consts::TAU / f64::from(SIDES);
-        let radius = 0.5 * d / (0.5 * step).cos();
-        let at = |k: u32, h: f64| {
-            let (sin, cos) = (step * f64::from(k % SIDES)).sin_cos();
-            Point3::from(axis * h + (x * cos + y * sin) * radius)
-        };
-        let middle = |h: f64| Point3::from(axis * h);
-        Ok((0..SIDES)
-            .flat_map(|k| {
-                let [a, b] = [k, k + 1].map(|k| at(k, low));
-                let [c, d] = [k, k + 1].map(|k| at(k, high));
-                [[a, b, d], [a, d, c], [middle(high), c, d], [middle(low), b, a]]
-            })
-            .collect())
     }
 }
 

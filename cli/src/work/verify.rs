@@ -177,8 +177,8 @@ pub fn run(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verified, Failure> {
     let aim = Aim::of(job, faces)?;
-    let goal = aim.goal(reading.control, reading.spindle_rpm)?;
-    let verdict = prove(&goal, reading.program, progress).map_err(|e| Failure::file(&job.path, e))?;
+    let goal = aim.goal(reading.control, reading.spindle_rpm);
+    let verdict = prove(&goal, reading.program, progress).map_err(|e| Failure::file(job.path(), e))?;
     let (limits, f) = (goal.limits, verdict.figures());
     // Worst first: by how much of its own limit a place takes.
     let share = |w: &removal::Worst| match w.kind {

@@ -1,11 +1,10 @@
 //! The candidates of a job: its tools times strategies times directions times leads.
 
 use crate::failure::Failure;
+use crate::job::strategy::Kind;
 use crate::job::{Job, LeadKey};
 use crate::part::{self, JobFaces};
-use crate::work::drop;
 use crate::work::passes::BALL_LEAD_DEG;
-use crate::work::rough;
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
 use osculate_productivity::compare::Candidate;
 use osculate_productivity::plan::{Along, LocalLead, Strategy};
@@ -16,15 +15,29 @@ const LEADS_DEG: [f64; 14] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.
 /// Points a side of a face for its mean normal.
 const GRID: usize = 8;
 
-pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
-    if drop::KINDS.contains(&job.strategy.kind.as_str()) || rough::is(job) {
-        let text = format!("[strategy] {} takes one [tool], not [[tools]]", job.strategy.kind);
-        return Err(Failure::file(&job.path, text));
+/// A strategy that is not one of those side by side.
+fn not_compared(job: &Job) -> Failure {
+    let what = format!(
+        "{} is not compared with others: choose \"auto\" or passes along the faces",
+        job.strategy().name()
+    );
+    job.refuse("strategy", "kind", what)
+}
+
+/// Refuses a job whose strategy is not one of those side by side.
+pub fn check(job: &Job) -> Result<(), Failure> {
+    match job.strategy().kind {
+        Kind::Auto | Kind::Faces(_) => Ok(()),
+        Kind::Drop(_) | Kind::Layers(_) | Kind::Flank => Err(not_compared(job)),
     }
-    let strategies = if job.strategy.kind == "auto" {
-        every(job, faces)?
-    } else {
-        vec![crate::work::strategy::of_job(job)?]
+}
+
+pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
+    let auto = job.strategy().is_open();
+    let strategies = match &job.strategy().kind {
+        Kind::Auto => every(job, faces),
+        Kind::Faces(strategy) => vec![*strategy],
+        Kind::Drop(_) | Kind::Layers(_) | Kind::Flank => return Err(not_compared(job)),
     };
     let strategies: Vec<Strategy> = strategies.into_iter().flat_map(each_direction).collect();
     let mut out = Vec::new();
@@ -39,8 +52,8 @@ pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<
                 continue;
             }
             // Regions pay where leads, and with them strips, differ over the face.
-            let only_local = job.strategy.kind == "auto" && matches!(strategy, Strategy::Regions { .. });
-            let leans = leans(job, cutter, strategy)?;
+            let only_local = auto && matches!(strategy, Strategy::Regions { .. });
+            let leans = leans(job, cutter, strategy);
             for (lean, local) in leans.into_iter().filter(|(_, local)| *local || !only_local) {
                 out.push(Candidate { tool, strategy: *strategy, lean, local });
             }
@@ -49,38 +62,38 @@ pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<
     if out.is_empty() {
         let text = format!(
             "[strategy] {} is not for any of these tools: contour_2cl takes a ball, curvature_5c a flat or toroidal cutter",
-            job.strategy.kind
+            job.strategy().name()
         );
-        return Err(Failure::file(&job.path, text));
+        return Err(Failure::file(job.path(), text));
     }
     Ok(out)
 }
 
 /// Leads of a tool and strategy, and whether each is held or the least of one that is found place by place.
-fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Result<Vec<(Lean, bool)>, Failure> {
+fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, bool)> {
     if strategy.fixed_axis().is_some() {
-        return Ok(vec![(Lean::default(), false)]);
+        return vec![(Lean::default(), false)];
     }
-    let held = |leads: &[f64]| -> Result<Vec<(Lean, bool)>, Failure> {
-        leads.iter().map(|deg| Ok((job.lean(deg.to_radians())?, false))).collect()
+    let held = |leads: &[f64]| -> Vec<(Lean, bool)> {
+        leads.iter().map(|deg| (job.lean(deg.to_radians()), false)).collect()
     };
-    match job.strategy.lead_deg {
+    match job.strategy().lead {
         LeadKey::Given(deg) => held(&[deg]),
         // A ball is the same at any lead.
         _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]),
-        LeadKey::Local => Ok(vec![(job.lean(LocalLead::LEAST_RAD)?, true)]),
+        LeadKey::Local => vec![(job.lean(LocalLead::LEAST_RAD), true)],
         LeadKey::Auto => {
-            let mut all = held(&LEADS_DEG)?;
-            all.push((job.lean(LocalLead::LEAST_RAD)?, true));
-            Ok(all)
+            let mut all = held(&LEADS_DEG);
+            all.push((job.lean(LocalLead::LEAST_RAD), true));
+            all
         }
     }
 }
 
 /// Every strategy that can be chosen.
-fn every(job: &Job, faces: &JobFaces) -> Result<Vec<Strategy>, Failure> {
+fn every(job: &Job, faces: &JobFaces) -> Vec<Strategy> {
     let [first, second] = plane_normals(faces);
-    Ok(vec![
+    vec![
         Strategy::Isoparametric { along: Along::Auto },
         Strategy::Regions { along: Along::Auto },
         Strategy::Isoplanar { normal: first },
@@ -88,8 +101,8 @@ fn every(job: &Job, faces: &JobFaces) -> Result<Vec<Strategy>, Failure> {
         Strategy::Isoscallop,
         Strategy::Streamline,
         Strategy::Curvature5c,
-        Strategy::Contour2cl { axis: job.contour_axis()? },
-    ])
+        Strategy::Contour2cl { axis: job.contour_axis() },
+    ]
 }
 
 /// Two normals of planes across the faces, at right angles to their mean normal and to each other.

@@ -120,6 +120,8 @@ pub struct Choice<'a> {
     holder: Option<Holder>,
 }
 
+pub use candidates::check;
+
 /// Areas of the faces to machine, with the faces.
 pub fn patches(faces: &JobFaces) -> Vec<Patch<'_>> {
     faces.faces.iter().map(|f| Patch { surface: &*f.surface, area_mm2: part::area(f) }).collect()
@@ -136,21 +138,21 @@ impl<'a> Choice<'a> {
     /// Where none is possible, with every reason in one table.
     pub fn screen(job: &Job, faces: &'a JobFaces) -> Result<Self, Failure> {
         let jobs = job.each_tool();
-        let cutters = jobs.iter().map(Job::cutter).collect::<Result<Vec<_>, _>>()?;
-        let holders = jobs.iter().map(Job::holder).collect::<Result<Vec<_>, _>>()?;
+        let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();
+        let holders = jobs.iter().map(Job::holder).collect::<Vec<_>>();
         let mut tools = Vec::with_capacity(jobs.len());
         for (k, one) in jobs.iter().enumerate() {
             tools.push(Tool {
                 cutter: &cutters[k],
                 holder: holders[k].as_ref(),
-                feed_mm_min: one.feed_mm_min()?,
+                feed_mm_min: one.feed_mm_min(),
             });
         }
         let all = faces.faces.iter().chain(&faces.check);
         let around = Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str())));
         let candidates = candidates::of_job(job, faces, &cutters)?;
         let setting =
-            Setting { faces: &patches(faces), tools: &tools, tolerance: job.tolerance()?, around: &around };
+            Setting { faces: &patches(faces), tools: &tools, tolerance: job.tolerance(), around: &around };
         let screened = screen(&setting, &candidates);
         let entries: Vec<Entry> = candidates
             .into_iter()
@@ -181,7 +183,7 @@ impl<'a> Choice<'a> {
             return Ok(());
         }
         Err(Failure::file(
-            &job.path,
+            job.path(),
             format!("no tool and strategy is possible:\n\n{}", text_table(&self.rows())),
         ))
     }
@@ -383,16 +385,16 @@ impl<'a> Choice<'a> {
                 return Ok(State::Out(why));
             }
         };
-        let linked = passes::linked(job, self.faces, &passes, &job.cutter()?)?;
+        let linked = passes::linked(job, self.faces, &passes, &job.cutter())?;
         self.entries[k].figures = Some(Figures {
             passes: passes.passes.len(),
             points: linked.path.moves.len(),
             cutting_length_mm: linked.cutting_length_mm,
-            cutting_min: linked.cutting_length_mm / job.feed_mm_min()?,
+            cutting_min: linked.cutting_length_mm / job.feed_mm_min(),
             posted_min: None,
         });
         if let Some(objection) = Look::at(job, self.faces, &linked)?.objection(job)? {
-            let limit_mm = job.tolerance()?.scallop_mm;
+            let limit_mm = job.tolerance().scallop_mm;
             if objection.digs_in {
                 self.no_smaller_lead(k);
             }
@@ -452,7 +454,7 @@ impl<'a> Choice<'a> {
         self.entries[k].verified = Some(measured);
         let Some(Objection { text, left_mm, .. }) = why else { return };
         self.entries[k].state = State::Out(text);
-        let limit_mm = contender.job.tolerance.scallop_mm;
+        let limit_mm = contender.job.tolerance().scallop_mm;
         if left_mm.is_some_and(|left| self.for_less(k, left, limit_mm)) {
             self.entries[k].state = State::Open;
             self.entries[k].figures = None;

@@ -71,7 +71,7 @@ pub fn settle(
     best.map(|b| b.1).ok_or_else(|| {
         let job = &choice.jobs[0];
         let table = text_table(&choice.rows());
-        Failure::file(&job.path, format!("no tool and strategy holds the tolerance:\n\n{table}"))
+        Failure::file(job.path(), format!("no tool and strategy holds the tolerance:\n\n{table}"))
     })
 }
 
@@ -86,7 +86,7 @@ fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
         Answer::NotShown => return Ok(NEARLY),
         Answer::NotHeld => {}
     }
-    let t = job.tolerance()?;
+    let t = job.tolerance();
     Ok((v.scallop_max_mm / t.scallop_mm).max(v.gouge_max_mm / t.gouge_mm).max(1.0))
 }
 
@@ -101,13 +101,13 @@ fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> 
         }
         Answer::NotHeld => {}
     }
-    let t = job.tolerance()?;
+    let t = job.tolerance();
     let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
     let figures = [
         ("gouge", v.gouge_max_mm, t.gouge_mm, "mm"),
         ("holder takes", v.holder_max_mm, collision, "mm"),
         ("rapid move takes", v.rapid_max_mm, collision, "mm"),
-        ("uncut area", v.uncut_area_mm2, job.tolerance.unreached_mm2.unwrap_or(0.0), "mm2"),
+        ("uncut area", v.uncut_area_mm2, job.unreached_mm2(), "mm2"),
         ("scallop with tooth mark", v.height_max_mm, t.scallop_mm, "mm"),
     ];
     let bad = figures.into_iter().enumerate().find(|(_, (_, is, limit, _))| is > limit);
@@ -124,7 +124,7 @@ fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Res
     let area_mm2 = choice.faces.faces.iter().map(part::area).sum();
     let totals = Totals { area_mm2, time_min: contender.posted.time_min() };
     let passes = &contender.planned.passes;
-    let l = levels(&passes.passes, contender.job.feed_mm_min()?, totals);
+    let l = levels(&passes.passes, contender.job.feed_mm_min(), totals);
     let lengths: Vec<f64> = passes.passes.iter().map(|p| p.length_mm()).collect();
     let whole: f64 = lengths.iter().sum();
     let regional = l.regional.iter().zip(&lengths).map(|(r, l)| r * l).sum::<f64>();

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
+use crate::job::words::{AlongWord, FlankShape};
 use crate::part::{JobFaces, LoadedFace};
 use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Uv, Vec3, uv};
 use osculate_surfaces::TrimmedSurface;
@@ -135,7 +136,7 @@ impl Surface for Across {
 
 /// The faces of a job, that to machine as `[flank]` says that it is judged: on its other side, or over a part of its length.
 pub fn judged(job: &Job, all: JobFaces) -> Result<JobFaces, Failure> {
-    if job.flank.side == 1 && job.flank.judge_u.is_none() {
+    if !job.flank().flipped && job.flank().judge_u.is_none() {
         return Ok(all);
     }
     let FlankFace { judged, .. } = FlankFace::of(job, &all)?;
@@ -152,18 +153,6 @@ pub struct FlankFace {
     pub straying_mm: f64,
     /// The real face, where it is judged.
     pub judged: LoadedFace,
-}
-
-/// A range of a job that must lie in order.
-pub fn range(job: &Job, key: &str, given: Option<[f64; 2]>, whole: Interval) -> Result<Interval, Failure> {
-    match given {
-        None => Ok(Interval::new(whole.lo, whole.hi)),
-        Some([lo, hi]) if lo.is_finite() && hi.is_finite() && lo < hi => Ok(Interval::new(lo, hi)),
-        Some([lo, hi]) => Err(Failure::file(
-            &job.path,
-            format!("[flank] {key} = [{lo}, {hi}] must be two finite numbers, the lower one first"),
-        )),
-    }
 }
 
 /// The rectangle of its own parameters that a face fills.
@@ -185,19 +174,15 @@ fn rectangle(face: &LoadedFace) -> Domain {
 impl FlankFace {
     /// The only machined face of a job.
     pub fn of(job: &Job, all: &JobFaces) -> Result<Self, Failure> {
-        let table = &job.flank;
-        let wrong = |text: String| Failure::file(&job.path, format!("[flank] {text}"));
+        let table = job.flank();
+        let wrong = |text: String| Failure::file(job.path(), format!("[flank] {text}"));
         let [one] = all.faces.as_slice() else {
             return Err(Failure::file(
-                &job.path,
+                job.path(),
                 format!("[part] faces chooses {} faces; flank mills one at a time", all.faces.len()),
             ));
         };
-        let flipped = match table.side {
-            1 => false,
-            -1 => true,
-            other => return Err(wrong(format!("side = {other} must be 1 or -1"))),
-        };
+        let flipped = table.flipped;
         let d = rectangle(one);
         let as_along = |along: Axis| {
             let (u, v) = (d.get(along), d.get(along.other()));
@@ -207,23 +192,21 @@ impl FlankFace {
             let straying = a.straying_mm();
             (a, straying)
         };
-        let (across, straying_mm) = match table.along.as_str() {
-            "u" => as_along(Axis::U),
-            "v" => as_along(Axis::V),
-            "auto" => {
+        let (across, straying_mm) = match table.along {
+            AlongWord::U => as_along(Axis::U),
+            AlongWord::V => as_along(Axis::V),
+            AlongWord::Auto => {
                 let (u, v) = (as_along(Axis::U), as_along(Axis::V));
                 // Directrices run along u unless the lines across are straighter the other way.
                 if v.1 < u.1 - 1e-9 * u.1.max(1e-9) { v } else { u }
             }
-            other => return Err(wrong(format!("along = \"{other}\" must be \"u\", \"v\" or \"auto\""))),
         };
-        let across = match table.face.as_str() {
-            "own" => across,
-            "borders" => Across { straight: true, ..across },
-            other => return Err(wrong(format!("face = \"{other}\" must be \"own\" or \"borders\""))),
+        let across = match table.face {
+            FlankShape::Own => across,
+            FlankShape::Borders => Across { straight: true, ..across },
         };
         let whole = across.range;
-        let judge = range(job, "judge_u", table.judge_u, whole)?;
+        let judge = table.judge_u.unwrap_or(whole);
         if judge.lo < whole.lo - 1e-9 * whole.length() || judge.hi > whole.hi + 1e-9 * whole.length() {
             return Err(wrong(format!(
                 "judge_u = [{}, {}] leaves the face, whose u runs from {} to {}",

@@ -14,15 +14,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// Names of the methods, in the order of the table.
-pub const NAMES: [&str; 7] = [
-    "standard_a",
-    "standard_b",
-    "double_point_offset",
-    "optimum",
-    "static_minimax",
-    "envelope_rms",
-    "envelope_minimax",
-];
+pub const NAMES: &[&str] = crate::job::words::Method::WORDS;
 /// Liu's share of the rule for the double point offset.
 const LIU: f64 = 0.25;
 /// Fewest positions of a motion.

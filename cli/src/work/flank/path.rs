@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
+use crate::job::words::Tip;
 use crate::part::LoadedFace;
 use crate::work::flank::methods::Motion;
 use crate::work::verify::Verified;
@@ -41,16 +42,12 @@ pub struct Work<'a> {
 
 /// The spindle at the end of the rules that the job asks for.
 pub fn oriented(job: &Job, motion: &Motion) -> Result<Motion, Failure> {
-    let turn = match job.flank.tip.as_str() {
-        "v0" => false,
-        "v1" => true,
-        "auto" => {
+    let turn = match job.flank().tip {
+        Tip::V0 => false,
+        Tip::V1 => true,
+        Tip::Auto => {
             let up: f64 = motion.pieces.iter().map(|p| p.pose(p.range().at(0.5), 0.0).axis.z).sum();
             up < -1e-6
-        }
-        other => {
-            let text = format!("[flank] tip = \"{other}\" must be \"v0\", \"v1\" or \"auto\"");
-            return Err(Failure::file(&job.path, text));
         }
     };
     if !turn {
@@ -59,7 +56,7 @@ pub fn oriented(job: &Job, motion: &Motion) -> Result<Motion, Failure> {
     if !motion.side.is_cylinder() {
         // The shape of the cutter depends on its end: the face itself is to be turned over.
         return Err(Failure::file(
-            &job.path,
+            job.path(),
             "[flank] a cutter that is no cylinder stands with its tip at v = 0: exchange the directrices, or say tip = \"v0\" \
              if the spindle may point down",
         ));
@@ -68,32 +65,26 @@ pub fn oriented(job: &Job, motion: &Motion) -> Result<Motion, Failure> {
 }
 
 /// The straight way before and after the face.
-pub fn lead_mm(job: &Job, cutter: &Cutter) -> Result<f64, Failure> {
-    match job.flank.lead_mm {
-        None => Ok(cutter.radius_mm() + BEYOND_MM),
-        Some(l) if l.is_finite() && l >= 0.0 => Ok(l),
-        Some(l) => {
-            Err(Failure::file(&job.path, format!("[flank] lead_mm = {l} must be a number of 0 or more")))
-        }
-    }
+pub fn lead_mm(job: &Job, cutter: &Cutter) -> f64 {
+    job.flank().lead_mm.unwrap_or(cutter.radius_mm() + BEYOND_MM)
 }
 
 /// The pass of a motion.
 pub fn pass(work: &Work<'_>) -> Result<Passes, Failure> {
     let (job, cutter) = (work.job, work.cutter);
-    let fail = |text: String| Failure::file(&job.path, format!("[flank] {text}"));
+    let fail = |text: String| Failure::file(job.path(), format!("[flank] {text}"));
     let [axes] = work.motion.pieces.as_slice() else {
         return Err(fail(format!(
             "method = \"{}\" has no position at some rules of the span: choose another, or a span_u where it has",
-            job.flank.method
+            job.flank().method.word()
         )));
     };
     let mut notes = Vec::new();
     let envelope = Envelope::new(work.motion.side, &work.motion.pieces);
     let reach = Reach::of(&envelope, work.face, work.judge)
         .ok_or_else(|| fail("the motion does not come near the face".to_owned()))?;
-    let mut tip_mm = work.motion.tip_mm.unwrap_or_else(|| reach.tip_mm(cutter, job.flank.below_mm));
-    let lead_mm = lead_mm(job, cutter)?;
+    let mut tip_mm = work.motion.tip_mm.unwrap_or_else(|| reach.tip_mm(cutter, job.flank().below_mm));
+    let lead_mm = lead_mm(job, cutter);
     let stepping =
         |tip_mm: f64| Stepping { tip_mm, top_mm: reach.highest_mm, chord_mm: 0.5 * work.chord_mm, lead_mm };
     let points = check_points(work.check);
@@ -121,7 +112,7 @@ pub fn pass(work: &Work<'_>) -> Result<Passes, Failure> {
     let need = reach.length_mm(tip_mm, 0.0);
     if cutter.length_mm() < need {
         return Err(Failure::file(
-            &job.path,
+            job.path(),
             format!(
                 "[tool] length_mm = {}: the cutter must be at least {need:.3} mm long to reach over the whole face",
                 cutter.length_mm()

@@ -132,6 +132,7 @@ impl Material {
 }
 
 /// A built-in surface with its name.
+#[derive(Clone)]
 pub struct Builtin {
     /// The kind.
     pub kind: &'static str,
@@ -139,6 +140,12 @@ pub struct Builtin {
     pub surface: Arc<dyn Surface>,
     /// The same as a spline, where it is one.
     pub spline: Option<Arc<NurbsSurface>>,
+}
+
+impl std::fmt::Debug for Builtin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Builtin").field("kind", &self.kind).finish_non_exhaustive()
+    }
 }
 
 fn no_range(key: &str, [lo, hi]: [f64; 2]) -> String {

@@ -1,0 +1,225 @@
+//! The keys and values of a job file held against the schema, each with its line.
+
+use crate::failure::Failure;
+use crate::job::problem::{Places, full, shown};
+use crate::job::schema::{self, Key, Kind, Range, TOOLS};
+use crate::job::words::nearest;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+/// Longest value that a message repeats, characters.
+const SHOWN: usize = 40;
+
+/// A text with the places of its keys.
+struct Reader<'a> {
+    text: &'a str,
+    places: Places,
+}
+
+/// What a value lacks: what was expected, and the nearest word.
+struct Wrong {
+    expected: String,
+    nearest: Option<String>,
+}
+
+/// Holds a job file against the schema; the places of its keys serve later messages.
+///
+/// # Errors
+/// At the first key or value that cannot be meant.
+pub fn places(text: &str, path: &Path) -> Result<Places, Failure> {
+    let mut reader = Reader { text, places: Places::new(path) };
+    let top = DeTable::parse(text).map_err(|e| reader.syntax(&e))?;
+    reader.table("", top.get_ref())?;
+    reader.needed("", top.get_ref())?;
+    Ok(reader.places)
+}
+
+impl Reader<'_> {
+    fn line(&self, at: usize) -> usize {
+        1 + self.text.bytes().take(at).filter(|b| *b == b'\n').count()
+    }
+
+    fn syntax(&self, e: &toml::de::Error) -> Failure {
+        let line = e.span().map(|s| self.line(s.start));
+        self.places.at(line, "", format!("no TOML: {}", e.message().trim_end()), "TOML".to_owned(), None)
+    }
+
+    /// All keys of a table, and of the tables in it.
+    fn table(&mut self, name: &str, table: &DeTable<'_>) -> Result<(), Failure> {
+        let kind = plain(name);
+        for (key, value) in table {
+            let line = self.line(key.span().start);
+            let key: &str = key.get_ref();
+            self.places.keep(name, key, line);
+            if name.is_empty() && key == TOOLS {
+                self.tools(value)?;
+            } else if schema::tables_in(&kind).any(|t| t == key) {
+                match value.get_ref() {
+                    DeValue::Table(t) => self.table(&full(name, key), t)?,
+                    _ => {
+                        let what = format!("{key} is a table: write [{}] above its keys", full(name, key));
+                        return Err(self.places.full(name, key, what, "a table".to_owned(), None));
+                    }
+                }
+            } else if let Some(known) = schema::table(&kind).and_then(|t| t.key(key)) {
+                check(&known.kind, value.get_ref()).map_err(|wrong| self.wrong(name, known, value, wrong))?;
+            } else {
+                return Err(self.unknown(name, &kind, key));
+            }
+        }
+        Ok(())
+    }
+
+    fn tools(&mut self, value: &Spanned<DeValue<'_>>) -> Result<(), Failure> {
+        let list = value.get_ref().as_array();
+        for (k, one) in list.into_iter().flatten().enumerate() {
+            let name = format!("{TOOLS}[{}]", k + 1);
+            self.places.keep(&name, "", self.line(one.span().start));
+            let Some(table) = one.get_ref().as_table() else { return Err(self.no_tools()) };
+            self.table(&name, table)?;
+        }
+        if list.is_some() { Ok(()) } else { Err(self.no_tools()) }
+    }
+
+    fn no_tools(&self) -> Failure {
+        let what = "tools is a list of tables: write [[tools]] above the keys of each";
+        self.places.full("", TOOLS, what, "a list of tables".to_owned(), None)
+    }
+
+    /// Keys that must be given, in the table and those in it.
+    fn needed(&self, name: &str, table: &DeTable<'_>) -> Result<(), Failure> {
+        let kind = plain(name);
+        let has = |key: &str| table.contains_key(key);
+        for key in schema::table(&kind).into_iter().flat_map(|t| t.keys) {
+            if key.default.is_none() && !has(key.name) {
+                let what = format!("needs {}: {} ({})", key.name, key.kind.expects(), key.meaning);
+                return Err(self.places.full(name, "", what, key.kind.expects(), None));
+            }
+        }
+        for inner in schema::tables_in(&kind) {
+            let path = full(name, inner);
+            match table.get(inner).map(Spanned::get_ref) {
+                Some(DeValue::Table(t)) => self.needed(&path, t)?,
+                Some(DeValue::Array(all)) => {
+                    for (k, one) in all.iter().enumerate() {
+                        if let DeValue::Table(t) = one.get_ref() {
+                            self.needed(&format!("{TOOLS}[{}]", k + 1), t)?;
+                        }
+                    }
+                }
+                _ if schema::table(&plain(&path)).is_some_and(|t| t.needed) => {
+                    let what = format!("needs a table [{path}]");
+                    return Err(self.places.full(name, "", what, format!("[{path}]"), None));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn unknown(&self, name: &str, kind: &str, key: &str) -> Failure {
+        let here: Vec<&str> = schema::table(kind)
+            .into_iter()
+            .flat_map(|t| t.keys)
+            .map(|k| k.name)
+            .chain(schema::tables_in(kind))
+            .collect();
+        let place = if name.is_empty() { "a job".to_owned() } else { shown(name).trim_end().to_owned() };
+        let takes = format!("{place} takes {}", here.join(", "));
+        let owner = crate::job::keys::TABLES.iter().find(|t| !t.name.is_empty() && t.key(key).is_some());
+        let near = nearest(key, here.iter().copied());
+        let what = match (near, owner) {
+            (None, Some(t)) => format!("{key} is no key here, but one of [{}]; {takes}", t.name),
+            _ => format!("{key} is no key here; {takes}"),
+        };
+        let elsewhere = owner.map(|t| format!("[{}] {key}", t.name));
+        self.places.full(name, key, what, here.join(", "), near.or(elsewhere.as_deref()))
+    }
+
+    fn wrong(&self, name: &str, key: &Key, value: &Spanned<DeValue<'_>>, wrong: Wrong) -> Failure {
+        let written = match value.get_ref() {
+            DeValue::Float(_) | DeValue::Integer(_) => number(value.get_ref()).map(|x| x.to_string()),
+            _ => None,
+        };
+        let source = self.text.get(value.span()).unwrap_or_default();
+        let written = written.unwrap_or_else(|| source.chars().take(SHOWN).collect());
+        let what = format!("{} = {written} must be {}", key.name, wrong.expected);
+        let near = wrong.nearest.map(|w| format!("\"{w}\""));
+        self.places.full(name, key.name, what, wrong.expected, near.as_deref())
+    }
+}
+
+/// The name of a table without the place in a list.
+fn plain(name: &str) -> String {
+    match name.split_once('[') {
+        Some((list, rest)) => format!("{list}{}", rest.split_once(']').map_or("", |r| r.1)),
+        None => name.to_owned(),
+    }
+}
+
+/// A number, whatever it looks like.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(x) => x.as_str().replace('_', "").parse().ok(),
+        DeValue::Integer(_) => whole(value).map(|x| x as f64),
+        _ => None,
+    }
+}
+
+fn whole(value: &DeValue<'_>) -> Option<i64> {
+    let i = value.as_integer()?;
+    i64::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok()
+}
+
+fn each(list: Option<&DeArray<'_>>, of: impl Fn(&DeValue<'_>) -> bool) -> bool {
+    list.is_some_and(|all| all.iter().all(|v| of(v.get_ref())))
+}
+
+fn numbers(value: &DeValue<'_>) -> Option<Vec<f64>> {
+    value.as_array()?.iter().map(|v| number(v.get_ref())).collect()
+}
+
+/// Whether a value is what a key takes.
+fn check(kind: &Kind, value: &DeValue<'_>) -> Result<(), Wrong> {
+    let within = |r: &Range, v: &DeValue<'_>| number(v).is_some_and(|x| r.holds(x));
+    let list = |n: usize, r: &Range| numbers(value).filter(|x| x.len() == n && x.iter().all(|x| r.holds(*x)));
+    let any = Range { least: f64::NEG_INFINITY, most: f64::INFINITY, open: [false; 2] };
+    let words = kind.words();
+    let good = match kind {
+        Kind::Number(r, _) => within(r, value),
+        Kind::Whole(a, b) => whole(value).is_some_and(|x| (*a..=*b).contains(&x)),
+        Kind::Sign => whole(value).is_some_and(|x| x.abs() == 1),
+        Kind::NumberOr(r, ..) => within(r, value) || value.as_str().is_some_and(|w| words.contains(&w)),
+        Kind::Numbers(n, r, _) => list(*n, r).is_some(),
+        Kind::Direction => list(3, &any).is_some_and(|d| d.iter().any(|x| x.abs() > 1e-9)),
+        Kind::Between(r, _) => list(2, r).is_some_and(|d| d[0] < d[1]),
+        Kind::Corners(_) => list(6, &any).is_some_and(|c| (0..3).all(|k| c[k] < c[k + 3])),
+        Kind::Word(_) | Kind::Name(_) => value.as_str().is_some_and(|w| words.contains(&w)),
+        Kind::Text | Kind::File => value.as_str().is_some_and(|t| !t.trim().is_empty()),
+        Kind::Files => each(value.as_array(), |v| v.as_str().is_some_and(|t| !t.trim().is_empty())),
+        Kind::Faces => faces(value),
+        Kind::Builtin => value.is_table(),
+        Kind::List => numbers(value).is_some_and(|x| x.iter().all(|x| x.is_finite())) || points(value),
+    };
+    if good {
+        return Ok(());
+    }
+    let near = value.as_str().and_then(|w| nearest(w, words)).map(ToOwned::to_owned);
+    Err(Wrong { expected: kind.expects(), nearest: near })
+}
+
+fn faces(value: &DeValue<'_>) -> bool {
+    let id = |v: &DeValue<'_>| v.as_str().is_some_and(|t| !t.trim().is_empty());
+    match value {
+        DeValue::Table(t) => {
+            t.len() == 1 && t.get("largest").and_then(|n| whole(n.get_ref())).is_some_and(|n| n > 0)
+        }
+        DeValue::Array(all) => all.iter().all(|v| id(v.get_ref())),
+        other => id(other),
+    }
+}
+
+fn points(value: &DeValue<'_>) -> bool {
+    each(value.as_array(), |v| numbers(v).is_some_and(|p| p.len() == 3 && p.iter().all(|x| x.is_finite())))
+}

@@ -1,0 +1,203 @@
+//! The machine of a job with its control: what it is posted for, tried on a path of two points when the job is read.
+
+use crate::failure::{Failure, read_text};
+use crate::job::Tool;
+use crate::job::problem::Places;
+use crate::job::raw;
+use crate::job::words::{CoolantWord, FeedWord};
+use osculate_geom::{Diagnostic, Point3, Vec3};
+use osculate_postproc::feed::FeedMode;
+use osculate_postproc::nc::{Coolant, Dialect};
+use osculate_postproc::{Machine, PostError, PostOptions, Setup, built_in_names, post};
+use osculate_tools::Pose;
+use osculate_tools::cl::{ClMove, ClPath, Motion};
+use std::path::Path;
+
+/// Largest rise of F from block to block for `kz` where the job gives none, mm/min.
+const DEFAULT_KZ_STEP: f64 = 200.0;
+/// What a job without a machine is posted for.
+const DEFAULT_MACHINE: &str = "trunnion-ac";
+/// The language of a job that names none.
+const DEFAULT_DIALECT: Dialect = Dialect::Sinumerik;
+
+/// The table's name.
+const TABLE: &str = "machine";
+
+/// A machine with the control's language and feed mode.
+#[derive(Debug, Clone)]
+pub struct Control {
+    /// The machine.
+    pub machine: Machine,
+    /// The language.
+    pub dialect: Dialect,
+    /// How F is programmed.
+    pub feed: FeedMode,
+    /// As the job names it.
+    pub dialect_name: String,
+    /// As the job names it.
+    pub feed_name: String,
+    /// Extension of program files.
+    pub extension: &'static str,
+}
+
+/// The words of a control, from a command line.
+pub struct Words<'a> {
+    /// A built-in name.
+    pub name: Option<&'a str>,
+    /// A machine file.
+    pub file: Option<&'a Path>,
+    /// The language.
+    pub dialect: &'a str,
+    /// The feed mode.
+    pub feed: &'a str,
+    /// For `kz`.
+    pub kz_step: Option<f64>,
+}
+
+impl Control {
+    /// The control that the words describe.
+    pub fn from_words(words: &Words<'_>) -> Result<Self, Failure> {
+        let machine = machine(words.name, words.file)?;
+        let dialect: Dialect = words.dialect.parse().map_err(Failure::job)?;
+        let feed = FeedWord::of(words.feed).ok_or_else(|| {
+            let all = FeedWord::WORDS.join(", ");
+            Failure::job(format!("feed = \"{}\" is no feed mode; there are {all}", words.feed))
+        })?;
+        Ok(Self::new(machine, dialect, feed, words.kz_step))
+    }
+
+    fn new(machine: Machine, dialect: Dialect, feed: FeedWord, kz_step: Option<f64>) -> Self {
+        let step_mm_min = kz_step.unwrap_or(DEFAULT_KZ_STEP);
+        let mode = match feed {
+            FeedWord::Tcp => FeedMode::Tcp,
+            FeedWord::None => FeedMode::None,
+            FeedWord::Kf => FeedMode::Kf,
+            FeedWord::Kv => FeedMode::Kv { fgref_mm: None },
+            FeedWord::Kz => FeedMode::Kz { step_mm_min, fgref_mm: None },
+            FeedWord::InverseTime => FeedMode::InverseTime,
+            FeedWord::Rotary => FeedMode::RotaryOnly,
+            FeedWord::Fastest => FeedMode::Fastest { tip_mm_min: None },
+        };
+        Self {
+            machine,
+            dialect,
+            feed: mode,
+            dialect_name: dialect.name().to_owned(),
+            feed_name: feed.word().to_owned(),
+            extension: dialect.extension(),
+        }
+    }
+
+    /// The control of a job, which has its words tried.
+    pub(super) fn of(places: &Places, t: Option<&raw::Machine>, tool: &Tool) -> Result<Self, Failure> {
+        let none = raw::Machine::default();
+        let given = t.unwrap_or(&none);
+        let file = given.file.as_ref().map(|f| crate::failure::beside(places.path(), f));
+        let name = match (t, given.name.as_deref(), &file) {
+            (None, ..) => Some(DEFAULT_MACHINE),
+            (_, None, None) => {
+                let what = format!("needs name = one of {} or file = \"...\"", built_in_names().join(", "));
+                return Err(places.refuse(TABLE, "", what));
+            }
+            (_, Some(_), Some(_)) => {
+                return Err(places.refuse(TABLE, "file", "has both name and file; keep one of them"));
+            }
+            (_, name, _) => name,
+        };
+        let machine = machine(name, file.as_deref()).map_err(|e| {
+            let key = if file.is_some() { "file" } else { "name" };
+            places.refuse(TABLE, key, e.message())
+        })?;
+        let dialect = match given.dialect.as_deref() {
+            None => DEFAULT_DIALECT,
+            Some(d) => d.parse().map_err(|e| places.refuse(TABLE, "dialect", e))?,
+        };
+        let control = Self::new(machine, dialect, given.feed.unwrap_or_default(), given.kz_step);
+        control.tried(places, tool)?;
+        Ok(control)
+    }
+
+    /// Refuses a combination that no path could be posted for: the words are asked for with a path of two points.
+    fn tried(&self, places: &Places, tool: &Tool) -> Result<(), Failure> {
+        let at = |x: f64, motion: Motion| ClMove {
+            pose: Pose { tip: Point3::new(x, 0.0, 0.0), axis: Vec3::z_axis() },
+            motion,
+        };
+        let moves = vec![at(0.0, Motion::Rapid), at(1.0, Motion::Feed(1000.0))];
+        let path = ClPath { cutter: Some(tool.spec()), moves, ..ClPath::default() };
+        let setup = Setup::at(Vec3::zeros(), tool.cutter().length_mm());
+        match post(&path, &self.machine, &setup, &PostOptions::new(self.dialect, self.feed)) {
+            Err(e @ (PostError::Write(_) | PostError::Orientation | PostError::Feed { .. })) => {
+                let (d, f) = (&self.dialect_name, &self.feed_name);
+                let what = format!(
+                    "{} cannot be posted in dialect = \"{d}\" with feed = \"{f}\": {e}",
+                    self.machine.name()
+                );
+                let key = if places.has(TABLE, "feed") { "feed" } else { "dialect" };
+                let others = FeedWord::WORDS.iter().filter(|w| **w != f).copied().collect::<Vec<_>>();
+                Err(places.full(
+                    TABLE,
+                    key,
+                    what,
+                    format!("another dialect, or feed one of {}", others.join(", ")),
+                    None,
+                ))
+            }
+            // Where this path goes says nothing of the job's.
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A built-in machine or one of a file.
+fn machine(name: Option<&str>, file: Option<&Path>) -> Result<Machine, Failure> {
+    match (name, file) {
+        (_, Some(file)) => {
+            Machine::from_toml(&read_text(file)?).map_err(|e| Failure::file(file, e.to_string().trim_end()))
+        }
+        (Some(name), None) => Machine::built_in(name).map_err(Failure::job),
+        (None, None) => Err(Failure::job(format!(
+            "a machine is needed: name = one of {} or file = \"...\"",
+            built_in_names().join(", ")
+        ))),
+    }
+}
+
+/// What a job leaves to the program.
+pub(super) fn assumed(control: &Control) -> Diagnostic {
+    let (m, d, f) = (control.machine.name(), &control.dialect_name, &control.feed_name);
+    Diagnostic::warning("machine", format!("the job names none: posted for {m}, {d}, feed {f}"))
+}
+
+/// The coolant of a word.
+pub(super) const fn coolant(word: CoolantWord) -> Option<Coolant> {
+    match word {
+        CoolantWord::Off => None,
+        CoolantWord::Flood => Some(Coolant::Flood),
+        CoolantWord::Mist => Some(Coolant::Mist),
+    }
+}
+
+/// A work offset that a dialect has.
+pub(super) fn work_offset(places: &Places, dialect: Dialect, word: &str) -> Result<String, Failure> {
+    let number = |prefix: &str| word.strip_prefix(prefix).and_then(|n| n.parse::<u32>().ok());
+    let within = |n: Option<u32>, lo: u32, hi: u32| n.is_some_and(|n| (lo..=hi).contains(&n));
+    let (good, expected) = match dialect {
+        Dialect::Sinumerik => {
+            (within(number("G"), 54, 57) || within(number("G"), 505, 599), "G54 to G57 or G505 to G599")
+        }
+        Dialect::Fanuc => (
+            within(number("G"), 54, 59) || within(number("G54.1 P"), 1, 300),
+            "G54 to G59 or G54.1 P1 to G54.1 P300",
+        ),
+        Dialect::LinuxCnc => {
+            (within(number("G"), 54, 59) || within(number("G59."), 1, 3), "G54 to G59 or G59.1 to G59.3")
+        }
+        Dialect::Heidenhain => (within(number(""), 0, 9999), "the number of a preset, 0 to 9999"),
+    };
+    if good {
+        return Ok(word.to_owned());
+    }
+    let what = format!("work_offset = \"{word}\" must be {expected} in {}", dialect.name());
+    Err(places.full(TABLE, "work_offset", what, expected.to_owned(), None))
+}

@@ -1,0 +1,111 @@
+//! What is wrong in a job file: where, what was expected instead, and what is nearest to what was written.
+
+use crate::failure::Failure;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// A wrong key or value.
+#[derive(Debug, Clone, Default, Serialize, PartialEq, Eq)]
+pub struct Problem {
+    /// The sentence.
+    pub what: String,
+    /// File, line and key.
+    #[serde(rename = "where")]
+    pub place: String,
+    /// What may stand there.
+    pub expected: String,
+    /// The key or word that is nearest to what stands there.
+    pub nearest: String,
+    /// All of it, for a person.
+    #[serde(skip)]
+    pub message: String,
+}
+
+/// A job file by its lines: where each key stands.
+#[derive(Debug, Clone, Default)]
+pub struct Places {
+    path: PathBuf,
+    lines: BTreeMap<String, usize>,
+}
+
+/// The name of a key with that of its table.
+pub fn full(table: &str, key: &str) -> String {
+    match (table, key) {
+        ("", k) => k.to_owned(),
+        (t, "") => t.to_owned(),
+        (t, k) => format!("{t}.{k}"),
+    }
+}
+
+/// A table as people write it.
+pub fn shown(table: &str) -> String {
+    let Some((number, rest)) = table.strip_prefix("tools[").and_then(|t| t.split_once(']')) else {
+        return if table.is_empty() { String::new() } else { format!("[{table}] ") };
+    };
+    let rest = rest.strip_prefix('.').map(|r| format!("[tool.{r}] "));
+    format!("[[tools]] number {number}: {}", rest.unwrap_or_default())
+}
+
+impl Places {
+    /// No places yet.
+    pub fn new(path: &Path) -> Self {
+        Self { path: path.to_path_buf(), lines: BTreeMap::new() }
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Keeps the line of a key or table.
+    pub fn keep(&mut self, table: &str, key: &str, line: usize) {
+        self.lines.entry(full(table, key)).or_insert(line);
+    }
+
+    /// Whether a key is given.
+    pub fn has(&self, table: &str, key: &str) -> bool {
+        self.lines.contains_key(&full(table, key))
+    }
+
+    /// A failure at a key, or at its table where the key is not given.
+    pub fn refuse(&self, table: &str, key: &str, what: impl Display) -> Failure {
+        self.full(table, key, what, String::new(), None)
+    }
+
+    /// A failure with what was expected and what is nearest.
+    pub fn full(
+        &self,
+        table: &str,
+        key: &str,
+        what: impl Display,
+        expected: String,
+        nearest: Option<&str>,
+    ) -> Failure {
+        let line = self.lines.get(&full(table, key)).or_else(|| self.lines.get(table)).copied();
+        self.at(line, &format!("{}{key}", shown(table)), format!("{}{what}", shown(table)), expected, nearest)
+    }
+
+    /// A failure at a line.
+    pub fn at(
+        &self,
+        line: Option<usize>,
+        place: &str,
+        what: String,
+        expected: String,
+        nearest: Option<&str>,
+    ) -> Failure {
+        let path = self.path.display();
+        let line_words = line.map(|n| format!("line {n}: ")).unwrap_or_default();
+        let near = nearest.map(|n| format!(" (is {n} meant?)")).unwrap_or_default();
+        let number = line.map(|n| format!(":{n}")).unwrap_or_default();
+        Failure::Input(Box::new(Problem {
+            message: format!("{path}: {line_words}{what}{near}"),
+            what,
+            place: format!("{path}{number} {}", place.trim_end()).trim_end().to_owned(),
+            expected,
+            nearest: nearest.unwrap_or_default().to_owned(),
+        }))
+    }
+}

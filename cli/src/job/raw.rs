@@ -1,0 +1,235 @@
+//! The tables of a job file as written; what they mean is made of them in [`crate::job::Job`].
+
+use crate::job::words::{
+    Accept, AlongWord, AxisWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey, Method, Normals,
+    StrategyWord, Tip, ToolKind,
+};
+use osculate_tools::HolderSpec;
+use serde::Deserialize;
+
+/// A whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Raw {
+    #[allow(dead_code)]
+    pub format: u32,
+    pub part: Part,
+    pub tool: Option<Tool>,
+    pub tools: Option<Vec<Tool>>,
+    pub tolerance: Tolerance,
+    #[serde(default)]
+    pub strategy: Strategy,
+    #[serde(default)]
+    pub cutting: Cutting,
+    pub machine: Option<Machine>,
+    #[serde(default)]
+    pub setup: Setup,
+    pub contact: Option<Contact>,
+    pub stock: Option<Stock>,
+    pub fixture: Option<Fixture>,
+    #[serde(default)]
+    pub flank: Flank,
+    #[serde(default)]
+    pub verification: Verification,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    pub file: Option<String>,
+    pub unit_mm: Option<f64>,
+    pub faces: Option<FaceChoice>,
+    pub check_faces: Option<FaceChoice>,
+    pub may_hit: Option<FaceChoice>,
+    #[serde(default)]
+    pub normals: Normals,
+    pub builtin: Option<toml::Table>,
+    pub ruled: Option<Ruled>,
+}
+
+/// A choice of faces.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(untagged)]
+pub enum FaceChoice {
+    /// `"all"` or one id.
+    Word(String),
+    /// Ids as `inspect` prints them.
+    Ids(Vec<String>),
+    /// `{ largest = n }`
+    Largest(Largest),
+}
+
+impl FaceChoice {
+    /// Whether all faces are meant.
+    #[must_use]
+    pub fn is_all(&self) -> bool {
+        matches!(self, Self::Word(w) if w == "all")
+    }
+}
+
+/// `{ largest = n }`
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Largest {
+    /// How many of the largest faces.
+    pub largest: usize,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ruled {
+    pub c0: Curve,
+    pub c1: Curve,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Curve {
+    pub degree: Option<usize>,
+    pub knots: Option<Vec<f64>>,
+    pub poles: Option<Vec<[f64; 3]>>,
+    pub weights: Option<Vec<f64>>,
+    pub points: Option<Vec<[f64; 3]>>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tool {
+    pub kind: ToolKind,
+    pub diameter_mm: f64,
+    pub number: Option<u32>,
+    pub corner_radius_mm: Option<f64>,
+    pub length_mm: Option<f64>,
+    pub flute_length_mm: Option<f64>,
+    pub taper_deg: Option<f64>,
+    pub tip_diameter_mm: Option<f64>,
+    pub barrel_radius_mm: Option<f64>,
+    pub bottom_angle_deg: Option<f64>,
+    pub side_angle_deg: Option<f64>,
+    pub teeth: Option<u32>,
+    pub holder: Option<HolderSpec>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tolerance {
+    pub scallop_mm: f64,
+    pub gouge_mm: Option<f64>,
+    pub chord_mm: Option<f64>,
+    pub unreached_mm2: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Strategy {
+    pub kind: StrategyWord,
+    pub lead_deg: LeadKey,
+    pub lead_rate_deg_per_mm: Option<f64>,
+    pub tilt_deg: f64,
+    pub along: AlongWord,
+    pub axis: Option<[f64; 3]>,
+    pub feed_direction: Option<[f64; 3]>,
+    pub normal: Option<[f64; 3]>,
+    pub stepdown_mm: Option<f64>,
+    pub stepover_mm: Option<f64>,
+    pub allowance_mm: Option<f64>,
+    pub ramp_deg: Option<f64>,
+    pub gouges: Gouges,
+    pub keep_off_mm: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cutting {
+    pub spindle_rpm: Option<f64>,
+    pub feed_mm_min: Option<f64>,
+    pub feed_per_tooth_mm: Option<f64>,
+    pub coolant: Option<CoolantWord>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    pub name: Option<String>,
+    pub file: Option<String>,
+    pub dialect: Option<String>,
+    pub feed: Option<FeedWord>,
+    pub kz_step: Option<f64>,
+    pub work_offset: Option<String>,
+    pub program_number: Option<u32>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Setup {
+    pub part_zero_mm: Option<[f64; 3]>,
+    pub rotate_deg: Option<[f64; 3]>,
+    pub clearance_mm: Option<f64>,
+    pub approach_mm: Option<f64>,
+    pub hop_mm: Option<f64>,
+    pub check_clearance_mm: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    pub at: [f64; 2],
+    #[serde(default)]
+    pub lift_mm: f64,
+    pub along: Option<AxisWord>,
+    pub angle_deg: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stock {
+    pub box_mm: Option<[f64; 6]>,
+    pub file: Option<String>,
+    pub allowance_mm: Option<f64>,
+    pub cylinder: Option<Cylinder>,
+    pub cell_mm: Option<f64>,
+    pub memory_mb: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cylinder {
+    pub axis: Option<[f64; 3]>,
+    pub diameter_mm: f64,
+    pub z_mm: [f64; 2],
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fixture {
+    pub files: Vec<String>,
+    pub spacing_mm: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Flank {
+    pub at_u: Option<f64>,
+    pub side: Option<i32>,
+    pub span_u: Option<[f64; 2]>,
+    pub judge_u: Option<[f64; 2]>,
+    pub positions: Option<usize>,
+    pub method: Option<Method>,
+    pub along: Option<AlongWord>,
+    pub face: Option<FlankShape>,
+    pub tip: Option<Tip>,
+    pub below_mm: Option<f64>,
+    pub lead_mm: Option<f64>,
+    pub spans: Option<usize>,
+    pub gouge_weight: Option<f64>,
+    pub smoothness_per_mm: Option<f64>,
+    pub ruled_tolerance_mm: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Verification {
+    pub spacing_mm: Option<f64>,
+    pub max_samples: Option<usize>,
+    pub accept: Option<Accept>,
+}

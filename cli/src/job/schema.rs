@@ -1,0 +1,175 @@
+//! What a key of a job file may be: the one source of checks, reference and template.
+
+use crate::job::keys::TABLES;
+use std::fmt;
+
+/// Numbers that a key takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// The least.
+    pub least: f64,
+    /// The greatest.
+    pub most: f64,
+    /// Whether the ends themselves are left out.
+    pub open: [bool; 2],
+}
+
+impl Range {
+    /// Whether a number is in it; what is not finite never is.
+    #[must_use]
+    pub fn holds(&self, x: f64) -> bool {
+        let above = if self.open[0] { x > self.least } else { x >= self.least };
+        let below = if self.open[1] { x < self.most } else { x <= self.most };
+        x.is_finite() && above && below
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.least, self.most) {
+            (a, b) if a == f64::NEG_INFINITY && b == f64::INFINITY => f.write_str("a finite number"),
+            (a, b) if a == 0.0 && self.open[0] => write!(f, "a positive number of {b:e} or less"),
+            (a, b) if a == 0.0 && b >= 1e5 => write!(f, "zero or a positive number of {b:e} or less"),
+            (a, b) => {
+                let kind = |open: bool| if open { ", without it" } else { "" };
+                write!(f, "a number from {a}{} to {b}{}", kind(self.open[0]), kind(self.open[1]))
+            }
+        }
+    }
+}
+
+/// What a key takes.
+#[derive(Debug, Clone, Copy)]
+pub enum Kind {
+    /// A number with its unit.
+    Number(Range, &'static str),
+    /// A whole number.
+    Whole(i64, i64),
+    /// 1 or -1.
+    Sign,
+    /// A number or one of these words.
+    NumberOr(Range, &'static str, &'static [&'static str]),
+    /// So many numbers.
+    Numbers(usize, Range, &'static str),
+    /// Three numbers that are not all zero.
+    Direction,
+    /// A lower and a greater number.
+    Between(Range, &'static str),
+    /// Two corners, the lower one first.
+    Corners(&'static str),
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// One of these names.
+    Name(fn() -> Vec<&'static str>),
+    /// Any text.
+    Text,
+    /// A file, relative to the job's.
+    File,
+    /// Files.
+    Files,
+    /// "all", an id, ids or { largest = n }.
+    Faces,
+    /// A built-in surface's keys.
+    Builtin,
+    /// A list of numbers or of points, of any length.
+    List,
+}
+
+impl Kind {
+    /// The words that it takes, where it takes words.
+    #[must_use]
+    pub fn words(&self) -> Vec<&'static str> {
+        match self {
+            Self::NumberOr(_, _, w) | Self::Word(w) => w.to_vec(),
+            Self::Name(names) => names(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// What it takes, in words.
+    #[must_use]
+    pub fn expects(&self) -> String {
+        let list = |w: &[&str]| w.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", ");
+        let with = |text: String, unit: &str| if unit.is_empty() { text } else { format!("{text}, {unit}") };
+        match self {
+            Self::Number(r, unit) => with(r.to_string(), unit),
+            Self::Whole(a, b) if a == b => format!("{a}"),
+            Self::Whole(a, b) => format!("a whole number from {a} to {b}"),
+            Self::Sign => "1 or -1".to_owned(),
+            Self::NumberOr(r, unit, w) => format!("{} or one of {}", with(r.to_string(), unit), list(w)),
+            Self::Numbers(n, r, unit) => with(format!("a list of {n} numbers, each {r}"), unit),
+            Self::Direction => "a direction: three finite numbers that are not all zero".to_owned(),
+            Self::Between(r, unit) => with(format!("two numbers, the lower one first, each {r}"), unit),
+            Self::Corners(unit) => {
+                with("six finite numbers: the lower corner and the upper one, x y z each".to_owned(), unit)
+            }
+            Self::Word(w) => format!("one of {}", list(w)),
+            Self::Name(names) => format!("one of {}", list(&names())),
+            Self::Text => "text".to_owned(),
+            Self::File => "the path of a file, relative to the job file".to_owned(),
+            Self::Files => "a list of paths, relative to the job file".to_owned(),
+            Self::Faces => "\"all\", an id, a list of ids, or { largest = n }".to_owned(),
+            Self::Builtin => {
+                "a table with kind and the sizes of a built-in surface (see `gallery`)".to_owned()
+            }
+            Self::List => "a list".to_owned(),
+        }
+    }
+}
+
+/// A key.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// Its name.
+    pub name: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// What holds where it is not given; `None` where it must be.
+    pub default: Option<&'static str>,
+    /// A value, as TOML.
+    pub example: &'static str,
+    /// What it is, in one line.
+    pub meaning: &'static str,
+}
+
+/// A table.
+#[derive(Debug, Clone, Copy)]
+pub struct Table {
+    /// Its name with that of the tables around it; empty for the keys before the first table.
+    pub name: &'static str,
+    /// Whether every job has it.
+    pub needed: bool,
+    /// What it is, in one line.
+    pub meaning: &'static str,
+    /// Its keys.
+    pub keys: &'static [Key],
+}
+
+impl Table {
+    /// A key of it.
+    #[must_use]
+    pub fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|k| k.name == name)
+    }
+}
+
+/// The list of tables that stands for several of `[tool]`.
+pub const TOOLS: &str = "tools";
+
+/// The table of this name; those of `[[tools]]` are those of `[tool]`.
+#[must_use]
+pub fn table(name: &str) -> Option<&'static Table> {
+    let own = match name.strip_prefix(TOOLS) {
+        Some(rest) if rest.is_empty() || rest.starts_with('.') => format!("tool{rest}"),
+        _ => name.to_owned(),
+    };
+    TABLES.iter().find(|t| t.name == own)
+}
+
+/// Tables that stand directly in a table.
+pub fn tables_in(name: &str) -> impl Iterator<Item = &'static str> {
+    let prefix = if name.is_empty() { String::new() } else { format!("{name}.") };
+    let own = TABLES.iter().filter_map(move |t| t.name.strip_prefix(prefix.as_str()));
+    let tools = name.is_empty().then_some(TOOLS);
+    own.filter(|n| !n.is_empty() && !n.contains('.')).chain(tools)
+}

@@ -1,0 +1,231 @@
+//! How a job cuts: the kind of passes with what belongs to it, and nothing that says nothing there.
+
+use crate::failure::Failure;
+use crate::job::problem::Places;
+use crate::job::raw;
+use crate::job::words::{AlongWord, Gouges, LeadKey, StrategyWord};
+use osculate_geom::{Axis, Unit3, Vec3};
+use osculate_productivity::plan::{self, Along};
+
+/// Greatest change of a local lead where the job says none: at 2000 mm/min some 30 degrees a second, as rotary axes can.
+const LEAD_RATE_DEG_PER_MM: f64 = 1.0;
+/// Steepest way down into material where the job gives none, degrees.
+const RAMP_DEG: f64 = 3.0;
+/// Less than a degree away from the axis a direction says nothing about the passes.
+const ACROSS: f64 = 0.0175;
+
+/// The table's name.
+const TABLE: &str = "strategy";
+
+/// A way to cut.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// The fastest of all that hold.
+    Auto,
+    /// Passes along each face.
+    Faces(plan::Strategy),
+    /// Passes over all faces together, the tool dropped along an axis that it keeps.
+    Drop(Drop),
+    /// Roughing in layers.
+    Layers(Layers),
+    /// The side of the cutter on a ruled face, for `flank`.
+    Flank,
+}
+
+/// Passes by dropping the cutter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drop {
+    /// In parallel planes.
+    Planes,
+    /// Up and down the slope.
+    Gradient,
+}
+
+/// The sizes of a roughing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layers {
+    /// Deepest cut along the axis.
+    pub stepdown_mm: f64,
+    /// Distance of rows.
+    pub stepover_mm: f64,
+    /// What it leaves on the faces.
+    pub allowance_mm: f64,
+    /// Steepest way down into material.
+    pub ramp_rad: f64,
+}
+
+/// How a job cuts.
+#[derive(Debug, Clone, Copy)]
+pub struct Strategy {
+    word: StrategyWord,
+    /// The way to cut.
+    pub kind: Kind,
+    /// Lead; given ones in degrees.
+    pub lead: LeadKey,
+    /// Greatest change of a local lead along a face.
+    pub lead_rate_rad_per_mm: f64,
+    /// Tilt.
+    pub tilt_deg: f64,
+    /// The axis of tools that keep it.
+    pub axis: Unit3,
+    /// The way of passes of a tool that keeps its axis, across the axis; the longest side of the faces where not given.
+    pub feed_direction: Option<Vec3>,
+    /// What becomes of places where the tool would go into the part or a check face.
+    pub gouges: Gouges,
+    /// Of places left out: what cutter and holder keep from check faces, and the holder from faces to machine.
+    pub keep_off_mm: f64,
+}
+
+impl Strategy {
+    /// Its word in job files.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        self.word.word()
+    }
+
+    /// The sizes of a roughing, where it is one.
+    #[must_use]
+    pub const fn layers(&self) -> Option<&Layers> {
+        match &self.kind {
+            Kind::Layers(l) => Some(l),
+            _ => None,
+        }
+    }
+
+    /// Whether it is to be chosen.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        matches!(self.kind, Kind::Auto)
+    }
+
+    /// The strategy of a table, for so many tools.
+    pub(super) fn of(places: &Places, t: &raw::Strategy, tools: usize) -> Result<Self, Failure> {
+        let axis = direction(t.axis.unwrap_or([0.0, 0.0, 1.0]));
+        let along = match t.along {
+            AlongWord::Auto => Along::Auto,
+            AlongWord::U => Along::Fixed(Axis::U),
+            AlongWord::V => Along::Fixed(Axis::V),
+        };
+        let kind = match t.kind {
+            StrategyWord::Auto => Kind::Auto,
+            StrategyWord::Isoparametric => Kind::Faces(plan::Strategy::Isoparametric { along }),
+            StrategyWord::Regions => Kind::Faces(plan::Strategy::Regions { along }),
+            StrategyWord::Isoplanar => {
+                let normal = direction(t.normal.unwrap_or([0.0, 1.0, 0.0]));
+                Kind::Faces(plan::Strategy::Isoplanar { normal })
+            }
+            StrategyWord::Isoscallop => Kind::Faces(plan::Strategy::Isoscallop),
+            StrategyWord::Streamline => Kind::Faces(plan::Strategy::Streamline),
+            StrategyWord::Curvature5c => Kind::Faces(plan::Strategy::Curvature5c),
+            StrategyWord::Contour2cl => Kind::Faces(plan::Strategy::Contour2cl { axis }),
+            StrategyWord::Gradient3c => Kind::Drop(Drop::Gradient),
+            StrategyWord::Isoplanar3c => Kind::Drop(Drop::Planes),
+            StrategyWord::ZLevel => Kind::Layers(layers(places, t)?),
+            StrategyWord::Flank => Kind::Flank,
+        };
+        let found = Self {
+            word: t.kind,
+            kind,
+            lead: t.lead_deg,
+            lead_rate_rad_per_mm: t.lead_rate_deg_per_mm.unwrap_or(LEAD_RATE_DEG_PER_MM).to_radians(),
+            tilt_deg: t.tilt_deg,
+            axis,
+            feed_direction: t.feed_direction.map(Vec3::from),
+            gouges: t.gouges,
+            keep_off_mm: t.keep_off_mm.unwrap_or(0.0),
+        };
+        found.belongs(places)?;
+        found.agrees(places, t, tools)?;
+        Ok(found)
+    }
+
+    /// Refuses keys that say nothing of this kind.
+    fn belongs(&self, places: &Places) -> Result<(), Failure> {
+        use StrategyWord as W;
+        let is = |all: &[W]| all.contains(&self.word);
+        let drops = is(&[W::Gradient3c, W::Isoplanar3c, W::ZLevel]);
+        let keeps_axis = drops || is(&[W::Contour2cl]);
+        let layers = is(&[W::ZLevel]);
+        let lined = is(&[W::Isoparametric, W::Regions]);
+        let rows = [
+            ("along", lined, "isoparametric and regions"),
+            ("axis", keeps_axis || is(&[W::Auto]), "contour_2cl, gradient_3c, isoplanar_3c and z_level"),
+            ("feed_direction", drops, "gradient_3c, isoplanar_3c and z_level"),
+            ("normal", is(&[W::Isoplanar]), "isoplanar"),
+            ("stepdown_mm", layers, "z_level"),
+            ("stepover_mm", layers, "z_level"),
+            ("allowance_mm", layers, "z_level"),
+            ("ramp_deg", layers, "z_level"),
+            ("lead_rate_deg_per_mm", !keeps_axis, "strategies that lean"),
+        ];
+        for (key, fits, owners) in rows {
+            if !fits && places.has(TABLE, key) {
+                let what = format!("{key} is for {owners}, not for kind = \"{}\": leave it out", self.name());
+                return Err(places.refuse(TABLE, key, what));
+            }
+        }
+        let leans = match self.lead {
+            LeadKey::Auto => false,
+            LeadKey::Local => true,
+            LeadKey::Given(deg) => deg != 0.0,
+        };
+        if keeps_axis && (leans || self.tilt_deg != 0.0) {
+            let key = if leans { "lead_deg" } else { "tilt_deg" };
+            let what =
+                format!("{} keeps the tool axis on `axis`: leave out lead_deg and tilt_deg", self.name());
+            return Err(places.refuse(TABLE, key, what));
+        }
+        Ok(())
+    }
+
+    /// Refuses keys that contradict each other.
+    fn agrees(&self, places: &Places, t: &raw::Strategy, tools: usize) -> Result<(), Failure> {
+        let refuse = |key: &str, what: String| Err(places.refuse(TABLE, key, what));
+        if let Some(d) = self.feed_direction {
+            let across = d - self.axis.into_inner() * d.dot(&self.axis);
+            if across.norm() <= ACROSS * d.norm() {
+                let given = t.feed_direction.unwrap_or_default();
+                let what = format!("feed_direction = {given:?} must point across the tool axis");
+                return refuse("feed_direction", what);
+            }
+        }
+        if tools > 1 && matches!(self.kind, Kind::Drop(_) | Kind::Layers(_) | Kind::Flank) {
+            return refuse("kind", format!("{} takes one [tool], not [[tools]]", self.name()));
+        }
+        match (self.gouges, t.keep_off_mm) {
+            (Gouges::Report, Some(_)) => {
+                refuse("keep_off_mm", "keep_off_mm needs gouges = \"leave_out\"".to_owned())
+            }
+            (Gouges::LeaveOut, _) if self.is_open() || tools > 1 => refuse(
+                "gouges",
+                "gouges = \"leave_out\" needs one tool and a strategy by name: what is chosen from leaves nothing out"
+                    .to_owned(),
+            ),
+            (Gouges::LeaveOut, _) if matches!(self.kind, Kind::Layers(_) | Kind::Flank) => refuse(
+                "gouges",
+                format!("gouges = \"leave_out\" is for passes of finishing, not for {}", self.name()),
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A direction that the schema has found to be one.
+pub(super) fn direction(d: [f64; 3]) -> Unit3 {
+    // Scaled first: squares of great or small numbers leave the range of numbers.
+    let most = d.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+    Unit3::new_normalize(Vec3::from(d.map(|x| x / most)))
+}
+
+fn layers(places: &Places, t: &raw::Strategy) -> Result<Layers, Failure> {
+    let needed = |key: &str, value: Option<f64>| {
+        let what = format!("{} needs {key}, a positive number", t.kind.word());
+        value.ok_or_else(|| places.refuse(TABLE, "kind", what))
+    };
+    Ok(Layers {
+        stepdown_mm: needed("stepdown_mm", t.stepdown_mm)?,
+        stepover_mm: needed("stepover_mm", t.stepover_mm)?,
+        allowance_mm: t.allowance_mm.unwrap_or(0.0),
+        ramp_rad: t.ramp_deg.unwrap_or(RAMP_DEG).to_radians(),
+    })
+}

@@ -1,0 +1,301 @@
+//! The words that a job file takes, each list with its enum: the same list for reading, checking and the reference.
+
+use serde::Deserialize;
+
+/// An enum whose variants are words of job files.
+macro_rules! words {
+    ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $word:literal,)+ }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+        pub enum $name { $($(#[$doc])* #[serde(rename = $word)] $variant,)+ }
+
+        impl $name {
+            /// All words, in the order of the reference.
+            pub const WORDS: &'static [&'static str] = &[$($word),+];
+
+            /// The word.
+            #[must_use]
+            pub const fn word(self) -> &'static str {
+                match self { $(Self::$variant => $word,)+ }
+            }
+
+            /// What a word means.
+            #[must_use]
+            pub fn of(word: &str) -> Option<Self> {
+                match word { $($word => Some(Self::$variant),)+ _ => None }
+            }
+        }
+    };
+}
+
+words! {
+    /// Which side of a face the outward normal is on.
+    Normals {
+        /// As the file says; where it does not, by looking which side is enclosed.
+        #[default]
+        Auto = "auto",
+        /// Along S_u x S_v as the file has it.
+        File = "file",
+        /// Against it.
+        Reversed = "reversed",
+    }
+}
+
+words! {
+    /// A kind of cutter.
+    ToolKind {
+        /// A ball end.
+        #[default]
+        Ball = "ball",
+        /// A flat end with a sharp edge.
+        Flat = "flat",
+        /// A flat end with a rounded corner.
+        Toroidal = "toroidal",
+        /// A cylinder that works with its side.
+        Cylindrical = "cylindrical",
+        /// A cone with a cylinder above it.
+        Cone = "cone",
+        /// A ball tip and a large arc.
+        Barrel = "barrel",
+        /// APT's general cutter.
+        Apt = "apt",
+    }
+}
+
+words! {
+    /// A way to cut, by name.
+    StrategyWord {
+        /// Chosen by the program.
+        #[default]
+        Auto = "auto",
+        /// Along lines of constant parameter.
+        Isoparametric = "isoparametric",
+        /// Along lines of constant parameter, in regions.
+        Regions = "regions",
+        /// In parallel planes.
+        Isoplanar = "isoplanar",
+        /// With the same scallop all along.
+        Isoscallop = "isoscallop",
+        /// Along the directions of the widest strip.
+        Streamline = "streamline",
+        /// Along lines of curvature.
+        Curvature5c = "curvature_5c",
+        /// A ball at constant height along an axis that it keeps.
+        Contour2cl = "contour_2cl",
+        /// Up and down the slope, the axis kept.
+        Gradient3c = "gradient_3c",
+        /// In parallel planes, the axis kept.
+        Isoplanar3c = "isoplanar_3c",
+        /// Roughing in layers.
+        ZLevel = "z_level",
+        /// The side of the cutter on a ruled face: the verb `flank`.
+        Flank = "flank",
+    }
+}
+
+words! {
+    /// The parameter of a face that something runs along.
+    AlongWord {
+        /// Chosen by the program.
+        #[default]
+        Auto = "auto",
+        /// The first.
+        U = "u",
+        /// The second.
+        V = "v",
+    }
+}
+
+words! {
+    /// One parameter of a face.
+    AxisWord {
+        /// The first.
+        #[default]
+        U = "u",
+        /// The second.
+        V = "v",
+    }
+}
+
+words! {
+    /// What becomes of places where the tool would go into the part.
+    Gouges {
+        /// They are machined, and verification says that the path does not hold.
+        #[default]
+        Report = "report",
+        /// Passes end before them; verification counts what stands as uncut.
+        LeaveOut = "leave_out",
+    }
+}
+
+words! {
+    /// How a program says the feed.
+    FeedWord {
+        /// Tool-centre-point control.
+        #[default]
+        Tcp = "tcp",
+        /// As wanted, whatever comes of it.
+        None = "none",
+        /// Corrected over all axes.
+        Kv = "kv",
+        /// Corrected over the linear axes.
+        Kf = "kf",
+        /// As `kv`, rising by at most a step from block to block.
+        Kz = "kz",
+        /// One over the duration.
+        InverseTime = "inverse_time",
+        /// Degrees a minute over the rotary axes.
+        Rotary = "rotary",
+        /// As fast as the joints can follow.
+        Fastest = "fastest",
+    }
+}
+
+words! {
+    /// What cools the cut.
+    CoolantWord {
+        /// Nothing.
+        #[default]
+        Off = "off",
+        /// M8.
+        Flood = "flood",
+        /// M7.
+        Mist = "mist",
+    }
+}
+
+words! {
+    /// What a verdict must rest on for the exit code to say yes.
+    Accept {
+        /// Limits met at the samples, and shown to be met between them.
+        #[default]
+        Proof = "proof",
+        /// Limits met at the samples.
+        Samples = "samples",
+    }
+}
+
+words! {
+    /// What flank milling takes for the face.
+    FlankShape {
+        /// The face's own shape.
+        #[default]
+        Own = "own",
+        /// The straight lines between its borders.
+        Borders = "borders",
+    }
+}
+
+words! {
+    /// The end of the rules where the tip is.
+    Tip {
+        /// The one that keeps the spindle up.
+        #[default]
+        Auto = "auto",
+        /// v = 0.
+        V0 = "v0",
+        /// v = 1.
+        V1 = "v1",
+    }
+}
+
+words! {
+    /// A positioning of a cutter on a ruled face.
+    Method {
+        /// Touching at the first directrix.
+        StandardA = "standard_a",
+        /// Touching at the second directrix.
+        StandardB = "standard_b",
+        /// Liu's double point offset.
+        DoublePointOffset = "double_point_offset",
+        /// The best setting at each rule.
+        Optimum = "optimum",
+        /// The least greatest deviation at each rule.
+        StaticMinimax = "static_minimax",
+        /// The least mean square of the envelope.
+        EnvelopeRms = "envelope_rms",
+        /// The least greatest deviation of the envelope.
+        #[default]
+        EnvelopeMinimax = "envelope_minimax",
+    }
+}
+
+/// A lead in degrees, "auto" or "local".
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum LeadKey {
+    /// The program chooses one for the whole path.
+    #[default]
+    Auto,
+    /// The least at every place.
+    Local,
+    /// As given.
+    Given(f64),
+}
+
+impl LeadKey {
+    /// The words that stand for a lead.
+    pub const WORDS: &'static [&'static str] = &["auto", "local"];
+}
+
+impl<'de> Deserialize<'de> for LeadKey {
+    fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Raw {
+            Number(f64),
+            Word(String),
+        }
+        match Raw::deserialize(d)? {
+            Raw::Number(x) => Ok(Self::Given(x)),
+            Raw::Word(w) if w == "auto" => Ok(Self::Auto),
+            Raw::Word(w) if w == "local" => Ok(Self::Local),
+            Raw::Word(w) => Err(serde::de::Error::custom(format!(
+                "expected a number, \"auto\" or \"local\", got \"{w}\""
+            ))),
+        }
+    }
+}
+
+/// The candidate that is least changed to become `word`, where one is near enough to be meant.
+#[must_use]
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = word.to_lowercase();
+    let all = candidates.into_iter().map(|c| (distance(&lower, &c.to_lowercase()), c));
+    let (changes, best) = all.min_by_key(|(d, _)| *d)?;
+    // Beyond half of the letters it is another word.
+    (2 * changes <= word.chars().count().max(best.chars().count())).then_some(best)
+}
+
+/// Letters put in, taken out, changed or exchanged with their neighbour.
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let changed = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut least = changed.min(last[j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                least = least.min(before[j - 2] + 1);
+            }
+            row.push(least);
+        }
+        before = std::mem::replace(&mut last, row);
+    }
+    last.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_word_is_the_least_changed() {
+        assert_eq!(distance("scallop_um", "scallop_mm"), 1);
+        assert_eq!(distance("toriodal", "toroidal"), 1);
+        assert_eq!(distance("", "abc"), 3);
+        assert_eq!(nearest("Toriodal", ToolKind::WORDS.iter().copied()), Some("toroidal"));
+        assert_eq!(nearest("hexapod", ["ball", "flat"]), None);
+    }
+}
