@@ -4,6 +4,7 @@ mod common;
 
 use common::pose;
 use osculate_geom::{Severity, Vec3};
+use osculate_postproc::conduct::{Expected, ExpectedTool, Grade};
 use osculate_postproc::motion::program_time;
 use osculate_postproc::readback::{ReadBack, ReadError, ReadOptions, read};
 use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, post};
@@ -339,7 +340,12 @@ proptest! {
     fn any_text(text in "[A-Z0-9=.()\\[\\] ;#/+\\-\n]{0,120}", which in 0..4usize, strict in any::<bool>()) {
         let options = ReadOptions { strict, ..ReadOptions::default() };
         let text = format!("G90 G94 F100\nG0 X0 Y0 Z0 A0 C0\nG1 {text}");
-        let _ = read(&text, Dialect::ALL[which], &machine("trunnion-ac"), &Setup::default(), &options);
+        if let Ok(back) = read(&text, Dialect::ALL[which], &machine("trunnion-ac"), &Setup::default(), &options) {
+            let tool = ExpectedTool { number: 1, length_mm: 0.0 };
+            let conduct = back.conduct(&Expected::new(tool, Some(8000.0), 0.01));
+            // None of these programs starts the spindle as the job means it.
+            prop_assert!(conduct.worst() == Some(Grade::Breaks) || back.blocks.iter().all(|b| b.rapid));
+        }
     }
 }
 

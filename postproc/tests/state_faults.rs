@@ -175,7 +175,8 @@ fn faults_with_fanuc() {
     check(
         Dialect::Fanuc,
         &[
-            (Amid("G49\nG43 H1\nG49"), "switched off"),
+            (Amid("G49"), "switched off"),
+            (Swap("G43.4 H1", "G43.4 H0"), "H0"),
             (Swap("G43.4 H1", "G43.4 H2"), "H2"),
             (Swap("G43.4 H1", "G43.4"), "without H"),
             (Amid("H2"), "H2"),
@@ -202,6 +203,7 @@ fn faults_with_linuxcnc() {
         Dialect::LinuxCnc,
         &[
             (Swap("G43 H1\n", "\n"), "switched off"),
+            (Amid("G49"), "switched off"),
             (Swap("G43 H1\n", "G43 H2\n"), "H2"),
             (Swap("G43 H1\n", "G43.1 Z80\n"), "80 mm"),
             (Swap("T1 M6", "T7 M6"), "tool 7"),
@@ -220,6 +222,25 @@ fn faults_with_linuxcnc() {
             (Slash(30), "slash"),
         ],
     );
+}
+
+/// The same without tool-centre-point control, where G43 is all that applies the length.
+#[test]
+fn length_without_tool_centre_point_control() {
+    for dialect in [Dialect::Fanuc, Dialect::LinuxCnc] {
+        let options = options(dialect, FeedMode::InverseTime);
+        let text = post(&way(), &machine(dialect), &setup(), &options).expect("a path within limits").text;
+        assert_eq!(go(&text, dialect).conduct(&expected()).findings, []);
+        for fault in [Swap("G43 H1\n", "\n"), Swap("G43 H1\n", "G43 H2\n"), Amid("G49")] {
+            let conduct = go(&put(&text, &fault, dialect), dialect).conduct(&expected());
+            assert_eq!(conduct.worst(), Some(Grade::Breaks), "{conduct:?}");
+            assert_eq!(conduct.findings.len(), 1, "{conduct:?}");
+        }
+        // Never said at all: G49 is not there either.
+        let bare = text.replacen(" G49", "", 1).replacen("G43 H1\n", "\n", 1);
+        let conduct = go(&bare, dialect).conduct(&expected());
+        assert!(conduct.findings[0].what.contains("never applied"), "{conduct:?}");
+    }
 }
 
 /// Where nothing is said of the tool and of the offset, that is told.
@@ -271,6 +292,10 @@ fn retracts_are_moves() {
         assert!(conduct.worst() == Some(Grade::Open), "{conduct:?}");
         assert!(conduct.findings.iter().any(|f| f.what.contains("home_mm") && f.line > 1), "{conduct:?}");
     }
+    // Before anything is known of the place it loses nothing, and is told.
+    let first = good(Dialect::Fanuc).replacen("G53 G0 Z0\n", "G91 G28 Z0\nG90\n", 1);
+    let conduct = go(&first, Dialect::Fanuc).conduct(&expected());
+    assert!(conduct.worst() == Some(Grade::Warning) && conduct.findings.len() == 1, "{conduct:?}");
     let bad = put(&good(Dialect::Heidenhain), &Amid("99 L Z+0 R0 FMAX M92"), Dialect::Heidenhain);
     assert_eq!(go(&bad, Dialect::Heidenhain).conduct(&expected()).worst(), Some(Grade::Open));
 }

@@ -41,15 +41,18 @@ impl<S: Sink> Interpreter<'_, S> {
             930 => self.reading(FeedReading::Inverse),
             940 => self.reading(FeedReading::PerMinute),
             950 => self.reading(FeedReading::PerTurn),
-            434 | 435 => {
+            434 | 435 if self.dialect == Dialect::Fanuc => {
                 asked.length = Some(LengthWord::On);
                 s.vectors = code == 435;
                 self.switch(true);
             }
-            430 | 490 => {
+            430 | 490 if matches!(self.dialect, Dialect::Fanuc | Dialect::LinuxCnc) => {
                 asked.length = Some(if code == 430 { LengthWord::On } else { LengthWord::Off });
-                s.vectors = false;
-                self.switch(false);
+                // LinuxCNC's kinematics have words of their own.
+                if self.dialect == Dialect::Fanuc {
+                    s.vectors = false;
+                    self.switch(false);
+                }
             }
             431 if self.dialect == Dialect::LinuxCnc => {
                 asked.length = Some(LengthWord::Measured);

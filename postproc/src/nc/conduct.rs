@@ -348,11 +348,10 @@ impl Judge<'_> {
             ("it feeds from a place that is not known to the first that is", FEED),
             r.from_nowhere,
         );
-        found.add(
-            Grade::Open,
-            ("an axis goes to a place of the machine that its file does not say (home_mm, machine_zero_mm)", ""),
-            r.sent,
-        );
+        let away =
+            "an axis goes to a place of the machine that its file does not say (home_mm, machine_zero_mm)";
+        found.add(Grade::Open, (away, ""), r.sent);
+        found.add(Grade::Warning, (away, ""), r.sent_first);
         found.add(
             Grade::Warning,
             ("machine coordinates are taken from the joint's own zero: the machine file has no machine_zero_mm", ""),

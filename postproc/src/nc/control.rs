@@ -174,6 +174,8 @@ pub struct Record {
     pub(super) from_nowhere: Seen,
     /// Axes sent to a place of the machine that is not known.
     pub(super) sent: Seen,
+    /// The same before the first place that is known.
+    pub(super) sent_first: Seen,
     /// Machine coordinates of joints whose zero the machine file does not say.
     pub(super) guessed: Seen,
 }

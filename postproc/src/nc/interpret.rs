@@ -38,7 +38,7 @@ pub(super) struct Interpreter<'a, S> {
     unlisted: (usize, usize, usize),
     pub(super) sections: Sections,
     /// The sink knows where the machine stands.
-    placed: bool,
+    pub(super) placed: bool,
     /// The state beside the way.
     pub(super) control: Control,
     pub(super) record: Record,
@@ -234,7 +234,10 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         }
         let before = self.state.known(self.machine);
         for (name, value, manner) in &asked.axes {
-            self.position(line, name, (*value, *manner))?;
+            // By way of a place that is not known there is nothing to be lost.
+            if before.is_some() || !asked.home {
+                self.position(line, name, (*value, *manner))?;
+            }
         }
         if asked.vector.iter().any(Option::is_some) {
             self.point(line, &asked.vector)?;

@@ -15,6 +15,15 @@ use super::token::Manner;
 use crate::machine::{JointKind, JointValues, nearest_turn};
 
 impl<S: Sink> Interpreter<'_, S> {
+    /// An axis goes to a place that is not known.
+    const fn sent(&mut self, line: usize) {
+        if self.placed {
+            self.record.sent.again(line);
+        } else {
+            self.record.sent_first.again(line);
+        }
+    }
+
     /// Where the named joints go, by their places; `None` where that is not known.
     fn own_targets(&mut self, line: usize, asked: &Asked) -> Result<Vec<(usize, Option<f64>)>, ReadError> {
         let mut targets = Vec::with_capacity(asked.axes.len());
@@ -37,7 +46,7 @@ impl<S: Sink> Interpreter<'_, S> {
                 self.record.guessed.again(line);
             }
             if zero.is_none() {
-                self.record.sent.again(line);
+                self.sent(line);
             }
             targets.push((place, zero.map(|zero| value + zero)));
         }
@@ -52,7 +61,7 @@ impl<S: Sink> Interpreter<'_, S> {
         for (place, joint) in joints.iter().enumerate().filter(|(_, j)| named(&j.letter)) {
             let home = joint.home.zip(joint.own_zero()).map(|(home, zero)| home + zero);
             if home.is_none() {
-                self.record.sent.again(line);
+                self.sent(line);
             }
             targets.push((place, home));
         }

@@ -51,13 +51,14 @@ pub(super) enum Word {
 }
 
 impl Word {
-    /// It does something: it is no number of a block, no slash and no message.
+    /// It does something: it is no number of a block, no slash, no message and no stop.
     pub fn acts(&self) -> bool {
         match self {
             Self::Skip => false,
             Self::Address { name, .. } => name != "N" && name != "O",
             Self::Name { name, .. } => name != "MSG",
-            Self::G(_) | Self::M(_) | Self::F(_) | Self::S(_) => true,
+            Self::M(code) => !matches!(code, 0 | 1),
+            Self::G(_) | Self::F(_) | Self::S(_) => true,
         }
     }
 }
@@ -282,21 +283,25 @@ fn lettered(name: &str, value: f64) -> Word {
 
 /// Klartext: words between blanks; an axis carries its sign, `IX` is incremental.
 fn klartext(line: &str) -> Result<Vec<Word>, BadWord> {
-    let line = line.split(';').next().unwrap_or_default().trim();
-    let after = |line: &'_ str, number: bool| {
-        let rest = if number { line.trim_start_matches(|c: char| c.is_ascii_digit()) } else { line };
-        let plain = rest.is_empty() || rest.starts_with(|c: char| c.is_whitespace() || c == '/');
-        if plain { line.len() - rest.trim_start().len() } else { 0 }
-    };
-    let mut rest = &line[after(line, true)..];
+    let line = without_number(line.split(';').next().unwrap_or_default().trim());
     // A slash before or behind the block's number: it may be left out.
-    if let Some(hidden) = rest.strip_prefix('/') {
-        rest = hidden.trim_start();
-        let words = klartext(&rest[after(rest, true)..])?;
-        return Ok(if words.is_empty() { words } else { std::iter::once(Word::Skip).chain(words).collect() });
+    let hidden = line.strip_prefix('/').map(|rest| without_number(rest.trim_start()));
+    let mut words = klartext_words(hidden.unwrap_or(line))?;
+    if hidden.is_some() && !words.is_empty() {
+        words.insert(0, Word::Skip);
     }
-    rest = rest.trim_start();
-    let parts: Vec<String> = rest.split_whitespace().map(str::to_ascii_uppercase).collect();
+    Ok(words)
+}
+
+/// Klartext without the number of the block.
+fn without_number(line: &str) -> &str {
+    let rest = line.trim_start_matches(|c: char| c.is_ascii_digit());
+    let ends = rest.is_empty() || rest.starts_with(|c: char| c.is_whitespace() || c == '/');
+    if ends { rest.trim_start() } else { line }
+}
+
+fn klartext_words(text: &str) -> Result<Vec<Word>, BadWord> {
+    let parts: Vec<String> = text.split_whitespace().map(str::to_ascii_uppercase).collect();
     let Some(first) = parts.first() else { return Ok(Vec::new()) };
     let name = |name: &str, rest: &[String]| Word::Name { name: name.into(), arguments: rest.join(" ") };
     match first.as_str() {
@@ -378,6 +383,11 @@ mod tests {
             Word::F(100.0),
         ];
         assert_eq!(got, want);
+        for hidden in ["/2 N10 G1", "N10 /G1", "/N10G1", "N10 /3 G1"] {
+            let got = words(hidden, Dialect::Sinumerik).unwrap();
+            assert_eq!(got, [Word::Skip, axis("N", 10.0, Manner::Modal), Word::G(10)], "{hidden}");
+        }
+        assert!(words("G1 / X5", Dialect::Fanuc).is_err());
         assert_eq!(words("G43.4 H1", Dialect::Fanuc).unwrap()[0], Word::G(434));
         assert!(words("X[#1+2]", Dialect::LinuxCnc).is_err());
         assert!(words("X", Dialect::LinuxCnc).is_err());
@@ -392,6 +402,11 @@ mod tests {
         assert_eq!(got[1], axis("X", 1.5, Manner::Modal));
         assert_eq!(got[2], axis("Y", -2.0, Manner::Incremental));
         assert_eq!(got[6], Word::M(3));
+        for hidden in ["/12 L X+1.5", "12 /L X+1.5", "/ 12 L X+1.5", "/L X+1.5"] {
+            let got = words(hidden, Dialect::Heidenhain).unwrap();
+            assert!(got.len() == 3 && got[0] == Word::Skip, "{hidden}: {got:?}");
+        }
+        assert!(words("/ ; nothing", Dialect::Heidenhain).unwrap().is_empty());
         assert!(words("3 L X", Dialect::Heidenhain).is_err());
     }
 }
