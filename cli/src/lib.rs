@@ -1,0 +1,3 @@
+//! What the command line of `osculate` is made of, for other programs.
+
+pub mod second;
