@@ -1,28 +1,30 @@
 //! The deepest and the lowest over all poses of a path, by frozen poses that lie as close as it takes.
 //!
-//! How deep a point is in the tool changes by no more than what the tool's place nearest to it moves. Over a stretch of a move
-//! with its middle pose frozen, that is
+//! Over a stretch of a move its middle pose is frozen. The tool is convex: it lies behind the plane at its place nearest to a point,
+//! with the normal `G` to that point, and at every pose behind this plane carried along. With `d` from the middle's tip to the
+//! point, a pose with the tip off by `e` and the axis `b` instead of `a` is nearer to the point than the middle one by
 //!
 //! ```text
-//! half = max |tip - middle tip| + lever max |axis - middle axis| + (tip'' + lever axis'') d^2 / 32
+//! G . e + (a x b) . (d x G)  and a remainder of |a - b| |e| + |a - b|^2 (|d| + |e|) / 2
 //! ```
 //!
-//! over both ends of the stretch, lever the point's distance from the tip; the last term is what the way between the poses leaves
-//! its chord by, d the stretch's share of the move. A point less deep than the deepest so far by `half - slack` or more cannot
-//! become the deepest by more than the slack, and is dropped. What stands over a point is cut no lower than by the tool grown by
-//! `half`: where that comes no lower than the lowest so far less the slack, the point is dropped too. For all that are left the
-//! stretch is halved. So near a pass of a corner of radius r poses end up some `2 slack` apart within `sqrt(2 r slack)` of the
-//! contact, and frozen poses `s` apart with nothing between would leave the ridge `r - sqrt(r^2 - s^2 / 4)`.
+//! at most. It is linear in `e` and `b`, so that of the poses of a stretch its ends bound it, with `(tip'' + |d| axis'') w^2 / 32`
+//! for what the way leaves its chords by, `w` the stretch's share of the move. A point that cannot get deeper than the deepest so far
+//! by more than the slack is dropped. So is one over which no pose gets lower than the lowest so far by more: there the plane is
+//! taken at the place at that height, and what lies below is farther from it. For all that are left the stretch is halved, until the
+//! tool moves by less than the slack in it. A corner of radius r that goes straight needs poses `s` apart where
+//! `r - sqrt(r^2 - s^2 / 4)`, the ridge that frozen poses leave, is the slack: some `sqrt(8 r slack)`.
 //!
+//! A first look at the middles of all moves finds most of the depths and heights, so that little has to be halved in the second.
 //! Chunks of moves are looked at by themselves and merged in their order, a batch at a time, so that threads do not matter.
 
 use rayon::prelude::*;
 
 use super::kinematics::Pose;
 use super::moves::{Bend, Move, Shop};
-use super::points::Cloud;
-use super::tool::Bodies;
-use super::vector::{V, ahead, dot, norm, sub};
+use super::points::{Cell, Cloud};
+use super::tool::{Bodies, Near};
+use super::vector::{V, ahead, cross, dot, norm, sub};
 
 /// Moves of a chunk, and chunks between two merges: what one batch has found saves work in the next.
 const CHUNK: usize = 256;
@@ -96,13 +98,20 @@ pub(super) fn search(world: &World<'_>) -> Found {
     };
     let chunks: Vec<&[Move]> = world.moves.chunks(CHUNK).collect();
     let budget = (world.wanted.most_poses / chunks.len().max(1)).max(1);
-    for batch in chunks.chunks(BATCH) {
+    let looks =
+        chunks.chunks(BATCH).map(|batch| (true, batch)).chain(chunks.chunks(BATCH).map(|b| (false, b)));
+    for (first, batch) in looks {
         let before = &found;
+        // Nothing over a cell is higher than this any more.
+        let highest = |c: &Cell| before.heights[c.range[0]..c.range[1]].iter().copied().fold(0.0, f64::max);
+        let margins: Vec<f64> =
+            world.cloud.cells.iter().map(|c| if c.machined { highest(c) } else { 0.0 }).collect();
         let all: Vec<Found> = batch
             .par_iter()
             .map(|moves| {
-                let start = Found { poses: 0, ..before.clone() };
-                let mut look = Look { world, budget, found: start, ends: Vec::new(), list: Vec::new() };
+                let found = Found { poses: 0, ..before.clone() };
+                let (ends, list, margins) = (Vec::new(), Vec::new(), &margins);
+                let mut look = Look { world, budget, first, margins, found, ends, list };
                 look.chunk(moves);
                 look.found
             })
@@ -163,6 +172,10 @@ struct Stretch<'a> {
 struct Look<'a> {
     world: &'a World<'a>,
     budget: usize,
+    /// Only middles of moves.
+    first: bool,
+    /// By cell, from how high over its points a pose counts.
+    margins: &'a [f64],
     found: Found,
     ends: Vec<Ends>,
     /// Cells, then points, that are still asked about: a stack of lists.
@@ -201,7 +214,7 @@ impl Look<'_> {
             let cell = &self.world.cloud.cells[at as usize];
             let (rho, z, _, _) = local(&pose, cell.centre);
             let near = self.world.bodies.cutter(rho, z).min(self.world.bodies.holder(rho, z));
-            let margin = if cell.machined && !all_rapid { self.world.wanted.stock_mm } else { 0.0 };
+            let margin = if all_rapid { 0.0 } else { self.margins[at as usize] };
             let lever = rho.hypot(z) + cell.radius;
             if near <= cell.radius + range.at(lever) + margin {
                 if single {
@@ -230,19 +243,21 @@ impl Look<'_> {
     fn stretch(&mut self, s: &Stretch<'_>, points: [usize; 2]) {
         let share = 0.5 * (s.share[0] + s.share[1]);
         let pose = s.this.pose(self.world.shop, share);
-        let mut range = Range::default();
-        s.ends.iter().for_each(|p| range.take(&pose, p));
-        self.found.closest_mm = self.found.closest_mm.min(range.tip);
         let width = s.share[1] - s.share[0];
-        let range = range.with(s.bend, width * width / 32.0);
+        let around = Around::of(pose, &s.ends, s.bend, width * width / 32.0);
+        self.found.closest_mm = self.found.closest_mm.min(around.range.tip);
         let more = self.found.poses < self.budget;
         self.found.poses += 1;
         let begin = self.list.len();
         for k in points[0]..points[1] {
             let point = self.list[k];
-            if self.ask(s.this, &pose, (range, more), point as usize) {
+            if self.ask(s.this, &around, more, point as usize) {
                 self.list.push(point);
             }
+        }
+        if self.first {
+            self.list.truncate(begin);
+            return;
         }
         let kept = [begin, self.list.len()];
         if kept[1] > kept[0] {
@@ -256,23 +271,30 @@ impl Look<'_> {
     }
 
     /// Asks about a point at a frozen pose; true where poses nearby have to be asked too.
-    fn ask(&mut self, this: &Move, pose: &Pose, (range, more): (Range, bool), index: usize) -> bool {
+    fn ask(&mut self, this: &Move, around: &Around, more: bool, index: usize) -> bool {
         let (bodies, wanted) = (self.world.bodies, &self.world.wanted);
-        let p = &self.world.cloud.points[index];
+        let (p, pose) = (&self.world.cloud.points[index], &around.pose);
         let (rho, z, across, away) = local(pose, p.at);
-        let half = range.at(rho.hypot(z));
-        let (cutter, holder) = (bodies.cutter(rho, z), bodies.holder(rho, z));
+        let half = around.range.at(rho.hypot(z));
+        let (near, holder) = (bodies.near(rho, z), bodies.holder(rho, z));
         let found = &mut self.found;
         let mut again = false;
         let own = if this.rapid { &mut found.rapid } else { &mut found.gouge };
-        for (worst, distance) in [(own, cutter), (&mut found.holder, holder)] {
+        for (worst, distance, with_plane) in [(own, near.distance, true), (&mut found.holder, holder, false)]
+        {
             if -distance > worst.mm {
                 (worst.mm, worst.point, worst.line) = (-distance, index, this.line);
             }
-            if half - distance > worst.mm.max(0.0) + wanted.slack_mm {
+            let enough = worst.mm.max(0.0) + wanted.slack_mm + distance;
+            if half <= enough || self.first {
+                continue;
+            }
+            let nearer =
+                if with_plane { around.nearer(sub(p.at, pose.tip), across, rho, &near) } else { half };
+            if nearer > enough {
                 again |= more;
                 if !more {
-                    worst.open_mm = worst.open_mm.max(half - distance);
+                    worst.open_mm = worst.open_mm.max(nearer - distance);
                 }
             }
         }
@@ -281,24 +303,71 @@ impl Look<'_> {
         }
         let lowest = &mut found.heights[index];
         // The distance is a lower bound of the height.
-        if cutter - half >= *lowest {
+        if near.distance - half >= *lowest {
             return again;
         }
         let along = dot(p.normal, pose.axis);
         let way = [along, (1.0 - along * along).max(0.0)];
         let slope = dot(across, p.normal);
         let entry = |grown: f64, limit: f64| bodies.entry([z, away], way, slope, (grown, limit));
-        if let Some(height) = entry(0.0, *lowest) {
+        if near.distance < *lowest
+            && let Some(height) = entry(0.0, *lowest)
+        {
             *lowest = height;
         }
-        if let Some(height) = entry(half, *lowest - wanted.slack_mm) {
-            // A tool moved by the slack is as good as this one.
-            if half > wanted.slack_mm && more {
-                return true;
+        let limit = *lowest - wanted.slack_mm;
+        if self.first || limit <= 0.0 {
+            return again;
+        }
+        // The plane at the height that would have to be undercut; what lies lower must not be nearer to it.
+        let at = ahead(p.at, limit, p.normal);
+        let (rho, z, across, _) = local(pose, at);
+        let high = bodies.near(rho, z);
+        let towards = if rho > 0.0 { dot(across, p.normal) / rho } else { 0.0 };
+        if high.by_rho * towards + high.by_z * along <= 0.0 {
+            let nearer = around.nearer(sub(at, pose.tip), across, rho, &high) + around.range.per_mm * limit;
+            if nearer <= high.distance {
+                return again;
             }
+        }
+        if half > wanted.slack_mm && more {
+            return true;
+        }
+        // A tool moved by the slack is as good as this one.
+        if let Some(height) = entry(half, limit) {
             found.bounds[index] = found.bounds[index].min(height);
         }
         again
+    }
+}
+
+/// A frozen pose with those around that it stands for.
+struct Around {
+    pose: Pose,
+    range: Range,
+    /// Of both ends: from their tip to this one, and this axis crossed with theirs.
+    ends: [(V, V); 2],
+    bulge: Range,
+}
+
+impl Around {
+    fn of(pose: Pose, ends: &[Pose; 2], bend: Bend, share: f64) -> Self {
+        let mut range = Range::default();
+        ends.iter().for_each(|p| range.take(&pose, p));
+        let bulge = Range::default().with(bend, share);
+        let ends = [ends[0], ends[1]].map(|e| (sub(e.tip, pose.tip), cross(pose.axis, e.axis)));
+        Self { pose, range: range.with(bend, share), ends, bulge }
+    }
+
+    /// How much nearer the cutter can be at another pose to a point `d` from the tip, `across` the axis by `rho`.
+    fn nearer(&self, d: V, across: V, rho: f64, near: &Near) -> f64 {
+        let lever = norm(d);
+        let sideways = if rho > 1e-12 { near.by_rho / rho } else { 0.0 };
+        let g = ahead(across.map(|c| sideways * c), near.by_z, self.pose.axis);
+        let moment = cross(d, g);
+        let linear = self.ends.iter().map(|(e, u)| dot(g, *e) + dot(*u, moment)).fold(0.0, f64::max);
+        let (e, b) = (self.range.tip, self.range.per_mm);
+        linear + self.bulge.at(lever) + b * e + 0.5 * b * b * (lever + e)
     }
 }
 
