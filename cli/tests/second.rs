@@ -156,6 +156,102 @@ fn a_planted_gouge_is_found_where_it_is() {
     assert!((got.holder_mm - 0.1).abs() < 0.0011, "{got:?}");
 }
 
+/// Numbers between -1 and 1 that look like chance, from a counter.
+fn noise(counter: &mut f64) -> f64 {
+    *counter += 1.0;
+    let x = (*counter * 12.9898).sin() * 43_758.547;
+    2.0 * (x - x.floor()) - 1.0
+}
+
+/// Turning moves of all joints, against frozen poses every 20000th of a move and the formulas of a ball and of a flat end.
+#[test]
+fn nothing_is_deeper_or_lower_between_the_poses() {
+    let text = machine!("trunnion-ac");
+    let mut counter = 0.0;
+    for round in 0..12 {
+        let flat = round % 2 == 1;
+        let radius: f64 = 3.0;
+        let shape = if flat { Shape::Flat } else { Shape::Ball };
+        let tool = Tool { shape, ..ball() };
+        let mut at = || {
+            let linear = [0, 1, 2].map(|_| 12.0 * noise(&mut counter));
+            (linear, [60.0 * noise(&mut counter), 20.0 + 40.0 * noise(&mut counter)])
+        };
+        let stations = [at(), at(), at()];
+        let mut program = HEAD.to_string();
+        for (k, ([x, y, z], [c, a])) in stations.iter().enumerate() {
+            let head = if k == 0 { "G0" } else { "G1 F500" };
+            program += &format!("{head} X{x:.9} Y{y:.9} Z{z:.9} A{a:.9} C{c:.9}\n");
+        }
+        program += "M30\n";
+        let pose = |t: f64| {
+            let (k, share) = if t < 1.0 { (0, t) } else { (1, t - 1.0) };
+            let (p, q) = (stations[k], stations[k + 1]);
+            let linear = [0, 1, 2].map(|i| p.0[i] + share * (q.0[i] - p.0[i]));
+            let rotary = [0, 1].map(|i| p.1[i] + share * (q.1[i] - p.1[i]));
+            forward(text, linear, rotary, 40.0).unwrap()
+        };
+        // Signed distance of a point, the tool 40 mm long.
+        let distance = |[tip, axis]: &[[f64; 3]; 2], p: [f64; 3]| {
+            let d = [0, 1, 2].map(|i| p[i] - tip[i]);
+            let z: f64 = (0..3).map(|i| d[i] * axis[i]).sum();
+            let rho = (0..3).map(|i| (d[i] - z * axis[i]).powi(2)).sum::<f64>().sqrt();
+            let low = match (flat, z) {
+                (true, _) if z < 0.0 && rho > radius => z.hypot(rho - radius),
+                (true, _) => (-z).max(rho - radius),
+                (false, z) if z < radius => rho.hypot(z - radius) - radius,
+                (false, _) => rho - radius,
+            };
+            low.max(z - 40.0)
+        };
+        let poses: Vec<[[f64; 3]; 2]> = (0..40_000).map(|k| pose(f64::from(k) / 20_000.0)).collect();
+        let mut points = Vec::new();
+        let (mut deepest, mut highest) = (f64::NEG_INFINITY, 0.0f64);
+        for k in 0..30 {
+            // Around the tip's way.
+            let [tip, axis] = pose(1.99 * f64::from(k) / 30.0);
+            let shift = [0, 1, 2].map(|_| 3.2 * noise(&mut counter));
+            let point = [0, 1, 2].map(|i| tip[i] + shift[i] - 1.5 * axis[i]);
+            let n = [0, 1, 2].map(|i| axis[i] + 0.4 * noise(&mut counter));
+            let size = n.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let normal = n.map(|c| c / size);
+            let mut lowest = 1.5f64;
+            let mut own = f64::NEG_INFINITY;
+            for pose in &poses {
+                own = own.max(-distance(pose, point));
+                // Steps of the distance never go past the entry.
+                let mut s = 0.0;
+                while s < lowest {
+                    let step = distance(pose, [0, 1, 2].map(|i| point[i] + s * normal[i]));
+                    if step < 1e-5 {
+                        lowest = s;
+                    }
+                    s += step;
+                }
+            }
+            // Deep ones would hide all the others.
+            if own < 0.2 {
+                deepest = deepest.max(own);
+                let machined = lowest < 1.4;
+                highest = if machined { highest.max(lowest) } else { highest };
+                points.push(PartPoint { face: 1, machined, at: point, normal });
+            }
+        }
+        let got = look(&program, "linuxcnc", text, Some(AT_ZERO), &tool, &points, &Options::new(1.5, 1e-3))
+            .unwrap();
+        // Those frozen poses are some 0.002 mm apart, and a sharp edge may pass between two.
+        let blur = 2e-3;
+        assert!(points.len() > 4 && got.poses > 10, "{round}: {}", points.len());
+        assert!(
+            (got.gouge_mm.max(0.0) - deepest.max(0.0)).abs() <= got.slack_mm + blur,
+            "{round}: {deepest} {got:?}"
+        );
+        // Where the tool only grazes a normal, a little of its way is much of the height: the slack says so.
+        assert!((got.left_mm - highest).abs() <= got.slack_mm + blur, "{round}: {highest} {got:?}");
+        assert!(got.slack_mm < 0.2, "{round}: {got:?}");
+    }
+}
+
 #[test]
 fn few_poses_say_that_they_are_few() {
     let all = opinion(PASSES, &Options::new(0.5, 0.0001)).unwrap();

@@ -140,18 +140,19 @@ pub fn look(
     if let Some((most, _)) = left {
         slack = slack.max(most - bound);
     }
+    let near = |d: &search::Deepest| if d.mm.is_finite() { d.mm } else { 0.0 };
     let seen = |d: &search::Deepest| d.mm.is_finite().then_some(d.line);
     let deepest = found.gouge.mm.is_finite().then(|| &cloud.points[found.gouge.point]);
     let aside = cloud.apart_mm * 0.5f64.sqrt();
     let corner = bodies.corner_mm;
     Ok(Opinion {
-        gouge_mm: found.gouge.mm,
+        gouge_mm: deepest.map_or(0.0, |_| found.gouge.mm),
         on_face: deepest.map(|p| p.face),
         at_mm: deepest.map(|p| p.at),
         line: seen(&found.gouge),
-        rapid_mm: found.rapid.mm,
+        rapid_mm: near(&found.rapid),
         rapid_line: seen(&found.rapid),
-        holder_mm: found.holder.mm,
+        holder_mm: near(&found.holder),
         holder_line: seen(&found.holder),
         left_mm: left.map_or(0.0, |l| l.0),
         left_face: left.map(|l| l.1.face),

@@ -3,7 +3,7 @@
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opinion {
-    /// Deepest point of the part in the cutter, in feed moves; negative where none is in it.
+    /// Deepest point of the part in the cutter, in feed moves; negative where none is in it, zero where none is near.
     pub gouge_mm: f64,
     /// The face it is on; None where no feed move came near.
     pub on_face: Option<u32>,
@@ -11,13 +11,13 @@ pub struct Opinion {
     pub at_mm: Option<[f64; 3]>,
     /// The program's line, from 1.
     pub line: Option<usize>,
-    /// The same for the cutter in rapids.
+    /// The same for the cutter in rapids, which are taken to go straight as feed moves do.
     pub rapid_mm: f64,
-    /// Its line.
+    /// Its line; None where no rapid came near.
     pub rapid_line: Option<usize>,
     /// The same for shank and holder, in all moves.
     pub holder_mm: f64,
-    /// Its line.
+    /// Its line; None where neither came near.
     pub holder_line: Option<usize>,
     /// Most that stands over a point to machine, along its normal, [`Options::stock_mm`] at most.
     pub left_mm: f64,
