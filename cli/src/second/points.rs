@@ -1,7 +1,7 @@
 //! Points of the whole part, in cells.
 
 use super::refusal::NoOpinion;
-use super::vector::{V, ahead, norm, sub};
+use super::vector::{V, ahead, norm, sub, usual};
 
 /// A point of the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,9 +47,9 @@ impl Cloud {
             return wrong("there are too many points of the part");
         }
         for p in points {
-            let whole = p.at.iter().all(|x| x.is_finite()) && (norm(p.normal) - 1.0).abs() < 1e-6;
+            let whole = p.at.iter().all(|x| usual(*x)) && (norm(p.normal) - 1.0).abs() < 1e-6;
             if !whole {
-                return wrong("a point of the part is not finite or its normal is no unit vector");
+                return wrong("a point of the part is no place or its normal is no unit vector");
             }
         }
         let mut points = points.to_vec();
@@ -83,14 +83,10 @@ impl Cloud {
 }
 
 fn corners(points: &[PartPoint]) -> [V; 2] {
-    let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for p in points {
-        for k in 0..3 {
-            out[0][k] = out[0][k].min(p.at[k]);
-            out[1][k] = out[1][k].max(p.at[k]);
-        }
-    }
-    out
+    let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    points.iter().fold(none, |[low, high], p| {
+        [[0, 1, 2].map(|k| low[k].min(p.at[k])), [0, 1, 2].map(|k| high[k].max(p.at[k]))]
+    })
 }
 
 /// Within its cell every point has its nearest neighbour, or one a little farther: this errs to the large side.

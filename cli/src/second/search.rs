@@ -30,6 +30,9 @@ use super::vector::{V, ahead, cross, dot, norm, sub};
 const CHUNK: usize = 256;
 const BATCH: usize = 16;
 
+/// A stretch of this share of a move is not halved any more: a move of a metre is a nanometre there.
+const NARROWEST: f64 = 1e-9;
+
 /// What is looked for, and how finely.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
@@ -246,7 +249,7 @@ impl Look<'_> {
         let width = s.share[1] - s.share[0];
         let around = Around::of(pose, &s.ends, s.bend, width * width / 32.0);
         self.found.closest_mm = self.found.closest_mm.min(around.range.tip);
-        let more = self.found.poses < self.budget;
+        let more = self.found.poses < self.budget && width > NARROWEST;
         self.found.poses += 1;
         let begin = self.list.len();
         for k in points[0]..points[1] {
