@@ -19,7 +19,7 @@ pub struct Opinion {
     pub holder_mm: f64,
     /// Its line; None where neither came near.
     pub holder_line: Option<usize>,
-    /// Most that stands over a point to machine, along its normal, [`Options::stock_mm`] at most.
+    /// Most that stands over a point to machine, along its normal, the stock of the options at most.
     pub left_mm: f64,
     /// The face of that point; None where there is none to machine.
     pub left_face: Option<u32>,
