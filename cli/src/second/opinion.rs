@@ -31,9 +31,9 @@ pub struct Opinion {
     pub poses: usize,
     /// Points of the part.
     pub points: usize,
-    /// How far the tip is from one pose to the next where they are closest.
+    /// How far the tip is from one pose to the next where they are closest and it moves; zero where it never does.
     pub poses_apart_mm: f64,
-    /// The greatest distance of a point from its neighbour.
+    /// How far points are from their neighbours, but for one in a hundred.
     pub points_apart_mm: f64,
     /// By how much the figures may be off at the points; how it is found stands in `search`.
     pub slack_mm: f64,

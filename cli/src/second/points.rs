@@ -1,7 +1,7 @@
 //! Points of the whole part, in cells.
 
 use super::refusal::NoOpinion;
-use super::vector::{V, ahead, norm, sub, usual};
+use super::vector::{V, norm, sub, usual};
 
 /// A point of the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub(super) struct Cell {
 pub(super) struct Cloud {
     pub points: Vec<PartPoint>,
     pub cells: Vec<Cell>,
-    /// The greatest distance of a point from its nearest neighbour, mm.
+    /// How far points are apart, mm.
     pub apart_mm: f64,
 }
 
@@ -89,19 +89,29 @@ fn corners(points: &[PartPoint]) -> [V; 2] {
     })
 }
 
-/// Within its cell every point has its nearest neighbour, or one a little farther: this errs to the large side.
+/// How far points are apart, up to one in a hundred: the distance of a point from its nearest neighbour in its cell, or the side
+/// of the square that a point of a cell has to itself, whichever is larger.
 fn apart(points: &[PartPoint], cells: &[Cell]) -> f64 {
-    let mut all: Vec<f64> = Vec::with_capacity(points.len());
+    let mut nearest: Vec<f64> = Vec::with_capacity(points.len());
+    let mut sides: Vec<f64> = Vec::with_capacity(cells.len());
     for cell in cells {
         let group = &points[cell.range[0]..cell.range[1]];
         for (i, p) in group.iter().enumerate() {
             let others = group.iter().enumerate().filter(|(j, _)| *j != i);
-            let nearest = others.map(|(_, q)| norm(ahead(p.at, -1.0, q.at))).filter(|d| *d > 0.0);
-            let least = nearest.fold(f64::INFINITY, f64::min);
+            let far = others.map(|(_, q)| norm(sub(p.at, q.at))).filter(|d| *d > 0.0);
+            let least = far.fold(f64::INFINITY, f64::min);
             if least.is_finite() {
-                all.push(least);
+                nearest.push(least);
             }
         }
+        let [low, high] = corners(group);
+        let mut size = sub(high, low);
+        size.sort_by(f64::total_cmp);
+        sides.push((size[1] * size[2] / group.len().max(1) as f64).sqrt());
     }
-    all.into_iter().fold(0.0, f64::max)
+    let most = |mut all: Vec<f64>| {
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() * 99 / 100).copied().unwrap_or(0.0)
+    };
+    most(nearest).max(most(sides))
 }

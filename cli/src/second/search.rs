@@ -248,7 +248,10 @@ impl Look<'_> {
         let pose = s.this.pose(self.world.shop, share);
         let width = s.share[1] - s.share[0];
         let around = Around::of(pose, &s.ends, s.bend, width * width / 32.0);
-        self.found.closest_mm = self.found.closest_mm.min(around.range.tip);
+        if around.range.tip > 0.0 {
+            // From the middle of a stretch to that of the next.
+            self.found.closest_mm = self.found.closest_mm.min(2.0 * around.range.tip);
+        }
         let more = self.found.poses < self.budget && width > NARROWEST;
         self.found.poses += 1;
         let begin = self.list.len();
