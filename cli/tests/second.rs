@@ -163,11 +163,19 @@ fn noise(counter: &mut f64) -> f64 {
     2.0 * (x - x.floor()) - 1.0
 }
 
+<<<<<<< HEAD
 /// Turning moves of all joints, against frozen poses every 20000th of a move and the formulas of a ball and of a flat end.
 #[test]
 fn nothing_is_deeper_or_lower_between_the_poses() {
     let text = machine!("trunnion-ac");
     let mut counter = 0.0;
+=======
+/// Turning moves of all joints, against frozen poses every 4000th of a move and the formulas of a ball and of a flat end.
+#[test]
+fn nothing_is_deeper_or_lower_between_the_poses() {
+    let text = machine!("trunnion-ac");
+    let (mut counter, mut seen) = (0.0, 0);
+>>>>>>> second
     for round in 0..12 {
         let flat = round % 2 == 1;
         let radius: f64 = 3.0;
@@ -204,9 +212,13 @@ fn nothing_is_deeper_or_lower_between_the_poses() {
             };
             low.max(z - 40.0)
         };
+<<<<<<< HEAD
         let poses: Vec<[[f64; 3]; 2]> = (0..40_000).map(|k| pose(f64::from(k) / 20_000.0)).collect();
         let mut points = Vec::new();
         let (mut deepest, mut highest) = (f64::NEG_INFINITY, 0.0f64);
+=======
+        let poses: Vec<[[f64; 3]; 2]> = (0..8000).map(|k| pose(f64::from(k) / 4000.0)).collect();
+>>>>>>> second
         for k in 0..30 {
             // Around the tip's way.
             let [tip, axis] = pose(1.99 * f64::from(k) / 30.0);
@@ -225,10 +237,15 @@ fn nothing_is_deeper_or_lower_between_the_poses() {
                     let step = distance(pose, [0, 1, 2].map(|i| point[i] + s * normal[i]));
                     if step < 1e-5 {
                         lowest = s;
+<<<<<<< HEAD
+=======
+                        break;
+>>>>>>> second
                     }
                     s += step;
                 }
             }
+<<<<<<< HEAD
             // Deep ones would hide all the others.
             if own < 0.2 {
                 deepest = deepest.max(own);
@@ -250,6 +267,22 @@ fn nothing_is_deeper_or_lower_between_the_poses() {
         assert!((got.left_mm - highest).abs() <= got.slack_mm + blur, "{round}: {highest} {got:?}");
         assert!(got.slack_mm < 0.2, "{round}: {got:?}");
     }
+=======
+            let points = [PartPoint { face: 1, machined: true, at: point, normal }];
+            let options = Options::new(1.5, 1e-3);
+            let got = look(&program, "linuxcnc", text, Some(AT_ZERO), &tool, &points, &options).unwrap();
+            // Those frozen poses are some 0.01 mm apart, and a sharp edge may pass between two.
+            let blur = 5e-3;
+            let deep = (got.gouge_mm.max(0.0) - own.max(0.0)).abs();
+            assert!(deep <= got.slack_mm + blur, "{round} {k}: {own} {got:?}");
+            // Where the tool only grazes a normal, a little of its way is much of the height: the slack says so.
+            let high = (got.left_mm - lowest).abs();
+            assert!(high <= got.slack_mm + blur, "{round} {k}: {lowest} {got:?}");
+            seen += usize::from(own > 0.0 && got.slack_mm < 2e-3) + usize::from(lowest > 0.0 && lowest < 1.4);
+        }
+    }
+    assert!(seen > 100, "{seen}");
+>>>>>>> second
 }
 
 #[test]

@@ -167,3 +167,67 @@ fn joints_lead_to_the_same_place() {
         }
     }
 }
+<<<<<<< HEAD
+=======
+
+/// Whatever a program looks like, it is read or refused.
+#[test]
+fn spoilt_programs_end_in_an_answer() {
+    let machine = Machine::built_in("trunnion-ac").unwrap();
+    let text = machine_text("trunnion-ac");
+    let (mut fine, mut refused, mut counter) = (0, 0, 0.0);
+    let junk = [
+        "",
+        "X",
+        "=",
+        "(",
+        ")",
+        "[",
+        "]=",
+        "é",
+        "999999999999",
+        "-",
+        ".",
+        "G",
+        "DC(",
+        "\"",
+        "\n",
+        "TRAORI ",
+        "M30",
+    ];
+    // Numbers from 0 to less than n that look like chance.
+    let mut place = |n: usize| {
+        counter += 1.0;
+        let x = (f64::sin(counter * 12.9898) * 43_758.547).abs();
+        (x.fract() * n as f64) as usize
+    };
+    for dialect in Dialect::ALL {
+        for feed in [FeedMode::Tcp, FeedMode::None] {
+            let path = path("trunnion-ac", true);
+            let program = post(&path, &machine, &setup(), &PostOptions::new(dialect, feed)).unwrap();
+            for _ in 0..300 {
+                let mut spoilt: Vec<char> = program.text.chars().collect();
+                let (from, word) = (place(spoilt.len()), junk[place(junk.len())]);
+                let to = (from + place(3)).min(spoilt.len());
+                spoilt.splice(from..to, word.chars());
+                let spoilt: String = spoilt.into_iter().collect();
+                match second::stations(&spoilt, dialect.name(), &text, None) {
+                    Ok(got) => {
+                        fine += 1;
+                        assert!(
+                            got.iter().all(|s| s.tip_mm.iter().chain(&s.axis).all(|x| x.is_finite())),
+                            "{spoilt}"
+                        );
+                    }
+                    Err(e) => {
+                        refused += 1;
+                        assert!(e.to_string().starts_with("there is no second opinion"), "{e}");
+                    }
+                }
+            }
+        }
+    }
+    // Digits may change, most else not.
+    assert!(fine > 100 && refused > 1000, "{fine} {refused}");
+}
+>>>>>>> second
