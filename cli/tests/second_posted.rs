@@ -167,8 +167,6 @@ fn joints_lead_to_the_same_place() {
         }
     }
 }
-<<<<<<< HEAD
-=======
 
 /// Whatever a program looks like, it is read or refused.
 #[test]
@@ -230,4 +228,3 @@ fn spoilt_programs_end_in_an_answer() {
     // Digits may change, most else not.
     assert!(fine > 100 && refused > 1000, "{fine} {refused}");
 }
->>>>>>> second

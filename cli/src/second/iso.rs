@@ -42,17 +42,10 @@ pub(super) fn line(s: &mut State<'_>, number: usize, text: &str) -> Result<Block
             Word::Value("M", v) => auxiliary(s, tenths(v), &mut asked, &mut said),
             Word::Value("N" | "F" | "S", _) => true,
             Word::Value("O", _) => s.dialect == Dialect::Fanuc,
-<<<<<<< HEAD
-            Word::Value("T", _) => s.take_tool(number, text_of(text, "T")).map(|()| true)?,
-            Word::Value("D", v) if sinumerik => {
-                // D0 stands beside the machine's own positions, D1 alone.
-                asked.switched = !asked.machine_frame && v != 0.0;
-=======
             Word::Value("T", v) => s.take_tool(number, &v.to_string()).map(|()| true)?,
             Word::Value("D", v) if sinumerik => {
                 // D0 stands beside the machine's own positions, D1 alone.
                 asked.switched |= !asked.machine_frame && v != 0.0;
->>>>>>> second
                 s.switch_length(v != 0.0);
                 v == 0.0 || v == 1.0
             }
@@ -135,14 +128,6 @@ fn tenths(value: f64) -> i64 {
     if (whole - value * 10.0).abs() < 1e-9 && whole.abs() < 1e6 { whole as i64 } else { -1 }
 }
 
-<<<<<<< HEAD
-/// The word of a line that begins so.
-fn text_of<'a>(text: &'a str, letter: &str) -> &'a str {
-    text.split_whitespace().find(|w| w.starts_with(letter)).unwrap_or(text)
-}
-
-=======
->>>>>>> second
 fn plane_holds(s: &State<'_>, line: usize, text: &str) -> Result<(), NoOpinion> {
     // With tool-centre-point control X Y Z would be in two frames at once.
     if s.tcp { refuse(line, text, Unread::Misplaced) } else { Ok(()) }

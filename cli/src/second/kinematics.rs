@@ -11,11 +11,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::refusal::NoOpinion;
-<<<<<<< HEAD
-use super::vector::{V, ahead, angle, cross, dot, norm, sub, turned, unit};
-=======
 use super::vector::{V, ahead, angle, cross, dot, norm, sub, turned, unit, usual};
->>>>>>> second
 
 /// Keys of a joint that say nothing of where it goes.
 const HARMLESS: [&str; 9] = [
@@ -122,13 +118,8 @@ impl Joint {
             return wrong(format!("joint {name}: its direction is none"));
         };
         let point = j.point_mm.unwrap_or_default();
-<<<<<<< HEAD
-        if !point.iter().all(|x| x.is_finite()) {
-            return wrong(format!("joint {name}: its point is not finite"));
-=======
         if !point.iter().all(|x| usual(*x)) {
             return wrong(format!("joint {name}: its point is no place"));
->>>>>>> second
         }
         let limits = [
             j.min_deg.map_or(f64::NEG_INFINITY, f64::to_radians),

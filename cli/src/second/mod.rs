@@ -160,11 +160,7 @@ pub fn look(
         uncut,
         poses: found.poses,
         points: points.len(),
-<<<<<<< HEAD
-        poses_apart_mm: found.closest_mm,
-=======
         poses_apart_mm: if found.closest_mm.is_finite() { found.closest_mm } else { 0.0 },
->>>>>>> second
         points_apart_mm: cloud.apart_mm,
         slack_mm: slack,
         // A dig of a corner of radius r is shallower by r - sqrt(r^2 - d^2) at the distance d from its deepest place.

@@ -19,11 +19,7 @@ pub struct Opinion {
     pub holder_mm: f64,
     /// Its line; None where neither came near.
     pub holder_line: Option<usize>,
-<<<<<<< HEAD
-    /// Most that stands over a point to machine, along its normal, [`Options::stock_mm`] at most.
-=======
     /// Most that stands over a point to machine, along its normal, the stock of the options at most.
->>>>>>> second
     pub left_mm: f64,
     /// The face of that point; None where there is none to machine.
     pub left_face: Option<u32>,
@@ -35,15 +31,9 @@ pub struct Opinion {
     pub poses: usize,
     /// Points of the part.
     pub points: usize,
-<<<<<<< HEAD
-    /// How far the tip is from one pose to the next where they are closest.
-    pub poses_apart_mm: f64,
-    /// The greatest distance of a point from its neighbour.
-=======
     /// How far the tip is from one pose to the next where they are closest and it moves; zero where it never does.
     pub poses_apart_mm: f64,
     /// How far points are from their neighbours, but for one in a hundred.
->>>>>>> second
     pub points_apart_mm: f64,
     /// By how much the figures may be off at the points; how it is found stands in `search`.
     pub slack_mm: f64,

@@ -1,11 +1,7 @@
 //! Points of the whole part, in cells.
 
 use super::refusal::NoOpinion;
-<<<<<<< HEAD
-use super::vector::{V, ahead, norm, sub};
-=======
 use super::vector::{V, norm, sub, usual};
->>>>>>> second
 
 /// A point of the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +30,7 @@ pub(super) struct Cell {
 pub(super) struct Cloud {
     pub points: Vec<PartPoint>,
     pub cells: Vec<Cell>,
-<<<<<<< HEAD
-    /// The greatest distance of a point from its nearest neighbour, mm.
-=======
     /// How far points are apart, mm.
->>>>>>> second
     pub apart_mm: f64,
 }
 
@@ -55,15 +47,9 @@ impl Cloud {
             return wrong("there are too many points of the part");
         }
         for p in points {
-<<<<<<< HEAD
-            let whole = p.at.iter().all(|x| x.is_finite()) && (norm(p.normal) - 1.0).abs() < 1e-6;
-            if !whole {
-                return wrong("a point of the part is not finite or its normal is no unit vector");
-=======
             let whole = p.at.iter().all(|x| usual(*x)) && (norm(p.normal) - 1.0).abs() < 1e-6;
             if !whole {
                 return wrong("a point of the part is no place or its normal is no unit vector");
->>>>>>> second
             }
         }
         let mut points = points.to_vec();
@@ -97,21 +83,6 @@ impl Cloud {
 }
 
 fn corners(points: &[PartPoint]) -> [V; 2] {
-<<<<<<< HEAD
-    let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for p in points {
-        for k in 0..3 {
-            out[0][k] = out[0][k].min(p.at[k]);
-            out[1][k] = out[1][k].max(p.at[k]);
-        }
-    }
-    out
-}
-
-/// Within its cell every point has its nearest neighbour, or one a little farther: this errs to the large side.
-fn apart(points: &[PartPoint], cells: &[Cell]) -> f64 {
-    let mut all: Vec<f64> = Vec::with_capacity(points.len());
-=======
     let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     points.iter().fold(none, |[low, high], p| {
         [[0, 1, 2].map(|k| low[k].min(p.at[k])), [0, 1, 2].map(|k| high[k].max(p.at[k]))]
@@ -123,21 +94,10 @@ fn apart(points: &[PartPoint], cells: &[Cell]) -> f64 {
 fn apart(points: &[PartPoint], cells: &[Cell]) -> f64 {
     let mut nearest: Vec<f64> = Vec::with_capacity(points.len());
     let mut sides: Vec<f64> = Vec::with_capacity(cells.len());
->>>>>>> second
     for cell in cells {
         let group = &points[cell.range[0]..cell.range[1]];
         for (i, p) in group.iter().enumerate() {
             let others = group.iter().enumerate().filter(|(j, _)| *j != i);
-<<<<<<< HEAD
-            let nearest = others.map(|(_, q)| norm(ahead(p.at, -1.0, q.at))).filter(|d| *d > 0.0);
-            let least = nearest.fold(f64::INFINITY, f64::min);
-            if least.is_finite() {
-                all.push(least);
-            }
-        }
-    }
-    all.into_iter().fold(0.0, f64::max)
-=======
             let far = others.map(|(_, q)| norm(sub(p.at, q.at))).filter(|d| *d > 0.0);
             let least = far.fold(f64::INFINITY, f64::min);
             if least.is_finite() {
@@ -154,5 +114,4 @@ fn apart(points: &[PartPoint], cells: &[Cell]) -> f64 {
         all.get(all.len() * 99 / 100).copied().unwrap_or(0.0)
     };
     most(nearest).max(most(sides))
->>>>>>> second
 }

@@ -30,12 +30,9 @@ use super::vector::{V, ahead, cross, dot, norm, sub};
 const CHUNK: usize = 256;
 const BATCH: usize = 16;
 
-<<<<<<< HEAD
-=======
 /// A stretch of this share of a move is not halved any more: a move of a metre is a nanometre there.
 const NARROWEST: f64 = 1e-9;
 
->>>>>>> second
 /// What is looked for, and how finely.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
@@ -251,16 +248,11 @@ impl Look<'_> {
         let pose = s.this.pose(self.world.shop, share);
         let width = s.share[1] - s.share[0];
         let around = Around::of(pose, &s.ends, s.bend, width * width / 32.0);
-<<<<<<< HEAD
-        self.found.closest_mm = self.found.closest_mm.min(around.range.tip);
-        let more = self.found.poses < self.budget;
-=======
         if around.range.tip > 0.0 {
             // From the middle of a stretch to that of the next.
             self.found.closest_mm = self.found.closest_mm.min(2.0 * around.range.tip);
         }
         let more = self.found.poses < self.budget && width > NARROWEST;
->>>>>>> second
         self.found.poses += 1;
         let begin = self.list.len();
         for k in points[0]..points[1] {

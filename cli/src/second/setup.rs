@@ -4,11 +4,7 @@
 //! `setup gauge length L..`.
 
 use super::refusal::NoOpinion;
-<<<<<<< HEAD
-use super::vector::{M, V, add, back, sub};
-=======
 use super::vector::{M, V, add, back, sub, usual};
->>>>>>> second
 
 /// Lines in which the comments are looked for.
 const HEAD_LINES: usize = 60;
@@ -87,22 +83,13 @@ impl Stand {
     pub fn of(setup: &Setup) -> Result<Self, NoOpinion> {
         let wrong = |what: &str| Err(NoOpinion::Setup { what: what.into() });
         let [i, j, k, w] = setup.turn;
-<<<<<<< HEAD
-        if !setup.part_zero_mm.iter().all(|x| x.is_finite()) {
-            return wrong("part zero is not finite");
-=======
         if !setup.part_zero_mm.iter().all(|x| usual(*x)) {
             return wrong("part zero is no place");
->>>>>>> second
         }
         if !((i * i + j * j + k * k + w * w).sqrt() - 1.0).abs().le(&UNIT_TOLERANCE) {
             return wrong("the turn is no unit quaternion");
         }
-<<<<<<< HEAD
-        if !(setup.gauge_length_mm.is_finite() && setup.gauge_length_mm >= 0.0) {
-=======
         if !(usual(setup.gauge_length_mm) && setup.gauge_length_mm >= 0.0) {
->>>>>>> second
             return wrong("the gauge length is no length");
         }
         let turn = [

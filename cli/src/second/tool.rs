@@ -5,10 +5,7 @@
 //! of its pieces, and a point is inside where it is behind every line and within every arc that faces it.
 
 use super::refusal::NoOpinion;
-<<<<<<< HEAD
-=======
 use super::vector::usual;
->>>>>>> second
 
 /// What cuts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,11 +112,7 @@ pub(super) struct Bodies {
 impl Bodies {
     pub fn of(tool: &Tool) -> Result<Self, NoOpinion> {
         let size = |what: &'static str, got: f64, good: bool| {
-<<<<<<< HEAD
-            if good && got.is_finite() { Ok(()) } else { Err(NoOpinion::Tool { what, got }) }
-=======
             if good && usual(got) { Ok(()) } else { Err(NoOpinion::Tool { what, got }) }
->>>>>>> second
         };
         let (radius, length) = (0.5 * tool.diameter_mm, tool.length_mm);
         size("diameter_mm", tool.diameter_mm, radius > 0.0)?;

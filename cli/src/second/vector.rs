@@ -6,8 +6,6 @@ pub(super) type V = [f64; 3];
 /// A turn, by rows.
 pub(super) type M = [V; 3];
 
-<<<<<<< HEAD
-=======
 /// No length of a machine is larger, mm or deg: squares of what is smaller are far from overflow.
 const LARGEST: f64 = 1e9;
 
@@ -16,7 +14,6 @@ pub(super) fn usual(x: f64) -> bool {
     x.abs() <= LARGEST
 }
 
->>>>>>> second
 pub(super) fn dot(a: V, b: V) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,10 +1,7 @@
 //! Lines of programs as words.
 
 use super::refusal::{NoOpinion, Unread};
-<<<<<<< HEAD
-=======
 use super::vector::usual;
->>>>>>> second
 
 /// A word of an ISO dialect.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,17 +23,10 @@ pub(super) fn refuse<T>(line: usize, word: &str, why: Unread) -> Result<T, NoOpi
     Err(NoOpinion::Word { line, word: word.chars().take(40).collect(), why })
 }
 
-<<<<<<< HEAD
-/// A decimal number: no exponent, nothing that is not finite.
-pub(super) fn number(text: &str) -> Option<f64> {
-    let plain = text.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.'));
-    if plain { text.parse().ok().filter(|v: &f64| v.is_finite()) } else { None }
-=======
 /// A decimal number: no exponent, nothing beyond any machine.
 pub(super) fn number(text: &str) -> Option<f64> {
     let plain = text.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.'));
     if plain { text.parse().ok().filter(|v: &f64| usual(*v)) } else { None }
->>>>>>> second
 }
 
 /// The words of a line of Sinumerik (`round` false), Fanuc or LinuxCNC; comments are left out.

@@ -24,6 +24,8 @@ const CONE: f64 = 0.5;
 /// Planning keeps back no more than this share of the scallop: above it passes cannot make good for a coarse machine.
 const MOST: f64 = 0.3;
 
+/// Exact marks of programs over those of leading order: at most 1.2 on a groove of a torus, where feeds at joints vary.
+const EXACT_MARKS: f64 = 1.25;
 /// Planning keeps back no more than this share of the scallop for the marks of teeth: the feed is capped so that they take no more
 /// on a plane.
 const MARKS: f64 = 0.6;
@@ -46,11 +48,15 @@ fn words_mm(job: &Job) -> f64 {
     0.5 * 10f64.powi(-(decimals.min(16) as i32))
 }
 
-/// By how much the control of a job leaves corners out, mm: verdicts add it.
+/// By how much the control of a job leaves the programmed way at corners, mm: verdicts add it.
 fn blend_mm(job: &Job) -> f64 {
-    let blends = job.control().dialect == Dialect::LinuxCnc;
-    // It blends corners and joins short pieces, each as closely as programs ask for.
-    if blends { 2.0 * solve(job).tip_tol_mm } else { 0.0 }
+    let asked = solve(job).tip_tol_mm;
+    match job.control().dialect {
+        Dialect::Fanuc => 0.0,
+        Dialect::Sinumerik | Dialect::Heidenhain => asked,
+        // It blends corners and joins short pieces, each as closely as programs ask for.
+        Dialect::LinuxCnc => 2.0 * asked,
+    }
 }
 
 /// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
@@ -87,7 +93,7 @@ const MOST_HOLLOW: f64 = 0.5;
 
 fn kept_back(job: &Job, faces: &JobFaces, share: f64, by_mm: f64) -> Tolerance {
     let given = job.tolerance();
-    let marks_mm = mark_mm(job, faces).min(MARKS * given.scallop_mm);
+    let marks_mm = (EXACT_MARKS * mark_mm(job, faces)).min(MARKS * given.scallop_mm);
     let scallop_mm = share * (given.scallop_mm - marks_mm - by_mm.min(MOST * given.scallop_mm));
     Tolerance { scallop_mm, ..given }
 }

@@ -119,7 +119,7 @@ pub fn prove(
     }
     let marks = trial.marks(&look.measured);
     let crest_median_mm = trial.crests(&look.measured)?;
-    let refined = if coarse { unbounded() } else { trial.refine(&mut look, marks.most_mm())? };
+    let refined = if coarse { unbounded() } else { trial.refine(&mut look, &marks)? };
     progress(SHARES[2]);
     // Samples that were added have marks too.
     let marks = if refined.added > 0 { trial.marks(&look.measured) } else { marks };
@@ -135,14 +135,15 @@ pub fn prove(
     let machined =
         samples.iter().zip(&cuts).zip(&marks.each).filter(|((s, c), _)| !s.check_only && c.by.is_some());
     let with_marks = machined.map(|((_, c), m)| height((c, m))).fold(0.0, f64::max);
+    let height_max_mm = tally.scallop_max_mm.max(if marks.known { with_marks } else { 0.0 });
     let figures = Figures {
         added: refined.added,
         spacing_mm: density.spacing_mm,
-        hidden: refined.hidden,
+        hidden: Hidden { scallop_mm: (refined.hidden.scallop_mm - height_max_mm).max(0.0), ..refined.hidden },
         smallest_radius_mm: (bend > 0.0).then(|| 1.0 / bend),
         crest_median_mm,
         mark_max_mm: marks.known.then(|| marks.most_mm()),
-        height_max_mm: tally.scallop_max_mm.max(if marks.known { with_marks } else { 0.0 }),
+        height_max_mm,
         coarse,
         stock,
         tally,
@@ -182,7 +183,21 @@ struct Marks {
     known: bool,
 }
 
+/// Samples are bounded in lots by the height of their marks: up to these shares of them, and the rest.
+const LOTS: [f64; 2] = [0.9, 0.99];
+
 impl Marks {
+    /// The highest mark of each lot, ascending and all different.
+    fn lots(&self) -> Vec<f64> {
+        let mut sorted = self.each.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
+        let mut lots: Vec<f64> = LOTS.iter().filter_map(|share| at(*share)).collect();
+        lots.push(self.most_mm());
+        lots.dedup();
+        lots
+    }
+
     fn most_mm(&self) -> f64 {
         self.each.iter().fold(0.0, |a: f64, b| a.max(*b))
     }
@@ -325,25 +340,64 @@ impl<'a> Trial<'a> {
         Marks { each: teeth.marks(&measured.samples, &measured.cuts, stock_mm), known: true }
     }
 
-    /// Adds samples where limits may be exceeded between those there are.
-    fn refine(&self, look: &mut Look, mark_mm: f64) -> Result<Refined, ProveError> {
+    /// Adds samples where limits may be exceeded between those there are. What comes back of scallops is what nothing stands above
+    /// with its mark, not what hides above others.
+    ///
+    /// What is left for a scallop is the less the higher its mark. Samples are taken by the height of their marks, and each lot is
+    /// bounded against what its highest mark leaves: a few places with high marks do not spoil all others.
+    fn refine(&self, look: &mut Look, marks: &Marks) -> Result<Refined, ProveError> {
         let even = look.measured.samples.len();
         let holds = self.failings(&look.tally, look.tally.scallop_max_mm).is_empty();
-        let scallop_mm = self.limits.scallop_mm;
-        let wanted = Wanted {
-            uncut_mm: self.limits.uncut_mm,
-            // What is left for a scallop beside the marks, where these leave something.
-            enough_mm: if mark_mm < scallop_mm { scallop_mm - mark_mm } else { scallop_mm },
-            gouge_mm: self.limits.gouge_mm,
-        };
+        let blend_mm = self.goal.control.blend_mm;
+        let less = |limit: f64, by: f64| if by < limit { limit - by } else { limit };
         // Between samples of a path that fails already nothing is left to be found out.
         let max = self.goal.looks.max_samples;
         let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
-        let refined = refine(&self.surfaces, &self.job(&[]), &mut look.measured, wanted, most)?;
+        let lots = marks.lots();
+        let Measured { samples, patches, cuts } = std::mem::take(&mut look.measured);
+        let (mut all, mut more) = (Measured::default(), Measured::default());
+        let mut refined = Refined { added: 0, left_out: 0, ..unbounded() };
+        // Nothing in any lot stands above this with its mark, or lies below that.
+        let (mut highest, mut deepest, mut dug) = (0.0f64, 0.0f64, 0.0f64);
+        for (k, most_mark) in lots.iter().enumerate() {
+            let low = if k == 0 { f64::NEG_INFINITY } else { lots[k - 1] };
+            let of_lot = |m: &f64| *m > low && *m <= *most_mark;
+            let mut lot = Measured::default();
+            for k in (0..samples.len()).filter(|k| of_lot(&marks.each[*k])) {
+                lot.samples.push(samples[k]);
+                lot.patches.push(patches[k]);
+                lot.cuts.push(cuts[k]);
+            }
+            let evenly = lot.samples.len();
+            let wanted = Wanted {
+                uncut_mm: self.limits.uncut_mm,
+                enough_mm: less(self.limits.scallop_mm, most_mark + blend_mm),
+                gouge_mm: less(self.limits.gouge_mm, blend_mm),
+            };
+            let room = most.saturating_sub(refined.added);
+            let found = refine(&self.surfaces, &self.job(&[]), &mut lot, wanted, room)?;
+            let t = self.tally(&lot.samples, &lot.cuts, &look.density)?;
+            highest = highest.max(t.scallop_max_mm + found.hidden.scallop_mm + most_mark);
+            deepest = deepest.max(t.gouge_max_mm + found.hidden.gouge_mm);
+            dug = dug.max(t.gouge_max_mm);
+            refined.added += found.added;
+            refined.left_out += found.left_out;
+            // Those that were added come after all others.
+            more.samples.extend(lot.samples.drain(evenly..));
+            more.patches.extend(lot.patches.drain(evenly..));
+            more.cuts.extend(lot.cuts.drain(evenly..));
+            all.samples.append(&mut lot.samples);
+            all.patches.append(&mut lot.patches);
+            all.cuts.append(&mut lot.cuts);
+        }
+        all.samples.append(&mut more.samples);
+        all.patches.append(&mut more.patches);
+        all.cuts.append(&mut more.cuts);
+        look.measured = all;
+        refined.hidden = Hidden { scallop_mm: highest, gouge_mm: (deepest - dug).max(0.0) };
         if refined.added > 0 {
             look.tally = self.tally(&look.measured.samples, &look.measured.cuts, &look.density)?;
         }
-        look.tally.hidden = refined.hidden;
         Ok(refined)
     }
 

@@ -42,8 +42,11 @@ impl Teeth<'_> {
         let motion = by.motion as usize;
         let up = Line { origin: sample.point, direction: sample.normal };
         let height = |t: f64| {
-            let entry = self.cutter.entry(&self.pose(motion, t), &up);
-            entry.map_or(stock_mm, |e| e.at_mm.min(stock_mm))
+            let pose = self.pose(motion, t);
+            // A tool that misses the normal is above it, and the more so the farther it is: the search must know where to go.
+            self.cutter
+                .entry(&pose, &up)
+                .map_or_else(|| stock_mm + (pose.tip - sample.point).norm(), |e| e.at_mm)
         };
         let (begin, end) = (self.begin(motion), self.program.times_min[motion]);
         // Left of the bracket both ends of the stretch fall towards the least height, right of it both rise.
@@ -56,7 +59,7 @@ impl Teeth<'_> {
             worst = worst.min(first.max(second));
             if first > second { low = a } else { high = a }
         }
-        (worst - cut.standoff_mm).max(0.0)
+        (worst.min(stock_mm) - cut.standoff_mm).max(0.0)
     }
 
     fn begin(&self, motion: usize) -> f64 {

@@ -5,11 +5,6 @@
 pub const KNOWN: &[(&str, &[&str])] = &[
     ("tools", &["removal::digs", "removal::hidden"]),
     ("tools", &["removal::stock::carve", "removal::stock::rays"]),
-    ("postproc", &["cldata::cycle", "cldata::read"]),
-    ("postproc", &["draft", "post"]),
-    ("postproc", &["linearize", "solve"]),
-    ("postproc", &["nc::fanuc", "nc::heidenhain", "nc::linuxcnc", "nc::sinumerik", "nc::writer"]),
-    ("postproc", &["nc::interpret", "nc::readback", "nc::sections", "nc::timing"]),
     ("cli", &["budget", "cutter_keys", "job", "nc", "part", "setup", "stock_keys"]),
     (
         "cli",
