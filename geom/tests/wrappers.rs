@@ -53,10 +53,24 @@ impl Surface for Probe {
 const AT: Uv = Uv { u: 0.5, v: 1.5 };
 
 /// What is asked about where the surface is.
-fn trims(s: &dyn Surface) -> (Domain, [bool; 2], [Vec<f64>; 2], [Vec<Interval>; 2], Vec<Uv>) {
+#[derive(Debug, PartialEq)]
+struct Trims {
+    domain: Domain,
+    contains: [bool; 2],
+    breaks: [Vec<f64>; 2],
+    spans: [Vec<Interval>; 2],
+    turns: Vec<Uv>,
+}
+
+fn trims(s: &dyn Surface) -> Trims {
     let axes = [Axis::U, Axis::V];
-    let contains = [AT, uv(1.75, 2.5)].map(|at| s.contains(at));
-    (s.domain(), contains, axes.map(|a| s.breaks(a)), axes.map(|a| s.spans(a, 1.5)), s.turns())
+    Trims {
+        domain: s.domain(),
+        contains: [AT, uv(1.75, 2.5)].map(|at| s.contains(at)),
+        breaks: axes.map(|a| s.breaks(a)),
+        spans: axes.map(|a| s.spans(a, 1.5)),
+        turns: s.turns(),
+    }
 }
 
 /// What is asked about its points; sides apart.
@@ -116,7 +130,7 @@ fn a_placed_surface_moves_what_it_is_told() {
 
 #[test]
 fn a_patch_cuts_spans_and_turns_to_its_rectangle() {
-    assert_eq!(trims(&whole()).3, trims(&Probe).3);
+    assert_eq!(trims(&whole()).spans, trims(&Probe).spans);
     let domain = Domain { u: Interval::new(0.25, 0.75), v: Interval::new(0.5, 1.25) };
     let s = Patch { domain, ..whole() };
     assert_eq!(s.breaks(Axis::V), [0.5, 1.25]);

@@ -47,7 +47,7 @@ fn revolve(uv: Uv, r: [f64; 4], z: [f64; 4]) -> Jet3 {
 }
 
 macro_rules! revolved {
-    ($t:ty, $angle_v:expr) => {
+    ($t:ty, angle_v: $angle_v:expr, |$s:ident| $side:expr) => {
         impl Surface for $t {
             fn domain(&self) -> Domain {
                 self.domain
@@ -56,13 +56,14 @@ macro_rules! revolved {
                 self.jet3(uv).jet2
             }
             fn jet3(&self, uv: Uv) -> Jet3 {
-                let (r, z) = self.meridian(uv.v);
-                revolve(uv, r, z)
+                let ($s, (r, z)) = (self, self.meridian(uv.v));
+                revolve(uv, r, z).turned($side)
             }
             fn taylor(&self, uv: Uv, order: usize) -> Taylor {
                 let (s, c) = Series::variable(Axis::U, uv.u, order).sin_cos();
                 let [r, z] = self.meridian_series(Series::variable(Axis::V, uv.v, order));
-                Taylor { uv, side: Side::Along, coordinates: [r * c, r * s, z] }
+                let $s = self;
+                Taylor { uv, side: $side, coordinates: [r * c, r * s, z] }
             }
             fn breaks(&self, axis: Axis) -> Vec<f64> {
                 match axis {
@@ -139,7 +140,7 @@ impl Cylinder {
         [Series::constant(self.radius, v.order()), v]
     }
 }
-revolved!(Cylinder, false);
+revolved!(Cylinder, angle_v: false, |_s| Side::Along);
 
 /// Circular cone about z: u the angle, v the distance along the generator from the circle of `radius_mm` at z = 0.
 #[derive(Clone, Copy, Debug)]
@@ -184,7 +185,7 @@ impl Cone {
         [Series::constant(self.radius, v.order()) + v * self.sin, v * self.cos]
     }
 }
-revolved!(Cone, false);
+revolved!(Cone, angle_v: false, |_s| Side::Along);
 
 /// Sphere: u = longitude, v = latitude.
 #[derive(Clone, Copy, Debug)]
@@ -218,7 +219,7 @@ impl Sphere {
         [c * self.radius, s * self.radius]
     }
 }
-revolved!(Sphere, true);
+revolved!(Sphere, angle_v: true, |_s| Side::Along);
 
 /// The parts of a spindle torus, whose tube is wider than its circle: the two meet in apexes on the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -300,25 +301,4 @@ impl Torus {
     }
 }
 
-impl Surface for Torus {
-    fn domain(&self) -> Domain {
-        self.domain
-    }
-    fn jet2(&self, uv: Uv) -> Jet2 {
-        self.jet3(uv).jet2
-    }
-    fn jet3(&self, uv: Uv) -> Jet3 {
-        let (r, z) = self.meridian(uv.v);
-        let mut jet = revolve(uv, r, z);
-        jet.jet2.side = self.side;
-        jet
-    }
-    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        let (s, c) = Series::variable(Axis::U, uv.u, order).sin_cos();
-        let [r, z] = self.meridian_series(Series::variable(Axis::V, uv.v, order));
-        Taylor { uv, side: self.side, coordinates: [r * c, r * s, z] }
-    }
-    fn breaks(&self, axis: Axis) -> Vec<f64> {
-        angle_breaks(self.domain.get(axis))
-    }
-}
+revolved!(Torus, angle_v: true, |s| s.side);

@@ -5,7 +5,7 @@
 //! parameter. The natural normal points away from the axis (plane: +z).
 
 use osculate_geom::analytic::{BadSize, Cone, Cylinder, Placed, Placement, Plane, Sphere, Spindle, Torus};
-use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Point3, Surface, Taylor, Uv, uv};
+use osculate_geom::{Axis, Domain, Interval, Point3, Surface, Uv, forward_surface, uv};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// The kind and size of an analytic surface, in its own frame.
@@ -233,36 +233,22 @@ impl Analytic {
     }
 }
 
+impl Inner {
+    fn surface(&self) -> &dyn Surface {
+        match self {
+            Self::Plane(s) => s,
+            Self::Cylinder(s) => s,
+            Self::Cone(s) => s,
+            Self::Sphere(s) => s,
+            Self::Torus(s) => s,
+        }
+    }
+}
+
 impl Surface for Analytic {
+    forward_surface!(shape | s | s.inner.surface());
     fn domain(&self) -> Domain {
         self.domain
-    }
-    fn jet2(&self, uv: Uv) -> Jet2 {
-        match &self.inner {
-            Inner::Plane(s) => s.jet2(uv),
-            Inner::Cylinder(s) => s.jet2(uv),
-            Inner::Cone(s) => s.jet2(uv),
-            Inner::Sphere(s) => s.jet2(uv),
-            Inner::Torus(s) => s.jet2(uv),
-        }
-    }
-    fn jet3(&self, uv: Uv) -> Jet3 {
-        match &self.inner {
-            Inner::Plane(s) => s.jet3(uv),
-            Inner::Cylinder(s) => s.jet3(uv),
-            Inner::Cone(s) => s.jet3(uv),
-            Inner::Sphere(s) => s.jet3(uv),
-            Inner::Torus(s) => s.jet3(uv),
-        }
-    }
-    fn taylor(&self, uv: Uv, order: usize) -> Taylor {
-        match &self.inner {
-            Inner::Plane(s) => s.taylor(uv, order),
-            Inner::Cylinder(s) => s.taylor(uv, order),
-            Inner::Cone(s) => s.taylor(uv, order),
-            Inner::Sphere(s) => s.taylor(uv, order),
-            Inner::Torus(s) => s.taylor(uv, order),
-        }
     }
     fn breaks(&self, axis: Axis) -> Vec<f64> {
         let i = self.domain.get(axis);
@@ -278,7 +264,7 @@ impl Surface for Analytic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use osculate_geom::Vec3;
+    use osculate_geom::{Jet2, Vec3};
 
     #[test]
     fn points_give_back_their_parameters() {
