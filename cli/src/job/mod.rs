@@ -3,6 +3,7 @@
 pub mod builtin;
 mod check;
 pub mod control;
+mod cutting;
 pub mod flank;
 mod keys;
 pub mod part;
@@ -10,6 +11,7 @@ pub mod problem;
 mod raw;
 pub mod reference;
 pub mod schema;
+mod setup;
 pub mod stock;
 pub mod strategy;
 #[cfg(test)]
@@ -19,6 +21,7 @@ pub mod words;
 
 use crate::failure::{Failure, read_text};
 pub use control::Control;
+use cutting::{feed_mm_min, feed_per_tooth_mm, layer_mm};
 pub use flank::Flank;
 use osculate_geom::{Axis, Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
@@ -27,6 +30,7 @@ use osculate_tools::{Cutter, CutterSpec, Lean};
 pub use part::{FaceChoice, Part, Source};
 use problem::Places;
 use raw::Raw;
+pub use setup::Setup;
 use std::path::Path;
 use std::sync::Arc;
 pub use stock::{Blank, Fixture, Stock};
@@ -34,24 +38,8 @@ pub use strategy::Strategy;
 pub use tool::Tool;
 pub use words::{Accept, Gouges, LeadKey, Normals};
 
-/// Feed of a job that gives none, mm/min.
-const FEED_MM_MIN: f64 = 1000.0;
 /// Gouge and chord of a job that gives none, of the scallop.
 const SHARES: [f64; 2] = [0.5, 0.2];
-/// Material that is assumed on faces where no raw material is declared: this many scallops, so that heights are told far above
-/// what is accepted, and no less than this, mm, ...
-const LAYER_SCALLOPS: f64 = 20.0;
-const LEAST_LAYER_MM: f64 = 0.5;
-/// ... but no more than this share of the approach height, at which rapid moves end.
-const LAYER_OF_APPROACH: f64 = 0.75;
-/// Height from which the tool goes down at feed where nothing higher stands on the faces, mm.
-const APPROACH_MM: f64 = 2.0;
-/// The share of the scallop tolerance that tooth marks take at most.
-const MARK_SHARE: f64 = 0.5;
-/// The lift of the lowest hops, of `approach_mm`, where the job does not say it.
-const HOP_SHARE: f64 = 0.125;
-/// What the tool keeps from check faces in hops, of `approach_mm`: below the height of a hop, which passes over neighbours.
-const CHECK_SHARE: f64 = 0.5;
 
 /// A job in which everything is checked, with one of its tools in hand.
 #[derive(Debug, Clone)]
@@ -88,23 +76,6 @@ struct Told {
     verification: Verification,
 }
 
-/// Where the part sits and how rapid moves go.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Setup {
-    /// Where the part's origin sits from the table's reference point; chosen from the part's box where not given.
-    pub part_zero_mm: Option<[f64; 3]>,
-    /// The part's axes turned on the table, about x, then y, then z; chosen from the faces' normals where not given.
-    pub rotate_deg: Option<[f64; 3]>,
-    /// Clearance of rapid moves over the sphere around the part.
-    pub clearance_mm: f64,
-    /// Distance from the surface at which rapid moves end.
-    pub approach_mm: f64,
-    /// The least lift in hops from pass to pass.
-    pub hop_mm: f64,
-    /// What the tool keeps from check faces in hops from pass to pass.
-    pub check_clearance_mm: f64,
-}
-
 /// The feed at one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactFeed {
@@ -134,30 +105,6 @@ pub struct Verification {
     pub max_samples: Option<usize>,
     /// What a verdict must rest on.
     pub accept: Accept,
-}
-
-impl Setup {
-    /// `highest_mm` is what stands on the faces to machine at most.
-    fn of(places: &Places, t: &raw::Setup, strategy: &Strategy, highest_mm: f64) -> Result<Self, Failure> {
-        // Rapid moves end above what stands on the faces.
-        let approach_mm = t.approach_mm.unwrap_or_else(|| APPROACH_MM.max(highest_mm / LAYER_OF_APPROACH));
-        let own = if strategy.layers().is_some() { approach_mm } else { HOP_SHARE * approach_mm };
-        let hop_mm = t.hop_mm.unwrap_or(own);
-        if hop_mm > approach_mm {
-            let what = format!(
-                "hop_mm = {hop_mm} is more than approach_mm = {approach_mm}: hops rise by no more than that"
-            );
-            return Err(places.refuse("setup", "hop_mm", what));
-        }
-        Ok(Self {
-            part_zero_mm: t.part_zero_mm,
-            rotate_deg: t.rotate_deg,
-            clearance_mm: t.clearance_mm.unwrap_or(10.0),
-            approach_mm,
-            hop_mm,
-            check_clearance_mm: t.check_clearance_mm.unwrap_or(CHECK_SHARE * approach_mm),
-        })
-    }
 }
 
 impl Contact {
@@ -201,52 +148,6 @@ fn tools(places: &Places, raw: &Raw) -> Result<Vec<Tool>, Failure> {
                 }
             }
             Ok(made)
-        }
-    }
-}
-
-/// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
-fn layer_mm(raw: &Raw, tool: &Tool) -> f64 {
-    if let Some(allowance) = raw.stock.as_ref().and_then(|s| s.allowance_mm.filter(|_| s.file.is_none())) {
-        return allowance;
-    }
-    let layer =
-        (LAYER_SCALLOPS * raw.tolerance.scallop_mm).max(LEAST_LAYER_MM).min(0.5 * tool.cutter().radius_mm());
-    raw.setup.approach_mm.map_or(layer, |approach| layer.min(LAYER_OF_APPROACH * approach))
-}
-
-/// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.
-///
-/// A corner of radius r leaves `h = r - sqrt(r^2 - f^2/4)`; an edge that leans by the lead L leaves `h = f sin L cos L`.
-fn feed_per_tooth_mm(tool: &Tool, strategy: &Strategy, mark_mm: f64) -> Option<f64> {
-    let r = tool.cutter().corner_mm();
-    if r > 0.0 {
-        let h = mark_mm.min(r);
-        return Some(2.0 * (h * (2.0 * r - h)).sqrt());
-    }
-    let LeadKey::Given(deg) = strategy.lead else { return None };
-    let slope = (deg.to_radians().sin() * deg.to_radians().cos()).abs();
-    (slope > 0.0).then(|| mark_mm / slope)
-}
-
-/// The feed of a tool, capped by the feed per tooth where the job gives both.
-fn feed_mm_min(places: &Places, raw: &Raw, (tool, strategy): (&Tool, &Strategy)) -> Result<f64, Failure> {
-    let c = &raw.cutting;
-    let mut feed = c.feed_mm_min.unwrap_or(FEED_MM_MIN);
-    // The feed at which the marks of teeth take half of the scallop tolerance on a plane. Half is best where the feed is free: the
-    // width of a strip goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97,
-    // eq. 41]. Layers of a roughing stand higher than marks.
-    if let (Some(rpm), None) = (c.spindle_rpm, strategy.layers()) {
-        let mark_mm = MARK_SHARE * raw.tolerance.scallop_mm;
-        let teeth = f64::from(tool.teeth().unwrap_or(1));
-        feed = feed_per_tooth_mm(tool, strategy, mark_mm).map_or(feed, |f| feed.min(f * teeth * rpm));
-    }
-    match (c.feed_per_tooth_mm, c.spindle_rpm, tool.teeth()) {
-        (None, ..) => Ok(feed),
-        (Some(f), Some(n), Some(z)) => Ok(feed.min(f * n * f64::from(z))),
-        _ => {
-            let what = "feed_per_tooth_mm needs spindle_rpm and [tool] teeth to become a feed";
-            Err(places.refuse("cutting", "feed_per_tooth_mm", what))
         }
     }
 }

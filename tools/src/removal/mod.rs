@@ -42,6 +42,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod answer;
 mod body;
 mod boundary;
 mod cluster;
@@ -63,6 +64,7 @@ mod tally;
 mod target;
 mod tooth;
 mod tree;
+mod trial;
 mod verdict;
 
 pub use boundary::{sample_boundary, sample_triangles};
@@ -74,8 +76,9 @@ pub use goal::{
 };
 pub use hidden::{DIVISIONS, Wanted, hidden};
 pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
-pub use prove::{LEAST_SAMPLES, ProveError, prove};
+pub use prove::prove;
 pub use refine::{Measured, Refined, refine};
 pub use sampling::{Patch, Sampling, SamplingError, sample_surface};
 pub use tally::{Bin, Kind, Limits, Tally, TallyError, Worst, tally};
+pub use trial::{LEAST_SAMPLES, ProveError};
 pub use verdict::{Answer, Figures, ScopeRow, StockFound, Verdict};

@@ -86,3 +86,32 @@ impl Teeth<'_> {
         }
     }
 }
+
+/// Tooth marks at samples.
+pub(super) struct Marks {
+    /// At each sample, mm; zero where they are not known.
+    pub each: Vec<f64>,
+    /// Whether they are known.
+    pub known: bool,
+}
+
+/// Samples are bounded in lots by the height of their marks: up to these shares of them, and the rest.
+const LOTS: [f64; 2] = [0.9, 0.99];
+
+impl Marks {
+    /// The highest mark of each lot, ascending and all different.
+    pub fn lots(&self) -> Vec<f64> {
+        let mut sorted = self.each.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
+        let mut lots: Vec<f64> = LOTS.iter().filter_map(|share| at(*share)).collect();
+        lots.push(self.most_mm());
+        lots.dedup();
+        lots
+    }
+
+    /// The highest, mm.
+    pub fn most_mm(&self) -> f64 {
+        self.each.iter().fold(0.0, |a: f64, b| a.max(*b))
+    }
+}

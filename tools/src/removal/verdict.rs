@@ -90,6 +90,8 @@ pub struct Verdict {
     pub(super) answer: Answer,
     /// The faces for which alone it holds, where others are not looked at.
     pub(super) only: Option<String>,
+    /// Limits that are met at the samples are enough.
+    pub(super) at_samples: bool,
     pub(super) why: Vec<String>,
     pub(super) remarks: Vec<String>,
     pub(super) scope: Vec<ScopeRow>,
@@ -162,6 +164,9 @@ impl Verdict {
     pub fn words(&self) -> String {
         let only = self.only.as_ref().map_or_else(String::new, |only| format!(" for {only} only"));
         match self.answer {
+            Answer::Held if self.at_samples => {
+                format!("held{only}: within tolerance at the samples, which the job takes as enough")
+            }
             Answer::Held => format!("held{only}: within tolerance, with all that may hide between samples"),
             Answer::NotHeld => format!("NOT held: {}", self.why.join("; ")),
             Answer::NotShown => format!("NOT SHOWN to hold{only}: {}", self.why.join("; ")),

@@ -5,23 +5,5 @@
 pub const KNOWN: &[(&str, &[&str])] = &[
     ("tools", &["removal::digs", "removal::hidden"]),
     ("tools", &["removal::stock::carve", "removal::stock::rays"]),
-    ("cli", &["budget", "cutter_keys", "job", "nc", "part", "setup", "stock_keys"]),
-    (
-        "cli",
-        &[
-            "choice::candidates",
-            "choice",
-            "choice::settle",
-            "choice::table",
-            "cmd::plan",
-            "ideal",
-            "left_out",
-            "passes",
-            "program",
-            "report_fill",
-            "rough",
-            "verify",
-        ],
-    ),
     ("cli", &["report::picture", "report::picture::lines"]),
 ];

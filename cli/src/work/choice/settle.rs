@@ -1,7 +1,8 @@
 //! Contenders verified from their programs until enough of them hold.
 
-use super::table::Measured;
-use super::{Choice, Contender, text_table};
+use super::measured::Measured;
+use super::search::{Choice, Contender};
+use super::table::text_table;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part;

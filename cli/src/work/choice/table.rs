@@ -1,33 +1,15 @@
 //! What became of the candidates, as rows for people and for programs.
 
-use super::{Choice, Entry, State, candidates};
+use super::candidates;
+use super::entry::{Entry, State};
+use super::measured::Measured;
+use crate::job::Job;
 use crate::report;
 use crate::words::Table;
 use serde::Serialize;
 
 /// Characters of a reason in the table; all of it is in the JSON.
 const WHY: usize = 90;
-
-/// What verification measured of a contender.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Measured {
-    /// Highest material left, mm.
-    pub scallop_max_mm: f64,
-    /// Median, mm.
-    pub scallop_median_mm: f64,
-    /// Deepest gouge, mm.
-    pub gouge_max_mm: f64,
-    /// Area left standing, mm2.
-    pub uncut_area_mm2: f64,
-    /// Whether it is within tolerance.
-    pub within_tolerance: bool,
-    /// Area per minute at its places, least and greatest, mm2/min.
-    pub instantaneous_mm2_min: [f64; 2],
-    /// Mean over the passes, mm2/min.
-    pub regional_mm2_min: f64,
-    /// Area over time, mm2/min.
-    pub global_mm2_min: f64,
-}
 
 /// What became of a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -82,7 +64,7 @@ pub struct Row {
     pub why: String,
 }
 
-fn of_entry(choice: &Choice<'_>, entry: &Entry, leads: usize) -> Row {
+fn of_entry(jobs: &[Job], entry: &Entry, leads: usize) -> Row {
     let c = &entry.candidate;
     let finite = |x: f64| x.is_finite().then_some(x);
     let f = entry.figures;
@@ -91,13 +73,13 @@ fn of_entry(choice: &Choice<'_>, entry: &Entry, leads: usize) -> Row {
         State::Out(why) => (Outcome::NotPossible, why.clone()),
         State::Taken if entry.verified.is_some_and(|v| v.within_tolerance) => (Outcome::Holds, String::new()),
         State::Open => {
-            let promise = Choice::least_min(entry);
+            let promise = entry.least_min();
             (Outcome::NotPlanned, format!("not planned: strips alone take {promise:.2} min"))
         }
-        _ => (Outcome::Slower, format!("takes {:.2} min at least", Choice::least_min(entry))),
+        _ => (Outcome::Slower, format!("takes {:.2} min at least", entry.least_min())),
     };
     Row {
-        tool: choice.jobs[c.tool].tool_words(),
+        tool: jobs[c.tool].tool_words(),
         strategy: candidates::words(&c.strategy),
         lead_deg: c.lean.lead_rad.to_degrees(),
         local_lead: c.local,
@@ -128,12 +110,12 @@ fn rank(entry: &Entry) -> (u8, f64) {
         State::Open => 5,
         State::Out(_) => 6,
     };
-    (class, Choice::least_min(entry))
+    (class, entry.least_min())
 }
 
-pub(super) fn rows(choice: &Choice<'_>) -> Vec<Row> {
+pub(super) fn rows(entries: &[Entry], jobs: &[Job]) -> Vec<Row> {
     let mut best: Vec<(&Entry, usize)> = Vec::new();
-    for e in &choice.entries {
+    for e in entries {
         let group =
             |o: &Entry| (o.candidate.tool, o.candidate.strategy) == (e.candidate.tool, e.candidate.strategy);
         match best.iter_mut().find(|(o, _)| group(o)) {
@@ -150,7 +132,7 @@ pub(super) fn rows(choice: &Choice<'_>) -> Vec<Row> {
         let (a, b) = (rank(a.0), rank(b.0));
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
-    best.into_iter().map(|(e, leads)| of_entry(choice, e, leads)).collect()
+    best.into_iter().map(|(e, leads)| of_entry(jobs, e, leads)).collect()
 }
 
 fn cells(row: &Row) -> [String; 9] {

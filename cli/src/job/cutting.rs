@@ -1,0 +1,69 @@
+//! What is cut at which feed: the layer on the faces, and the feed as far as the marks of teeth allow.
+
+use crate::failure::Failure;
+use crate::job::problem::Places;
+use crate::job::raw::Raw;
+use crate::job::strategy::Strategy;
+use crate::job::tool::Tool;
+use crate::job::words::LeadKey;
+
+/// Feed of a job that gives none, mm/min.
+const FEED_MM_MIN: f64 = 1000.0;
+/// Material that is assumed on faces where no raw material is declared: this many scallops, so that heights are told far above
+/// what is accepted, and no less than this, mm, ...
+const LAYER_SCALLOPS: f64 = 20.0;
+const LEAST_LAYER_MM: f64 = 0.5;
+/// ... but no more than this share of the approach height, at which rapid moves end.
+pub(super) const LAYER_OF_APPROACH: f64 = 0.75;
+/// The share of the scallop tolerance that tooth marks take at most.
+const MARK_SHARE: f64 = 0.5;
+
+/// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
+pub(super) fn layer_mm(raw: &Raw, tool: &Tool) -> f64 {
+    if let Some(allowance) = raw.stock.as_ref().and_then(|s| s.allowance_mm.filter(|_| s.file.is_none())) {
+        return allowance;
+    }
+    let layer =
+        (LAYER_SCALLOPS * raw.tolerance.scallop_mm).max(LEAST_LAYER_MM).min(0.5 * tool.cutter().radius_mm());
+    raw.setup.approach_mm.map_or(layer, |approach| layer.min(LAYER_OF_APPROACH * approach))
+}
+
+/// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.
+///
+/// A corner of radius r leaves `h = r - sqrt(r^2 - f^2/4)`; an edge that leans by the lead L leaves `h = f sin L cos L`.
+pub(super) fn feed_per_tooth_mm(tool: &Tool, strategy: &Strategy, mark_mm: f64) -> Option<f64> {
+    let r = tool.cutter().corner_mm();
+    if r > 0.0 {
+        let h = mark_mm.min(r);
+        return Some(2.0 * (h * (2.0 * r - h)).sqrt());
+    }
+    let LeadKey::Given(deg) = strategy.lead else { return None };
+    let slope = (deg.to_radians().sin() * deg.to_radians().cos()).abs();
+    (slope > 0.0).then(|| mark_mm / slope)
+}
+
+/// The feed of a tool, capped by the feed per tooth where the job gives both.
+pub(super) fn feed_mm_min(
+    places: &Places,
+    raw: &Raw,
+    (tool, strategy): (&Tool, &Strategy),
+) -> Result<f64, Failure> {
+    let c = &raw.cutting;
+    let mut feed = c.feed_mm_min.unwrap_or(FEED_MM_MIN);
+    // The feed at which the marks of teeth take half of the scallop tolerance on a plane. Half is best where the feed is free: the
+    // width of a strip goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97,
+    // eq. 41]. Layers of a roughing stand higher than marks.
+    if let (Some(rpm), None) = (c.spindle_rpm, strategy.layers()) {
+        let mark_mm = MARK_SHARE * raw.tolerance.scallop_mm;
+        let teeth = f64::from(tool.teeth().unwrap_or(1));
+        feed = feed_per_tooth_mm(tool, strategy, mark_mm).map_or(feed, |f| feed.min(f * teeth * rpm));
+    }
+    match (c.feed_per_tooth_mm, c.spindle_rpm, tool.teeth()) {
+        (None, ..) => Ok(feed),
+        (Some(f), Some(n), Some(z)) => Ok(feed.min(f * n * f64::from(z))),
+        _ => {
+            let what = "feed_per_tooth_mm needs spindle_rpm and [tool] teeth to become a feed";
+            Err(places.refuse("cutting", "feed_per_tooth_mm", what))
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! How far a candidate has come, and what is known of it.
+
+use super::measured::Measured;
+use crate::work::program::{Planned, Posted};
+use osculate_productivity::compare::{Candidate, Screened};
+
+/// How far a candidate has come.
+pub(super) enum State {
+    /// Screened.
+    Open,
+    /// Planned and looked at: the least time that its length needs, min.
+    Planned(Box<Planned<'static>>),
+    /// Posted: a contender.
+    Posted(Box<(Planned<'static>, Posted)>),
+    /// Handed out for verification.
+    Taken,
+    /// Out, with the reason.
+    Out(String),
+}
+
+/// Figures of a plan, kept after the plan is gone.
+#[derive(Clone, Copy)]
+pub(super) struct Figures {
+    pub passes: usize,
+    pub points: usize,
+    pub cutting_length_mm: f64,
+    pub cutting_min: f64,
+    pub posted_min: Option<f64>,
+}
+
+/// One candidate's story.
+pub(super) struct Entry {
+    pub candidate: Candidate,
+    pub screened: Screened,
+    pub state: State,
+    pub figures: Option<Figures>,
+    pub verified: Option<Measured>,
+    /// The share of the scallop that it is laid out for.
+    pub share: f64,
+    /// Whether it was planned, or would have been, and whether that was around a plan with another tool.
+    pub tried: bool,
+    pub elsewhere: bool,
+}
+
+impl Entry {
+    /// The least time known of a candidate, min.
+    pub fn least_min(&self) -> f64 {
+        match self.figures {
+            Some(Figures { posted_min: Some(t), .. }) => t,
+            Some(f) => f.cutting_min,
+            None => self.screened.layout_min,
+        }
+    }
+}

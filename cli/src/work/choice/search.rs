@@ -1,0 +1,420 @@
+//! The candidates of a job in the order of the least time known of them, and what takes the first of them a level further.
+
+use super::candidates;
+use super::entry::{Entry, Figures, State};
+use super::measured::Measured;
+use super::table::{self, Row, text_table};
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part::{self, JobFaces};
+use crate::watch::Watch;
+use crate::work::extras::Extras;
+use crate::work::look::{Look, Objection};
+use crate::work::passes::{self, Way};
+use crate::work::program::{Planned, Posted, WallS};
+use osculate_geom::Surface;
+use osculate_productivity::compare::{Around, Candidate, Setting, Tool, screen};
+use osculate_productivity::ideal::Patch;
+use osculate_productivity::plan::Strategy;
+
+/// Candidates that are planned at most, and while none is known to hold.
+const MOST_PLANS: usize = 16;
+const MOST_IN_NEED: usize = 28;
+/// Plans around one that holds: with its tool and leads found place by place, with leads beside its own, and with other strategies.
+const MOST_LOCAL: usize = 6;
+const MOST_BESIDE: usize = 3;
+const MOST_OTHERS: usize = 3;
+/// Plans with other tools then, and with one of them.
+const MOST_ELSEWHERE: usize = 4;
+const MOST_OF_ANOTHER: usize = 2;
+/// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
+const SET_BACK: f64 = 0.3;
+/// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.
+const LITTLE_TOO_MUCH: f64 = 1.8;
+const LESS: f64 = 0.97;
+/// Leads below this many times one at which the tool dug in are left out.
+const STEEPER: f64 = 1.3;
+
+/// A plan that promises the least time of all.
+pub struct Contender {
+    /// Which entry it is.
+    entry: usize,
+    /// The job with its tool.
+    pub job: Job,
+    /// The plan.
+    pub planned: Planned<'static>,
+    /// Its program.
+    pub posted: Posted,
+}
+
+/// The plan that holds and is to be undercut.
+#[derive(Clone, Copy)]
+struct Holder {
+    entry: usize,
+    /// Its time, min.
+    time_min: f64,
+    /// Plans that were made before, and those of them with leads found place by place.
+    plans: usize,
+    locals: usize,
+}
+
+/// The candidates of a job.
+pub struct Choice<'a> {
+    /// Its faces.
+    pub(super) faces: &'a JobFaces,
+    /// The job with each of its tools.
+    pub(super) jobs: Vec<Job>,
+    entries: Vec<Entry>,
+    plans: usize,
+    /// For each tool the greatest lead at which it dug in, whatever the strategy, rad.
+    dug_in_rad: Vec<f64>,
+    holder: Option<Holder>,
+}
+
+/// Areas of the faces to machine, with the faces.
+pub fn patches(faces: &JobFaces) -> Vec<Patch<'_>> {
+    faces.faces.iter().map(|f| Patch { surface: &*f.surface, area_mm2: part::area(f) }).collect()
+}
+
+const fn keeps_lines(strategy: &Strategy) -> bool {
+    matches!(strategy, Strategy::Isoparametric { .. } | Strategy::Regions { .. } | Strategy::Curvature5c)
+}
+
+impl<'a> Choice<'a> {
+    /// Screens all candidates of a job.
+    ///
+    /// # Errors
+    /// Where none is possible, with every reason in one table.
+    pub fn screen(job: &Job, faces: &'a JobFaces) -> Result<Self, Failure> {
+        let jobs = job.each_tool();
+        let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();
+        let holders = jobs.iter().map(Job::holder).collect::<Vec<_>>();
+        let mut tools = Vec::with_capacity(jobs.len());
+        for (k, one) in jobs.iter().enumerate() {
+            tools.push(Tool {
+                cutter: &cutters[k],
+                holder: holders[k].as_ref(),
+                feed_mm_min: one.feed_mm_min(),
+            });
+        }
+        let all = faces.faces.iter().chain(&faces.check);
+        let around = Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str())));
+        let candidates = candidates::of_job(job, faces, &cutters)?;
+        let setting =
+            Setting { faces: &patches(faces), tools: &tools, tolerance: job.tolerance(), around: &around };
+        let screened = screen(&setting, &candidates);
+        let entries: Vec<Entry> = candidates
+            .into_iter()
+            .zip(screened)
+            .map(|(candidate, screened)| {
+                let state = screened.out.as_ref().map_or(State::Open, |r| State::Out(r.to_string()));
+                Entry {
+                    candidate,
+                    screened,
+                    state,
+                    figures: None,
+                    verified: None,
+                    share: 1.0,
+                    tried: false,
+                    elsewhere: false,
+                }
+            })
+            .collect();
+        let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
+        let choice = Self { faces, jobs, entries, plans: 0, dug_in_rad, holder: None };
+        choice.any_left(job)?;
+        Ok(choice)
+    }
+
+    /// An error with all reasons where every candidate is out.
+    fn any_left(&self, job: &Job) -> Result<(), Failure> {
+        if self.entries.iter().any(|e| !matches!(e.state, State::Out(_))) {
+            return Ok(());
+        }
+        Err(Failure::file(
+            job.path(),
+            format!("no tool and strategy is possible:\n\n{}", text_table(&self.rows())),
+        ))
+    }
+
+    /// Plans of the tool and strategy of an entry that failed.
+    fn failures(&self, entry: &Entry) -> usize {
+        let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
+        let failed = |e: &&Entry| matches!(e.state, State::Out(_)) && e.tried;
+        self.entries.iter().filter(failed).filter(|e| group(e) == group(entry)).count()
+    }
+
+    /// The candidate to go on with: the first of those that are, within tool and strategy, the best not out.
+    fn first(&self) -> Option<usize> {
+        if let Some(holder) = &self.holder {
+            return self.first_around(holder);
+        }
+        let holds = self.entries.iter().any(|e| e.verified.is_some_and(|v| v.within_tolerance));
+        let more = self.plans < MOST_PLANS;
+        let in_need = !more && !holds && self.plans < MOST_IN_NEED;
+        // Leads found place by place wait for a plan that holds, where one is held elsewhere.
+        let only_local = self.entries.iter().all(|e| e.candidate.local);
+        let waiting = |e: &Entry| {
+            Self::waiting(e) && (!e.candidate.local || in_need || only_local || e.figures.is_some())
+        };
+        let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
+        let mut open: Vec<usize> = Vec::new();
+        for (k, e) in self.entries.iter().enumerate().filter(|(_, e)| waiting(e)) {
+            // Once one lead is planned it stands for its group until it is out; then those above the leads at which the
+            // tool dug in on other lines come first.
+            let key = |e: &Entry| {
+                let doubtful =
+                    !e.candidate.local && e.candidate.lean.lead_rad <= self.dug_in_rad[e.candidate.tool];
+                (e.figures.is_none(), doubtful, e.least_min())
+            };
+            let ahead = |o: usize| key(&self.entries[o]) <= key(e);
+            match open.iter().position(|o| group(&self.entries[*o]) == group(e)) {
+                Some(p) if ahead(open[p]) => {}
+                Some(p) => open[p] = k,
+                None => open.push(k),
+            }
+        }
+        open.retain(|k| more || in_need || self.entries[*k].figures.is_some());
+        let order = |k: &usize| {
+            let e = &self.entries[*k];
+            let failed = if e.figures.is_some() { 0 } else { self.failures(e) };
+            let put_back = e.least_min() * (1.0 + SET_BACK * failed as f64);
+            // In need what is planned is settled before more is planned, of which leads found place by place come first.
+            let later = in_need && e.figures.is_none();
+            ((later, later && !e.candidate.local, if in_need { failed } else { 0 }), put_back)
+        };
+        open.into_iter().min_by(|a, b| {
+            let (a, b) = (order(a), order(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
+    }
+
+    /// The rank of leads found place by place with another tool than the one that holds: along the lines on which that tool was the
+    /// quickest so far, if it was planned along any that keep theirs, then along those on which it was not planned yet; None for
+    /// others.
+    fn with_another(&self, entry: &Entry) -> Option<(usize, f64, f64)> {
+        let c = &entry.candidate;
+        let planned: Vec<&Entry> =
+            self.entries.iter().filter(|e| e.candidate.tool == c.tool && e.tried).collect();
+        if planned.iter().filter(|e| e.candidate.local).count() >= MOST_OF_ANOTHER {
+            return None;
+        }
+        let quickest = planned
+            .iter()
+            .filter(|e| e.figures.is_some() && keeps_lines(&e.candidate.strategy))
+            .min_by(|a, b| a.least_min().total_cmp(&b.least_min()));
+        if let Some(quickest) = quickest.filter(|q| q.candidate.strategy == c.strategy) {
+            return Some((5, 0.0, quickest.least_min()));
+        }
+        let new = planned.iter().all(|e| e.candidate.strategy != c.strategy);
+        new.then_some((6, 0.0, entry.least_min()))
+    }
+
+    /// Plans with leads found place by place that were tried.
+    fn locals(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().filter(|e| e.candidate.local && e.tried)
+    }
+
+    const fn waiting(entry: &Entry) -> bool {
+        matches!(entry.state, State::Open | State::Planned(_) | State::Posted(_))
+    }
+
+    /// The candidate to go on with that may take less time than one that holds: first what is planned already or to be laid out
+    /// for less, whatever its tool; then with the tool that holds leads found place by place, along parameter lines and lines of
+    /// curvature first, as these keep their lines whatever the lead; then of its strategy the nearest leads; then other
+    /// strategies, each with its nearest lead and the quickest first; then leads found place by place with other tools.
+    fn first_around(&self, holder: &Holder) -> Option<usize> {
+        let held = self.entries[holder.entry].candidate;
+        let made_local = self.locals().filter(|e| e.candidate.tool == held.tool).count();
+        let made = (self.plans - holder.plans).saturating_sub(self.locals().count() - holder.locals);
+        let elsewhere = self.entries.iter().filter(|e| e.elsewhere).count();
+        let order = |e: &Entry| {
+            let c = &e.candidate;
+            if !Self::waiting(e) || e.least_min() >= holder.time_min {
+                return None;
+            }
+            // What is open and was tried left a little too much, and is laid out for less.
+            if e.figures.is_some() || e.tried {
+                return Some((0, 0.0, e.least_min()));
+            }
+            if c.tool != held.tool {
+                let wanted = c.local && keeps_lines(&c.strategy) && elsewhere < MOST_ELSEWHERE;
+                return wanted.then(|| self.with_another(e)).flatten();
+            }
+            let beside = c.strategy == held.strategy;
+            let (made, most) = match (c.local, beside) {
+                (true, _) => (made_local, MOST_LOCAL),
+                (false, true) => (made, MOST_BESIDE),
+                (false, false) => (made, MOST_BESIDE + MOST_OTHERS),
+            };
+            let kind = match c.local {
+                false => 3 + usize::from(!beside),
+                true => 2 - usize::from(keeps_lines(&c.strategy)),
+            };
+            let away =
+                (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs();
+            let away = if c.local { 0.0 } else { away };
+            (made < most).then_some((kind, away, e.least_min()))
+        };
+        let ranked = self.entries.iter().enumerate().filter_map(|(k, e)| order(e).map(|o| (o, k)));
+        ranked
+            .min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2)))
+            .map(|(_, k)| k)
+    }
+
+    /// From here on only what may take less time than this contender, which holds, is looked at.
+    pub fn undercut(&mut self, contender: &Contender) {
+        let time_min = contender.posted.time_min();
+        let (plans, locals) =
+            self.holder.map_or_else(|| (self.plans, self.locals().count()), |h| (h.plans, h.locals));
+        if self.holder.is_none_or(|h| time_min < h.time_min) {
+            self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals });
+        }
+    }
+
+    /// The next contender for verification; None where no candidate is left.
+    pub fn next(
+        &mut self,
+        watch: &dyn Watch,
+        wall_s: &mut WallS,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Option<Contender>, Failure> {
+        while let Some(k) = self.first() {
+            progress((self.plans as f64 / MOST_PLANS as f64).min(1.0));
+            let state = std::mem::replace(&mut self.entries[k].state, State::Taken);
+            let job = &self.jobs[self.entries[k].candidate.tool];
+            self.entries[k].state = match state {
+                State::Open => {
+                    let held = self.holder.map(|h| self.entries[h.entry].candidate.tool);
+                    let entry = &mut self.entries[k];
+                    entry.tried = true;
+                    entry.elsewhere = held.is_some_and(|tool| tool != entry.candidate.tool);
+                    // One that fails is a loser with a reason.
+                    self.planned(k).unwrap_or_else(|e| State::Out(e.message().to_owned()))
+                }
+                State::Planned(planned) => match Posted::of(job, self.faces, &planned, wall_s, watch) {
+                    Ok(posted) => {
+                        if let Some(f) = &mut self.entries[k].figures {
+                            f.posted_min = Some(posted.time_min());
+                        }
+                        State::Posted(Box::new((*planned, posted)))
+                    }
+                    Err(e) => State::Out(e.message().to_owned()),
+                },
+                State::Posted(both) => {
+                    let (planned, posted) = *both;
+                    return Ok(Some(Contender { entry: k, job: job.clone(), planned, posted }));
+                }
+                done => done,
+            };
+        }
+        Ok(None)
+    }
+
+    /// Plans a candidate and looks at what it leaves.
+    fn planned(&mut self, k: usize) -> Result<State, Failure> {
+        self.plans += 1;
+        let Entry { candidate: Candidate { tool, strategy, lean, local }, share, .. } = self.entries[k];
+        let job = &self.jobs[tool];
+        let way = Way { strategy: &strategy, lean, local, share, watch: &() };
+        let passes = match passes::each_face(job, self.faces, &way, &|_| {}) {
+            Ok(p) => p,
+            Err(e) => {
+                let why = e.message().to_owned();
+                self.no_smaller_lead(k);
+                return Ok(State::Out(why));
+            }
+        };
+        let linked = passes::linked(job, self.faces, &passes, &job.cutter())?;
+        self.entries[k].figures = Some(Figures {
+            passes: passes.passes.len(),
+            points: linked.path.moves.len(),
+            cutting_length_mm: linked.cutting_length_mm,
+            cutting_min: linked.cutting_length_mm / job.feed_mm_min(),
+            posted_min: None,
+        });
+        if let Some(objection) = Look::at(job, self.faces, &linked)?.objection(job)? {
+            let limit_mm = job.tolerance().scallop_mm;
+            if objection.digs_in {
+                self.no_smaller_lead(k);
+            }
+            if objection.left_mm.is_some_and(|left| self.for_less(k, left, limit_mm)) {
+                return self.planned(k);
+            }
+            return Ok(State::Out(objection.text));
+        }
+        let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
+        Ok(State::Planned(Box::new(Planned {
+            passes,
+            linked,
+            strategy,
+            lean,
+            local,
+            extras,
+            with_strips: true,
+        })))
+    }
+
+    /// Has a candidate that leaves a little more than the limit laid out for less, once; whether it is.
+    fn for_less(&mut self, k: usize, left_mm: f64, limit_mm: f64) -> bool {
+        let again =
+            self.entries[k].share == 1.0 && left_mm > limit_mm && left_mm <= LITTLE_TOO_MUCH * limit_mm;
+        if again {
+            self.entries[k].share = LESS * limit_mm / left_mm;
+        }
+        again
+    }
+
+    /// Leaves out the smaller leads of a candidate that digs in: the heel comes down with the lead.
+    fn no_smaller_lead(&mut self, k: usize) {
+        let Candidate { tool, strategy, lean, local } = self.entries[k].candidate;
+        if local {
+            return;
+        }
+        self.dug_in_rad[tool] = self.dug_in_rad[tool].max(lean.lead_rad);
+        for e in &mut self.entries {
+            let c = &e.candidate;
+            let same = (c.tool, c.strategy, c.lean.tilt_rad) == (tool, strategy, lean.tilt_rad);
+            let near = c.lean.lead_rad < STEEPER * lean.lead_rad;
+            if same && near && !c.local && matches!(e.state, State::Open) {
+                let why = format!("a lead of {:.0} deg does not fit already", lean.lead_rad.to_degrees());
+                e.state = State::Out(why);
+            }
+        }
+    }
+
+    /// Records that a contender could not be verified.
+    pub fn lost(&mut self, contender: &Contender, why: &Failure) {
+        self.entries[contender.entry].state = State::Out(why.message().to_owned());
+    }
+
+    /// Records what verification said of a contender; `why` it is out where it does not hold.
+    pub fn record(&mut self, contender: &Contender, measured: Measured, why: Option<Objection>) {
+        let k = contender.entry;
+        self.entries[k].verified = Some(measured);
+        let Some(Objection { text, left_mm, .. }) = why else { return };
+        self.entries[k].state = State::Out(text);
+        let limit_mm = contender.job.tolerance().scallop_mm;
+        if left_mm.is_some_and(|left| self.for_less(k, left, limit_mm)) {
+            self.entries[k].state = State::Open;
+            self.entries[k].figures = None;
+        }
+    }
+
+    /// The candidates for tables, fastest first, of each tool and strategy the lead that came furthest.
+    pub fn rows(&self) -> Vec<Row> {
+        table::rows(&self.entries, &self.jobs)
+    }
+
+    /// What was done, in words.
+    pub fn story(&self) -> String {
+        let count = |is: &dyn Fn(&Entry) -> bool| self.entries.iter().filter(|e| is(e)).count();
+        format!(
+            "{} candidates screened, {} planned, {} posted, {} verified",
+            self.entries.len(),
+            self.plans,
+            count(&|e| e.figures.is_some_and(|f| f.posted_min.is_some())),
+            count(&|e| e.verified.is_some())
+        )
+    }
+}

@@ -1,0 +1,204 @@
+//! From figures to an answer: what fails, what is not shown, and what the verdict covers.
+
+use super::goal::{GoalStock, Gravity, Unseen};
+use super::job::Body;
+use super::tally::Tally;
+use super::trial::Trial;
+use super::verdict::{Answer, Figures, ScopeRow};
+
+impl Trial<'_> {
+    /// What fails at the samples, in words.
+    pub fn failings(&self, t: &Tally, height_mm: f64) -> Vec<String> {
+        let (l, limits) = (&self.limits, &self.goal.limits);
+        let mut why = Vec::new();
+        let mut over = |what: &str, is: f64, limit: f64, unit: &str| {
+            if is > limit {
+                why.push(format!("{what} {is:.4} {unit} where {limit} {unit} are accepted"));
+            }
+        };
+        over("a gouge of", t.gouge_max_mm, l.gouge_mm, "mm");
+        over("the holder takes", t.holder_max_mm, l.collision_mm, "mm");
+        over("a rapid move takes", t.rapid_max_mm, l.collision_mm, "mm");
+        over("uncut area of", t.uncut_area_mm2, limits.unreached_mm2, "mm2");
+        if height_mm > t.scallop_max_mm && height_mm > l.scallop_mm {
+            over("a scallop with its tooth mark of", height_mm, l.scallop_mm, "mm");
+        } else {
+            over("a scallop of", t.scallop_max_mm, l.scallop_mm, "mm");
+        }
+        why
+    }
+
+    /// The answer, and why it is not held.
+    pub fn answer(&self, f: &Figures, left_out: usize) -> (Answer, Vec<String>) {
+        let mut bad = self.failings(&f.tally, f.height_max_mm);
+        if f.coarse {
+            bad.push("a coarse look tells; nothing was looked at closer".to_owned());
+        }
+        if let Some(first) = f.stock.as_ref().and_then(|s| s.carved.collisions.first()) {
+            let count = f.stock.as_ref().map_or(0, |s| s.carved.collisions.len());
+            let body = match first.body {
+                Body::Cutter => "cutter",
+                Body::Shank => "shank",
+                Body::Holder => "holder",
+            };
+            let rapid = if first.rapid { " in rapid" } else { "" };
+            let (block, deep) = (first.block, first.deepest_mm);
+            bad.push(format!(
+                "{count} collisions with raw material, the first in block {block}: the {body}{rapid} goes {deep:.3} mm deep"
+            ));
+        }
+        let of = |g: Gravity| {
+            self.goal.control.remarks.iter().filter(move |r| r.gravity == g).map(|r| r.text.clone())
+        };
+        bad.extend(of(Gravity::Breaks));
+        if !bad.is_empty() {
+            return (Answer::NotHeld, bad);
+        }
+        let mut open = Vec::new();
+        let blend_mm = self.goal.control.blend_mm;
+        let blended = if blend_mm > 0.0 {
+            format!(" and corners blended by up to {blend_mm} mm")
+        } else {
+            String::new()
+        };
+        let (scallop, gouge) = (f.hidden.scallop_mm + blend_mm, f.hidden.gouge_mm + blend_mm);
+        let limits = &self.limits;
+        let at_samples = self.goal.limits.at_samples;
+        if f.height_max_mm + scallop > limits.scallop_mm
+            && !(at_samples && f.height_max_mm + blend_mm <= limits.scallop_mm)
+        {
+            open.push(format!(
+                "between samples{blended} scallops may be {scallop:.5} mm higher than the {:.5} mm measured",
+                f.height_max_mm
+            ));
+        }
+        let gouge_max_mm = f.tally.gouge_max_mm;
+        if gouge_max_mm + gouge > limits.gouge_mm
+            && !(at_samples && gouge_max_mm + blend_mm <= limits.gouge_mm)
+        {
+            open.push(format!(
+                "between samples{blended} gouges may be {gouge:.5} mm deeper than the {gouge_max_mm:.5} mm measured"
+            ));
+        }
+        if !open.is_empty() && left_out > 0 {
+            open.push(format!(
+                "{left_out} or more places between samples were not looked at: smaller spacing_mm, larger max_samples"
+            ));
+        }
+        for unseen in &self.goal.unseen {
+            if let Unseen::NoSide(faces) = unseen {
+                open.push(format!("nothing says on which side of {} the material is", listed(faces)));
+            }
+        }
+        open.extend(of(Gravity::Open));
+        let answer = if open.is_empty() { Answer::Held } else { Answer::NotShown };
+        (answer, open)
+    }
+
+    /// The faces for which alone the verdict is, where some of the part are not looked at.
+    pub fn only(&self) -> Option<String> {
+        let names: Vec<String> = self.goal.machined.iter().map(|f| f.name.to_owned()).collect();
+        let part = self.goal.machined.iter().any(|f| f.part_of_it.is_some());
+        (part || !self.goal.unseen.is_empty()).then(|| listed(&names))
+    }
+
+    pub fn scope(&self, f: &Figures) -> Vec<ScopeRow> {
+        let goal = self.goal;
+        let mut rows = Vec::new();
+        let mut row = |what: &'static str, covers: String| rows.push(ScopeRow { what, covers });
+        let machined: Vec<String> = goal
+            .machined
+            .iter()
+            .map(|f| f.part_of_it.as_ref().map_or_else(|| f.name.to_owned(), |p| format!("{} ({p})", f.name)))
+            .collect();
+        row("to machine", listed(&machined));
+        let checked: Vec<String> = goal.checked.iter().map(|f| f.name.to_owned()).collect();
+        let mut others =
+            if checked.is_empty() { "none".to_owned() } else { format!("{} checked", listed(&checked)) };
+        for unseen in &goal.unseen {
+            match unseen {
+                Unseen::MayBeHit(faces) => {
+                    others += &format!("; NOT looked at, as they may be hit: {}", listed(faces))
+                }
+                Unseen::NoSide(faces) => {
+                    others +=
+                        &format!("; NOT looked at, as their material side is not known: {}", listed(faces));
+                }
+            }
+        }
+        row("other faces", others);
+        if let Some(allowance) = goal.roughing_mm {
+            row("roughing", format!("faces are judged {allowance} mm outside, by what stands above that"));
+        }
+        if goal.limits.unreached_mm2 > 0.0 {
+            let text = format!(
+                "{:.3} mm2, of which {} mm2 are accepted",
+                f.tally.uncut_area_mm2, goal.limits.unreached_mm2
+            );
+            row("not reached", text);
+        }
+        row(
+            "raw material",
+            match (&goal.stock, f.coarse) {
+                (GoalStock::Assumed { layer_mm }, _) => {
+                    format!("none declared: {layer_mm:.3} mm on the faces to machine are assumed")
+                }
+                (GoalStock::Declared { words, .. }, false) => (*words).to_owned(),
+                (GoalStock::Declared { words, .. }, true) => {
+                    format!("{words}; NOT looked at, as the program is far off without it")
+                }
+            },
+        );
+        row(
+            "fixtures",
+            if goal.fixtures.is_empty() { "none declared".to_owned() } else { "as declared".to_owned() },
+        );
+        row(
+            "tool",
+            match goal.tool.holder {
+                Some(_) => "cutter and holder, in feed and rapid".to_owned(),
+                None => "cutter, in feed and rapid; no holder declared".to_owned(),
+            },
+        );
+        row("tooth marks", self.teeth_words());
+        let control = &goal.control;
+        row(
+            "control",
+            if control.words.is_empty() {
+                "NOT looked at: CL data have none".to_owned()
+            } else {
+                control.words.clone()
+            },
+        );
+        row(
+            "machine",
+            "reach of its joints as posted; table, head and their bodies are NOT described".to_owned(),
+        );
+        rows
+    }
+
+    fn teeth_words(&self) -> String {
+        let tool = &self.goal.tool;
+        match (self.period_min(), tool.spindle_rpm) {
+            (Some(_), Some(rpm)) => {
+                let teeth = tool
+                    .teeth
+                    .map_or_else(|| "one tooth, as none are declared,".to_owned(), |z| format!("{z} teeth"));
+                format!("added to scallops: {teeth} at {rpm} rpm")
+            }
+            _ if self.goal.roughing_mm.is_some() => "NOT judged on a roughing".to_owned(),
+            (None, None) => "NOT judged: nothing says the spindle's speed".to_owned(),
+            _ => "NOT judged: nothing says the feed".to_owned(),
+        }
+    }
+}
+
+/// Names for a sentence; of many the first.
+fn listed(names: &[String]) -> String {
+    const MOST: usize = 12;
+    match names.len() {
+        0 => "none".to_owned(),
+        n if n > MOST => format!("{} and {} more", names[..MOST].join(", "), n - MOST),
+        _ => names.join(", "),
+    }
+}

@@ -1,0 +1,331 @@
+//! A goal with a program that is held against it: what is measured, and what is bounded between.
+
+use super::boundary::sample_boundary;
+use super::crest::crests;
+use super::cut::cut;
+use super::density::{Density, Hidden};
+use super::goal::{Goal, GoalFace, GoalStock, Program};
+use super::hidden::Wanted;
+use super::job::{Body, Cut, Job, JobError, Sample};
+use super::refine::{Measured, Refined, refine};
+use super::sampling::{Patch, Sampling, SamplingError, sample_surface};
+use super::stock::{BlankError, Stock, StockJob, Upper};
+use super::tally::{Limits, Tally, TallyError, tally};
+use super::tooth::{Marks, Teeth};
+use super::verdict::StockFound;
+use osculate_geom::Surface;
+
+/// Samples across a strip that a ball of the cutter's radius leaves on a plane.
+const SAMPLES_ACROSS: f64 = 10.0;
+/// Faces that are only checked are sampled this many times as coarsely: there only deep contact matters, and bounds between the
+/// samples add what is needed.
+const CHECK_COARSER: f64 = 4.0;
+/// The share of the samples allowed that the even ones take at most.
+const MOST_EVEN: f64 = 0.8;
+/// Samples that are added at most, of the even ones.
+const MOST_ADDED: usize = 4;
+/// Fewest samples that say anything.
+pub const LEAST_SAMPLES: usize = 100;
+/// Times that samples of a sliver are put four times as close before it counts as having none.
+const FINER: usize = 4;
+
+/// Why motions cannot be judged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ProveError {
+    /// No face to machine.
+    #[error("there is no face to judge")]
+    NoFace,
+    /// Nothing moves.
+    #[error("the program has no motion: at least two positions are needed")]
+    NoMotion,
+    /// Too few samples.
+    #[error("max_samples = {got} is too few: {LEAST_SAMPLES} or more are needed")]
+    Samples {
+        /// What was given.
+        got: usize,
+    },
+    /// Times that are not those of the motions.
+    #[error("{times} times for {motions} motions: one for each, or none")]
+    Times {
+        /// Times.
+        times: usize,
+        /// Motions.
+        motions: usize,
+    },
+    /// A face that cannot be sampled.
+    #[error("{face}: {why}")]
+    Sampling {
+        /// The face.
+        face: String,
+        /// Why.
+        why: SamplingError,
+    },
+    /// Motions that cannot be followed.
+    #[error(transparent)]
+    Motions(#[from] JobError),
+    /// Limits that are none.
+    #[error(transparent)]
+    Limits(#[from] TallyError),
+    /// Raw material that is none.
+    #[error("raw material: {0}")]
+    Blank(#[from] BlankError),
+}
+
+/// What is known between samples that were not bounded.
+pub(super) fn unbounded() -> Refined {
+    Refined { hidden: Hidden { scallop_mm: f64::INFINITY, gouge_mm: f64::INFINITY }, added: 0, left_out: 0 }
+}
+
+/// Samples with what was found at them.
+pub(super) struct Look {
+    pub measured: Measured,
+    pub tally: Tally,
+    pub density: Density,
+    /// What could not be looked at.
+    pub lost: Vec<String>,
+}
+
+/// A goal with a program that is held against it.
+pub(super) struct Trial<'a> {
+    pub goal: &'a Goal<'a>,
+    pub program: Program<'a>,
+    /// Faces by number: to machine first, then those that are checked.
+    pub faces: Vec<&'a GoalFace<'a>>,
+    pub surfaces: Vec<&'a dyn Surface>,
+    pub limits: Limits,
+    /// Width of a strip that a ball of the cutter's radius leaves on a plane, mm.
+    pub strip_mm: f64,
+}
+
+impl<'a> Trial<'a> {
+    pub fn new(goal: &'a Goal<'a>, program: Program<'a>) -> Self {
+        let faces: Vec<&GoalFace<'_>> = goal.machined.iter().chain(&goal.checked).collect();
+        let surfaces = faces.iter().map(|f| f.surface).collect();
+        let limits = Limits::new(goal.limits.scallop_mm, goal.limits.gouge_mm);
+        let strip_mm = 2.0 * (2.0 * goal.limits.scallop_mm * goal.tool.cutter.radius_mm()).sqrt();
+        Self { goal, program, faces, surfaces, limits, strip_mm }
+    }
+
+    pub fn is_machined(&self, face: usize) -> bool {
+        face < self.goal.machined.len()
+    }
+
+    /// How far samples are to be apart.
+    pub fn spacing_mm(&self, notes: &mut Vec<String>) -> f64 {
+        let wanted = self.goal.looks.spacing_mm.unwrap_or(self.strip_mm / SAMPLES_ACROSS);
+        let area = |k: usize| {
+            let coarser = if self.is_machined(k) { 1.0 } else { CHECK_COARSER * CHECK_COARSER };
+            osculate_geom::quadrature::area(self.surfaces[k], 1e-2).value / coarser
+        };
+        let whole: f64 = (0..self.surfaces.len()).map(area).filter(|a| a.is_finite()).sum();
+        let max = self.goal.looks.max_samples;
+        let spacing = wanted.max((whole / (MOST_EVEN * max as f64)).sqrt());
+        if spacing > 1.01 * wanted {
+            notes.push(format!(
+                "warning: verification: samples are {spacing:.4} mm apart instead of {wanted:.4} mm to stay within {max} of them"
+            ));
+        }
+        spacing
+    }
+
+    /// Tool and motions with samples that are looked at.
+    pub fn job(&self, samples: &'a [Sample]) -> Job<'a> {
+        Job { samples, ..self.job_without() }
+    }
+
+    pub fn job_without(&self) -> Job<'a> {
+        let tool = &self.goal.tool;
+        Job {
+            cutter: tool.cutter,
+            holder: tool.holder,
+            motions: self.program.motions,
+            samples: &[],
+            stock_mm: self.goal.stock.layer_mm(),
+            depth_mm: tool.cutter.radius_mm(),
+        }
+    }
+
+    /// Samples an even distance apart, and what is left at them.
+    pub fn look(&self, spacing: f64, progress: &(dyn Fn(f64) + Sync)) -> Result<Look, ProveError> {
+        let max = self.goal.looks.max_samples;
+        let mut samples: Vec<Sample> = Vec::new();
+        let mut patches: Vec<Option<Patch>> = Vec::new();
+        let mut density: Option<Density> = None;
+        let mut lost = Vec::new();
+        for (k, face) in self.faces.iter().enumerate() {
+            let check_only = !self.is_machined(k);
+            let step = if check_only { CHECK_COARSER * spacing } else { spacing };
+            let found = match finest(face.surface, k as u32, step, max) {
+                Ok(found) => found,
+                // A sliver that is not machined and has no place to look at is told, not refused.
+                Err(SamplingError::Nothing { .. }) if check_only => {
+                    lost.push(format!(
+                        "warning: {}: has no place with a tangent plane and is not verified",
+                        face.name
+                    ));
+                    continue;
+                }
+                Err(why) => return Err(ProveError::Sampling { face: face.name.to_owned(), why }),
+            };
+            if found.lost_area_mm2 > 0.0 {
+                let area = found.lost_area_mm2;
+                lost.push(format!(
+                    "warning: {}: {area:.4} mm2 of it have no tangent plane and are not verified",
+                    face.name
+                ));
+            }
+            if !check_only {
+                density = Some(density.map_or(found.density, |d| d.union(&found.density)));
+            }
+            samples.extend(found.samples.into_iter().map(|s| Sample { check_only, ..s }));
+            patches.extend(found.patches.into_iter().map(Some));
+            if !check_only {
+                for outline in &face.outlines {
+                    samples.extend(sample_boundary(face.surface, outline, k as u32, step));
+                }
+            }
+            patches.resize(samples.len(), None);
+        }
+        samples.extend(self.goal.fixtures.iter().copied());
+        patches.resize(samples.len(), None);
+        let density = density.ok_or(ProveError::NoFace)?;
+        let cuts = cut(&Job { samples: &samples, ..self.job_without() }, progress)?;
+        let tally = self.tally(&samples, &cuts, &density)?;
+        Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost })
+    }
+
+    pub fn tally(&self, samples: &[Sample], cuts: &[Cut], density: &Density) -> Result<Tally, ProveError> {
+        // The tool's effective radius across the feed, from the strip that it leaves.
+        let effective = self.strip_mm * self.strip_mm / (8.0 * self.limits.scallop_mm);
+        Ok(tally(samples, cuts, &self.limits, density, effective)?)
+    }
+
+    pub fn crests(&self, measured: &Measured) -> Result<f64, ProveError> {
+        let job = Job { samples: &measured.samples, ..self.job_without() };
+        Ok(crests(&self.surfaces, &job, &measured.cuts, self.strip_mm, self.limits.uncut_mm)?)
+    }
+
+    /// Time from tooth to tooth, min, where it is known.
+    pub fn period_min(&self) -> Option<f64> {
+        let tool = &self.goal.tool;
+        let per_min = tool.spindle_rpm? * f64::from(tool.teeth.unwrap_or(1));
+        // The layers of a roughing stand higher than any mark, and are judged.
+        let judged = !self.program.times_min.is_empty() && self.goal.roughing_mm.is_none();
+        (judged && per_min > 0.0 && per_min.is_finite()).then(|| 1.0 / per_min)
+    }
+
+    pub fn marks(&self, samples: &[Sample], cuts: &[Cut]) -> Marks {
+        let Some(period_min) = self.period_min() else {
+            return Marks { each: vec![0.0; samples.len()], known: false };
+        };
+        let teeth = Teeth { cutter: self.goal.tool.cutter, program: self.program, period_min };
+        let stock_mm = self.goal.stock.layer_mm();
+        Marks { each: teeth.marks(samples, cuts, stock_mm), known: true }
+    }
+
+    /// Moves the tool through the declared raw material.
+    pub fn carve(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<Option<StockFound>, ProveError> {
+        let GoalStock::Declared { blank, resolution, .. } = &self.goal.stock else { return Ok(None) };
+        let made = Stock::fill(blank, resolution)?;
+        let mut stock = made.stock;
+        let before = stock.volume();
+        let tool = &self.goal.tool;
+        let mut uppers = Vec::new();
+        let mut above_mm = tool.flutes.length_mm();
+        for (body, kind) in [(tool.shank, Body::Shank), (tool.holder, Body::Holder)] {
+            if let Some(body) = body {
+                uppers.push(Upper { body, above_mm, kind });
+                above_mm += body.length_mm();
+            }
+        }
+        let (motions, touch_mm) = (self.program.motions, self.limits.collision_mm);
+        let carved =
+            stock.carve(&StockJob { cutter: tool.flutes, uppers: &uppers, motions, touch_mm }, progress)?;
+        Ok(Some(StockFound {
+            cell_mm: stock.cell_mm(),
+            coarsened_mm: made.coarsened,
+            rays: stock.rays(),
+            bounds: *stock.bounds(),
+            before,
+            left: stock.volume(),
+            carved,
+        }))
+    }
+
+    /// Adds samples where limits may be exceeded between those there are. What comes back of scallops is what nothing stands above
+    /// with its mark, not what hides above others.
+    ///
+    /// What is left for a scallop is the less the higher its mark. Samples are taken by the height of their marks, and each lot is
+    /// bounded against what its highest mark leaves: a few places with high marks do not spoil all others.
+    pub fn refine(&self, look: &mut Look, marks: &mut Marks) -> Result<Refined, ProveError> {
+        let even = look.measured.samples.len();
+        let holds = self.failings(&look.tally, look.tally.scallop_max_mm).is_empty();
+        let blend_mm = self.goal.control.blend_mm;
+        let less = |limit: f64, by: f64| if by < limit { limit - by } else { limit };
+        // Between samples of a path that fails already nothing is left to be found out.
+        let max = self.goal.looks.max_samples;
+        let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
+        let lots = marks.lots();
+        let Measured { samples, patches, cuts } = std::mem::take(&mut look.measured);
+        let (mut all, mut more) = (Measured::default(), Measured::default());
+        let mut in_order = Vec::with_capacity(samples.len());
+        let mut refined = Refined { added: 0, left_out: 0, ..unbounded() };
+        // Nothing in any lot stands above this with its mark, or lies below that.
+        let (mut highest, mut deepest, mut dug) = (0.0f64, 0.0f64, 0.0f64);
+        for (k, most_mark) in lots.iter().enumerate() {
+            let low = if k == 0 { f64::NEG_INFINITY } else { lots[k - 1] };
+            let of_lot = |m: &f64| *m > low && *m <= *most_mark;
+            let mut lot = Measured::default();
+            for k in (0..samples.len()).filter(|k| of_lot(&marks.each[*k])) {
+                lot.samples.push(samples[k]);
+                lot.patches.push(patches[k]);
+                lot.cuts.push(cuts[k]);
+                in_order.push(marks.each[k]);
+            }
+            let evenly = lot.samples.len();
+            let wanted = Wanted {
+                uncut_mm: self.limits.uncut_mm,
+                enough_mm: less(self.limits.scallop_mm, most_mark + blend_mm),
+                gouge_mm: less(self.limits.gouge_mm, blend_mm),
+            };
+            let room = most.saturating_sub(refined.added);
+            let found = refine(&self.surfaces, &self.job(&[]), &mut lot, wanted, room)?;
+            let t = self.tally(&lot.samples, &lot.cuts, &look.density)?;
+            highest = highest.max(t.scallop_max_mm + found.hidden.scallop_mm + most_mark);
+            deepest = deepest.max(t.gouge_max_mm + found.hidden.gouge_mm);
+            dug = dug.max(t.gouge_max_mm);
+            refined.added += found.added;
+            refined.left_out += found.left_out;
+            // Those that were added come after all others.
+            more.samples.extend(lot.samples.drain(evenly..));
+            more.patches.extend(lot.patches.drain(evenly..));
+            more.cuts.extend(lot.cuts.drain(evenly..));
+            all.samples.append(&mut lot.samples);
+            all.patches.append(&mut lot.patches);
+            all.cuts.append(&mut lot.cuts);
+        }
+        in_order.extend(self.marks(&more.samples, &more.cuts).each);
+        marks.each = in_order;
+        all.samples.append(&mut more.samples);
+        all.patches.append(&mut more.patches);
+        all.cuts.append(&mut more.cuts);
+        look.measured = all;
+        refined.hidden = Hidden { scallop_mm: highest, gouge_mm: (deepest - dug).max(0.0) };
+        if refined.added > 0 {
+            look.tally = self.tally(&look.measured.samples, &look.measured.cuts, &look.density)?;
+        }
+        Ok(refined)
+    }
+}
+
+/// Samples of a face; of one that is narrower than they are apart, closer ones.
+fn finest(surface: &dyn Surface, face: u32, spacing_mm: f64, max: usize) -> Result<Sampling, SamplingError> {
+    let mut spacing = spacing_mm;
+    for _ in 0..FINER {
+        match sample_surface(surface, face, spacing, max) {
+            Err(SamplingError::Nothing { .. }) => spacing *= 0.25,
+            found => return found,
+        }
+    }
+    sample_surface(surface, face, spacing, max)
+}
