@@ -1,7 +1,8 @@
 //! The posture of greatest productivity at a point: tool, direction of feed, lead, tilt and split of the tolerance.
 //!
-//! What is made greatest is the area per minute of [`Rate`]: the exact strip ([`strip::exact`]) times the feed that tooth
-//! marks ([`strip::mark`]), cutter and machine allow. To leading order the strip is widest across the eigenvector of Q's
+//! What is made greatest is the area per minute of [`Rate`](crate::rate::Rate): the exact strip
+//! ([`exact`](osculate_tools::strip::exact)) times the feed that tooth marks ([`mark`](osculate_tools::strip::mark())), cutter
+//! and machine allow. To leading order the strip is widest across the eigenvector of Q's
 //! larger eigenvalue, and wider the nearer Q comes to losing its definiteness; there the leading order fails and the
 //! exact strip takes over, with two contacts on hollow places [M86, 5C]: where the tool would dip below the part by more
 //! than is accepted it is lifted by the rest.

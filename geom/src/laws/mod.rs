@@ -1,4 +1,4 @@
-//! The suite of laws that every [`Surface`] must pass, to be run from the tests of any crate that implements one.
+//! The suite of laws that every [`Surface`](crate::Surface) must pass, to be run from the tests of any crate that implements one.
 //!
 //! Each function panics with the place and the numbers where a law is broken, so that a test or a property test
 //! can call it directly.
