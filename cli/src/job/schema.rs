@@ -93,7 +93,7 @@ impl Kind {
         let with = |text: String, unit: &str| if unit.is_empty() { text } else { format!("{text}, {unit}") };
         match self {
             Self::Number(r, unit) => with(r.to_string(), unit),
-            Self::Whole(a, b) if a == b => format!("{a}"),
+            Self::Whole(a, b) if a == b => format!("{a}: this version reads format = {a}"),
             Self::Whole(a, b) => format!("a whole number from {a} to {b}"),
             Self::Sign => "1 or -1".to_owned(),
             Self::NumberOr(r, unit, w) => format!("{} or one of {}", with(r.to_string(), unit), list(w)),
