@@ -27,11 +27,11 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.least, self.most) {
-            (a, b) if a == f64::NEG_INFINITY && b == f64::INFINITY => f.write_str("a finite number"),
-            (a, b) if a == 0.0 && self.open[0] => {
+            (f64::NEG_INFINITY, f64::INFINITY) => f.write_str("a finite number"),
+            (0.0, b) if self.open[0] => {
                 write!(f, "a positive number {} {b}", if self.open[1] { "below" } else { "up to" })
             }
-            (a, b) if a == 0.0 => write!(f, "zero or a positive number up to {b}"),
+            (0.0, b) => write!(f, "zero or a positive number up to {b}"),
             (a, b) if self.open == [true; 2] => write!(f, "a number between {a} and {b}, neither of them"),
             (a, b) => write!(f, "a number from {a} to {b}"),
         }
