@@ -42,7 +42,11 @@ impl Reader<'_> {
 
     fn syntax(&self, e: &toml::de::Error) -> Failure {
         let line = e.span().map(|s| self.line(s.start));
-        self.places.at(line, "", format!("no TOML: {}", e.message().trim_end()), "TOML".to_owned(), None)
+        let written = e.span().and_then(|s| self.text.get(s)).unwrap_or_default();
+        let at: String = written.lines().next().unwrap_or_default().chars().take(SHOWN).collect();
+        let at = if at.is_empty() { at } else { format!(" at `{at}`") };
+        let what = format!("no TOML: {}{at}", e.message().trim_end());
+        self.places.at(line, "", what, "TOML".to_owned(), None)
     }
 
     /// All keys of a table, and of the tables in it.
@@ -199,6 +203,7 @@ fn check(kind: &Kind, value: &DeValue<'_>) -> Result<(), Wrong> {
         Kind::Text | Kind::File => value.as_str().is_some_and(|t| !t.trim().is_empty()),
         Kind::Files => each(value.as_array(), |v| v.as_str().is_some_and(|t| !t.trim().is_empty())),
         Kind::Faces => faces(value),
+        Kind::Others => !value.is_table() && faces(value),
         Kind::Builtin => value.is_table(),
         Kind::List => numbers(value).is_some_and(|x| x.iter().all(|x| x.is_finite())) || points(value),
     };

@@ -58,7 +58,7 @@ pub static TABLES: &[Table] = &[
         may("unit_mm", MM, "as the file says", "25.4", "millimetres in a unit of point sections or patches"),
         may("faces", Kind::Faces, "all", "[\"F1\", \"F2\"]", "faces to machine, as `inspect` prints their ids"),
         may("check_faces", Kind::Faces, "none named", "\"all\"", "faces that the tool must not touch"),
-        may("may_hit", Kind::Faces, "none", "[\"F3\"]", "faces not machined that the tool may cut or hit; the verdict's scope says so"),
+        may("may_hit", Kind::Others, "none", "[\"F3\"]", "faces not machined that the tool may cut or hit; the verdict's scope says so"),
         may("normals", Kind::Word(Normals::WORDS), "auto", "\"file\"", "side of the material for faces whose file does not say it"),
     ]),
     table("part.ruled", false, "the surface between two curves", &[]),

@@ -64,16 +64,6 @@ impl Part {
         if t.unit_mm.is_some() && !matches!(source, Source::File { .. }) {
             return Err(places.refuse(TABLE, "unit_mm", "unit_mm goes with file: leave it out"));
         }
-        if let Some(FaceChoice::Largest(_)) = t.may_hit {
-            let what = "may_hit names faces by their ids, or \"all\"";
-            return Err(places.full(
-                TABLE,
-                "may_hit",
-                what,
-                "\"all\", an id or a list of ids".to_owned(),
-                None,
-            ));
-        }
         if matches!(&t.faces, Some(FaceChoice::Ids(ids)) if ids.is_empty()) {
             return Err(places.refuse(TABLE, "faces", "faces = [] chooses no face"));
         }

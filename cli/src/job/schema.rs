@@ -27,13 +27,13 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.least, self.most) {
-            (a, b) if a == f64::NEG_INFINITY && b == f64::INFINITY => f.write_str("a finite number"),
-            (a, b) if a == 0.0 && self.open[0] => write!(f, "a positive number of {b:e} or less"),
-            (a, b) if a == 0.0 && b >= 1e5 => write!(f, "zero or a positive number of {b:e} or less"),
-            (a, b) => {
-                let kind = |open: bool| if open { ", without it" } else { "" };
-                write!(f, "a number from {a}{} to {b}{}", kind(self.open[0]), kind(self.open[1]))
+            (f64::NEG_INFINITY, f64::INFINITY) => f.write_str("a finite number"),
+            (0.0, b) if self.open[0] => {
+                write!(f, "a positive number {} {b}", if self.open[1] { "below" } else { "up to" })
             }
+            (0.0, b) => write!(f, "zero or a positive number up to {b}"),
+            (a, b) if self.open == [true; 2] => write!(f, "a number between {a} and {b}, neither of them"),
+            (a, b) => write!(f, "a number from {a} to {b}"),
         }
     }
 }
@@ -69,6 +69,8 @@ pub enum Kind {
     Files,
     /// "all", an id, ids or { largest = n }.
     Faces,
+    /// "all", an id or ids.
+    Others,
     /// A built-in surface's keys.
     Builtin,
     /// A list of numbers or of points, of any length.
@@ -93,7 +95,7 @@ impl Kind {
         let with = |text: String, unit: &str| if unit.is_empty() { text } else { format!("{text}, {unit}") };
         match self {
             Self::Number(r, unit) => with(r.to_string(), unit),
-            Self::Whole(a, b) if a == b => format!("{a}"),
+            Self::Whole(a, b) if a == b => format!("{a}: this version reads format = {a}"),
             Self::Whole(a, b) => format!("a whole number from {a} to {b}"),
             Self::Sign => "1 or -1".to_owned(),
             Self::NumberOr(r, unit, w) => format!("{} or one of {}", with(r.to_string(), unit), list(w)),
@@ -101,7 +103,7 @@ impl Kind {
             Self::Direction => "a direction: three finite numbers that are not all zero".to_owned(),
             Self::Between(r, unit) => with(format!("two numbers, the lower one first, each {r}"), unit),
             Self::Corners(unit) => {
-                with("six finite numbers: the lower corner and the upper one, x y z each".to_owned(), unit)
+                with("six finite numbers: the lower corner and the upper one, x y z each, as a flat box has no volume".to_owned(), unit)
             }
             Self::Word(w) => format!("one of {}", list(w)),
             Self::Name(names) => format!("one of {}", list(&names())),
@@ -109,6 +111,7 @@ impl Kind {
             Self::File => "the path of a file, relative to the job file".to_owned(),
             Self::Files => "a list of paths, relative to the job file".to_owned(),
             Self::Faces => "\"all\", an id, a list of ids, or { largest = n }".to_owned(),
+            Self::Others => "\"all\", an id or a list of ids".to_owned(),
             Self::Builtin => {
                 "a table with kind and the sizes of a built-in surface (see `gallery`)".to_owned()
             }
@@ -156,19 +159,24 @@ impl Table {
 /// The list of tables that stands for several of `[tool]`.
 pub const TOOLS: &str = "tools";
 
-/// The table of this name; those of `[[tools]]` are those of `[tool]`.
-#[must_use]
-pub fn table(name: &str) -> Option<&'static Table> {
-    let own = match name.strip_prefix(TOOLS) {
+/// The name of a table in the list, where those of `[[tools]]` are those of `[tool]`.
+fn listed(name: &str) -> String {
+    match name.strip_prefix(TOOLS) {
         Some(rest) if rest.is_empty() || rest.starts_with('.') => format!("tool{rest}"),
         _ => name.to_owned(),
-    };
+    }
+}
+
+/// The table of this name.
+#[must_use]
+pub fn table(name: &str) -> Option<&'static Table> {
+    let own = listed(name);
     TABLES.iter().find(|t| t.name == own)
 }
 
 /// Tables that stand directly in a table.
 pub fn tables_in(name: &str) -> impl Iterator<Item = &'static str> {
-    let prefix = if name.is_empty() { String::new() } else { format!("{name}.") };
+    let prefix = if name.is_empty() { String::new() } else { format!("{}.", listed(name)) };
     let own = TABLES.iter().filter_map(move |t| t.name.strip_prefix(prefix.as_str()));
     let tools = name.is_empty().then_some(TOOLS);
     own.filter(|n| !n.is_empty() && !n.contains('.')).chain(tools)

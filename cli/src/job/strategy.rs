@@ -100,6 +100,7 @@ impl Strategy {
 
     /// The strategy of a table, for so many tools.
     pub(super) fn of(places: &Places, t: &raw::Strategy, tools: usize) -> Result<Self, Failure> {
+        left_out(places, t, tools)?;
         let axis = direction(t.axis.unwrap_or([0.0, 0.0, 1.0]));
         let along = match t.along {
             AlongWord::Auto => Along::Auto,
@@ -192,21 +193,28 @@ impl Strategy {
         if tools > 1 && matches!(self.kind, Kind::Drop(_) | Kind::Layers(_) | Kind::Flank) {
             return refuse("kind", format!("{} takes one [tool], not [[tools]]", self.name()));
         }
-        match (self.gouges, t.keep_off_mm) {
-            (Gouges::Report, Some(_)) => {
-                refuse("keep_off_mm", "keep_off_mm needs gouges = \"leave_out\"".to_owned())
-            }
-            (Gouges::LeaveOut, _) if self.is_open() || tools > 1 => refuse(
-                "gouges",
-                "gouges = \"leave_out\" needs one tool and a strategy by name: what is chosen from leaves nothing out"
-                    .to_owned(),
-            ),
-            (Gouges::LeaveOut, _) if matches!(self.kind, Kind::Layers(_) | Kind::Flank) => refuse(
-                "gouges",
-                format!("gouges = \"leave_out\" is for passes of finishing, not for {}", self.name()),
-            ),
-            _ => Ok(()),
+        Ok(())
+    }
+}
+
+/// Refuses places to be left out where nothing can be.
+fn left_out(places: &Places, t: &raw::Strategy, tools: usize) -> Result<(), Failure> {
+    use StrategyWord as W;
+    let refuse = |key: &str, what: String| Err(places.refuse(TABLE, key, what));
+    match (t.gouges, t.keep_off_mm) {
+        (Gouges::Report, Some(_)) => {
+            refuse("keep_off_mm", "keep_off_mm needs gouges = \"leave_out\"".to_owned())
         }
+        (Gouges::LeaveOut, _) if t.kind == W::Auto || tools > 1 => refuse(
+            "gouges",
+            "gouges = \"leave_out\" needs one tool and a strategy by name: what is chosen from leaves nothing out"
+                .to_owned(),
+        ),
+        (Gouges::LeaveOut, _) if [W::ZLevel, W::Flank].contains(&t.kind) => refuse(
+            "gouges",
+            format!("gouges = \"leave_out\" is for passes of finishing, not for {}", t.kind.word()),
+        ),
+        _ => Ok(()),
     }
 }
 

@@ -224,6 +224,14 @@ fn values_arrive() {
     assert_eq!(read.verification().accept, crate::job::Accept::Samples);
     assert!(matches!(read.stock().unwrap().blank, crate::job::Blank::Cylinder { along_mm: [-5.0, 5.0], .. }));
     assert!(read.flank().flipped && read.flank().method.word() == "optimum");
+    let several = BASE
+        .replace("[tool]", "[[tools]]")
+        .replace("10\n", "10\nholder = { diameter_mm = 40, length_mm = 60 }\n");
+    let several =
+        job(&several.replace("[tolerance]", "[[tools]]\nkind = \"flat\"\ndiameter_mm = 4\n[tolerance]"))
+            .unwrap();
+    let numbers: Vec<u32> = several.each_tool().iter().map(|j| j.tool().number()).collect();
+    assert_eq!((numbers, several.holder().map(|h| h.length_mm())), (vec![1, 2], Some(60.0)));
     let (cutting, shank) = read.flutes();
     assert_eq!((cutting.length_mm(), shank.unwrap().length_mm()), (20.0, 30.0));
     // A roughing hops as high as it approaches.

@@ -261,7 +261,9 @@ impl<'de> Deserialize<'de> for LeadKey {
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let all = candidates.into_iter().map(|c| (distance(&lower, &c.to_lowercase()), c));
-    let (changes, best) = all.min_by_key(|(d, _)| *d)?;
+    // Of words as near, the one that begins alike.
+    let alike = |c: &str| c.chars().zip(lower.chars()).take_while(|(a, b)| a == b).count();
+    let (changes, best) = all.min_by_key(|(d, c)| (*d, usize::MAX - alike(c)))?;
     // Beyond half of the letters it is another word.
     (2 * changes <= word.chars().count().max(best.chars().count())).then_some(best)
 }
@@ -296,6 +298,7 @@ mod tests {
         assert_eq!(distance("toriodal", "toroidal"), 1);
         assert_eq!(distance("", "abc"), 3);
         assert_eq!(nearest("Toriodal", ToolKind::WORDS.iter().copied()), Some("toroidal"));
+        assert_eq!(nearest("linux", ["fanuc", "linuxcnc"]), Some("linuxcnc"));
         assert_eq!(nearest("hexapod", ["ball", "flat"]), None);
     }
 }
