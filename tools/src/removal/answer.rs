@@ -6,6 +6,9 @@ use super::tally::Tally;
 use super::trial::Trial;
 use super::verdict::{Answer, Figures, ScopeRow};
 
+/// Sums that exceed a limit by less than this are the limit, rounded.
+const SAME: f64 = 1.0 + 1e-9;
+
 impl Trial<'_> {
     /// What fails at the samples, in words.
     pub fn failings(&self, t: &Tally, height_mm: f64) -> Vec<String> {
@@ -64,7 +67,7 @@ impl Trial<'_> {
         let (scallop, gouge) = (f.hidden.scallop_mm + blend_mm, f.hidden.gouge_mm + blend_mm);
         let limits = &self.limits;
         let at_samples = self.goal.limits.at_samples;
-        if f.height_max_mm + scallop > limits.scallop_mm
+        if f.height_max_mm + scallop > SAME * limits.scallop_mm
             && !(at_samples && f.height_max_mm + blend_mm <= limits.scallop_mm)
         {
             open.push(format!(
@@ -73,7 +76,7 @@ impl Trial<'_> {
             ));
         }
         let gouge_max_mm = f.tally.gouge_max_mm;
-        if gouge_max_mm + gouge > limits.gouge_mm
+        if gouge_max_mm + gouge > SAME * limits.gouge_mm
             && !(at_samples && gouge_max_mm + blend_mm <= limits.gouge_mm)
         {
             open.push(format!(
