@@ -1,0 +1,241 @@
+//! What a verdict must not leave out, through the program as a user runs it: neighbours, raw material, roughing that stops early,
+//! the real face behind a ruled one, tooth marks, the state of the control.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+use common::{Run, Scratch, job, osculate};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+fn plan(job: &Path, out: &Path) -> Run {
+    osculate(&["plan", job.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"])
+}
+
+fn verify(program: &Path, job: &Path) -> Run {
+    osculate(&["verify", program.to_str().unwrap(), "--job", job.to_str().unwrap(), "--json"])
+}
+
+fn why(v: &Value) -> String {
+    v["verdict"]["why"].to_string()
+}
+
+fn answer(v: &Value) -> &str {
+    v["verdict"]["answer"].as_str().unwrap()
+}
+
+/// The same verdict from the plan and from its program.
+fn agree(planned: &Value, verified: &Value) {
+    assert_eq!(planned["verdict"], verified["verdict"]);
+    assert_eq!(planned["verification"]["gouge_max_mm"], verified["gouge_max_mm"]);
+    assert_eq!(planned["verification"]["height_max_mm"], verified["height_max_mm"]);
+}
+
+/// The hub of a propeller alone: the ball goes into the blades beside it, which no key of the job names.
+#[test]
+fn faces_that_the_job_does_not_name_are_checked() {
+    let s = Scratch::new();
+    let part = repository("examples/propeller/propeller.step");
+    let text = |more: &str| {
+        job(|t| {
+            t.replace(
+                "builtin = { kind = \"paraboloid\", a_per_mm = 0.005, b_per_mm = -0.003, half_size_mm = 6 }",
+                &format!("file = '{}'\nfaces = [\"F8\"]\n{more}", part.display()),
+            )
+            .replace("scallop_mm = 0.02", "scallop_mm = 0.1")
+        })
+    };
+    let path = s.write("job.toml", &text(""));
+    let run = plan(&path, &s.path("out"));
+    let v = run.json();
+    assert_eq!((run.code, answer(&v)), (1, "not_held"), "{v}");
+    assert!(why(&v).contains("gouge"), "{}", why(&v));
+    assert!(v["verdict"]["scope"]["other_faces"].as_str().unwrap().contains("checked"), "{v}");
+
+    // The job may say that they may be hit: then the answer is for the one face only, and says so.
+    let path = s.write("hit.toml", &text("may_hit = \"all\""));
+    let out = s.path("hit");
+    let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    assert!(run.out.contains("held for F8 only"), "{}", run.out);
+    assert!(run.out.contains("NOT looked at, as they may be hit"), "{}", run.out);
+}
+
+/// A block that stands far above the part: rapid moves of a finishing go through it, and the plan says so as the verification
+/// does; a mesh that is not there is told before any work.
+#[test]
+fn declared_raw_material_is_judged_by_plans_too() {
+    let s = Scratch::new();
+    let path =
+        s.write("job.toml", &job(|t| t + "[stock]\nbox_mm = [-7, -7, -10, 7, 7, 15]\ncell_mm = 0.5\n"));
+    let run = plan(&path, &s.path("out"));
+    let planned = run.json();
+    assert_eq!((run.code, answer(&planned)), (1, "not_held"));
+    assert!(why(&planned).contains("raw material"), "{}", why(&planned));
+    let run = verify(&s.path("out").join("program.ngc"), &path);
+    assert_eq!(run.code, 1);
+    agree(&planned, &run.json());
+
+    let path = s.write("none.toml", &job(|t| t + "[stock]\nfile = \"missing.stl\"\n"));
+    plan(&path, &s.path("none")).refused(&["missing.stl", "[stock]"]);
+    assert!(!s.path("none").exists());
+}
+
+/// A scallop of 0.15 mm: what stands on the face where no raw material is declared leaves room for the approach, and a declared
+/// layer is judged as it is.
+#[test]
+fn assumed_material_leaves_room_for_approaches() {
+    let s = Scratch::new();
+    let coarse = |more: &str| job(|t| t.replace("scallop_mm = 0.02", "scallop_mm = 0.15") + more);
+    for (name, more, want, code) in [
+        ("open", "", "held", 0),
+        ("layer", "[stock]\nallowance_mm = 3\ncell_mm = 0.5\n", "held", 0),
+        ("low", "[setup]\napproach_mm = 2\n[stock]\nallowance_mm = 3\ncell_mm = 0.5\n", "not_held", 1),
+    ] {
+        let path = s.write(&format!("{name}.toml"), &coarse(more));
+        let run = plan(&path, &s.path(name));
+        let v = run.json();
+        assert_eq!((answer(&v), run.code), (want, code), "{name}: {v}");
+        if want == "not_held" {
+            assert!(why(&v).contains("rapid"), "{}", why(&v));
+        }
+    }
+}
+
+/// A roughing that stops after a third of its program leaves most of the part uncut; the whole one holds its own limit.
+#[test]
+fn a_roughing_that_stops_early_does_not_hold() {
+    let s = Scratch::new();
+    let job = repository("examples/m86-rough/job.toml");
+    let run = plan(&job, &s.path("out"));
+    let planned = run.json();
+    assert_eq!((run.code, answer(&planned)), (0, "held"), "{planned}");
+    let text = std::fs::read_to_string(s.path("out").join("program.nc")).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let cut = lines[..lines.len() * 3 / 10].join("\n") + "\nM30\n%\n";
+    let run = verify(&s.write("cut.nc", &cut), &job);
+    let v = run.json();
+    assert_eq!((run.code, answer(&v)), (1, "not_held"));
+    assert!(why(&v).contains("uncut"), "{}", why(&v));
+    assert!(v["uncut_area_mm2"].as_f64().unwrap() > 5000.0, "{v}");
+}
+
+/// Flank milling is judged on the face itself and not on the ruled one that stands for it while it is planned.
+#[test]
+fn flank_milling_is_judged_on_the_real_face() {
+    let s = Scratch::new();
+    let job = repository("examples/centrifugal-blade/job.toml");
+    let out = s.path("out");
+    let run = osculate(&["flank", job.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(run.code, 1, "{}{}", run.out, run.err);
+    let planned: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(answer(&planned), "not_held");
+    assert!(planned["verification"]["uncut_area_mm2"].as_f64().unwrap() > 100.0);
+    let run = verify(&out.join("program.mpf"), &job);
+    assert_eq!(run.code, 1);
+    agree(&planned, &run.json());
+}
+
+/// 500 rpm, one tooth and 2000 mm/min are 4 mm a tooth: the plan goes slower, and the same program at that feed leaves marks that
+/// the verdict counts. `R - sqrt(R^2 - f^2/4)` is 0.76 mm on a plane.
+#[test]
+fn tooth_marks_belong_to_the_scallop() {
+    let s = Scratch::new();
+    let text = job(|t| {
+        t.replace(
+            "kind = \"paraboloid\", a_per_mm = 0.005, b_per_mm = -0.003, half_size_mm = 6",
+            "kind = \"sphere\", radius_mm = 60, material = \"inside\", u_range = [-0.1, 0.1], v_range = [-0.1, 0.1]",
+        )
+        .replace("diameter_mm = 10", "diameter_mm = 6\nteeth = 1")
+        .replace("spindle_rpm = 8000", "spindle_rpm = 500")
+        .replace("scallop_mm = 0.02", "scallop_mm = 0.005")
+        .replace("gouge_mm = 0.005\n", "gouge_mm = 0.0025\n")
+        .replace("chord_mm = 0.003", "chord_mm = 0.001")
+        .replace("max_samples = 20000", "max_samples = 60000")
+    });
+    let path = s.write("job.toml", &text);
+    let run = plan(&path, &s.path("out"));
+    let v = run.json();
+    assert_eq!((answer(&v), run.code), ("held", 0), "{v}");
+    let mark = v["verification"]["tooth_mark_max_mm"].as_f64().unwrap();
+    assert!(mark > 0.001 && mark < 0.005, "{mark}");
+    let program = std::fs::read_to_string(s.path("out").join("program.ngc")).unwrap();
+    let feed = |line: &str| line.split_whitespace().find_map(|w| w.strip_prefix('F')?.parse::<f64>().ok());
+    let fastest = program.lines().filter_map(feed).fold(0.0, f64::max);
+    assert!(fastest > 0.0 && fastest < 200.0, "{fastest}");
+    // The same way at 2000 mm/min.
+    let fast: Vec<String> = program
+        .lines()
+        .map(|l| {
+            let words = l.split_whitespace().map(|w| match w.strip_prefix('F').map(str::parse::<f64>) {
+                Some(Ok(_)) => "F2000".to_owned(),
+                _ => w.to_owned(),
+            });
+            words.collect::<Vec<_>>().join(" ")
+        })
+        .collect();
+    let run = verify(&s.write("fast.ngc", &(fast.join("\n") + "\n")), &path);
+    let v = run.json();
+    assert_eq!((answer(&v), run.code), ("not_held", 1), "{v}");
+    assert!(why(&v).contains("tooth mark"), "{}", why(&v));
+    let mark = v["tooth_mark_max_mm"].as_f64().unwrap();
+    assert!(mark > 0.4 && mark < 0.9, "{mark}");
+}
+
+/// Faults of state that move no axis: none may pass.
+#[test]
+fn a_program_in_another_state_of_the_control_does_not_hold() {
+    let s = Scratch::new();
+    let path = s.write("job.toml", &job(|t| t));
+    let run = plan(&path, &s.path("out"));
+    assert_eq!(answer(&run.json()), "held", "{}", run.out);
+    let text = std::fs::read_to_string(s.path("out").join("program.ngc")).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let middle = lines.len() / 2;
+    let insert = |what: &str| [&lines[..middle], &[what], &lines[middle..]].concat().join("\n") + "\n";
+    let replace = |from: &str, to: &str| {
+        assert!(text.contains(from), "'{from}' is not in the program");
+        text.replacen(from, to, 1)
+    };
+    let skipped: Vec<String> = lines
+        .iter()
+        .enumerate()
+        .map(|(k, l)| if (middle..middle + 30).contains(&k) { format!("/{l}") } else { (*l).to_owned() })
+        .collect();
+    let faults = [
+        ("no length", replace("G43 H1", ""), "not_held"),
+        ("length off amid", insert("G49"), "not_held"),
+        ("another length", replace("G43 H1", "G43 H2"), "not_held"),
+        ("another tool", replace("T1 M6", "T7 M6"), "not_held"),
+        ("another offset", replace("G54", "G55"), "not_held"),
+        ("no spindle", replace("S8000 M3", ""), "not_held"),
+        ("spindle off amid", insert("M5"), "not_held"),
+        ("wide corners", insert("G64 P0.5"), "not_shown"),
+        ("skipped blocks", skipped.join("\n") + "\n", "not_shown"),
+    ];
+    for (name, program, want) in faults {
+        let file = s.write("fault.ngc", &program);
+        let run = verify(&file, &path);
+        let v = run.json();
+        assert_eq!((answer(&v), run.code), (want, 1), "{name}: {v}");
+        assert!(!why(&v).is_empty());
+    }
+    // What says the same in other words changes nothing.
+    // Comments stay: the head of the program says there where the part sits.
+    let wide = |l: &&str| if l.starts_with('(') { (*l).to_owned() } else { l.replace(' ', "  ") };
+    let spaced = lines.iter().map(wide).collect::<Vec<_>>().join("\n").replace("G54", "G54 (offset)") + "\n";
+    let number = |(k, l): (usize, &&str)| {
+        if l.starts_with(['(', '%']) { (*l).to_owned() } else { format!("N{} {l}", 10 * k) }
+    };
+    let numbered: Vec<String> = lines.iter().enumerate().map(number).collect();
+    let right = verify(&s.path("out").join("program.ngc"), &path).json();
+    for program in [spaced, numbered.join("\n") + "\n"] {
+        let v = verify(&s.write("same.ngc", &program), &path).json();
+        assert_eq!(v["verdict"]["answer"], right["verdict"]["answer"]);
+        assert_eq!(v["height_max_mm"], right["height_max_mm"]);
+    }
+}
