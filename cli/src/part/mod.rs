@@ -194,6 +194,8 @@ pub struct JobFaces {
     pub unseen: Vec<Unseen>,
     /// The check faces as hops see them, once they are asked for.
     pub walls: OnceLock<Arc<Walls>>,
+    /// Wall time of reading it, s; zero where nobody measured it.
+    pub import_s: f64,
 }
 
 impl JobFaces {
@@ -259,7 +261,7 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
             !open.contains(&(k - 1))
         });
     }
-    Ok(JobFaces { part, faces, check, unseen, walls: OnceLock::new() })
+    Ok(JobFaces { part, faces, check, unseen, walls: OnceLock::new(), import_s: 0.0 })
 }
 
 /// A face that two keys of a job name for different things.

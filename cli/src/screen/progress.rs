@@ -116,4 +116,12 @@ impl Watch for Screen {
     fn wants_partial(&self) -> bool {
         held(&self.folder).is_some()
     }
+
+    fn temporary(&self, file: &Path) {
+        cancel::temporary(file);
+    }
+
+    fn settled(&self, file: &Path) {
+        cancel::settled(file);
+    }
 }
