@@ -43,7 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Passes at nine tenths of the strip or less, so that chords have room below the tolerance; 160 chords each, to and fro.
     let path = |passes: usize| -> Result<Vec<Swept>, ContactError> {
-        let along = |k: usize| if k / 161 % 2 == 0 { k % 161 } else { 160 - k % 161 } as f64 / 160.0;
+        let along =
+            |k: usize| if (k / 161).is_multiple_of(2) { k % 161 } else { 160 - k % 161 } as f64 / 160.0;
         let at = |k: usize| uv(40.0 * along(k), 10.0 * (k / 161) as f64 / (passes - 1) as f64);
         let poses: Result<Vec<Pose>, _> =
             (0..161 * passes).map(|k| contact(at(k)).map(|c| c.pose())).collect();
