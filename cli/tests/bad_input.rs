@@ -27,7 +27,7 @@ fn wrong_usage_is_exit_code_two() {
 #[test]
 fn files_that_are_no_parts() {
     let scratch = Scratch::new();
-    let inspect = |path: &std::path::Path| osculate(&["inspect", path.to_str().unwrap()]);
+    let inspect = |path: &Path| osculate(&["inspect", path.to_str().unwrap()]);
     inspect(&scratch.path("nothing.igs")).refused(&["nothing.igs", "cannot be read"]);
     inspect(&scratch.write("empty.step", "")).refused(&["empty.step", "empty"]);
     inspect(&scratch.write("prose.step", "It was a dark and stormy night.\n"))
