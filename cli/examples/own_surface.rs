@@ -43,12 +43,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Passes at nine tenths of the strip or less, so that chords have room below the tolerance; 160 chords each, to and fro.
     let path = |passes: usize| -> Result<Vec<Swept>, ContactError> {
-        let along =
-            |k: usize| if (k / 161).is_multiple_of(2) { k % 161 } else { 160 - k % 161 } as f64 / 160.0;
-        let at = |k: usize| uv(40.0 * along(k), 10.0 * (k / 161) as f64 / (passes - 1) as f64);
-        let poses: Result<Vec<Pose>, _> =
-            (0..161 * passes).map(|k| contact(at(k)).map(|c| c.pose())).collect();
-        let poses = poses?;
+        let mut poses: Vec<Pose> = Vec::new();
+        for (pass, chord) in (0..161 * passes).map(|k| (k / 161, k % 161)) {
+            let u = 0.25 * if pass.is_multiple_of(2) { chord } else { 160 - chord } as f64;
+            poses.push(contact(uv(u, 10.0 * pass as f64 / (passes - 1) as f64))?.pose());
+        }
         let pairs = poses.windows(2).zip(1..);
         Ok(pairs.map(|(p, block)| Swept { from: p[0], to: p[1], rapid: false, block }).collect())
     };

@@ -100,8 +100,7 @@ pub mod work;
 pub use failure::Failure;
 pub use job::Job;
 pub use osculate_tools::removal::{Answer, Verdict};
-#[doc(inline)]
-pub use part::JobFaces as Part;
+pub use part::Part;
 pub use watch::Watch;
 pub use work::check::verify;
 pub use work::plan::{Plan, PlanFile, plan};

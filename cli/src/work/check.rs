@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::JobFaces;
+use crate::part::Part;
 use crate::watch::{Stage, Watch};
 use crate::work::reading::{self, Read};
 use crate::work::verify::{self, Verified};
@@ -34,7 +34,7 @@ pub struct Checked {
 /// # Errors
 /// Where the job has several tools and none of them is in hand, and where the text cannot be read or judged. A program that
 /// does not hold is no failure: its verdict says so.
-pub fn check(part: &JobFaces, job: &Job, source: &Source<'_>, watch: &dyn Watch) -> Result<Checked, Failure> {
+pub fn check(part: &Part, job: &Job, source: &Source<'_>, watch: &dyn Watch) -> Result<Checked, Failure> {
     job.one_tool()?;
     let read =
         reading::read(source.file, source.text, job, part, source.lenient).map_err(|why| part.warned(why))?;
@@ -54,7 +54,7 @@ pub fn check(part: &JobFaces, job: &Job, source: &Source<'_>, watch: &dyn Watch)
 ///
 /// # Errors
 /// As [`check()`].
-pub fn verify(part: &JobFaces, job: &Job, program: &str) -> Result<Verified, Failure> {
+pub fn verify(part: &Part, job: &Job, program: &str) -> Result<Verified, Failure> {
     let source = Source { file: Path::new("the program"), text: program, lenient: false };
     Ok(check(part, job, &source, &())?.verified)
 }

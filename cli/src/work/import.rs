@@ -2,11 +2,11 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::{self, JobFaces};
+use crate::part::{self, Part};
 use crate::watch::{Stage, Watch};
 use crate::work::flank::face::judged;
 
-impl JobFaces {
+impl Part {
     /// Reads the part of a job and chooses the faces that the job works on.
     ///
     /// # Errors

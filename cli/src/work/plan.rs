@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::job::strategy::Kind;
 use crate::job::{Job, LeadKey};
-use crate::part::{self, JobFaces};
+use crate::part::{self, JobFaces, Part};
 use crate::report::fill::{self, Story};
 use crate::watch::{Stage, Watch};
 use crate::work::choice::{self, Choice, Row};
@@ -111,7 +111,7 @@ fn not_planned(job: &Job) -> Failure {
 ///
 /// # Errors
 /// Where no path can be planned or posted. A plan that does not hold is none: its verdict says so.
-pub fn plan(part: &JobFaces, job: &Job, watch: &dyn Watch) -> Result<Plan, Failure> {
+pub fn plan(part: &Part, job: &Job, watch: &dyn Watch) -> Result<Plan, Failure> {
     let mut wall_s = WallS { import: part.import_s, ..WallS::default() };
     if job.is_open() {
         let (job, chosen) = chosen(job, part, &mut wall_s, watch).map_err(|why| part.warned(why))?;
