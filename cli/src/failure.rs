@@ -5,13 +5,16 @@ use osculate_geom::{Diagnostic, Severity};
 use std::path::{Path, PathBuf};
 
 /// A command that cannot be done, with the message for the user.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// Exit code 1: the job cannot be done as asked.
+    #[error("{0}")]
     Job(String),
     /// Exit code 1: a key or value of a job cannot be meant.
+    #[error("{}", .0.message)]
     Input(Box<Problem>),
     /// Exit code 2: wrong usage.
+    #[error("{0}")]
     Usage(String),
 }
 

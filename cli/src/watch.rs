@@ -1,8 +1,9 @@
 //! Who hears how work goes on: stages, fractions, and what a run that is stopped can save.
 //!
-//! The library prints nothing and writes no file by itself. Work of a second or more names its stages to a [`Watch`];
+//! The library prints nothing and writes no file that it is not asked for. Work of a second or more names its stages to a [`Watch`];
 //! `()` is one that listens to nothing.
 
+use std::path::Path;
 use std::time::Instant;
 
 /// Makes the text of what is finished of a path.
@@ -26,6 +27,12 @@ pub trait Watch: Sync {
     fn wants_partial(&self) -> bool {
         false
     }
+
+    /// A file under a temporary name that must not stay where the run is stopped.
+    fn temporary(&self, _file: &Path) {}
+
+    /// That file has its final name, or is gone.
+    fn settled(&self, _file: &Path) {}
 }
 
 /// Nobody listens.

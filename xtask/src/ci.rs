@@ -11,12 +11,13 @@ struct Step {
 }
 
 /// The steps in the order in which they run.
-const STEPS: [Step; 5] = [
+const STEPS: [Step; 6] = [
     Step { name: "format", action: |root| run_command(cargo(root, &["fmt", "--all", "--check"])) },
     Step { name: "tidy", action: |_| crate::tidy::run() },
     Step { name: "clippy", action: clippy },
     Step { name: "documentation", action: documentation },
     Step { name: "test", action: |_| crate::test::run(&[]) },
+    Step { name: "examples", action: crate::test::examples },
 ];
 
 /// Runs every step; stops at the first failure.

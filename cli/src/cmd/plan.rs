@@ -5,13 +5,10 @@ use crate::screen::progress::SCREEN;
 use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::job::Job;
-use osculate::part;
-use osculate::watch::Stage;
 use osculate::words::{Table, findings, number};
 use osculate::work::choice;
-use osculate::work::flank::face::judged;
-use osculate::work::plan::{self, Plan, plan};
-use osculate::work::verify::Verified;
+use osculate::work::plan::check;
+use osculate::{Part, Plan, Verified, plan};
 use std::io::IsTerminal;
 use std::path::Path;
 
@@ -19,12 +16,10 @@ use std::path::Path;
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     output::folder(out)?;
     let job = Job::load(path)?;
-    plan::check(&job)?;
-    let stage = Stage::begin(&SCREEN, "import");
-    let faces = judged(&job, part::of_job(&job)?)?;
-    let import_s = stage.end();
+    check(&job)?;
+    let part = Part::watched(&job, &SCREEN)?;
     SCREEN.saves_into(out);
-    let plan = plan(&job, &faces, import_s, &SCREEN)?;
+    let plan = plan(&part, &job, &SCREEN)?;
     write(&plan, out)?;
     if json {
         render::json(&plan.summary)?;
@@ -37,9 +32,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
 /// Writes the files of a plan. A stop waits until all of them are there.
 pub fn write(plan: &Plan, out: &Path) -> Result<(), Failure> {
     let whole = cancel::whole();
-    for file in &plan.files {
-        output::write(&out.join(&file.name), file.text.as_bytes())?;
-    }
+    plan.write_watched(out, &SCREEN)?;
     // What an earlier run saved when it was stopped is out of date.
     let _ = std::fs::remove_file(out.join(cancel::PARTIAL));
     drop(whole);

@@ -2,16 +2,14 @@
 
 use crate::screen::progress::SCREEN;
 use crate::screen::{output, render};
+use osculate::Part;
 use osculate::failure::{Done, Failure, Outcome, read_text};
 use osculate::job::Job;
-use osculate::part;
-use osculate::watch::Stage;
 use osculate::words::{self, Table, number};
-use osculate::work::flank::face::judged;
+use osculate::work::check::{Checked, Source, check};
+use osculate::work::ply;
 use osculate::work::stock::StockSummary;
-use osculate::work::verify::{self, HistogramBin, VerdictKeys, Verification, Verified, WorstPlace};
-use osculate::work::{ply, reading};
-use osculate_geom::Diagnostic;
+use osculate::work::verify::{HistogramBin, VerdictKeys, Verification, Verified, WorstPlace};
 use serde::Serialize;
 use std::path::Path;
 
@@ -46,17 +44,11 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         return Err(Failure::file(job_path, text));
     }
     let text = read_text(file)?;
-    let faces = judged(&job, part::of_job(&job)?)?;
-    let mut diagnostics: Vec<Diagnostic> = faces.part.diagnostics.clone();
-    let read =
-        reading::read(file, &text, &job, &faces, options.lenient).map_err(|why| why.warned(&diagnostics))?;
-    diagnostics.extend(read.diagnostics.iter().cloned());
-    let stage = Stage::begin(&SCREEN, "verify");
-    let v = verify::run(&job, &faces, read.motions.reading(read.source), &|f| stage.at(f))?;
-    let wall = stage.end();
-    diagnostics.extend(v.diagnostics.iter().cloned());
+    let part = Part::of(&job)?;
+    let source = Source { file, text: &text, lenient: options.lenient };
+    let Checked { verified: v, read, wall_s } = check(&part, &job, &source, &SCREEN)?;
     if let Some(path) = options.ply {
-        output::write(path, &ply::bytes(&job, &faces, &read.motions.motions, v.summary.spacing_mm)?)?;
+        output::write(path, &ply::bytes(&job, &part, &read.motions.motions, v.summary.spacing_mm)?)?;
     }
     if let (Some(path), Some(stock)) = (options.blocks, &v.stock) {
         output::write(path, stock.csv().as_bytes())?;
@@ -69,16 +61,16 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
             confidence: v.summary.confidence(),
             histogram: v.histogram.clone(),
             stock: v.stock.clone(),
-            diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
+            diagnostics: v.diagnostics.iter().map(ToString::to_string).collect(),
         })?;
     } else {
-        render::text(&told(&v, wall, &diagnostics));
+        render::text(&told(&v, wall_s));
     }
     Ok(if v.verdict.is_held() { Done::Yes } else { Done::NotWithinTolerance })
 }
 
 /// A verification as its screen shows it.
-fn told(v: &Verified, wall_s: f64, diagnostics: &[Diagnostic]) -> String {
+fn told(v: &Verified, wall_s: f64) -> String {
     let mut text = format!(
         "\n{}\n{}\n  {}\n  wall time {wall_s:.2} s\n\n{}",
         figures(&v.summary),
@@ -105,8 +97,8 @@ fn told(v: &Verified, wall_s: f64, diagnostics: &[Diagnostic]) -> String {
     if let Some(s) = &v.stock {
         text += &format!("\n{}", stock_text(s));
     }
-    if !diagnostics.is_empty() {
-        text += &format!("\n{}", words::findings(diagnostics));
+    if !v.diagnostics.is_empty() {
+        text += &format!("\n{}", words::findings(&v.diagnostics));
     }
     text + "\n"
 }

@@ -45,7 +45,8 @@ const SHARES: [f64; 2] = [0.5, 0.2];
 #[derive(Debug, Clone)]
 pub struct Job {
     told: Arc<Told>,
-    hand: usize,
+    /// None until one of them is taken: the first, which is the only one of most jobs.
+    hand: Option<usize>,
 }
 
 /// What a file tells.
@@ -217,7 +218,7 @@ impl Job {
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {
         let places = check::places(text, path)?;
         let raw: Raw = toml::from_str(text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
-        Ok(Self { told: Arc::new(Told::of(places, &raw)?), hand: 0 })
+        Ok(Self { told: Arc::new(Told::of(places, &raw)?), hand: None })
     }
 
     /// The job of a file.
@@ -234,11 +235,20 @@ impl Job {
     /// As [`Job::from_toml`], and where there are several tools.
     pub fn load_with_one_tool(path: &Path) -> Result<Self, Failure> {
         let job = Self::load(path)?;
-        if job.told.tools.len() > 1 {
-            let what = "has several [[tools]] where one is needed: copy the job with the one meant as [tool]";
-            return Err(job.refuse("", schema::TOOLS, what));
-        }
+        job.one_tool()?;
         Ok(job)
+    }
+
+    /// Refuses a job of several tools of which none is in hand.
+    ///
+    /// # Errors
+    /// Where there are several; a job of [`Job::each_tool`], and that of a plan, has one in hand.
+    pub fn one_tool(&self) -> Result<(), Failure> {
+        if self.told.tools.len() > 1 && self.hand.is_none() {
+            let what = "has several [[tools]] where one is needed: copy the job with the one meant as [tool]";
+            return Err(self.refuse("", schema::TOOLS, what));
+        }
+        Ok(())
     }
 
     /// All tables and keys of job files: what the checks, the reference and the template are made of.
@@ -256,7 +266,9 @@ impl Job {
     /// The job once with each of its tools in hand.
     #[must_use]
     pub fn each_tool(&self) -> Vec<Self> {
-        (0..self.told.tools.len()).map(|hand| Self { told: Arc::clone(&self.told), hand }).collect()
+        (0..self.told.tools.len())
+            .map(|hand| Self { told: Arc::clone(&self.told), hand: Some(hand) })
+            .collect()
     }
 
     /// The file it came from.
@@ -280,7 +292,7 @@ impl Job {
     /// The tool in hand.
     #[must_use]
     pub fn tool(&self) -> &Tool {
-        &self.told.tools[self.hand]
+        &self.told.tools[self.hand.unwrap_or(0)]
     }
 
     /// The tool in hand in words, as tables show it.
@@ -363,13 +375,13 @@ impl Job {
     /// The feed of the tool in hand, capped by the feed per tooth where the job gives one.
     #[must_use]
     pub fn feed_mm_min(&self) -> f64 {
-        self.told.feeds_mm_min[self.hand]
+        self.told.feeds_mm_min[self.hand.unwrap_or(0)]
     }
 
     /// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
     #[must_use]
     pub fn layer_mm(&self) -> f64 {
-        self.told.layers_mm[self.hand]
+        self.told.layers_mm[self.hand.unwrap_or(0)]
     }
 
     /// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.

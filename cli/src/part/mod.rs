@@ -182,8 +182,8 @@ pub fn built_in(keys: &str) -> Result<Loaded, Failure> {
     from_builtin(builtin::parse(keys).map_err(Failure::Usage)?)
 }
 
-/// The faces that a job works on.
-pub struct JobFaces {
+/// The part of a job: its faces, and which of them the job works on.
+pub struct Part {
     /// The whole part.
     pub part: Loaded,
     /// Faces to machine.
@@ -194,9 +194,14 @@ pub struct JobFaces {
     pub unseen: Vec<Unseen>,
     /// The check faces as hops see them, once they are asked for.
     pub walls: OnceLock<Arc<Walls>>,
+    /// Wall time of reading it, s; zero where nobody measured it.
+    pub import_s: f64,
 }
 
-impl JobFaces {
+/// The name by which the stages of the work know it.
+pub type JobFaces = Part;
+
+impl Part {
     /// A failure with what was warned of when the part was read: it may be why.
     pub fn warned(&self, why: Failure) -> Failure {
         why.warned(&self.part.diagnostics)
@@ -204,7 +209,7 @@ impl JobFaces {
 }
 
 /// The faces of a job, with their material sides settled.
-pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
+pub fn of_job(job: &Job) -> Result<Part, Failure> {
     let here = |e: Failure| Failure::file(job.path(), format!("[part] {}", e.message()));
     let mut part = match job.part().source() {
         Source::File { path, unit_mm } => whole(from_file(path, *unit_mm)?)?,
@@ -259,7 +264,7 @@ pub fn of_job(job: &Job) -> Result<JobFaces, Failure> {
             !open.contains(&(k - 1))
         });
     }
-    Ok(JobFaces { part, faces, check, unseen, walls: OnceLock::new() })
+    Ok(Part { part, faces, check, unseen, walls: OnceLock::new(), import_s: 0.0 })
 }
 
 /// A face that two keys of a job name for different things.

@@ -1,9 +1,10 @@
 //! Progress bars on stderr for work that takes over a second, where stderr is a terminal; with `--progress` a line for
 //! every per cent instead, wherever it goes.
 
-use crate::screen::{cancel, output};
+use crate::screen::cancel;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use osculate::failure::Failure;
+use osculate::files;
 use osculate::watch::{PartialText, Watch};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -108,12 +109,20 @@ impl Watch for Screen {
         let Some(folder) = held(&self.folder).clone() else { return };
         let file = folder.join(cancel::PARTIAL);
         cancel::keep(Box::new(move || {
-            output::write(&file, text().map_err(Failure::job)?.as_bytes())?;
+            files::write(&file, text().map_err(Failure::job)?.as_bytes(), &SCREEN)?;
             Ok(format!("{} has {what}, not posted and not verified", file.display()))
         }));
     }
 
     fn wants_partial(&self) -> bool {
         held(&self.folder).is_some()
+    }
+
+    fn temporary(&self, file: &Path) {
+        cancel::temporary(file);
+    }
+
+    fn settled(&self, file: &Path) {
+        cancel::settled(file);
     }
 }

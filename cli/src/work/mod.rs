@@ -1,12 +1,14 @@
 //! From a job to a program and its proof: choosing, passes, posting, verification, and what is told of them.
 
 pub mod budget;
+pub mod check;
 pub mod choice;
 pub mod drop;
 pub mod extras;
 pub mod flank;
 pub mod goal;
 pub mod ideal;
+pub mod import;
 pub mod left_out;
 pub mod look;
 pub mod nc;

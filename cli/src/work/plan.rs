@@ -1,9 +1,10 @@
 //! The main job, from the part to a verified NC program with a report.
 
 use crate::failure::Failure;
+use crate::files;
 use crate::job::strategy::Kind;
 use crate::job::{Job, LeadKey};
-use crate::part::{self, JobFaces};
+use crate::part::{self, JobFaces, Part};
 use crate::report::fill::{self, Story};
 use crate::watch::{Stage, Watch};
 use crate::work::choice::{self, Choice, Row};
@@ -15,6 +16,8 @@ use crate::work::{drop, ideal, left_out, rough};
 use osculate_geom::Diagnostic;
 use osculate_productivity::levels::{Totals, levels};
 use osculate_tools::Lean;
+use osculate_tools::removal::Verdict;
+use std::path::Path;
 
 /// A file of a plan, by its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,6 +30,8 @@ pub struct PlanFile {
 
 /// A plan with its program, what was proved of it, and the pages that a person looks at.
 pub struct Plan {
+    /// The job, with the tool in hand that the plan is for.
+    pub job: Job,
     /// The figures.
     pub summary: Summary,
     /// What verification of the program measured.
@@ -50,7 +55,44 @@ impl Plan {
         let program = self.files.iter().find(|f| f.name.starts_with("program."));
         program.map_or("", |f| f.text.as_str())
     }
+
+    /// What was proved of the program: the answer with its scope.
+    #[must_use]
+    pub const fn verdict(&self) -> &Verdict {
+        &self.verified.verdict
+    }
+
+    /// The report, a page of HTML that needs nothing beside it.
+    #[must_use]
+    pub fn report(&self) -> &str {
+        self.file(REPORT).unwrap_or_default()
+    }
+
+    /// CL data, program, report, pictures and summary.
+    #[must_use]
+    pub fn files(&self) -> &[PlanFile] {
+        &self.files
+    }
+
+    /// Writes all files into a folder, which is made where it is not there. Each appears whole or not at all.
+    ///
+    /// # Errors
+    /// Where one cannot be written; those before it are there then.
+    pub fn write(&self, folder: &Path) -> Result<(), Failure> {
+        self.write_watched(folder, &())
+    }
+
+    /// As [`write`](Self::write), with somebody who hears of temporary files.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_watched(&self, folder: &Path, watch: &dyn Watch) -> Result<(), Failure> {
+        self.files.iter().try_for_each(|f| files::write(&folder.join(&f.name), f.text.as_bytes(), watch))
+    }
 }
+
+/// The name of the report.
+const REPORT: &str = "report.html";
 
 /// Refuses a job that is for another verb, before its part is read.
 ///
@@ -65,20 +107,20 @@ fn not_planned(job: &Job) -> Failure {
     job.refuse("strategy", "kind", format!("kind = \"{name}\" is not planned here: it is for the verb flank"))
 }
 
-/// Plans a job on its faces.
+/// Plans a job on its part, posts the path, verifies the program and makes the report.
 ///
 /// # Errors
 /// Where no path can be planned or posted. A plan that does not hold is none: its verdict says so.
-pub fn plan(job: &Job, faces: &JobFaces, import_s: f64, watch: &dyn Watch) -> Result<Plan, Failure> {
-    let mut wall_s = WallS { import: import_s, ..WallS::default() };
+pub fn plan(part: &Part, job: &Job, watch: &dyn Watch) -> Result<Plan, Failure> {
+    let mut wall_s = WallS { import: part.import_s, ..WallS::default() };
     if job.is_open() {
-        let (job, chosen) = chosen(job, faces, &mut wall_s, watch).map_err(|why| faces.warned(why))?;
-        return chosen.told(&job, faces, wall_s, watch);
+        let (job, chosen) = chosen(job, part, &mut wall_s, watch).map_err(|why| part.warned(why))?;
+        return chosen.told(&job, part, wall_s, watch);
     }
     let stage = Stage::begin(watch, "plan");
-    let planned = planned(job, faces, watch, &|f| stage.at(f)).map_err(|why| faces.warned(why))?;
+    let planned = planned(job, part, watch, &|f| stage.at(f)).map_err(|why| part.warned(why))?;
     wall_s.plan = stage.end();
-    prove(job, faces, planned, wall_s, watch)
+    prove(job, part, planned, wall_s, watch)
 }
 
 /// Posts a path that is planned already, verifies the program and tells everything.
@@ -211,14 +253,14 @@ impl Proved<'_> {
         let mut files = vec![
             PlanFile { name: "path.cl".to_owned(), text: cl_text },
             PlanFile { name: format!("program.{}", control.extension), text: program.text },
-            PlanFile { name: "report.html".to_owned(), text: pages.html },
+            PlanFile { name: REPORT.to_owned(), text: pages.html },
             PlanFile { name: "picture.svg".to_owned(), text: pages.svg },
             PlanFile { name: "path.svg".to_owned(), text: pages.path_svg },
         ];
         summary.wall_s.report = stage.end();
         let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
         files.push(PlanFile { name: "summary.json".to_owned(), text });
-        Ok(Plan { summary, verified, diagnostics, files })
+        Ok(Plan { job: job.clone(), summary, verified, diagnostics, files })
     }
 }
 

@@ -1,0 +1,60 @@
+//! Verification of a program that somebody hands in, as text: read, then judged against the goal of the job.
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::part::Part;
+use crate::watch::{Stage, Watch};
+use crate::work::reading::{self, Read};
+use crate::work::verify::{self, Verified};
+use std::path::Path;
+
+/// A program or CL data as it is handed in.
+#[derive(Debug, Clone, Copy)]
+pub struct Source<'a> {
+    /// Where it is from, for messages. The ending may say that it is CL data; otherwise the text says it.
+    pub file: &'a Path,
+    /// What stands in it.
+    pub text: &'a str,
+    /// Skip words that are not understood.
+    pub lenient: bool,
+}
+
+/// A program that was read and judged.
+pub struct Checked {
+    /// What was measured, with all findings from the part to the verdict.
+    pub verified: Verified,
+    /// What the program does.
+    pub read: Read,
+    /// Wall time of the judgement, s.
+    pub wall_s: f64,
+}
+
+/// Reads a program or CL data and judges it.
+///
+/// # Errors
+/// Where the job has several tools and none of them is in hand, and where the text cannot be read or judged. A program that
+/// does not hold is no failure: its verdict says so.
+pub fn check(part: &Part, job: &Job, source: &Source<'_>, watch: &dyn Watch) -> Result<Checked, Failure> {
+    job.one_tool()?;
+    let read =
+        reading::read(source.file, source.text, job, part, source.lenient).map_err(|why| part.warned(why))?;
+    let stage = Stage::begin(watch, "verify");
+    let mut verified = verify::run(job, part, read.motions.reading(read.source), &|f| stage.at(f))?;
+    let wall_s = stage.end();
+    let of_stock = std::mem::take(&mut verified.diagnostics);
+    verified.diagnostics =
+        part.part.diagnostics.iter().chain(&read.diagnostics).cloned().chain(of_stock).collect();
+    Ok(Checked { verified, read, wall_s })
+}
+
+/// Judges the text of an NC program, or of CL data, against the job.
+///
+/// The text alone counts, whoever wrote it. The program of a [`Plan`](crate::work::plan::Plan) gets the verdict of that plan
+/// again, byte for byte.
+///
+/// # Errors
+/// As [`check()`].
+pub fn verify(part: &Part, job: &Job, program: &str) -> Result<Verified, Failure> {
+    let source = Source { file: Path::new("the program"), text: program, lenient: false };
+    Ok(check(part, job, &source, &())?.verified)
+}
