@@ -8,7 +8,7 @@ use serde_json::Value;
 fn trough(strategy: &str) -> String {
     job(|t| {
         let t = t.replace("a_per_mm = 0.005, b_per_mm = -0.003", "a_per_mm = 0.06, b_per_mm = 0.0");
-        t.replace("diameter_mm = 10", "diameter_mm = 18")
+        t.replace("diameter_mm = 10", "diameter_mm = 18\nteeth = 4")
             .replace("lead_deg = 15", &format!("lead_deg = 0\nalong = \"v\"\n{strategy}"))
     })
 }

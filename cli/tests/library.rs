@@ -38,9 +38,11 @@ fn a_program_is_judged_with_the_tool_that_the_plan_chose() {
     assert_eq!(plan.job.tool().number(), 2);
     let again = osculate::verify(&part, &plan.job, plan.program()).unwrap();
     assert_eq!(again.verdict.to_string(), plan.verdict().to_string());
-    // The first tool of a list is not meant where nobody says so.
-    let refused = osculate::verify(&part, &job, plan.program()).err().unwrap();
-    assert!(refused.to_string().contains("several [[tools]]"), "{refused}");
+    // Where none is in hand the program says which is meant, by its T.
+    let called = osculate::verify(&part, &job, plan.program()).unwrap();
+    assert_eq!(called.verdict.to_string(), plan.verdict().to_string());
+    let refused = osculate::verify(&part, &job, &plan.program().replace("T2 M6", "T9 M6")).err().unwrap();
+    assert!(refused.to_string().contains("none of the job's tools"), "{refused}");
 }
 
 #[test]

@@ -38,7 +38,7 @@ pub struct Options<'a> {
 
 /// Runs the verb.
 pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> Outcome {
-    let job = Job::load_with_one_tool(job_path)?;
+    let job = Job::load(job_path)?;
     if options.blocks.is_some() && job.stock().is_none() {
         let text = "--blocks tells what blocks take from raw material: give a [stock]";
         return Err(Failure::file(job_path, text));
@@ -46,7 +46,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     let text = read_text(file)?;
     let part = Part::of(&job)?;
     let source = Source { file, text: &text, lenient: options.lenient };
-    let Checked { verified: v, read, wall_s } = check(&part, &job, &source, &SCREEN)?;
+    let Checked { verified: v, job, read, wall_s } = check(&part, &job, &source, &SCREEN)?;
     if let Some(path) = options.ply {
         output::write(path, &ply::bytes(&job, &part, &read.motions.motions, v.summary.spacing_mm)?)?;
     }

@@ -23,6 +23,8 @@ pub struct Source<'a> {
 pub struct Checked {
     /// What was measured, with all findings from the part to the verdict.
     pub verified: Verified,
+    /// The job with the tool in hand that the program calls.
+    pub job: Job,
     /// What the program does.
     pub read: Read,
     /// Wall time of the judgement, s.
@@ -32,10 +34,11 @@ pub struct Checked {
 /// Reads a program or CL data and judges it.
 ///
 /// # Errors
-/// Where the job has several tools and none of them is in hand, and where the text cannot be read or judged. A program that
+/// Where the job has several tools and the program calls none of them, or more than one, and where the text cannot be read or judged. A program that
 /// does not hold is no failure: its verdict says so.
 pub fn check(part: &Part, job: &Job, source: &Source<'_>, watch: &dyn Watch) -> Result<Checked, Failure> {
-    job.one_tool()?;
+    let job = reading::with_its_tool(source.file, source.text, job, part)?;
+    let job = &job;
     let read =
         reading::read(source.file, source.text, job, part, source.lenient).map_err(|why| part.warned(why))?;
     let stage = Stage::begin(watch, "verify");
@@ -44,7 +47,7 @@ pub fn check(part: &Part, job: &Job, source: &Source<'_>, watch: &dyn Watch) -> 
     let of_stock = std::mem::take(&mut verified.diagnostics);
     verified.diagnostics =
         part.part.diagnostics.iter().chain(&read.diagnostics).cloned().chain(of_stock).collect();
-    Ok(Checked { verified, read, wall_s })
+    Ok(Checked { verified, job: job.clone(), read, wall_s })
 }
 
 /// Judges the text of an NC program, or of CL data, against the job.

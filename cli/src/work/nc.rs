@@ -12,6 +12,7 @@ use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::{GoalControl, Gravity, Program, Remark, Swept};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The machine of a command line: a built-in name or a file.
@@ -74,6 +75,8 @@ pub struct Motions {
     pub cutting_time_min: f64,
     /// The spindle's speed, where the program says one.
     pub spindle_rpm: Option<f64>,
+    /// Numbers of the tools that its feed moves are made with.
+    pub tools: BTreeSet<u32>,
     /// The state of the control while it runs.
     pub control: GoalControl,
     /// Findings.
@@ -156,6 +159,12 @@ pub fn read_back(
         time_min: read.time_min(),
         cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),
         spindle_rpm: read.spindle_rpm,
+        tools: read
+            .moves
+            .iter()
+            .filter(|m| !matches!(m.motion, Motion::Rapid))
+            .filter_map(|m| m.tool)
+            .collect(),
         control: judged(&read.conduct(expected)),
         diagnostics: read.diagnostics,
     };

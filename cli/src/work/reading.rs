@@ -39,6 +39,39 @@ pub fn read(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool)
     Ok(read)
 }
 
+/// The job with the tool in hand that a program calls, or that CL data is for.
+///
+/// # Errors
+/// Where the job has several tools and the text does not say one of them.
+pub fn with_its_tool(file: &Path, text: &str, job: &Job, faces: &JobFaces) -> Result<Job, Failure> {
+    if job.one_tool().is_ok() {
+        return Ok(job.clone());
+    }
+    let all = job.each_tool();
+    let found: Vec<&Job> = if is_cl(file, text) {
+        let cl = cldata::read(text).map_err(|e| Failure::file(file, e))?;
+        let cutter = cl.path.cutter.and_then(|c| Cutter::try_from(c).ok());
+        all.iter().filter(|one| Some(one.cutter()) == cutter).collect()
+    } else {
+        // Which tool is called does not depend on its length, which tool is in hand does not matter.
+        let (motions, _) = program(text, job.control(), &all[0], faces, true)
+            .map_err(|e| Failure::file(file, e.message()))?;
+        all.iter().filter(|one| motions.tools.contains(&one.tool().number())).collect()
+    };
+    match found[..] {
+        [one] => Ok(one.clone()),
+        _ => {
+            let numbers: Vec<String> = all.iter().map(|one| one.tool().number().to_string()).collect();
+            let text = format!(
+                "calls {} of the job's tools, {}: a verdict is on one of them; copy the job with the one meant as [tool]",
+                if found.is_empty() { "none" } else { "several" },
+                numbers.join(", ")
+            );
+            Err(Failure::file(file, text))
+        }
+    }
+}
+
 fn of_cl(file: &Path, text: &str, job: &Job) -> Result<Read, Failure> {
     let cl = cldata::read(text).map_err(|e| Failure::file(file, e))?;
     let mut diagnostics = cl.diagnostics;

@@ -6,7 +6,7 @@ use crate::part::JobFaces;
 use crate::work::goal::Aim;
 use crate::work::stock::{self, StockSummary};
 use osculate_geom::Diagnostic;
-use osculate_tools::removal::{self, GoalControl, Kind, Program, Verdict, prove};
+use osculate_tools::removal::{self, GoalControl, Kind, Program, ProveError, Verdict, prove};
 use serde::Serialize;
 
 /// The `verification` object of `summary.json` and of `verify --json`.
@@ -178,7 +178,10 @@ pub fn run(
 ) -> Result<Verified, Failure> {
     let aim = Aim::of(job, faces)?;
     let goal = aim.goal(reading.control, reading.spindle_rpm);
-    let verdict = prove(&goal, reading.program, progress).map_err(|e| Failure::file(job.path(), e))?;
+    let verdict = prove(&goal, reading.program, progress).map_err(|e| match e {
+        ProveError::Blank(why) => Failure::file(job.path(), format!("[stock] {why}")),
+        other => Failure::file(job.path(), other),
+    })?;
     let (limits, f) = (goal.limits, verdict.figures());
     // Worst first: by how much of its own limit a place takes.
     let share = |w: &removal::Worst| match w.kind {
