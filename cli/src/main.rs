@@ -28,10 +28,15 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
-        Verb::Verify { file, job, lenient, ply, blocks } => cmd::verify::run(
+        Verb::Verify { file, job, lenient, second_opinion, ply, blocks } => cmd::verify::run(
             file,
             job,
-            &cmd::verify::Options { lenient: *lenient, ply: ply.as_deref(), blocks: blocks.as_deref() },
+            &cmd::verify::Options {
+                lenient: *lenient,
+                second_opinion: *second_opinion,
+                ply: ply.as_deref(),
+                blocks: blocks.as_deref(),
+            },
             cli.json,
         ),
         Verb::Time(args) => cmd::time::run(args, cli.json),

@@ -53,7 +53,7 @@ mod turn;
 
 pub use feed::{FeedMode, PathMetric};
 pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
-pub use machine::{Machine, MachineError, built_in_names};
+pub use machine::{Machine, MachineError, built_in_names, built_in_text};
 pub use nc::conduct;
 pub use nc::readback;
 pub use nc::{Coolant, Dialect, Orientation, WorkOffset};

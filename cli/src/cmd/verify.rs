@@ -5,8 +5,10 @@ use crate::screen::{output, render};
 use osculate::Part;
 use osculate::failure::{Done, Failure, Outcome, read_text};
 use osculate::job::Job;
+use osculate::watch::Stage;
 use osculate::words::{self, Table, number};
 use osculate::work::check::{Checked, Source, check};
+use osculate::work::opinion::{self, SecondOpinion};
 use osculate::work::ply;
 use osculate::work::stock::StockSummary;
 use osculate::work::verify::{HistogramBin, VerdictKeys, Verification, Verified, WorstPlace};
@@ -18,6 +20,8 @@ struct Answer {
     #[serde(flatten)]
     verification: Verification,
     verdict: VerdictKeys,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second_opinion: Option<SecondOpinion>,
     worst: Vec<WorstPlace>,
     confidence: String,
     histogram: Vec<HistogramBin>,
@@ -30,6 +34,8 @@ struct Answer {
 pub struct Options<'a> {
     /// Skip words that are not understood.
     pub lenient: bool,
+    /// Ask for a second opinion.
+    pub second_opinion: bool,
     /// Where the surface as cut goes.
     pub ply: Option<&'a Path>,
     /// Where the blocks' engagement goes.
@@ -47,6 +53,18 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     let part = Part::of(&job)?;
     let source = Source { file, text: &text, lenient: options.lenient };
     let Checked { verified: v, job, read, wall_s } = check(&part, &job, &source, &SCREEN)?;
+    let (v, second) = match options.second_opinion {
+        true if read.source == "cl" => {
+            return Err(Failure::file(file, "--second-opinion is on NC programs; this is CL data"));
+        }
+        true => {
+            let stage = Stage::begin(&SCREEN, "opinion");
+            let (v, second) = opinion::ask(&job, &part, &text, v);
+            stage.end();
+            (v, Some(second))
+        }
+        false => (v, None),
+    };
     if let Some(path) = options.ply {
         output::write(path, &ply::bytes(&job, &part, &read.motions.motions, v.summary.spacing_mm)?)?;
     }
@@ -57,6 +75,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         render::json(&Answer {
             verification: v.summary.clone(),
             verdict: VerdictKeys::of(&v.verdict),
+            second_opinion: second,
             worst: v.worst.clone(),
             confidence: v.summary.confidence(),
             histogram: v.histogram.clone(),
@@ -65,8 +84,27 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
         })?;
     } else {
         render::text(&told(&v, wall_s));
+        render::text(&second.as_ref().map_or_else(String::new, opinion_text));
     }
     Ok(if v.verdict.is_held() { Done::Yes } else { Done::NotWithinTolerance })
+}
+
+/// A second opinion as its screen shows it.
+fn opinion_text(s: &SecondOpinion) -> String {
+    let Some(f) = &s.figures else { return format!("  {}\n\n", s.why) };
+    let mut t = Table::new(["second opinion", "", "unit"]);
+    let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
+    row("left max", format!("{:.5}", f.left_max_mm), "mm");
+    row("gouge max", format!("{:.5}", f.gouge_max_mm), "mm");
+    row("rapid max", format!("{:.5}", f.rapid_max_mm), "mm");
+    row("holder max", format!("{:.5}", f.holder_max_mm), "mm");
+    row("off by at most", format!("{:.5}", f.slack_mm), "mm");
+    row("frozen poses", f.poses.to_string(), "");
+    row("points", f.points.to_string(), "");
+    row("points apart", number(f.points_apart_mm, 3), "mm");
+    row("wall time", format!("{:.2}", f.wall_s), "s");
+    let words = if s.why.is_empty() { "it agrees with the verification" } else { s.why.as_str() };
+    format!("{}\n  {words}\n\n", t.render())
 }
 
 /// A verification as its screen shows it.

@@ -8,7 +8,7 @@ use crate::job::words::{CoolantWord, FeedWord};
 use osculate_geom::{Diagnostic, Point3, Vec3};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::{Coolant, Dialect};
-use osculate_postproc::{Machine, PostError, PostOptions, Setup, built_in_names, post};
+use osculate_postproc::{Machine, PostError, PostOptions, Setup, built_in_names, built_in_text, post};
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use std::path::Path;
@@ -28,6 +28,8 @@ const TABLE: &str = "machine";
 pub struct Control {
     /// The machine.
     pub machine: Machine,
+    /// Its description as it stands in its file.
+    pub machine_toml: String,
     /// The language.
     pub dialect: Dialect,
     /// How F is programmed.
@@ -66,7 +68,12 @@ impl Control {
         Ok(Self::new(machine, dialect, feed, words.kz_step))
     }
 
-    fn new(machine: Machine, dialect: Dialect, feed: FeedWord, kz_step: Option<f64>) -> Self {
+    fn new(
+        (machine, machine_toml): (Machine, String),
+        dialect: Dialect,
+        feed: FeedWord,
+        kz_step: Option<f64>,
+    ) -> Self {
         let step_mm_min = kz_step.unwrap_or(DEFAULT_KZ_STEP);
         let mode = match feed {
             FeedWord::Tcp => FeedMode::Tcp,
@@ -80,6 +87,7 @@ impl Control {
         };
         Self {
             machine,
+            machine_toml,
             dialect,
             feed: mode,
             dialect_name: dialect.name().to_owned(),
@@ -149,13 +157,19 @@ impl Control {
     }
 }
 
-/// A built-in machine or one of a file.
-fn machine(name: Option<&str>, file: Option<&Path>) -> Result<Machine, Failure> {
+/// A built-in machine or one of a file, with its description.
+fn machine(name: Option<&str>, file: Option<&Path>) -> Result<(Machine, String), Failure> {
     match (name, file) {
         (_, Some(file)) => {
-            Machine::from_toml(&read_text(file)?).map_err(|e| Failure::file(file, e.to_string().trim_end()))
+            let text = read_text(file)?;
+            let machine =
+                Machine::from_toml(&text).map_err(|e| Failure::file(file, e.to_string().trim_end()))?;
+            Ok((machine, text))
         }
-        (Some(name), None) => Machine::built_in(name).map_err(Failure::job),
+        (Some(name), None) => {
+            let machine = Machine::built_in(name).map_err(Failure::job)?;
+            Ok((machine, built_in_text(name).unwrap_or_default().to_owned()))
+        }
         (None, None) => Err(Failure::job(format!(
             "a machine is needed: name = one of {} or file = \"...\"",
             built_in_names().join(", ")

@@ -86,6 +86,10 @@ pub enum Verb {
         /// Skip words of the NC program that are not understood, with a finding each, instead of stopping.
         #[arg(long)]
         lenient: bool,
+        /// Judge an NC program again by frozen poses against points of the whole part, with code that shares nothing with the
+        /// verification; where the two disagree the answer is that nothing is shown.
+        #[arg(long)]
+        second_opinion: bool,
         /// Write the surface as cut, coloured by its deviation, as a PLY file.
         #[arg(long, value_name = "FILE")]
         ply: Option<PathBuf>,

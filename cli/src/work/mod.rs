@@ -12,6 +12,7 @@ pub mod import;
 pub mod left_out;
 pub mod look;
 pub mod nc;
+pub mod opinion;
 pub mod passes;
 pub mod plan;
 pub mod ply;

@@ -19,6 +19,8 @@ pub fn built_in_names() -> Vec<&'static str> {
     FILES.iter().map(|(name, _)| *name).collect()
 }
 
-pub(super) fn text(name: &str) -> Option<&'static str> {
+/// The description of a built-in machine, as its file has it.
+#[must_use]
+pub fn built_in_text(name: &str) -> Option<&'static str> {
     FILES.iter().find(|(n, _)| *n == name).map(|(_, text)| *text)
 }

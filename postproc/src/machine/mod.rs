@@ -9,7 +9,7 @@ mod two_axis;
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::Pose;
 
-pub use built_in::built_in_names;
+pub use built_in::{built_in_names, built_in_text};
 pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
 pub use pose::{Candidate, Orientations};
 pub(crate) use pose::{LIMIT_SLACK, NearWish, angle_between, nearest_turn};
@@ -119,7 +119,7 @@ impl Machine {
     /// # Errors
     /// [`MachineError::Unknown`] with the names there are.
     pub fn built_in(name: &str) -> Result<Self, MachineError> {
-        match built_in::text(name) {
+        match built_in_text(name) {
             Some(text) => Self::from_toml(text),
             None => Err(MachineError::Unknown { name: name.into(), known: built_in_names().join(", ") }),
         }
