@@ -6,7 +6,7 @@ use osculate::failure::{Done, Failure, Outcome};
 use osculate::figure::postures::{Arrays, Postures};
 use osculate::figure::{Study, Wanted, sheet};
 use osculate::job::Job;
-use osculate::part::{self, JobFaces, LoadedFace};
+use osculate::part::{self, LoadedFace, Part};
 use osculate::watch::Stage;
 use osculate::work::choice::{self, Choice, Row};
 use osculate::work::ideal::{self, Bound};
@@ -114,7 +114,7 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
 /// The best postures of the job's tools over its faces, with a picture of each.
 fn fields(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     nodes: usize,
     out: &Path,
     progress: &dyn Fn(f64),

@@ -198,9 +198,6 @@ pub struct Part {
     pub import_s: f64,
 }
 
-/// The name by which the stages of the work know it.
-pub type JobFaces = Part;
-
 impl Part {
     /// A failure with what was warned of when the part was read: it may be why.
     pub fn warned(&self, why: Failure) -> Failure {

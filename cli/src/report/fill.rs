@@ -1,7 +1,7 @@
 //! From the results of a plan to what its report shows.
 
 use crate::job::Job;
-use crate::part::{JobFaces, LoadedFace, area};
+use crate::part::{LoadedFace, Part, area};
 use crate::report::{
     self, Column, FaceMesh, Histogram, Holder, Link, Outcome, Pass, PathPoints, Report, Stage, Table, Tool,
     ToolPose, Verdict, View, Worst,
@@ -34,7 +34,7 @@ pub struct Story<'a> {
     /// The job.
     pub job: &'a Job,
     /// Its faces.
-    pub faces: &'a JobFaces,
+    pub faces: &'a Part,
     /// The passes.
     pub passes: &'a Passes,
     /// The linked path.

@@ -8,7 +8,7 @@
 //! feed of the job is kept back before both.
 
 use crate::job::Job;
-use crate::part::{self, JobFaces};
+use crate::part::{self, Part};
 use osculate_postproc::SolveOptions;
 use osculate_postproc::nc::Dialect;
 use osculate_productivity::plan::Tolerance;
@@ -60,14 +60,14 @@ fn blend_mm(job: &Job) -> f64 {
 }
 
 /// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
-pub fn leaning(job: &Job, faces: &JobFaces, share: f64) -> Tolerance {
+pub fn leaning(job: &Job, faces: &Part, share: f64) -> Tolerance {
     let s = solve(job);
     let ways_mm = COUNTED * (s.tip_tol_mm + s.axis_tol_rad * job.cutter().radius_mm());
     kept_back(job, faces, share, words_mm(job) + ways_mm + blend_mm(job))
 }
 
 /// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
-pub fn upright(job: &Job, faces: &JobFaces) -> Tolerance {
+pub fn upright(job: &Job, faces: &Part) -> Tolerance {
     kept_back(job, faces, 1.0, words_mm(job) + blend_mm(job))
 }
 
@@ -75,7 +75,7 @@ pub fn upright(job: &Job, faces: &JobFaces) -> Tolerance {
 ///
 /// Where the part's curvature along the feed is k the tip goes `1 + k r` times as fast as the contact, and tool and part close
 /// with `1/r + k`: the mark is `f^2 / (8 r (1 + k r))`, highest where the part is most hollow.
-fn mark_mm(job: &Job, faces: &JobFaces) -> f64 {
+fn mark_mm(job: &Job, faces: &Part) -> f64 {
     let (Some(rpm), r) = (job.spindle_rpm(), job.cutter().corner_mm()) else { return 0.0 };
     let teeth = f64::from(job.tool().teeth().unwrap_or(1).max(1));
     let f = job.feed_mm_min() / (rpm * teeth);
@@ -91,7 +91,7 @@ fn mark_mm(job: &Job, faces: &JobFaces) -> f64 {
 /// Hollows that come closer to the tool's corner than this are no longer of leading order: there verification tells.
 const MOST_HOLLOW: f64 = 0.5;
 
-fn kept_back(job: &Job, faces: &JobFaces, share: f64, by_mm: f64) -> Tolerance {
+fn kept_back(job: &Job, faces: &Part, share: f64, by_mm: f64) -> Tolerance {
     let given = job.tolerance();
     let marks_mm = (EXACT_MARKS * mark_mm(job, faces)).min(MARKS * given.scallop_mm);
     let scallop_mm = share * (given.scallop_mm - marks_mm - by_mm.min(MOST * given.scallop_mm));

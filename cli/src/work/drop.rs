@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::job::strategy::Drop;
-use crate::part::{self, JobFaces, LoadedFace};
+use crate::part::{self, LoadedFace, Part};
 use crate::work::budget;
 use osculate_geom::{Box3, Unit3, Vec3};
 use osculate_productivity::plan::{DropTask, Named, Passes, drop_cutter, gradient_3c};
@@ -11,7 +11,7 @@ use osculate_productivity::plan::{DropTask, Named, Passes, drop_cutter, gradient
 /// Passes over all faces of the job, with its check faces kept clear.
 pub fn passes(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     kind: Drop,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
@@ -33,7 +33,7 @@ pub fn passes(
 }
 
 /// The tool axis, and the way of the passes.
-pub fn directions(job: &Job, faces: &JobFaces) -> (Unit3, Vec3) {
+pub fn directions(job: &Job, faces: &Part) -> (Unit3, Vec3) {
     let strategy = job.strategy();
     let feed = strategy.feed_direction.unwrap_or_else(|| longest(&faces.faces, &strategy.axis));
     (strategy.axis, feed)

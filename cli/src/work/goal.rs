@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::{Accept, Job};
-use crate::part::{JobFaces, LoadedFace};
+use crate::part::{LoadedFace, Part};
 use crate::work::rough;
 use crate::work::stock::{self, RawMaterial};
 use osculate_geom::{Offset, Surface};
@@ -16,7 +16,7 @@ const MAX_SAMPLES: usize = 1_000_000;
 /// What a goal looks at: made once for a job with its tool in hand.
 pub struct Aim<'a> {
     job: &'a Job,
-    faces: &'a JobFaces,
+    faces: &'a Part,
     cutter: Cutter,
     flutes: Cutter,
     shank: Option<Cutter>,
@@ -29,7 +29,7 @@ pub struct Aim<'a> {
 
 impl<'a> Aim<'a> {
     /// Everything that the job's files say of it.
-    pub fn of(job: &'a Job, faces: &'a JobFaces) -> Result<Self, Failure> {
+    pub fn of(job: &'a Job, faces: &'a Part) -> Result<Self, Failure> {
         let (flutes, shank) = job.flutes();
         let number = (faces.faces.len() + faces.check.len()) as u32;
         Ok(Self {

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::JobFaces;
+use crate::part::Part;
 use crate::words::number;
 use crate::work::choice::patches;
 use crate::work::program::{Planned, Posted};
@@ -48,7 +48,7 @@ pub struct IdealTime {
 }
 
 /// The bound over the faces of a job with all its tools.
-pub fn of_job(job: &Job, faces: &JobFaces) -> Result<Bound, Failure> {
+pub fn of_job(job: &Job, faces: &Part) -> Result<Bound, Failure> {
     let jobs = job.each_tool();
     let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();
     let mut tools = Vec::with_capacity(jobs.len());
@@ -84,7 +84,7 @@ pub fn tilts(job: &Job) -> (Range, &'static str) {
 /// The bound beside a plan.
 pub fn of_plan(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     planned: &Planned<'_>,
     posted: &Posted,
 ) -> Result<IdealTime, Failure> {

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::{Gouges, Job};
-use crate::part::JobFaces;
+use crate::part::Part;
 use crate::report::{Column, Table};
 use crate::words::number;
 use crate::work::drop::names;
@@ -17,7 +17,7 @@ pub fn is_wanted(job: &Job) -> bool {
 }
 
 /// What remains of passes with the tool of the job, whatever its keys say.
-pub fn of(job: &Job, faces: &JobFaces, passes: &Passes) -> Result<LeftOut, Failure> {
+pub fn of(job: &Job, faces: &Part, passes: &Passes) -> Result<LeftOut, Failure> {
     let holder = job.holder();
     let guard = Guard {
         faces: &names(&faces.faces),
@@ -31,11 +31,7 @@ pub fn of(job: &Job, faces: &JobFaces, passes: &Passes) -> Result<LeftOut, Failu
 }
 
 /// Passes with what the job wants left out of them, joined, and what the report says of it.
-pub fn linked(
-    job: &Job,
-    faces: &JobFaces,
-    passes: Passes,
-) -> Result<(Passes, Linked, Extras<'static>), Failure> {
+pub fn linked(job: &Job, faces: &Part, passes: Passes) -> Result<(Passes, Linked, Extras<'static>), Failure> {
     let cutter = &job.cutter();
     let mut extras = Extras::default();
     if !is_wanted(job) {

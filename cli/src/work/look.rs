@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::{JobFaces, LoadedFace, area};
+use crate::part::{LoadedFace, Part, area};
 use osculate_productivity::plan::Linked;
 use osculate_tools::removal::{self, Limits, Sample, Swept};
 
@@ -25,7 +25,7 @@ pub struct Look {
 
 impl Look {
     /// Looks at a path.
-    pub fn at(job: &Job, faces: &JobFaces, linked: &Linked) -> Result<Self, Failure> {
+    pub fn at(job: &Job, faces: &Part, linked: &Linked) -> Result<Self, Failure> {
         let (cutter, holder, tolerance) = (job.cutter(), job.holder(), job.tolerance());
         let mut samples = Vec::new();
         let mut number = 0;

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::{Job, LeadKey};
-use crate::part::{self, JobFaces, LoadedFace};
+use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
 use crate::work::budget;
 use crate::work::left_out;
@@ -25,7 +25,7 @@ pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
 pub const BALL_LEAD_DEG: f64 = 15.0;
 
 /// How the passes of a job are joined.
-pub fn links(job: &Job, faces: &JobFaces, cutter: &Cutter) -> Links {
+pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
     let mut obstacles = Box3::empty();
     for f in faces.faces.iter().chain(&faces.check) {
         obstacles = obstacles.union(&part::bounds(f));
@@ -51,7 +51,7 @@ fn walls_of<'a>(job: &Job, faces: impl Iterator<Item = &'a LoadedFace>) -> Resul
 }
 
 /// The check faces as hops see them, made once for all plans of a job.
-fn walls(job: &Job, faces: &JobFaces) -> Result<Arc<Walls>, Failure> {
+fn walls(job: &Job, faces: &Part) -> Result<Arc<Walls>, Failure> {
     if let Some(made) = faces.walls.get() {
         return Ok(Arc::clone(made));
     }
@@ -60,14 +60,14 @@ fn walls(job: &Job, faces: &JobFaces) -> Result<Arc<Walls>, Failure> {
 }
 
 /// Passes joined to a path.
-pub fn linked(job: &Job, faces: &JobFaces, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
+pub fn linked(job: &Job, faces: &Part, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
     Ok(link(&passes.passes, &links(job, faces, cutter), &*walls(job, faces)?))
 }
 
 /// Passes joined to a path whose hops keep off faces to machine too: over places that passes leave out.
 pub fn linked_around_all(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     passes: &Passes,
     cutter: &Cutter,
 ) -> Result<Linked, Failure> {
@@ -108,7 +108,7 @@ pub struct Way<'a> {
 /// Passes over every face of the job with its tool.
 pub fn each_face(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     way: &Way<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
@@ -151,7 +151,7 @@ pub fn each_face(
 /// Passes of a tool that leans along them: the lead is the job's, or the best of a few.
 pub fn with_best_lead(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     strategy: &Strategy,
     watch: &dyn Watch,
     progress: &(dyn Fn(f64) + Sync),
@@ -211,7 +211,7 @@ pub fn with_best_lead(
 }
 
 /// Leads by the length of path that they promise, shortest first.
-fn ranked(job: &Job, faces: &JobFaces, cutter: &Cutter, leads: &[f64]) -> Vec<f64> {
+fn ranked(job: &Job, faces: &Part, cutter: &Cutter, leads: &[f64]) -> Vec<f64> {
     let tolerance = job.tolerance();
     let mut out = Vec::with_capacity(leads.len());
     for deg in leads {

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::job::strategy::Kind;
 use crate::job::{Job, LeadKey};
-use crate::part::{self, JobFaces, Part};
+use crate::part::{self, Part};
 use crate::report::fill::{self, Story};
 use crate::watch::{Stage, Watch};
 use crate::work::choice::{self, Choice, Row};
@@ -129,7 +129,7 @@ pub fn plan(part: &Part, job: &Job, watch: &dyn Watch) -> Result<Plan, Failure> 
 /// Where it cannot be posted or verified.
 pub fn prove(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     planned: Planned<'_>,
     mut wall_s: WallS,
     watch: &dyn Watch,
@@ -142,7 +142,7 @@ pub fn prove(
 /// The fastest of all candidates whose program holds, with the job that has its tool.
 fn chosen(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     wall_s: &mut WallS,
     watch: &dyn Watch,
 ) -> Result<(Job, Proved<'static>), Failure> {
@@ -170,13 +170,7 @@ struct Proved<'a> {
 
 impl Proved<'_> {
     /// Everything that is told of it.
-    fn told(
-        self,
-        job: &Job,
-        faces: &JobFaces,
-        mut wall_s: WallS,
-        watch: &dyn Watch,
-    ) -> Result<Plan, Failure> {
+    fn told(self, job: &Job, faces: &Part, mut wall_s: WallS, watch: &dyn Watch) -> Result<Plan, Failure> {
         let Proved { planned, posted, verified, compared } = self;
         let stage = Stage::begin(watch, "ideal");
         // The least time for whole faces says nothing of a plan that leaves some of them out.
@@ -267,7 +261,7 @@ impl Proved<'_> {
 /// Passes and links by the job's strategy.
 fn planned(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     watch: &dyn Watch,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {

@@ -6,7 +6,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::JobFaces;
+use crate::part::Part;
 use osculate_geom::{Point3, Unit3, Vec3, uv};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::{self, Sample, Swept};
@@ -15,7 +15,7 @@ use osculate_tools::removal::{self, Sample, Swept};
 const COARSER: f64 = 2.0;
 
 /// Cuts the vertices of the job's faces and makes the file of them.
-pub fn bytes(job: &Job, faces: &JobFaces, motions: &[Swept], spacing_mm: f64) -> Result<Vec<u8>, Failure> {
+pub fn bytes(job: &Job, faces: &Part, motions: &[Swept], spacing_mm: f64) -> Result<Vec<u8>, Failure> {
     let tolerance = job.tolerance();
     let cutter = job.cutter();
     let holder = job.holder();

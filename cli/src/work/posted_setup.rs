@@ -1,7 +1,7 @@
 //! Where the part of a program sits: as its head says it was posted for, unless the job says another place.
 
 use crate::job::Job;
-use crate::part::JobFaces;
+use crate::part::Part;
 use crate::work::setup;
 use nalgebra::Isometry3;
 use osculate_geom::Diagnostic;
@@ -15,7 +15,7 @@ const TURNED_RAD: f64 = 1e-6;
 
 /// The setup for reading a program back. What `[setup]` gives of place and turn counts, the rest is what the head of the
 /// program says; where that says nothing it is found from the faces. What contradicts is warned of.
-pub fn of_program(job: &Job, faces: &JobFaces, text: &str, dialect: Dialect) -> (Setup, Vec<Diagnostic>) {
+pub fn of_program(job: &Job, faces: &Part, text: &str, dialect: Dialect) -> (Setup, Vec<Diagnostic>) {
     let (own, mut own_notes) = setup::of(job, faces, &[]);
     let posted = match Setup::of_program(text, dialect) {
         Ok(Some(posted)) => posted,

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::{Control, Job};
-use crate::part::JobFaces;
+use crate::part::Part;
 use crate::watch::{Stage, Watch};
 use crate::work::extras::Extras;
 use crate::work::nc::{self, Motions};
@@ -68,7 +68,7 @@ impl Posted {
     /// Posts a plan. From here on a run that is stopped can save the path.
     pub fn of(
         job: &Job,
-        faces: &JobFaces,
+        faces: &Part,
         planned: &Planned<'_>,
         wall_s: &mut WallS,
         watch: &dyn Watch,
@@ -120,7 +120,7 @@ impl Posted {
     pub fn verify(
         &self,
         job: &Job,
-        faces: &JobFaces,
+        faces: &Part,
         wall_s: &mut WallS,
         watch: &dyn Watch,
     ) -> Result<Verified, Failure> {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Control;
 use crate::job::Job;
-use crate::part::JobFaces;
+use crate::part::Part;
 use crate::work::nc::{self, Motions};
 use crate::work::{posted_setup, stock};
 use osculate_geom::{Box3, Diagnostic};
@@ -27,7 +27,7 @@ pub struct Read {
 ///
 /// # Errors
 /// Where the text cannot be read, or what it does cannot be meant for the part.
-pub fn read(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool) -> Result<Read, Failure> {
+pub fn read(file: &Path, text: &str, job: &Job, faces: &Part, lenient: bool) -> Result<Read, Failure> {
     let mut read =
         if is_cl(file, text) { of_cl(file, text, job)? } else { of_nc(file, text, job, faces, lenient)? };
     let motions = &read.motions.motions;
@@ -43,7 +43,7 @@ pub fn read(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool)
 ///
 /// # Errors
 /// Where the job has several tools and the text does not say one of them.
-pub fn with_its_tool(file: &Path, text: &str, job: &Job, faces: &JobFaces) -> Result<Job, Failure> {
+pub fn with_its_tool(file: &Path, text: &str, job: &Job, faces: &Part) -> Result<Job, Failure> {
     if job.one_tool().is_ok() {
         return Ok(job.clone());
     }
@@ -101,7 +101,7 @@ fn timed(path: &ClPath) -> Motions {
     Motions { motions, times_min, time_min, cutting_time_min: clock, spindle_rpm, ..Motions::default() }
 }
 
-fn of_nc(file: &Path, text: &str, job: &Job, faces: &JobFaces, lenient: bool) -> Result<Read, Failure> {
+fn of_nc(file: &Path, text: &str, job: &Job, faces: &Part, lenient: bool) -> Result<Read, Failure> {
     let control = job.control();
     let mut diagnostics = Vec::new();
     if !job.names_machine() {
@@ -130,7 +130,7 @@ pub fn program(
     text: &str,
     control: &Control,
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     lenient: bool,
 ) -> Result<(Motions, Vec<Diagnostic>), Failure> {
     let (setup, notes) = posted_setup::of_program(job, faces, text, control.dialect);
@@ -207,7 +207,7 @@ fn unit_hint(path: &Box3, reach: &Box3) -> &'static str {
 const SPAN: f64 = 8.0;
 
 /// Refuses a path that never comes near the part, a wrong unit or a wrong part zero, and tells one of another size.
-fn meet(file: &Path, motions: &[Swept], faces: &JobFaces) -> Result<Option<Diagnostic>, Failure> {
+fn meet(file: &Path, motions: &[Swept], faces: &Part) -> Result<Option<Diagnostic>, Failure> {
     let mut path = Box3::empty();
     for m in motions.iter().filter(|m| !m.rapid) {
         path.add(&m.from.tip);

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::job::strategy::Layers;
-use crate::part::{JobFaces, LoadedFace};
+use crate::part::{LoadedFace, Part};
 use crate::work::drop;
 use crate::work::extras::Extras;
 use crate::work::passes;
@@ -20,7 +20,7 @@ pub fn is(job: &Job) -> bool {
 }
 
 /// The faces that a roughing is measured against: those of the job, outside by the allowance. None for other jobs.
-pub fn measured(job: &Job, faces: &JobFaces) -> Result<Vec<Offset<TrimmedSurface>>, Failure> {
+pub fn measured(job: &Job, faces: &Part) -> Result<Vec<Offset<TrimmedSurface>>, Failure> {
     let Some(layers) = job.strategy().layers() else { return Ok(Vec::new()) };
     let offset =
         |f: &LoadedFace| Offset::new((*f.surface).clone(), layers.allowance_mm).map_err(Failure::job);
@@ -40,7 +40,7 @@ fn sizes(job: &Job, layers: &Layers) -> Sizes {
 /// The path of a roughing.
 pub fn planned(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     layers: &Layers,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {

@@ -2,7 +2,7 @@
 
 use crate::job::Control;
 use crate::job::Job;
-use crate::part::{self, JobFaces};
+use crate::part::{self, Part};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
 use osculate_postproc::{Setup, quicker_turns, suggest};
@@ -10,7 +10,7 @@ use osculate_tools::cl::ClPath;
 
 /// Where the part of a job sits on the machine, as the job says or as [`suggest`] has it: turned so that the faces look up, or
 /// the tool axes where there are any.
-pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> (Setup, Vec<Diagnostic>) {
+pub fn of(job: &Job, faces: &Part, axes: &[Unit3]) -> (Setup, Vec<Diagnostic>) {
     let s = job.setup();
     let gauge = job.cutter().length_mm() + job.holder().map_or(0.0, |h| h.length_mm());
     let (points, mut normals): (Vec<Point3>, Vec<Unit3>) = looks(faces).unzip();
@@ -43,7 +43,7 @@ pub fn of(job: &Job, faces: &JobFaces, axes: &[Unit3]) -> (Setup, Vec<Diagnostic
 }
 
 /// Points of the faces to machine, with their normals.
-fn looks(faces: &JobFaces) -> impl Iterator<Item = (Point3, Unit3)> {
+fn looks(faces: &Part) -> impl Iterator<Item = (Point3, Unit3)> {
     faces.faces.iter().flat_map(|f| part::grid(&*f.surface, 24)).map(|(_, p, n)| (p, n))
 }
 
@@ -73,7 +73,7 @@ pub const WORTH_A_TURN: f64 = 0.03;
 
 /// Setups with the part turned so that the joints seem to hold the path up less than in `setup`; none where the job says where
 /// the part is.
-pub fn turned(job: &Job, faces: &JobFaces, path: &ClPath, control: &Control, setup: &Setup) -> Vec<Setup> {
+pub fn turned(job: &Job, faces: &Part, path: &ClPath, control: &Control, setup: &Setup) -> Vec<Setup> {
     if job.setup().rotate_deg.is_some() || job.setup().part_zero_mm.is_some() {
         return Vec::new();
     }

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, read};
 use crate::job::{Blank as Raw, Job};
-use crate::part::{self, JobFaces};
+use crate::part::{self, Part};
 use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::stock::{Blank, Resolution, read_stl};
@@ -126,7 +126,7 @@ fn prism(axis: Unit3, diameter_mm: f64, along_mm: [f64; 2]) -> Vec<[Point3; 3]> 
 }
 
 /// The box around the faces of a job.
-pub fn around(faces: &JobFaces) -> Box3 {
+pub fn around(faces: &Part) -> Box3 {
     faces.faces.iter().fold(Box3::empty(), |all, f| all.union(&part::bounds(f)))
 }
 
@@ -161,7 +161,7 @@ fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
 }
 
 /// The box around the raw material of a job, where it has one.
-pub fn bounds(job: &Job, faces: &JobFaces) -> Result<Option<Box3>, Failure> {
+pub fn bounds(job: &Job, faces: &Part) -> Result<Option<Box3>, Failure> {
     let Some(stock) = job.stock() else { return Ok(None) };
     Ok(Some(match &stock.blank {
         Raw::Box(b) => *b,
@@ -185,7 +185,7 @@ pub struct RawMaterial<'a> {
 
 impl<'a> RawMaterial<'a> {
     /// The raw material of a job, where it declares one.
-    pub fn of(job: &'a Job, faces: &JobFaces) -> Result<Option<Self>, Failure> {
+    pub fn of(job: &'a Job, faces: &Part) -> Result<Option<Self>, Failure> {
         let Some(given) = job.stock() else { return Ok(None) };
         let (triangles, words) = match &given.blank {
             Raw::Box(b) => (Vec::new(), format!("a box, {} mm", corners(b))),
@@ -240,7 +240,7 @@ impl<'a> RawMaterial<'a> {
 }
 
 /// What became of raw material, as files have it, with what is to be told.
-pub fn told(found: &StockFound, faces: &JobFaces) -> (StockSummary, Vec<Diagnostic>) {
+pub fn told(found: &StockFound, faces: &Part) -> (StockSummary, Vec<Diagnostic>) {
     let mut notes = Vec::new();
     if let Some(wanted) = found.coarsened_mm {
         let cell = found.cell_mm;

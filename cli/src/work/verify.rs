@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::JobFaces;
+use crate::part::Part;
 use crate::work::goal::Aim;
 use crate::work::stock::{self, StockSummary};
 use osculate_geom::Diagnostic;
@@ -172,7 +172,7 @@ pub struct Verified {
 /// Judges what a program does against the goal of the job.
 pub fn run(
     job: &Job,
-    faces: &JobFaces,
+    faces: &Part,
     reading: Reading<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verified, Failure> {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::strategy::Kind;
 use crate::job::{Job, LeadKey};
-use crate::part::{self, JobFaces};
+use crate::part::{self, Part};
 use crate::work::passes::BALL_LEAD_DEG;
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
 use osculate_productivity::compare::Candidate;
@@ -32,7 +32,7 @@ pub fn check(job: &Job) -> Result<(), Failure> {
     }
 }
 
-pub(super) fn of_job(job: &Job, faces: &JobFaces, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
+pub(super) fn of_job(job: &Job, faces: &Part, cutters: &[Cutter]) -> Result<Vec<Candidate>, Failure> {
     let auto = job.strategy().is_open();
     let strategies = match &job.strategy().kind {
         Kind::Auto => every(job, faces),
@@ -91,7 +91,7 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, bool)> {
 }
 
 /// Every strategy that can be chosen.
-fn every(job: &Job, faces: &JobFaces) -> Vec<Strategy> {
+fn every(job: &Job, faces: &Part) -> Vec<Strategy> {
     let [first, second] = plane_normals(faces);
     vec![
         Strategy::Isoparametric { along: Along::Auto },
@@ -106,7 +106,7 @@ fn every(job: &Job, faces: &JobFaces) -> Vec<Strategy> {
 }
 
 /// Two normals of planes across the faces, at right angles to their mean normal and to each other.
-fn plane_normals(faces: &JobFaces) -> [Unit3; 2] {
+fn plane_normals(faces: &Part) -> [Unit3; 2] {
     let all = faces.faces.iter().flat_map(|f| part::grid(&*f.surface, GRID));
     let sum = all.fold(Vec3::zeros(), |s, (_, _, n)| s + n.into_inner());
     let up = Unit3::try_new(sum, 1e-9).unwrap_or_else(Vec3::z_axis);

@@ -6,7 +6,7 @@ use super::measured::Measured;
 use super::table::{self, Row, text_table};
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::{self, JobFaces};
+use crate::part::{self, Part};
 use crate::watch::Watch;
 use crate::work::extras::Extras;
 use crate::work::look::{Look, Objection};
@@ -61,7 +61,7 @@ struct Holder {
 /// The candidates of a job.
 pub struct Choice<'a> {
     /// Its faces.
-    pub(super) faces: &'a JobFaces,
+    pub(super) faces: &'a Part,
     /// The job with each of its tools.
     pub(super) jobs: Vec<Job>,
     entries: Vec<Entry>,
@@ -72,7 +72,7 @@ pub struct Choice<'a> {
 }
 
 /// Areas of the faces to machine, with the faces.
-pub fn patches(faces: &JobFaces) -> Vec<Patch<'_>> {
+pub fn patches(faces: &Part) -> Vec<Patch<'_>> {
     faces.faces.iter().map(|f| Patch { surface: &*f.surface, area_mm2: part::area(f) }).collect()
 }
 
@@ -85,7 +85,7 @@ impl<'a> Choice<'a> {
     ///
     /// # Errors
     /// Where none is possible, with every reason in one table.
-    pub fn screen(job: &Job, faces: &'a JobFaces) -> Result<Self, Failure> {
+    pub fn screen(job: &Job, faces: &'a Part) -> Result<Self, Failure> {
         let jobs = job.each_tool();
         let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();
         let holders = jobs.iter().map(Job::holder).collect::<Vec<_>>();

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::job::words::{AlongWord, FlankShape};
-use crate::part::{JobFaces, LoadedFace};
+use crate::part::{LoadedFace, Part};
 use osculate_geom::{Axis, Domain, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Uv, Vec3, uv};
 use osculate_surfaces::TrimmedSurface;
 use std::sync::Arc;
@@ -135,12 +135,12 @@ impl Surface for Across {
 }
 
 /// The faces of a job, that to machine as `[flank]` says that it is judged: on its other side, or over a part of its length.
-pub fn judged(job: &Job, all: JobFaces) -> Result<JobFaces, Failure> {
+pub fn judged(job: &Job, all: Part) -> Result<Part, Failure> {
     if !job.flank().flipped && job.flank().judge_u.is_none() {
         return Ok(all);
     }
     let FlankFace { judged, .. } = FlankFace::of(job, &all)?;
-    Ok(JobFaces { faces: vec![judged], ..all })
+    Ok(Part { faces: vec![judged], ..all })
 }
 
 /// A face ready to be flank milled.
@@ -173,7 +173,7 @@ fn rectangle(face: &LoadedFace) -> Domain {
 
 impl FlankFace {
     /// The only machined face of a job.
-    pub fn of(job: &Job, all: &JobFaces) -> Result<Self, Failure> {
+    pub fn of(job: &Job, all: &Part) -> Result<Self, Failure> {
         let table = job.flank();
         let wrong = |text: String| Failure::file(job.path(), format!("[flank] {text}"));
         let [one] = all.faces.as_slice() else {
