@@ -7,6 +7,7 @@
 mod lines;
 mod paint;
 mod tool;
+mod view;
 
 use self::lines::Scene;
 use self::paint::{Facet, nearness, paint, shaded};
@@ -14,10 +15,11 @@ use super::data::Report;
 use super::legend::{Limits, Scale, nice_step};
 use super::mesh::{Clean, clean};
 use super::pack::{Bounds, finite};
-use super::project::{Camera, DepthMap, Direction, Frame, unit};
+use super::project::{Camera, DepthMap, Frame, unit};
 use super::simplify::simplify;
 use super::text::{coordinate, escape, figure};
 use std::fmt::Write;
+pub use view::{PartColours, PathColours, View};
 
 /// Facets of the part in the picture at most: 20 bytes each where neighbours have one colour, 45 where none do.
 const FACETS: usize = 14_000;
@@ -25,61 +27,6 @@ const FACETS: usize = 14_000;
 const FACET_BYTES: usize = 225_000;
 /// Width of a legend with its title, px.
 const LEGEND: f64 = 118.0;
-/// What the surface's colours say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PartColours {
-    /// The deviation.
-    #[default]
-    Deviation,
-    /// Nothing but its shape.
-    Plain,
-}
-
-/// What the path's colours say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PathColours {
-    /// No path.
-    Hidden,
-    /// Nothing but its way.
-    #[default]
-    Plain,
-    /// The strip width.
-    StripWidth,
-}
-
-/// How to look at the part.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// From where.
-    pub direction: Direction,
-    /// Width of the picture, px.
-    pub width_px: u32,
-    /// Height of the picture, px.
-    pub height_px: u32,
-    /// What the surface's colours say.
-    pub part: PartColours,
-    /// What the path's colours say.
-    pub path: PathColours,
-    /// With the links and rapids.
-    pub links: bool,
-    /// With the tool, at this share of the path from 0 to 1.
-    pub tool_at: Option<f64>,
-}
-
-impl Default for View {
-    fn default() -> Self {
-        Self {
-            direction: Direction { azimuth_deg: -52.0, elevation_deg: 34.0 },
-            width_px: 960,
-            height_px: 600,
-            part: PartColours::Deviation,
-            path: PathColours::Plain,
-            links: false,
-            tool_at: Some(0.62),
-        }
-    }
-}
-
 /// The picture of `report` as an SVG document.
 pub fn svg(report: &Report, view: &View) -> String {
     let faces: Vec<Clean> = report.faces.iter().map(|f| clean(f, 0)).collect();

@@ -12,7 +12,6 @@
 
 use super::body::Body;
 use super::cluster::{Cluster, clusters};
-use super::hidden::DIVISIONS;
 use super::job::{Cut, Job, JobError};
 use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
@@ -21,6 +20,8 @@ use super::tree::{Ways, Which};
 use osculate_geom::{Surface, uv};
 use rayon::prelude::*;
 
+/// How often a cell is halved in both directions.
+pub const DIVISIONS: u32 = 3;
 /// Pieces of motions are halved until they stray from straight ones by no more than this share of the depth that is asked for.
 const STRAY: f64 = 0.1;
 /// Halvings of a piece at most, each to a quarter of what it strays by.

@@ -27,7 +27,7 @@ use super::body::Body;
 use super::cluster::clusters;
 use super::deepest::Passage;
 use super::density::Hidden;
-use super::digs::{Depth, Digs};
+use super::digs::{DIVISIONS, Depth, Digs};
 use super::job::{Cut, Job, JobError};
 use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
@@ -38,8 +38,6 @@ use osculate_geom::{Point3, Surface, Unit3, uv};
 use rayon::prelude::*;
 use std::collections::HashSet;
 
-/// How often a cell is halved in both directions.
-pub const DIVISIONS: u32 = 3;
 /// Motions around a cell that are tried.
 const MOST_MOTIONS: usize = 8;
 /// Bounds are expected within this multiple of the highest standoff seen.

@@ -71,10 +71,11 @@ pub use boundary::{sample_boundary, sample_triangles};
 pub use crest::crests;
 pub use cut::cut;
 pub use density::{Density, Hidden};
+pub use digs::DIVISIONS;
 pub use goal::{
     Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Gravity, Looks, Program, Remark, Unseen,
 };
-pub use hidden::{DIVISIONS, Wanted, hidden};
+pub use hidden::{Wanted, hidden};
 pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
 pub use prove::prove;
 pub use refine::{Measured, Refined, refine};

@@ -5,7 +5,7 @@ use super::super::legend::{Scale, UNKNOWN};
 use super::super::pack::finite;
 use super::super::project::{Camera, DepthMap};
 use super::paint::step;
-use super::{PathColours, View};
+use super::view::{PathColours, View};
 use std::fmt::Write;
 
 /// Passes in the picture; more are a grey area and not lines.

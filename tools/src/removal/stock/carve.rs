@@ -3,38 +3,13 @@
 use super::Stock;
 use super::rays::Rays;
 use super::report::{Bite, Carved, Collision, SECTORS, Work};
-use crate::cutter::Cutter;
+use super::world::{StockJob, World};
 use crate::removal::body::Body as Moved;
-use crate::removal::piece::Piece;
-use crate::removal::tree::{Tree, Ways};
-use crate::removal::{Body, JobError, Swept};
+use crate::removal::tree::Ways;
+use crate::removal::{Body, JobError};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// A body above the cutter: a shank or a holder.
-#[derive(Clone, Copy, Debug)]
-pub struct Upper<'a> {
-    /// Its shape.
-    pub body: &'a Cutter,
-    /// How far its lower end is above the tool tip, mm.
-    pub above_mm: f64,
-    /// Which it is.
-    pub kind: Body,
-}
-
-/// What carves.
-#[derive(Clone, Copy, Debug)]
-pub struct StockJob<'a> {
-    /// The cutter. Its whole length cuts.
-    pub cutter: &'a Cutter,
-    /// Bodies above it, which must not meet material.
-    pub uppers: &'a [Upper<'a>],
-    /// The motions in the order in which they happen.
-    pub motions: &'a [Swept],
-    /// Longest stretch that a rapid, shank or holder may take from a ray before it is a collision, mm.
-    pub touch_mm: f64,
-}
 
 /// Tiles carved at a time, before what they found is put together: bounds memory.
 const AT_ONCE: usize = 256;
@@ -80,16 +55,6 @@ impl Stock {
         found.sort_unstable_by_key(|b| (b.motion, b.body));
         Ok(world.sum_up(&found))
     }
-}
-
-/// What every tile is carved by.
-pub(super) struct World<'a> {
-    pub job: &'a StockJob<'a>,
-    pub bodies: Vec<Moved<'a>>,
-    pub tree: Tree,
-    pub pieces: Vec<Piece>,
-    /// How far the straight pieces of a turning motion may stray from it, mm.
-    pub stray_mm: f64,
 }
 
 impl World<'_> {

@@ -24,11 +24,12 @@ mod lattice;
 mod rays;
 mod report;
 mod stl;
+mod world;
 
 pub use blank::{Blank, BlankError, Made, Resolution};
-pub use carve::{StockJob, Upper};
 pub use report::{Carved, Collision, Volume, Work};
 pub use stl::{StlError, read_stl};
+pub use world::{StockJob, Upper};
 
 use lattice::{Lattice, Tile};
 use osculate_geom::{Box3, Point3};

@@ -4,10 +4,10 @@
 //! of it, each cut down to the box that the body fills during the piece, and the single rays. Most of what a path does at a
 //! tile happens in a small part of it.
 
-use super::carve::World;
 use super::glide::{Glide, View};
 use super::lattice::{Across, Lattice, SIDE, TILE, Tile};
 use super::report::Bite;
+use super::world::World;
 use crate::pose::Pose;
 use crate::removal::Swept;
 use crate::removal::body::Body as Moved;

@@ -1,0 +1,58 @@
+//! How to look at the part.
+
+use crate::report::project::Direction;
+
+/// What the surface's colours say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PartColours {
+    /// The deviation.
+    #[default]
+    Deviation,
+    /// Nothing but its shape.
+    Plain,
+}
+
+/// What the path's colours say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PathColours {
+    /// No path.
+    Hidden,
+    /// Nothing but its way.
+    #[default]
+    Plain,
+    /// The strip width.
+    StripWidth,
+}
+
+/// How to look at the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From where.
+    pub direction: Direction,
+    /// Width of the picture, px.
+    pub width_px: u32,
+    /// Height of the picture, px.
+    pub height_px: u32,
+    /// What the surface's colours say.
+    pub part: PartColours,
+    /// What the path's colours say.
+    pub path: PathColours,
+    /// With the links and rapids.
+    pub links: bool,
+    /// With the tool, at this share of the path from 0 to 1.
+    pub tool_at: Option<f64>,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            direction: Direction { azimuth_deg: -52.0, elevation_deg: 34.0 },
+            width_px: 960,
+            height_px: 600,
+            part: PartColours::Deviation,
+            path: PathColours::Plain,
+            links: false,
+            tool_at: Some(0.62),
+        }
+    }
+}

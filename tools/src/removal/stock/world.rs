@@ -1,0 +1,41 @@
+//! What carves, and what every tile of rays is carved by.
+
+use crate::cutter::Cutter;
+use crate::removal::body::Body as Moved;
+use crate::removal::piece::Piece;
+use crate::removal::tree::Tree;
+use crate::removal::{Body, Swept};
+
+/// A body above the cutter: a shank or a holder.
+#[derive(Clone, Copy, Debug)]
+pub struct Upper<'a> {
+    /// Its shape.
+    pub body: &'a Cutter,
+    /// How far its lower end is above the tool tip, mm.
+    pub above_mm: f64,
+    /// Which it is.
+    pub kind: Body,
+}
+
+/// What carves.
+#[derive(Clone, Copy, Debug)]
+pub struct StockJob<'a> {
+    /// The cutter. Its whole length cuts.
+    pub cutter: &'a Cutter,
+    /// Bodies above it, which must not meet material.
+    pub uppers: &'a [Upper<'a>],
+    /// The motions in the order in which they happen.
+    pub motions: &'a [Swept],
+    /// Longest stretch that a rapid, shank or holder may take from a ray before it is a collision, mm.
+    pub touch_mm: f64,
+}
+
+/// What every tile is carved by.
+pub(super) struct World<'a> {
+    pub job: &'a StockJob<'a>,
+    pub bodies: Vec<Moved<'a>>,
+    pub tree: Tree,
+    pub pieces: Vec<Piece>,
+    /// How far the straight pieces of a turning motion may stray from it, mm.
+    pub stray_mm: f64,
+}
