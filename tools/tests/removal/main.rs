@@ -6,6 +6,7 @@ mod collisions;
 mod common;
 mod gouges;
 mod hidden;
+mod prove;
 mod rasters;
 mod sampling;
 mod stock;
