@@ -17,7 +17,7 @@ fn plane() -> Plane {
 }
 
 fn ball() -> Cutter {
-    Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS_MM, length_mm: 40.0 }).unwrap()
+    Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS_MM, length_mm: 40.0 }).expect("a ball")
 }
 
 /// Passes along x over the plane and 2 mm beyond it, each in pieces of 0.7 mm, at this height.
