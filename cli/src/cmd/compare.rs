@@ -11,6 +11,7 @@ use osculate::watch::Stage;
 use osculate::work::choice::{self, Choice, Row};
 use osculate::work::ideal::{self, Bound};
 use osculate::work::program::WallS;
+use osculate::work::verify::VerdictKeys;
 use osculate_geom::{Unit3, Vec3};
 use osculate_productivity::ideal::Feeding;
 use serde::Serialize;
@@ -31,6 +32,8 @@ struct Comparison {
     /// Fastest first.
     candidates: Vec<Row>,
     story: String,
+    /// The verdict on the program of the best.
+    verdict: VerdictKeys,
     /// Best postures over the faces, with `--out`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     fields: Vec<FaceFields>,
@@ -91,7 +94,9 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
     stage.end();
     let area_mm2 = faces.faces.iter().map(part::area).sum();
     let candidates = choice.rows();
-    let answer = Comparison { format: 1, area_mm2, ideal, candidates, story: choice.story(), fields };
+    let verdict = VerdictKeys::of(&settled.verified.verdict);
+    let story = choice.story();
+    let answer = Comparison { format: 1, area_mm2, ideal, candidates, story, verdict, fields };
     if let Some(out) = out {
         let text = serde_json::to_string(&answer).map_err(Failure::job)?;
         output::write(&out.join("compare.json"), text.as_bytes())?;
@@ -100,8 +105,9 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
         render::json(&answer)?;
     } else {
         render::text(&format!(
-            "\n{}\n  {}\n  ideal time, estimated {} min: {}\n{}\n",
+            "\n{}\n{}\n  {}\n  ideal time, estimated {} min: {}\n{}\n",
             choice::text_table(&answer.candidates),
+            settled.verified.verdict,
             answer.story,
             answer.ideal.words(),
             answer.ideal.assumes,
