@@ -8,7 +8,9 @@ use crate::cutter::Cutter;
 use crate::pose::Pose;
 use crate::sweep::{Moving, SweptMotion};
 use osculate_geom::line::{GeodesicLine, IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Darboux, Degenerate, Forms, Relative, Surface, ToolCurvature, Unit3, Uv};
+use osculate_geom::{
+    Axis, Darboux, Degenerate, Forms, Point3, Relative, Surface, ToolCurvature, Unit3, Uv, Vec3,
+};
 use std::f64::consts::FRAC_PI_2;
 
 /// Lead and tilt of the tool axis against the surface normal and the feed.
@@ -145,6 +147,15 @@ impl Lean {
         Moving { pose, tip_rate: tip_rate + about.cross(&(pose.tip - centre)), turn: turn + about }
     }
 
+    /// The lean of an axis against a frame: lead zero or more, tilt what remains; upright where the axis is the normal.
+    #[must_use]
+    pub fn of(axis: &Unit3, frame: &Darboux) -> Self {
+        let [up, ahead, left] = [&frame.normal, &frame.tangent, &frame.left].map(|e| axis.dot(e));
+        let flat = ahead.hypot(left);
+        let tilt_rad = if flat == 0.0 { 0.0 } else { left.atan2(ahead) };
+        Self { lead_rad: flat.atan2(up), tilt_rad }
+    }
+
     /// Principal curvatures of the tool at the contact.
     #[must_use]
     pub fn tool_curvature(self, cutter: &Cutter, frame: &Darboux) -> ToolCurvature {
@@ -156,6 +167,48 @@ impl Lean {
         let across = if core == 0.0 { along } else { s / (core + r * s) };
         ToolCurvature { along, across, direction: self.heading(frame) }
     }
+}
+
+/// The motion of a cutter that touches the point of a frame with a given axis, while the frame moves by `speed` mm along its
+/// tangent and the axis by `axis_rate`, both per unit of the motion's parameter. The axis leans off the normal, but for a ball.
+///
+/// With m the direction in the plane of normal and axis from the axis to the contact, at right angles to the axis, the tip is
+/// `x + r n + c m - z a`, where r, c and z are the touching arc's radius and centre: what the derivative is taken of.
+#[must_use]
+pub fn moving_with_axis(
+    cutter: &Cutter,
+    frame: &Darboux,
+    speed: f64,
+    axis: &Unit3,
+    axis_rate: &Vec3,
+) -> Moving {
+    let (n, a) = (frame.normal.into_inner(), axis.into_inner());
+    let pose = pose_with_axis(cutter, &frame.point, &frame.normal, axis);
+    // Only what is at right angles to the axis turns it.
+    let a_rate = axis_rate - a * axis_rate.dot(&a);
+    let n_rate = frame.turn.cross(&n) * speed;
+    let arc = cutter.touching(axis.angle(&frame.normal));
+    let mut tip_rate = frame.tangent.into_inner() * speed + n_rate * arc.radius_mm - a_rate * arc.centre_z_mm;
+    let across = n - a * n.dot(&a);
+    let sine = across.norm();
+    if arc.centre_rho_mm != 0.0 && sine > 0.0 {
+        let m = across / sine;
+        let rate = n_rate - a_rate * n.dot(&a) - a * (n_rate.dot(&a) + n.dot(&a_rate));
+        tip_rate += (rate - m * rate.dot(&m)) * (arc.centre_rho_mm / sine);
+    }
+    Moving { pose, tip_rate, turn: a.cross(&a_rate) }
+}
+
+/// The pose of a cutter that touches a point with outward normal `normal` and has a given axis. One that does not lean off the
+/// normal touches with its whole bottom, and stands with its tip over the point.
+#[must_use]
+pub fn pose_with_axis(cutter: &Cutter, point: &Point3, normal: &Unit3, axis: &Unit3) -> Pose {
+    let (n, a) = (normal.into_inner(), axis.into_inner());
+    let arc = cutter.touching(axis.angle(normal));
+    let across = n - a * n.dot(&a);
+    let m = Unit3::try_new(across, 0.0).map_or_else(Vec3::zeros, Unit3::into_inner);
+    let tip = point + n * arc.radius_mm + m * arc.centre_rho_mm - a * arc.centre_z_mm;
+    Pose { tip, axis: *axis }
 }
 
 /// A cutter driven along a line on a surface at constant lead, tilt and lift: the exact motion, pose by pose.

@@ -37,7 +37,7 @@ mod spec;
 pub mod strip;
 pub mod sweep;
 
-pub use contact::{Contact, ContactError, ContactMotion, FeedLine, Lean};
+pub use contact::{Contact, ContactError, ContactMotion, FeedLine, Lean, moving_with_axis, pose_with_axis};
 pub use cutter::{Cutter, CutterError, Entry, Line, Part};
 pub use pose::Pose;
 pub use spec::{CutterSpec, HolderSpec};
