@@ -3,6 +3,7 @@
 //! - [`cldata`] reads and writes APT cutter location files.
 //! - [`machine`] describes machine tools as chains of joints; [`machine::Machine::solve`] finds the joints of a path:
 //!   branch and turn over the whole path, poles, limits, linearisation.
+//! - [`Orienting`] says which tool axes the rotary joints reach with a part as it is set up, and what turning costs.
 //! - [`feed`] writes F so that every block takes the time it should, [`motion`] says how long the axes need.
 //! - [`nc`] words programs in the dialects of controls and reads them back to the tool's way; [`post()`] does it all.
 //! - [`conduct`] says whether a program makes its moves in the state of the control that the job means.
@@ -38,6 +39,7 @@ mod linearize;
 pub mod machine;
 pub mod motion;
 pub mod nc;
+mod orienting;
 mod post;
 mod post_error;
 mod post_options;
@@ -57,6 +59,7 @@ pub use machine::{Machine, MachineError, built_in_names, built_in_text};
 pub use nc::conduct;
 pub use nc::readback;
 pub use nc::{Coolant, Dialect, Orientation, WorkOffset};
+pub use orienting::Orienting;
 pub use post::{PostReport, PostSummary, Posted, post, post_from, post_to};
 pub use post_error::PostError;
 pub use post_options::PostOptions;

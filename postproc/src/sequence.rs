@@ -76,7 +76,8 @@ fn turns(machine: &Machine, candidate: &Candidate, all: &mut Vec<State>) {
     });
 }
 
-fn each_turn(machine: &Machine, candidate: &Candidate, k: usize, mut take: impl FnMut(f64)) {
+/// Every turn of the candidate's `k`-th rotary joint that its limits allow; zero once where there is no such joint.
+pub(crate) fn each_turn(machine: &Machine, candidate: &Candidate, k: usize, mut take: impl FnMut(f64)) {
     let q = candidate.rotary_rad[k];
     let Some(&place) = machine.rotary().get(k) else { return take(0.0) };
     let joint = machine.joint_at(place);

@@ -15,6 +15,7 @@ pub use pose::{Candidate, Orientations};
 pub(crate) use pose::{LIMIT_SLACK, NearWish, angle_between, nearest_turn};
 use spec::{ControlSpec, FeedReading, JointSpec, MachineSpec, Sense};
 pub use two_axis::{Angles, AxisUnreachable, Solutions, TwoAxis, TwoAxisError};
+pub(crate) use two_axis::{REACH_TOLERANCE_RAD, angle_about};
 
 use crate::setup::Setup;
 
