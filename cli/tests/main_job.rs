@@ -63,7 +63,24 @@ fn a_plan_is_written_posted_verified_and_reported() {
             assert_eq!((v["source"].as_str(), v["within_tolerance"].as_bool()), (Some(source), Some(true)));
             assert!((number(&v, &["scallop_max_mm"]) / scallop - 1.0).abs() < 0.05, "{v}");
             assert!(v["worst"].as_array().is_some_and(|w| !w.is_empty()));
+            // What feed moves ask of the joints is read from the program alone.
+            let joints = if source == "nc" { &summary["joints"] } else { &Value::Null };
+            assert_eq!(&v["joints"], joints);
         }
+        assert!(number(&summary, &["joints", "blocks"]) > 100.0, "{}", summary["joints"]);
+        let report = std::fs::read_to_string(out.join("report.html")).unwrap();
+        for joint in ["A", "C"] {
+            let block = number(&summary, &["joints", "largest_step_block", joint]);
+            let step = number(&summary, &["joints", "largest_step_deg", joint]);
+            assert!(block > 0.0 && step > 0.0 && step < 90.0, "{}", summary["joints"]);
+            assert!(report.contains(&format!("largest step of {joint}")));
+        }
+        // A clock reads the same steps; F as the program has it is no faster than the joints, but for rounding.
+        let machine = summary["machine"].as_str().unwrap();
+        let run = osculate(&["time", program.to_str().unwrap(), "--machine", machine, "--json"]);
+        let timed = run.json();
+        assert_eq!(timed["joints"]["blocks"], summary["joints"]["blocks"]);
+        assert_eq!(timed["joints"]["largest_step_block"], summary["joints"]["largest_step_block"]);
 
         // A tool that plunges by 30 um in one block of the program is found, at that block, and the exit code says so.
         let text = std::fs::read_to_string(out.join("path.cl")).unwrap();

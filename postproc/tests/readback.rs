@@ -6,6 +6,7 @@ use common::pose;
 use osculate_geom::{Severity, Vec3};
 use osculate_postproc::conduct::{Expected, ExpectedTool, Grade};
 use osculate_postproc::motion::program_time;
+use osculate_postproc::nc::timing::time;
 use osculate_postproc::readback::{ReadBack, ReadError, ReadOptions, read};
 use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, post};
 use osculate_tools::cl::Motion;
@@ -282,6 +283,46 @@ fn caps() {
         posted.diagnostics
     );
     assert!(posted.text.contains(" F500\n"));
+}
+
+/// Three blocks of a millimetre each, a tenth of a second by their F: A turns at 180 degrees a second, C at 360.
+#[test]
+fn what_feed_moves_ask_of_joints() {
+    let m = machine("trunnion-ac");
+    let program = |last: &str| {
+        format!(
+            "TRAORI\nG0 X0 Y0 Z0 A0 C0\nG93\nG1 X1 A10 C20 F600\nX2 C60 F600\nX3 A46 F{last}\nG0 A0 C300\nM30"
+        )
+    };
+    let demand = |text: &str, feed_mm_min: f64| {
+        go(text, Dialect::Sinumerik, "trunnion-ac").unwrap().joint_demand(&m, feed_mm_min)
+    };
+    let d = demand(&program("600"), 600.0);
+    let steps: Vec<_> = d.largest_steps.iter().map(|s| (s.letter.as_str(), s.line)).collect();
+    assert_eq!(steps, [("C", 5), ("A", 6)]);
+    for (step, deg) in d.largest_steps.iter().zip([40.0, 36.0]) {
+        assert!((step.step_rad.to_degrees() - deg).abs() < 1e-9);
+    }
+    // Rapid moves are none of them. C needs 40 / 360 s in line 5, A 36 / 180 s in line 6.
+    assert_eq!((d.blocks, d.slowed_blocks), (3, 2));
+    let (line_5_s, line_6_s) = (40.0 / 360.0, 36.0 / 180.0);
+    assert!((60.0 * d.slowed_min - line_5_s - line_6_s).abs() < 1e-9);
+    assert!((d.slowed_share() - (line_5_s + line_6_s) / (0.1 + line_5_s + line_6_s)).abs() < 1e-9);
+    let slowest = d.slowest.clone().unwrap();
+    assert_eq!((slowest.letter.as_str(), slowest.line), ("A", 6));
+    assert!((slowest.ratio - 2.0).abs() < 1e-9);
+    // The same of the text's own F, and where F says already what A can do.
+    let timed = time(&program("600"), Dialect::Sinumerik, &m, &Setup::default(), true).unwrap();
+    assert_eq!((timed.joints.slowed_blocks, timed.joints.slowest.map(|s| s.line)), (2, Some(6)));
+    let lowered = demand(&program("300"), 600.0);
+    assert!((lowered.slowest.unwrap().ratio - 2.0).abs() < 1e-9 && lowered.slowed_blocks == 2);
+    // At half the feed no joint is too slow.
+    let half = demand(&program("300"), 300.0);
+    assert_eq!((half.slowed_blocks, half.slowest.clone(), half.slowed_share()), (0, None, 0.0));
+    // Without rotary joints there are no steps.
+    let flat = go("G0 X0 Y0 Z0\nG1 X5 F100\nM30", Dialect::Fanuc, "3-axis").unwrap();
+    let flat = flat.joint_demand(&machine("3-axis"), 100.0);
+    assert!(flat.largest_steps.is_empty() && flat.blocks == 1 && flat.slowed_blocks == 0);
 }
 
 /// K_Z in a program: no F rises by more than the step.

@@ -67,6 +67,9 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
         text.push_str(&format!("{}\n", choice::text_table(&s.compared)));
     }
     text.push_str(&format!("{}\n", t.render()));
+    if let Some(words) = s.joints.as_ref().and_then(|j| j.words()) {
+        text.push_str(&format!("  {words}\n\n"));
+    }
     text.push_str(&format!("{}\n{}", figures(&s.verification), on_screen(v)));
     if !v.verdict.is_held() {
         for w in v.worst.iter().take(5) {

@@ -5,6 +5,7 @@ use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::words;
 use osculate::words::Table;
+use osculate::work::joints::JointFigures;
 use osculate::work::nc;
 use osculate_geom::Vec3;
 use osculate_postproc::nc::Dialect;
@@ -22,6 +23,7 @@ struct Answer {
     rapid_min: f64,
     dwell_min: f64,
     limited_by: BTreeMap<String, usize>,
+    joints: JointFigures,
     diagnostics: Vec<String>,
 }
 
@@ -44,6 +46,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
         rapid_min: t.rapid_min,
         dwell_min: t.dwell_min,
         limited_by: t.limited_by.clone(),
+        joints: JointFigures::of(&timed.joints),
         diagnostics: timed.diagnostics.iter().map(ToString::to_string).collect(),
     };
     if json {
@@ -62,6 +65,9 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     render::text(&format!("\n{}\n", table.render()));
     for (joint, count) in &t.limited_by {
         render::text(&format!("  {joint} makes {count} moves slower than F asks\n"));
+    }
+    if let Some(words) = answer.joints.words() {
+        render::text(&format!("  {words}\n"));
     }
     if !timed.diagnostics.is_empty() {
         render::text(&format!("\n{}", words::findings(&timed.diagnostics)));

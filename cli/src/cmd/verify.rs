@@ -8,6 +8,7 @@ use osculate::job::Job;
 use osculate::watch::Stage;
 use osculate::words::{self, Table, number};
 use osculate::work::check::{Checked, Source, check};
+use osculate::work::joints::JointFigures;
 use osculate::work::opinion::{self, SecondOpinion};
 use osculate::work::ply;
 use osculate::work::stock::StockSummary;
@@ -25,6 +26,8 @@ struct Answer {
     worst: Vec<WorstPlace>,
     confidence: String,
     histogram: Vec<HistogramBin>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joints: Option<JointFigures>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stock: Option<StockSummary>,
     diagnostics: Vec<String>,
@@ -79,6 +82,7 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
             worst: v.worst.clone(),
             confidence: v.summary.confidence(),
             histogram: v.histogram.clone(),
+            joints: read.motions.joints.as_ref().map(JointFigures::of),
             stock: v.stock.clone(),
             diagnostics: v.diagnostics.iter().map(ToString::to_string).collect(),
         })?;

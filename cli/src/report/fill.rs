@@ -366,6 +366,15 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             ],
         ),
     ];
+    if let Some(joints) = s.joints.as_ref().filter(|j| j.words().is_some()) {
+        let steps = joints.steps().into_iter();
+        let rows = steps.map(|(letter, step)| vec![format!("largest step of {letter}"), step]);
+        out.push(Table {
+            caption: "Joints".to_owned(),
+            columns: Vec::new(),
+            rows: rows.chain([vec!["slower than asked".to_owned(), joints.slowed()]]).collect(),
+        });
+    }
     let scope = story.verified.verdict.scope();
     out.push(Table {
         caption: "Scope of the verdict".to_owned(),

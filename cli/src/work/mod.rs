@@ -9,6 +9,7 @@ pub mod flank;
 pub mod goal;
 pub mod ideal;
 pub mod import;
+pub mod joints;
 pub mod left_out;
 pub mod look;
 pub mod nc;

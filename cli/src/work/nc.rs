@@ -6,6 +6,7 @@ use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::conduct::{Conduct, Expected, ExpectedTool, Grade};
+use osculate_postproc::motion::JointDemand;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::WorkOffset;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
@@ -73,6 +74,8 @@ pub struct Motions {
     pub time_min: f64,
     /// Time of feed moves, min.
     pub cutting_time_min: f64,
+    /// What its feed moves ask of the joints, against the feed of the job; none where no machine is known.
+    pub joints: Option<JointDemand>,
     /// The spindle's speed, where the program says one.
     pub spindle_rpm: Option<f64>,
     /// Numbers of the tools that its feed moves are made with.
@@ -96,7 +99,7 @@ impl Motions {
 }
 
 /// The state of the control that a job means its programs to run in.
-pub fn expected(job: &Job, gauge_length_mm: f64) -> Expected {
+fn expected(job: &Job, gauge_length_mm: f64) -> Expected {
     let tool = ExpectedTool { number: job.tool().number(), length_mm: gauge_length_mm };
     let (work_offset, coolant) = (work_offset(job), job.coolant());
     Expected { work_offset, coolant, ..Expected::new(tool, job.spindle_rpm(), job.tolerance().gouge_mm) }
@@ -136,14 +139,15 @@ fn judged(conduct: &Conduct) -> GoalControl {
     }
 }
 
-/// Reads an NC program back through the machine; it is to run in the state that is expected.
+/// Reads an NC program back through the machine; it is to run in the state that the job means.
 pub fn read_back(
     text: &str,
+    job: &Job,
     control: &Control,
     setup: &Setup,
-    expected: &Expected,
     lenient: bool,
 ) -> Result<Motions, String> {
+    let expected = expected(job, setup.gauge_length_mm);
     let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
     let read = readback::read(text, control.dialect, &control.machine, setup, &options)
         .map_err(|e| match e {
@@ -158,6 +162,7 @@ pub fn read_back(
         times_min: Vec::with_capacity(read.moves.len()),
         time_min: read.time_min(),
         cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),
+        joints: Some(read.joint_demand(&control.machine, job.feed_mm_min())),
         spindle_rpm: read.spindle_rpm,
         tools: read
             .moves
@@ -165,7 +170,7 @@ pub fn read_back(
             .filter(|m| !matches!(m.motion, Motion::Rapid))
             .filter_map(|m| m.tool)
             .collect(),
-        control: judged(&read.conduct(expected)),
+        control: judged(&read.conduct(&expected)),
         diagnostics: read.diagnostics,
     };
     let mut clock = 0.0;

@@ -8,6 +8,7 @@ use crate::part::{self, Part};
 use crate::report::fill::{self, Story};
 use crate::watch::{Stage, Watch};
 use crate::work::choice::{self, Choice, Row};
+use crate::work::joints::JointFigures;
 use crate::work::passes::{self, Way};
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::summary::{Productivity, Summary};
@@ -215,6 +216,7 @@ impl Proved<'_> {
             air_length_mm: planned.linked.air_length_mm,
             time_min: read.time_min,
             cutting_time_min: read.cutting_time_min,
+            joints: read.joints.as_ref().map(JointFigures::of),
             area_mm2,
             productivity_mm2_min: Productivity {
                 instantaneous_min: l.instantaneous_min,

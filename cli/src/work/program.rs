@@ -87,8 +87,7 @@ impl Posted {
         let options = nc::job_options(job, &control, &title);
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
             let program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
-            let expected = nc::expected(job, setup.gauge_length_mm);
-            let read = nc::read_back(&program.text, &control, setup, &expected, false)
+            let read = nc::read_back(&program.text, job, &control, setup, false)
                 .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
             Ok((program, read))
         };

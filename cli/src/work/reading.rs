@@ -134,8 +134,7 @@ pub fn program(
     lenient: bool,
 ) -> Result<(Motions, Vec<Diagnostic>), Failure> {
     let (setup, notes) = posted_setup::of_program(job, faces, text, control.dialect);
-    let expected = nc::expected(job, setup.gauge_length_mm);
-    let motions = nc::read_back(text, control, &setup, &expected, lenient).map_err(Failure::job)?;
+    let motions = nc::read_back(text, job, control, &setup, lenient).map_err(Failure::job)?;
     Ok((motions, notes))
 }
 

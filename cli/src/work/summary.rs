@@ -4,6 +4,7 @@ use crate::words::number;
 use crate::work::choice::Row;
 use crate::work::extras::FaceLeftOut;
 use crate::work::ideal::IdealTime;
+use crate::work::joints::JointFigures;
 use crate::work::program::WallS;
 use crate::work::verify::{VerdictKeys, Verification, WorstPlace};
 use serde::Serialize;
@@ -57,6 +58,8 @@ pub struct Summary {
     pub time_min: f64,
     /// Time of its feed moves.
     pub cutting_time_min: f64,
+    /// What the feed moves ask of the joints.
+    pub joints: Option<JointFigures>,
     /// Area of the faces to machine.
     pub area_mm2: f64,
     /// Area over time at three levels.

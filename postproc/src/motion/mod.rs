@@ -10,9 +10,11 @@
 //! `2 sqrt(w / j)`; speeding up and slowing down cover `w` times that time; the rest runs at w = v. Where the distance
 //! is too short for v, the peak speed follows from a quadratic or a cube root.
 
+mod joint_demand;
 pub mod linuxcnc;
 mod lookahead;
 
+pub use joint_demand::{FeedBlock, JointDemand, LargestStep, SlowestBlock};
 pub use lookahead::{LookAhead, Stretch, block_times_s};
 
 use std::collections::BTreeMap;

@@ -18,7 +18,7 @@ use super::names::Names;
 pub use super::read_error::ReadError;
 use super::state::FeedReading;
 use crate::machine::{JointValues, Machine};
-use crate::motion::{TimedMove, rapid_time_min};
+use crate::motion::{FeedBlock, JointDemand, TimedMove, rapid_time_min};
 use crate::setup::Setup;
 
 /// How a text is to be read.
@@ -109,6 +109,18 @@ impl ReadBack {
     /// The blocks as [`crate::motion::program_time`] takes them.
     pub fn timed_moves(&self) -> impl Iterator<Item = TimedMove> + '_ {
         self.blocks.iter().map(|b| TimedMove { from: b.from, to: b.to, rapid: b.rapid, time_min: b.time_min })
+    }
+
+    /// What the feed moves ask of the joints of the machine that the text was read for, with the tip asked to go at this feed.
+    #[must_use]
+    pub fn joint_demand(&self, machine: &Machine, feed_mm_min: f64) -> JointDemand {
+        let mut demand = JointDemand::new(machine);
+        for b in self.blocks.iter().filter(|b| !b.rapid) {
+            let ReadBlock { line, from, to, time_min, .. } = *b;
+            let asked_min = b.tip_length_mm / feed_mm_min;
+            demand.add(machine, &FeedBlock { line, from, to, time_min, asked_min });
+        }
+        demand
     }
 
     /// Total time, min.

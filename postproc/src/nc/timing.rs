@@ -12,7 +12,7 @@ use super::read_error::ReadError;
 use super::state::{FeedReading, Known};
 use crate::machine::{MAX_JOINTS, Machine};
 use crate::motion::linuxcnc::{Canon, CanonArc, CanonFeed, CanonMove, Limits, PathControl};
-use crate::motion::{LookAhead, ProgramTime, Stretch, rapid_time_min};
+use crate::motion::{FeedBlock, JointDemand, LookAhead, ProgramTime, Stretch, rapid_time_min};
 use crate::setup::Setup;
 use osculate_geom::Diagnostic;
 
@@ -21,6 +21,8 @@ use osculate_geom::Diagnostic;
 pub struct Timed {
     /// The time.
     pub time: ProgramTime,
+    /// What the feed moves ask of the joints, against the program's own F.
+    pub joints: JointDemand,
     /// Findings, with line numbers.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -88,7 +90,7 @@ impl<'a> Clock<'a> {
                 time.limited_by.insert(letter.clone(), count);
             }
         }
-        Ok(Timed { time, diagnostics: self.control.diagnostics })
+        Ok(Timed { time, joints: planned.joints, diagnostics: self.control.diagnostics })
     }
 }
 
@@ -128,6 +130,7 @@ struct Planned {
     /// Slot of the linear joint that is X, Y, Z, without tool-centre-point control.
     order: [usize; 3],
     time: ProgramTime,
+    joints: JointDemand,
     control: PathControl,
 }
 
@@ -160,6 +163,7 @@ impl Planned {
             limits,
             order,
             time: ProgramTime::default(),
+            joints: JointDemand::new(machine),
             control: PathControl::FIRST,
         }
     }
@@ -197,6 +201,10 @@ fn canon_feed(feed: Option<FeedNow>) -> CanonFeed {
 
 impl Sink for Planned {
     fn take(&mut self, frame: Frame<'_>, event: &Event<'_>) {
+        if let Event::Moved(&Moved { line, from, to, rapid: false, time_min, .. }) = *event {
+            let asked_min = time_min;
+            self.joints.add(frame.machine, &FeedBlock { line, from, to, time_min, asked_min });
+        }
         if let Some(stretch) = &mut self.stretch {
             match event {
                 Event::Moved(m) if m.rapid => {
