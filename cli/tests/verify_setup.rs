@@ -124,6 +124,14 @@ fn a_turn_of_the_part_comes_back_too() {
     assert!(setup_findings(&v)[0].contains("rotate_deg = [10.0000, -20.0000, 33.0000]"), "{v}");
 }
 
+/// A quarter of a turn about one axis, as findings have it.
+const QUARTERS: [&str; 4] = [
+    "[90.000, 0.000, 0.000]",
+    "[-90.000, 0.000, 0.000]",
+    "[0.000, 90.000, 0.000]",
+    "[0.000, -90.000, 0.000]",
+];
+
 /// A small bowl around the pole of the table: its joints hold the path up where it stands, and less where it is tilted.
 #[test]
 fn a_part_is_tilted_where_its_program_is_quicker_so() {
@@ -141,7 +149,16 @@ fn a_part_is_tilted_where_its_program_is_quicker_so() {
         (run.json(), job, out.join("program.ngc"))
     };
     let (stands, ..) = plan("stands", "[setup]\nrotate_deg = [0, 0, 0]\n");
-    let (tilted, job, program) = plan("tilted", "");
+    let (stays, ..) = plan("stays", "[setup]\nturns = \"none\"\n");
+    assert_eq!(figure(&stays, "time_min"), figure(&stands, "time_min"));
+    // What a shop can clamp: on its side, by a quarter of a turn about one axis.
+    let (laid, ..) = plan("laid", "");
+    let said = setup_findings(&laid).join("\n");
+    assert!(said.contains("turned so that the joints hold the path up less"), "{said}");
+    assert!(QUARTERS.iter().any(|q| said.contains(q)), "{said}");
+    let [before, now] = [&stands, &laid].map(|v| figure(v, "time_min"));
+    assert!(now < 0.97 * before, "{now} {before}");
+    let (tilted, job, program) = plan("tilted", "[setup]\nturns = \"free\"\n");
     let said = setup_findings(&tilted).join("\n");
     assert!(said.contains("turned so that the joints hold the path up less"), "{said}");
     let [before, now] = [&stands, &tilted].map(|v| figure(v, "time_min"));
@@ -150,4 +167,31 @@ fn a_part_is_tilted_where_its_program_is_quicker_so() {
     let run = osculate(&["verify", program.to_str().unwrap(), "--job", job.to_str().unwrap(), "--json"]);
     let [again, planned] = [run.json(), tilted["verification"].clone()].map(|v| figure(&v, "gouge_max_mm"));
     assert!(run.code == 0 && (again - planned).abs() < 1e-3, "{again} {planned}");
+}
+
+/// A piece of a sphere around +x: its normals are up to 35 degrees from that.
+#[test]
+fn a_face_that_looks_aside_is_turned_about_one_axis() {
+    let scratch = Scratch::new();
+    let text = job(|t| {
+        t.replace(
+            "kind = \"paraboloid\", a_per_mm = 0.005, b_per_mm = -0.003, half_size_mm = 6",
+            "kind = \"sphere\", radius_mm = 25, u_range = [-0.2, 0.2], v_range = [-0.6, 0.6]",
+        )
+    });
+    let plan = |name: &str, setup: &str| {
+        let job = scratch.write(&format!("{name}.toml"), &format!("{text}{setup}"));
+        let out = scratch.path(name);
+        let run = osculate(&["plan", job.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+        assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+        setup_findings(&run.json()).join("\n")
+    };
+    let said = plan("none", "[setup]\nturns = \"none\"\n");
+    assert!(said.contains("rotate_deg = [0.000, -90.000, 0.000]"), "{said}");
+    // On another side it may be quicker, by a quarter of a turn about one axis too.
+    let said = plan("axis", "");
+    assert!(QUARTERS.iter().any(|q| said.contains(q)), "{said}");
+    // What the job gives is not turned.
+    let given = plan("given", "[setup]\nrotate_deg = [0, -80, 10]\nturns = \"free\"\n");
+    assert!(!given.contains("turned"), "{given}");
 }

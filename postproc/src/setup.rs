@@ -46,12 +46,28 @@ pub enum SetupError {
     },
 }
 
+/// A cosine below which a turn about y counts as a quarter of one: above it the other two turns are known to 1e-16 over it.
+const QUARTER_COSINE: f64 = 1e-8;
+
 impl Setup {
     /// Part origin at this place from the table's reference point, no rotation.
     #[must_use]
     pub fn at(part_zero_mm: Vec3, gauge_length_mm: f64) -> Self {
         let part_zero = Isometry3::from_parts(Translation3::from(part_zero_mm), UnitQuaternion::identity());
         Self { part_zero, gauge_length_mm }
+    }
+
+    /// The turn of the part about x, then y, then z of the machine, rad, the one about y from -pi/2 to pi/2; where that is a quarter of a
+    /// turn, which leaves only the sum of the others, the one about x is zero.
+    #[must_use]
+    pub fn turn_rad(&self) -> [f64; 3] {
+        let rotation = self.part_zero.rotation.to_rotation_matrix();
+        let m = rotation.matrix();
+        let about_y = (-m[(2, 0)]).atan2(m[(0, 0)].hypot(m[(1, 0)]));
+        if m[(0, 0)].hypot(m[(1, 0)]) < QUARTER_COSINE {
+            return [0.0, about_y, (-m[(0, 1)]).atan2(m[(1, 1)])];
+        }
+        [m[(2, 1)].atan2(m[(2, 2)]), about_y, m[(1, 0)].atan2(m[(0, 0)])]
     }
 
     /// # Errors
@@ -102,5 +118,29 @@ impl Default for Setup {
     /// Part origin at the table's reference point, gauge length zero.
     fn default() -> Self {
         Self::at(Vec3::zeros(), 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Made again of its three turns a rotation is the same, quarters about y included.
+    #[test]
+    fn three_turns_make_the_rotation() {
+        let about = |axis: Vec3, angle_rad: f64| UnitQuaternion::from_scaled_axis(axis * angle_rad);
+        let made = |[x, y, z]: [f64; 3]| about(Vec3::z(), z) * about(Vec3::y(), y) * about(Vec3::x(), x);
+        let quarter = std::f64::consts::FRAC_PI_2;
+        for y in [-quarter, -0.3, 0.0, 1.2, quarter] {
+            for (x, z) in [(0.0, 0.0), (quarter, 0.4), (3.0, -2.0), (-quarter, quarter), (0.1, 3.1)] {
+                let mut setup = Setup::default();
+                setup.part_zero.rotation = made([x, y, z]);
+                let again = made(setup.turn_rad());
+                assert!(again.angle_to(&setup.part_zero.rotation) < 1e-7, "{x} {y} {z}");
+            }
+        }
+        let mut setup = Setup::default();
+        setup.part_zero.rotation = made([0.0, -quarter, 0.0]);
+        assert!(setup.turn_rad().iter().zip([0.0, -quarter, 0.0]).all(|(a, b)| (a - b).abs() < 1e-9));
     }
 }

@@ -94,14 +94,28 @@ fn any_frame(up: &Unit3) -> (Vec3, Vec3) {
     (e, up.cross(&e))
 }
 
-fn turn(normals: &[Unit3]) -> UnitQuaternion<f64> {
-    let lowest = |up: &Vec3| normals.iter().map(|n| n.angle(up)).fold(0.0, f64::max);
-    let mean: Vec3 = normals.iter().map(|n| n.into_inner()).sum::<Vec3>() / normals.len().max(1) as f64;
-    let stands = lowest(&Vec3::z());
-    let all_round = mean.norm() < ALL_ROUND;
-    if stands <= if all_round { REACHES } else { STANDS } {
+/// The angle between a direction and the normal that is furthest from it.
+fn lowest(normals: &[Unit3], up: &Vec3) -> f64 {
+    normals.iter().map(|n| n.angle(up)).fold(0.0, f64::max)
+}
+
+fn mean(normals: &[Unit3]) -> Vec3 {
+    normals.iter().map(|n| n.into_inner()).sum::<Vec3>() / normals.len().max(1) as f64
+}
+
+/// Whether a part with these normals stays as it stands.
+pub(crate) fn stands(normals: &[Unit3]) -> bool {
+    let all_round = mean(normals).norm() < ALL_ROUND;
+    lowest(normals, &Vec3::z()) <= if all_round { REACHES } else { STANDS }
+}
+
+/// How a part is turned for its normals.
+pub(crate) fn turn(normals: &[Unit3]) -> UnitQuaternion<f64> {
+    if stands(normals) {
         return UnitQuaternion::identity();
     }
+    let lowest = |up: &Vec3| lowest(normals, up);
+    let (mean, stands) = (mean(normals), lowest(&Vec3::z()));
     let main = mean.iamax();
     let mut axis = Vec3::zeros();
     axis[main] = mean[main].signum();

@@ -6,18 +6,15 @@
 
 use crate::feed::capped_duration;
 use crate::machine::{Machine, NearWish};
+use crate::part_turns::{axes_of, reaches_all};
 use crate::setup::Setup;
 use nalgebra::UnitQuaternion;
-use osculate_geom::Vec3;
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClPath, Motion};
 use rayon::prelude::*;
 
 /// Feed moves of a path that are looked at.
 const MOST_MOVES: usize = 4000;
-/// Tilts that are tried, degrees, each in so many directions.
-const TILTS_DEG: [f64; 5] = [15.0, 30.0, 45.0, 60.0, 75.0];
-const DIRECTIONS: u32 = 8;
 /// Times up to this multiple of the least count as equal.
 const ALIKE: f64 = 1.01;
 /// What the tool may be off where that keeps a joint at rest, as in programs, rad.
@@ -68,15 +65,19 @@ fn time_min(moves: &[Move], machine: &Machine, setup: &Setup) -> Option<f64> {
     times.min_by(f64::total_cmp)
 }
 
-/// Turns of the part on the table in which the feed moves of a path seem to take less time than with that of `setup`, by this share
-/// at least: the quickest first, of those about as quick the least tilted. None for machines without two rotary joints, and for paths that keep the tool's axis.
+/// Those of some turns of the part on the table in which the feed moves of a path seem to take less time than with that of `setup`, by
+/// this share at least: the quickest first, of those about as quick the one that is turned least from `setup`. None for machines without two
+/// rotary joints, and for paths that keep the tool's axis.
 ///
-/// Times are those of some of the moves at the speeds of joints, with the place of the part as it is: a program tells the rest.
+/// With each of them the rotary joints reach all axes of the path within their limits; where they do not as the part stands, that counts
+/// as slower than any. Times are those of some of the moves at the speeds of joints, with the place of the part as it is: a
+/// program tells the rest.
 #[must_use]
 pub fn quicker_turns(
     path: &ClPath,
     machine: &Machine,
     setup: &Setup,
+    turns: &[UnitQuaternion<f64>],
     share: f64,
 ) -> Vec<UnitQuaternion<f64>> {
     let moves = moves_of(path);
@@ -84,37 +85,35 @@ pub fn quicker_turns(
     if machine.pair().is_none() || fixed {
         return Vec::new();
     }
-    let stands = time_min(&moves, machine, setup);
-    let turns: Vec<UnitQuaternion<f64>> = TILTS_DEG
-        .iter()
-        .flat_map(|deg| {
-            (0..DIRECTIONS).map(move |k| {
-                let (s, c) = (std::f64::consts::TAU * f64::from(k) / f64::from(DIRECTIONS)).sin_cos();
-                UnitQuaternion::from_scaled_axis(Vec3::new(c, s, 0.0) * deg.to_radians())
-            })
-        })
-        .collect();
+    let axes = axes_of(path);
+    let rotation = &setup.part_zero.rotation;
+    let stands = if reaches_all(machine, rotation, &axes) { time_min(&moves, machine, setup) } else { None };
+    let mut turns = turns.to_vec();
+    turns.sort_by(|a, b| rotation.angle_to(a).total_cmp(&rotation.angle_to(b)));
     let mut found: Vec<(f64, usize)> = turns
         .par_iter()
         .enumerate()
         .filter_map(|(k, turn)| {
             let mut turned = *setup;
-            turned.part_zero.rotation = turn * setup.part_zero.rotation;
+            turned.part_zero.rotation = *turn;
             let time = time_min(&moves, machine, &turned)?;
-            (stands.is_none_or(|s| time < (1.0 - share) * s)).then_some((time, k))
+            let quicker = stands.is_none_or(|s| time < (1.0 - share) * s);
+            // Some of the moves may be in range where others are not.
+            (quicker && reaches_all(machine, turn, &axes)).then_some((time, k))
         })
         .collect();
-    // Of those that are as good as the best the least tilted.
+    // Of those that are as good as the best the least turned.
     let alike = ALIKE * found.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
     found.sort_by(|a, b| a.0.max(alike).total_cmp(&b.0.max(alike)).then(a.1.cmp(&b.1)));
-    found.into_iter().map(|(_, k)| turns[k] * setup.part_zero.rotation).collect()
+    found.into_iter().map(|(_, k)| turns[k]).collect()
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use osculate_geom::{Point3, Unit3};
+    use crate::part_turns::{clamped_turns, tilts};
+    use osculate_geom::{Point3, Unit3, Vec3};
     use osculate_tools::cl::ClMove;
 
     /// Zig-zags over a cap around +z: normals within 0.2 rad of it, 0.05 rad apart.
@@ -132,12 +131,17 @@ mod tests {
         path
     }
 
+    /// Tilts of the part as it stands.
+    fn tilted(path: &ClPath, machine: &Machine, setup: &Setup) -> Vec<UnitQuaternion<f64>> {
+        quicker_turns(path, machine, setup, &tilts(&setup.part_zero.rotation), 0.05)
+    }
+
     #[test]
     fn a_cap_that_looks_up_is_tilted_away_from_the_pole() {
         let machine = Machine::built_in("trunnion-ac").unwrap();
         let setup = Setup { gauge_length_mm: 100.0, ..Setup::default() };
         let path = cap();
-        let found = quicker_turns(&path, &machine, &setup, 0.05);
+        let found = tilted(&path, &machine, &setup);
         let up = found[0] * Vec3::z();
         assert!(up.z < 0.9, "{up:?}");
         // What it promises holds in programs too.
@@ -145,11 +149,43 @@ mod tests {
             let options = crate::PostOptions::new(crate::Dialect::Sinumerik, crate::FeedMode::InverseTime);
             crate::post(&path, &machine, setup, &options).unwrap().summary.time_min
         };
-        let mut tilted = setup;
-        tilted.part_zero.rotation = found[0];
-        assert!(time(&tilted) < 0.9 * time(&setup), "{} {}", time(&tilted), time(&setup));
+        let mut aside = setup;
+        aside.part_zero.rotation = found[0];
+        assert!(time(&aside) < 0.9 * time(&setup), "{} {}", time(&aside), time(&setup));
         // And there is no more to be had from there.
-        assert!(quicker_turns(&path, &machine, &tilted, 0.05).is_empty());
+        assert!(tilted(&path, &machine, &aside).is_empty());
+    }
+
+    /// Laid on its side the cap is quick too, and can be clamped: a quarter of a turn about one axis.
+    #[test]
+    fn a_cap_is_laid_on_its_side() {
+        let machine = Machine::built_in("trunnion-ac").unwrap();
+        let setup = Setup { gauge_length_mm: 100.0, ..Setup::default() };
+        let found = quicker_turns(&cap(), &machine, &setup, &clamped_turns(&machine), 0.05);
+        let laid = found[0].scaled_axis();
+        assert!((laid.amax() - std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{laid:?}");
+        assert!((laid.norm() - laid.amax()).abs() < 1e-12, "{laid:?}");
+    }
+
+    /// One axis of a long path looks aside, at a move that no time is taken of: no turn that puts it out of reach is chosen.
+    #[test]
+    fn no_turn_overruns_a_joint() {
+        let machine = Machine::built_in("trunnion-ac").unwrap();
+        let setup = Setup { gauge_length_mm: 100.0, ..Setup::default() };
+        let cap = cap();
+        let mut path = ClPath::default();
+        // So many moves that every fourth is looked at.
+        while path.moves.len() <= 3 * MOST_MOVES {
+            path.moves.extend(cap.moves.iter().copied());
+        }
+        let free = tilted(&path, &machine, &setup);
+        let aside = Vec3::x_axis();
+        // A ends at 120 degrees, which a tilt by 30 just does not pass.
+        let overrun = |turn: &UnitQuaternion<f64>| (turn * aside).z < 121f64.to_radians().cos();
+        assert!(free.iter().any(overrun));
+        path.moves[4 * 500 + 2].pose.axis = aside;
+        let kept = tilted(&path, &machine, &setup);
+        assert!(!kept.is_empty() && kept.len() < free.len() && !kept.iter().any(overrun));
     }
 
     #[test]
@@ -157,15 +193,15 @@ mod tests {
         let setup = Setup { gauge_length_mm: 100.0, ..Setup::default() };
         // No second rotary joint.
         let three = Machine::built_in("3-axis").unwrap();
-        assert!(quicker_turns(&cap(), &three, &setup, 0.05).is_empty());
+        assert!(tilted(&cap(), &three, &setup).is_empty());
         // A fixed axis.
         let machine = Machine::built_in("trunnion-ac").unwrap();
         let mut path = cap();
         for m in &mut path.moves {
             m.pose.axis = Vec3::z_axis();
         }
-        assert!(quicker_turns(&path, &machine, &setup, 0.05).is_empty());
+        assert!(tilted(&path, &machine, &setup).is_empty());
         // Nothing to cut.
-        assert!(quicker_turns(&ClPath::default(), &machine, &setup, 0.05).is_empty());
+        assert!(tilted(&ClPath::default(), &machine, &setup).is_empty());
     }
 }

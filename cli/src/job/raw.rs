@@ -2,7 +2,7 @@
 
 use crate::job::words::{
     Accept, AlongWord, AxisWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey, Method, Normals,
-    StrategyWord, Tip, ToolKind,
+    StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;
@@ -164,6 +164,7 @@ pub struct Machine {
 pub struct Setup {
     pub part_zero_mm: Option<[f64; 3]>,
     pub rotate_deg: Option<[f64; 3]>,
+    pub turns: Option<Turns>,
     pub clearance_mm: Option<f64>,
     pub approach_mm: Option<f64>,
     pub hop_mm: Option<f64>,

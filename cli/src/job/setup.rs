@@ -5,6 +5,7 @@ use crate::job::cutting::LAYER_OF_APPROACH;
 use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::strategy::Strategy;
+use crate::job::words::Turns;
 
 /// Height from which the tool goes down at feed where nothing higher stands on the faces, mm.
 const APPROACH_MM: f64 = 2.0;
@@ -20,6 +21,8 @@ pub struct Setup {
     pub part_zero_mm: Option<[f64; 3]>,
     /// The part's axes turned on the table, about x, then y, then z; chosen from the faces' normals where not given.
     pub rotate_deg: Option<[f64; 3]>,
+    /// How the part may be turned where `rotate_deg` is not given.
+    pub turns: Turns,
     /// Clearance of rapid moves over the sphere around the part.
     pub clearance_mm: f64,
     /// Distance from the surface at which rapid moves end.
@@ -51,6 +54,7 @@ impl Setup {
         Ok(Self {
             part_zero_mm: t.part_zero_mm,
             rotate_deg: t.rotate_deg,
+            turns: t.turns.unwrap_or_default(),
             clearance_mm: t.clearance_mm.unwrap_or(10.0),
             approach_mm,
             hop_mm,

@@ -200,6 +200,19 @@ words! {
 }
 
 words! {
+    /// How the part may be turned where the job gives no turn.
+    Turns {
+        /// One of its own axes up and the others along the machine's; never for the sake of time.
+        None = "none",
+        /// One of its own axes up; for the sake of time another one, or about the vertical.
+        #[default]
+        Axis = "axis",
+        /// In any way.
+        Free = "free",
+    }
+}
+
+words! {
     /// A positioning of a cutter on a ruled face.
     Method {
         /// Touching at the first directrix.

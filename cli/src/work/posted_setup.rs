@@ -16,7 +16,7 @@ const TURNED_RAD: f64 = 1e-6;
 /// The setup for reading a program back. What `[setup]` gives of place and turn counts, the rest is what the head of the
 /// program says; where that says nothing it is found from the faces. What contradicts is warned of.
 pub fn of_program(job: &Job, faces: &Part, text: &str, dialect: Dialect) -> (Setup, Vec<Diagnostic>) {
-    let (own, mut own_notes) = setup::of(job, faces, &[]);
+    let (own, mut own_notes) = setup::of(job, faces, None);
     let posted = match Setup::of_program(text, dialect) {
         Ok(Some(posted)) => posted,
         Ok(None) => return (own, own_notes),
@@ -81,8 +81,7 @@ pub fn of_program(job: &Job, faces: &Part, text: &str, dialect: Dialect) -> (Set
 
 /// The turn as `rotate_deg` has it: about x, then y, then z.
 fn angles_deg(setup: &Setup) -> [f64; 3] {
-    let (x, y, z) = setup.part_zero.rotation.euler_angles();
-    [x, y, z].map(f64::to_degrees)
+    setup.turn_rad().map(f64::to_degrees)
 }
 
 /// Three numbers for a message, without a minus at zero.

@@ -7,8 +7,9 @@ use crate::watch::{Stage, Watch};
 use crate::work::extras::Extras;
 use crate::work::nc::{self, Motions};
 use crate::work::passes;
+use crate::work::reading;
+use crate::work::setup::{self, Along};
 use crate::work::verify::{self, Verified};
-use crate::work::{reading, setup};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
 use osculate_productivity::plan::{Linked, Passes};
@@ -76,8 +77,9 @@ impl Posted {
         let control = job.control().clone();
         let control_notes = job.control_notes();
         let stage = Stage::begin(watch, "post");
-        let (base, mut setup_notes) = setup::of(job, faces, &axes_of(planned));
         let cl = passes::cl_path(job, &planned.linked);
+        let along = Along { path: &cl, axes: &axes_of(planned) };
+        let (base, mut setup_notes) = setup::of(job, faces, Some(along));
         let title = passes::title(job);
         let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
         if watch.wants_partial() {
@@ -91,19 +93,23 @@ impl Posted {
                 .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
             Ok((program, read))
         };
-        let (mut program, mut read) = written(&base)?;
+        let mut best = written(&base);
         stage.at(0.6);
-        let first_min = read.time_min;
+        let first_min = best.as_ref().ok().map(|(_, read)| read.time_min);
+        let worth_min = first_min.map_or(f64::INFINITY, |min| (1.0 - setup::WORTH_A_TURN) * min);
         for turned in setup::turned(job, faces, &cl, &control, &base) {
             // A turn that no program can be written for is none.
             let Ok(other) = written(&turned) else { continue };
-            if other.1.time_min < read.time_min.min((1.0 - setup::WORTH_A_TURN) * first_min) {
-                setup_notes = setup::notes_of_turned(&turned, [first_min, other.1.time_min]);
-                (program, read) = other;
+            let now_min = other.1.time_min;
+            let least_min = best.as_ref().map_or(f64::INFINITY, |(_, read)| read.time_min);
+            if now_min < least_min.min(worth_min) {
+                setup_notes = setup::notes_of_turned(&turned, first_min, now_min);
+                best = Ok(other);
             }
         }
+        let (program, _) = best?;
         // The verdict is on what its text does, read as everybody reads it: from the place that its head says.
-        (read, _) = reading::program(&program.text, &control, job, faces, false)?;
+        let (read, _) = reading::program(&program.text, &control, job, faces, false)?;
         wall_s.post += stage.end();
         let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
         let diagnostics = notes.into_iter().flatten().cloned().collect();

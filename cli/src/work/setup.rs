@@ -2,21 +2,30 @@
 
 use crate::job::Control;
 use crate::job::Job;
+use crate::job::Turns;
 use crate::part::{self, Part};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
-use osculate_postproc::{Setup, quicker_turns, suggest};
+use osculate_postproc::{
+    Machine, Setup, axis_turns, clamped_turns, first_in_range, free_turns, quicker_turns, suggest, tilts,
+};
 use osculate_tools::cl::ClPath;
 
-/// Where the part of a job sits on the machine, as the job says or as [`suggest`] has it: turned so that the faces look up, or
-/// the tool axes where there are any.
-pub fn of(job: &Job, faces: &Part, axes: &[Unit3]) -> (Setup, Vec<Diagnostic>) {
+/// A path for which a setup is sought.
+#[derive(Clone, Copy)]
+pub struct Along<'a> {
+    /// All of it: its tool axes are to be in the range of the joints.
+    pub path: &'a ClPath,
+    /// Tool axes of its passes, which are to look up.
+    pub axes: &'a [Unit3],
+}
+
+/// Where the part of a job sits on the machine, as the job says or as is found: turned so that the faces look up, or the tool axes of
+/// a path, with all of which in the range of the joints where any turn does that.
+pub fn of(job: &Job, faces: &Part, along: Option<Along<'_>>) -> (Setup, Vec<Diagnostic>) {
     let s = job.setup();
     let gauge = job.cutter().length_mm() + job.holder().map_or(0.0, |h| h.length_mm());
-    let (points, mut normals): (Vec<Point3>, Vec<Unit3>) = looks(faces).unzip();
-    if !axes.is_empty() {
-        normals = axes.to_vec();
-    }
+    let (points, normals): (Vec<Point3>, Vec<Unit3>) = looks(faces).unzip();
     // A given turn leaves only the place to be found.
     let given = s.rotate_deg.map(|deg| {
         let [a, b, c] = deg.map(f64::to_radians);
@@ -27,11 +36,12 @@ pub fn of(job: &Job, faces: &Part, axes: &[Unit3]) -> (Setup, Vec<Diagnostic>) {
     let mut setup = match given {
         Some(rotation) => standing(rotation, &points, gauge),
         None => {
-            let found = suggest(&normals, &points, gauge);
-            if found.turned {
-                notes.push(note_of_turn("so that the tool's axes look up", &found.setup));
+            let turn = Turn::of(s.turns, &job.control().machine, &normals, along);
+            let setup = standing(turn.rotation, &points, gauge);
+            if turn.rotation != UnitQuaternion::identity() {
+                notes.push(note_of_turn(turn.why, &setup));
             }
-            found.setup
+            setup
         }
     };
     if let Some(zero) = s.part_zero_mm {
@@ -40,6 +50,43 @@ pub fn of(job: &Job, faces: &Part, axes: &[Unit3]) -> (Setup, Vec<Diagnostic>) {
         notes.push(note_of_place(&setup));
     }
     (setup, notes)
+}
+
+/// How the part is turned.
+struct Turn {
+    rotation: UnitQuaternion<f64>,
+    why: &'static str,
+}
+
+impl Turn {
+    /// The best of the turns that the job wants with which all tool axes are in range, else of the others that it allows. Where there is none
+    /// the best at all: the post then says what is out of range.
+    fn of(turns: Turns, machine: &Machine, normals: &[Unit3], along: Option<Along<'_>>) -> Self {
+        let looks = along.map(|a| a.axes).filter(|axes| !axes.is_empty()).unwrap_or(normals);
+        let by_axes = || axis_turns(looks);
+        let free = || free_turns(machine, looks);
+        let (wanted, others) = match turns {
+            Turns::None => (by_axes(), Vec::new()),
+            Turns::Axis => (by_axes(), free()),
+            Turns::Free => (free(), by_axes()),
+        };
+        let up = "so that the tool's axes look up";
+        let in_range = |turns: &[UnitQuaternion<f64>]| match along {
+            Some(a) => first_in_range(a.path, machine, turns),
+            None => turns.first().copied(),
+        };
+        if let Some(rotation) = in_range(&wanted) {
+            return Self { rotation, why: up };
+        }
+        match in_range(&others) {
+            Some(rotation) if turns == Turns::Axis => {
+                let why = "freely, since no turn that brings one of its own axes up has all tool axes in the range of the joints";
+                Self { rotation, why }
+            }
+            Some(rotation) => Self { rotation, why: up },
+            None => Self { rotation: wanted.first().copied().unwrap_or_default(), why: up },
+        }
+    }
 }
 
 /// Points of the faces to machine, with their normals.
@@ -55,9 +102,10 @@ fn standing(rotation: UnitQuaternion<f64>, points: &[Point3], gauge_length_mm: f
 }
 
 fn note_of_turn(why: &str, setup: &Setup) -> Diagnostic {
-    let (x, y, z) = setup.part_zero.rotation.euler_angles();
-    let [x, y, z] = [x, y, z].map(f64::to_degrees);
-    Diagnostic::note("setup", format!("the part is turned {why}: rotate_deg = [{x:.3}, {y:.3}, {z:.3}]"))
+    // Without a minus at zero.
+    let [x, y, z] = setup.turn_rad().map(|x| (1e3 * x.to_degrees()).round() / 1e3 + 0.0);
+    let how = if [x, y, z] == [0.0; 3] { "stands as in its file" } else { "is turned" };
+    Diagnostic::note("setup", format!("the part {how} {why}: rotate_deg = [{x:.3}, {y:.3}, {z:.3}]"))
 }
 
 fn note_of_place(setup: &Setup) -> Diagnostic {
@@ -71,24 +119,34 @@ const MOST_TURNS: usize = 2;
 /// Share of the time that a turn must seem to save to be posted, and save to be taken.
 pub const WORTH_A_TURN: f64 = 0.03;
 
-/// Setups with the part turned so that the joints seem to hold the path up less than in `setup`; none where the job says where
-/// the part is.
+/// Setups with the part turned so that the joints seem to hold the path up less than in `setup`, in the range of the joints; none where the
+/// job says where the part is, or wants no turns.
 pub fn turned(job: &Job, faces: &Part, path: &ClPath, control: &Control, setup: &Setup) -> Vec<Setup> {
     if job.setup().rotate_deg.is_some() || job.setup().part_zero_mm.is_some() {
         return Vec::new();
     }
     let points: Vec<Point3> = looks(faces).map(|l| l.0).collect();
-    let turns = quicker_turns(path, &control.machine, setup, WORTH_A_TURN);
-    turns
+    let machine = &control.machine;
+    let turns = match job.setup().turns {
+        Turns::None => return Vec::new(),
+        Turns::Axis => clamped_turns(machine),
+        Turns::Free => tilts(&setup.part_zero.rotation),
+    };
+    quicker_turns(path, machine, setup, &turns, WORTH_A_TURN)
         .into_iter()
         .take(MOST_TURNS)
         .map(|rotation| standing(rotation, &points, setup.gauge_length_mm))
         .collect()
 }
 
-/// What is said of a turned part.
-pub fn notes_of_turned(setup: &Setup, [before_min, now_min]: [f64; 2]) -> Vec<Diagnostic> {
-    let why =
-        format!("so that the joints hold the path up less ({now_min:.2} min instead of {before_min:.2})");
+/// What is said of a part that is turned for this time; `before_min` is that of the program where it stands as found first, absent
+/// where there is none.
+pub fn notes_of_turned(setup: &Setup, before_min: Option<f64>, now_min: f64) -> Vec<Diagnostic> {
+    let why = match before_min {
+        Some(before_min) => {
+            format!("so that the joints hold the path up less ({now_min:.2} min instead of {before_min:.2})")
+        }
+        None => "so that the joints can go along the path".to_owned(),
+    };
     vec![note_of_turn(&why, setup), note_of_place(setup)]
 }
