@@ -44,7 +44,9 @@ fn two_judges_agree_on_a_plan() {
 /// What was held of one program is not shown where the other judge has seen one that digs in.
 #[test]
 fn a_disagreement_takes_the_verdict_back() {
-    let job = Job::from_toml(&job(|t| t), Path::new("job.toml")).unwrap();
+    // The face looks up, so that lower is into it.
+    let text = job(|t| t + "[setup]\nrotate_deg = [0, 0, 0]\n");
+    let job = Job::from_toml(&text, Path::new("job.toml")).unwrap();
     let part = Part::of(&job).unwrap();
     let plan = osculate::plan(&part, &job, &()).unwrap();
     let verified = osculate::verify(&part, &job, plan.program()).unwrap();
