@@ -210,7 +210,8 @@ impl Cutter {
         self.local_endless_distance(rho_mm, z_mm).max(z_mm - self.length)
     }
 
-    fn local_endless_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
+    /// The same for a cutter that goes on upwards without end.
+    pub(crate) fn local_endless_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
         if let Some(m) = &self.meridian {
             return m.near(rho_mm, z_mm).distance;
         }

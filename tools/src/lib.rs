@@ -32,6 +32,7 @@ pub mod flank;
 mod make;
 pub mod meridian;
 mod pose;
+pub mod reach;
 pub mod removal;
 mod spec;
 pub mod strip;
