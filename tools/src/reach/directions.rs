@@ -33,7 +33,7 @@ pub enum DirectionsError {
 /// use osculate_tools::reach::Directions;
 /// let directions = Directions::icosphere(4)?;
 /// assert_eq!(directions.all().len(), 2562);
-/// assert!(directions.spacing_rad() < 4.7f64.to_radians());
+/// assert!(directions.spacing_rad() < 4.8f64.to_radians());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
