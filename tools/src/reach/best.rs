@@ -5,9 +5,8 @@
 //! first; the first single direction that comes out of it is the best.
 
 use super::gap::Gap;
-use super::map::lean_rad;
 use super::problem::{Place, Reach};
-use super::view::View;
+use super::view::{View, lean_rad, may_lean};
 use osculate_geom::Unit3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -23,10 +22,18 @@ pub struct Best {
     pub gap: Gap,
 }
 
+/// Points that a cone remembers from the cones around it.
+const REMEMBERED: usize = 4;
+
 /// A cone that waits; equal bounds come out in the order of the tree.
+#[derive(Clone, Copy)]
 struct Waiting {
     most_mm: f64,
     cone: usize,
+    /// Whether the bound is that of its own middle axis, not only of remembered points.
+    is_own: bool,
+    /// Balls of points that had the least spare, with the solids that had it, the last one first.
+    points: [Option<(u32, usize)>; REMEMBERED],
 }
 
 impl Ord for Waiting {
@@ -56,44 +63,73 @@ impl Reach<'_> {
     pub fn best(&self, place: &Place) -> Option<Best> {
         let tree = &self.directions.tree;
         let mut queue = BinaryHeap::new();
-        queue.push(Waiting { most_mm: f64::INFINITY, cone: 0 });
-        while let Some(Waiting { most_mm, cone }) = queue.pop() {
-            let Some(second) = tree.cones[cone].second else {
-                let direction = tree.order[tree.cones[cone].members.start] as usize;
-                let axis = self.directions.all()[direction];
-                return Some(Best { direction, axis, gap: self.gap(place, &axis) });
-            };
-            for half in [cone + 1, second] {
-                let bound = self.most_spare_mm(place, half).map(|own| own.min(most_mm));
-                queue.extend(bound.map(|most_mm| Waiting { most_mm, cone: half }));
+        queue.extend(self.waiting(
+            place,
+            Waiting { most_mm: f64::INFINITY, cone: 0, is_own: false, points: [None; REMEMBERED] },
+        ));
+        while let Some(at) = queue.pop() {
+            let cone = &tree.cones[at.cone];
+            match cone.second {
+                None if at.is_own => {
+                    let direction = tree.order[cone.members.start] as usize;
+                    return Some(Best { direction, axis: cone.axis, gap: self.gap(place, &cone.axis) });
+                }
+                Some(second) if at.is_own => {
+                    for cone in [at.cone + 1, second] {
+                        queue.extend(self.waiting(place, Waiting { cone, is_own: false, ..at }));
+                    }
+                }
+                _ => queue.push(self.looked_at(place, at)),
             }
         }
         None
     }
 
-    /// An upper bound of the spare over a cone, the spare itself for a single direction; None where nothing of the cone is
-    /// allowed.
-    fn most_spare_mm(&self, place: &Place, index: usize) -> Option<f64> {
+    /// A cone with its bound from the points that it remembers; None where nothing of it is allowed.
+    fn waiting(&self, place: &Place, mut at: Waiting) -> Option<Waiting> {
         let tree = &self.directions.tree;
-        let cone = &tree.cones[index];
-        if !self.is_open(index) {
+        let cone = &tree.cones[at.cone];
+        if !self.is_open(at.cone) {
             return None;
         }
         if cone.second.is_none() {
-            let direction = tree.order[cone.members.start] as usize;
-            return self.allows(place, direction).then(|| self.least_spare(place, &cone.axis).0);
+            return self.allows(place, tree.order[cone.members.start] as usize).then_some(at);
         }
         let lean = lean_rad(place, &cone.axis);
-        let apart = cone.angle_rad + 1e-7;
-        if lean - apart > self.limits.most_lean_rad || lean + apart < self.limits.least_lean_rad {
+        if !may_lean(self, cone, lean) {
             return None;
         }
-        let (_, Some((ball, solid))) = self.least_spare(place, &cone.axis) else {
-            return Some(f64::INFINITY);
-        };
-        let Some(view) = View::new(self, place, cone, lean) else { return Some(f64::INFINITY) };
+        if let Some(view) = View::new(self, place, cone, lean) {
+            let bounds = at.points.iter().flatten().map(|point| self.most_spare_mm(&view, *point));
+            at.most_mm = bounds.fold(at.most_mm, f64::min);
+        }
+        Some(at)
+    }
+
+    /// A cone with its bound from the point that has the least spare of its middle axis; for a single direction the spare
+    /// itself.
+    fn looked_at(&self, place: &Place, mut at: Waiting) -> Waiting {
+        let cone = &self.directions.tree.cones[at.cone];
+        at.is_own = true;
+        let (spare, found) = self.least_spare(place, &cone.axis, at.points[0].map(|(ball, _)| ball));
+        if cone.second.is_none() {
+            return Waiting { most_mm: spare, ..at };
+        }
+        let lean = lean_rad(place, &cone.axis);
+        if let Some(point) = found.filter(|point| at.points[0] != Some(*point)) {
+            at.points.rotate_right(1);
+            at.points[0] = Some(point);
+        }
+        if let (Some(point), Some(view)) = (found, View::new(self, place, cone, lean)) {
+            at.most_mm = at.most_mm.min(self.most_spare_mm(&view, point));
+        }
+        at
+    }
+
+    /// An upper bound of the spare of one point over a cone.
+    fn most_spare_mm(&self, view: &View, (ball, solid): (u32, usize)) -> f64 {
         let polar = view.polar(&self.obstacles.balls()[ball as usize]);
         let solid = &self.solids[solid];
-        Some(view.range(&polar, solid).most_mm - solid.limit_mm(self.obstacles.kind(ball)))
+        view.most_mm(&polar, solid) - solid.limit_mm(self.obstacles.kind(ball))
     }
 }

@@ -37,7 +37,7 @@ impl Reach<'_> {
     /// allows are not looked at.
     #[must_use]
     pub fn gap(&self, place: &Place, axis: &Unit3) -> Gap {
-        let (spare_mm, found) = self.least_spare(place, axis);
+        let (spare_mm, found) = self.least_spare(place, axis, None);
         let met = found.map(|(ball, solid)| {
             let first = self.obstacles.balls()[ball as usize].first;
             Met { obstacle: self.obstacles.points()[first as usize], member: self.solids[solid].member }
@@ -55,11 +55,20 @@ impl Reach<'_> {
             && self.obstacles.roots().all(|root| stance.blocker(self, root, all, &mut stack).is_none())
     }
 
-    /// The least spare, with the ball of one point and the solid that have it.
-    pub(super) fn least_spare(&self, place: &Place, axis: &Unit3) -> (f64, Option<(u32, usize)>) {
+    /// The least spare, with the ball of one point and the solid that have it. The point of `guess` is looked at first: the
+    /// smaller its spare, the sooner the others are done with.
+    pub(super) fn least_spare(
+        &self,
+        place: &Place,
+        axis: &Unit3,
+        guess: Option<u32>,
+    ) -> (f64, Option<(u32, usize)>) {
         let stance = Stance::new(self, place, axis);
         let balls = self.obstacles.balls();
-        let mut best = (f64::INFINITY, None);
+        let mut best = guess.map_or((f64::INFINITY, None), |at| {
+            let (spare, solid) = stance.spare(self, at, &balls[at as usize]);
+            (spare, Some((at, solid)))
+        });
         for root in self.obstacles.roots() {
             let mut stack = [(0.0, 0u32); WAITING];
             let mut waiting = 1;

@@ -8,13 +8,13 @@
 use super::bits::Bits;
 use super::problem::{Place, Reach};
 use super::stance::Stance;
-use super::view::View;
+use super::view::{View, lean_rad, may_lean};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// A ball is split where its radius is more than this many times the way that the tool moves there over the cone. Measured
-/// on a blade channel: half and double of it cost some 10 per cent more time.
-const SPLIT: f64 = 0.5;
+/// on a blade channel: half and double of it take up to 10 per cent more time, a quarter of it 30.
+const SPLIT: f64 = 2.0;
 /// Balls near a place are handed to the cones once they are smaller than this part of the tool.
 const NEAR: f64 = 0.25;
 
@@ -91,11 +91,8 @@ impl<'a> Walk<'a> {
             return;
         }
         let cone = &reach.directions.tree.cones[index];
-        let lean = lean_rad(place, cone.axis.as_ref());
-        let limits = &reach.limits;
-        // Far more than the rounding of a lean between the limits, which may be the root of a rounding at zero.
-        let apart = cone.angle_rad + 1e-7;
-        if lean - apart > limits.most_lean_rad || lean + apart < limits.least_lean_rad {
+        let lean = lean_rad(place, &cone.axis);
+        if !may_lean(reach, cone, lean) {
             return;
         }
         let members = &reach.directions.tree.order[cone.members.clone()];
@@ -130,12 +127,14 @@ impl<'a> Walk<'a> {
 
     /// Appends what of a list is undecided over a cone; true where some point is too deep for all of its axes.
     fn sift(&mut self, view: &View, list: Range<usize>) -> bool {
+        let start = self.open.len();
+        let mut deepest = (f64::INFINITY, start);
         let reach = self.reach;
         let balls = reach.obstacles.balls();
         if let Some(at) = self.blocker {
             let ball = &balls[at as usize];
             let (polar, kind) = (view.polar(ball), reach.obstacles.kind(at));
-            let ends = |s| view.range(&polar, s).most_mm + ball.radius_mm < s.limit_mm(kind);
+            let ends = |s| view.most_mm(&polar, s) + ball.radius_mm < s.limit_mm(kind);
             if reach.solids.iter().any(ends) {
                 return true;
             }
@@ -146,7 +145,7 @@ impl<'a> Walk<'a> {
             while let Some(at) = self.stack.pop() {
                 let ball = &balls[at.ball as usize];
                 let (polar, kind) = (view.polar(ball), reach.obstacles.kind(at.ball));
-                let (mut open, mut left) = (0, at.solids);
+                let (mut open, mut left, mut depth) = (0, at.solids, f64::INFINITY);
                 while left != 0 {
                     let k = left.trailing_zeros();
                     left &= left - 1;
@@ -155,11 +154,11 @@ impl<'a> Walk<'a> {
                     if k == 0 && view.least_at_contact_mm(&polar, ball) >= limit {
                         continue;
                     }
-                    let range = view.range(&polar, solid);
-                    if range.least_mm - ball.radius_mm >= limit {
+                    if view.least_mm(&polar, solid) - ball.radius_mm >= limit {
                         continue;
                     }
-                    if range.most_mm + ball.radius_mm < limit {
+                    depth = depth.min(view.most_mm(&polar, solid) + ball.radius_mm - limit);
+                    if depth < 0.0 {
                         self.blocker = Some(at.ball);
                         return true;
                     }
@@ -172,9 +171,16 @@ impl<'a> Walk<'a> {
                     let halves = [ball.second, at.ball + 1];
                     self.stack.extend(halves.map(|ball| Open { ball, solids: open }));
                 } else {
+                    if depth < deepest.0 {
+                        deepest = (depth, self.open.len());
+                    }
                     self.open.push(Open { ball: at.ball, solids: open });
                 }
             }
+        }
+        // What is nearly too deep for all axes of the cone may be so for all of one half: it is looked at first.
+        if deepest.1 < self.open.len() {
+            self.open.swap(start, deepest.1);
         }
         false
     }
@@ -193,10 +199,4 @@ impl<'a> Walk<'a> {
         }
         true
     }
-}
-
-/// The angle between the normal of a place and an axis, rad, to a few roundings.
-pub(super) fn lean_rad(place: &Place, axis: &osculate_geom::Vec3) -> f64 {
-    let n = place.normal.into_inner();
-    n.cross(axis).norm().atan2(n.dot(axis))
 }

@@ -24,11 +24,23 @@ use super::obstacles::Ball;
 use super::problem::{Place, Reach, Solid};
 use crate::cutter::Cutter;
 use crate::meridian::Arc;
-use osculate_geom::{Point3, Vec3};
+use osculate_geom::{Point3, Unit3, Vec3};
 use std::f64::consts::PI;
 
 /// The lean of an axis along the normal is known to no more than the root of a rounding, rad.
 const LEAN_ROUNDING_RAD: f64 = 1e-7;
+
+/// The angle between the normal of a place and an axis, rad, to a few roundings.
+pub(super) fn lean_rad(place: &Place, axis: &Unit3) -> f64 {
+    let n = place.normal.into_inner();
+    n.cross(axis).norm().atan2(n.dot(axis))
+}
+
+/// Whether the lean of some axis of a cone may be within the limits, `lean_rad` being that of its middle.
+pub(super) fn may_lean(reach: &Reach<'_>, cone: &Cone, lean_rad: f64) -> bool {
+    let apart = cone.angle_rad + LEAN_ROUNDING_RAD;
+    lean_rad - apart <= reach.limits.most_lean_rad && lean_rad + apart >= reach.limits.least_lean_rad
+}
 
 /// A cone of axes at a place.
 pub(super) struct View {
@@ -61,13 +73,6 @@ pub(super) struct Polar {
     /// Depth below the tangent plane, and depth below the sphere, less the ball's radius, mm.
     above_mm: f64,
     contact_mm2: f64,
-}
-
-/// Bounds of the distance of a ball's centre from a body, mm.
-#[derive(Clone, Copy)]
-pub(super) struct Range {
-    pub least_mm: f64,
-    pub most_mm: f64,
 }
 
 /// The one arc that touches over a range of leans; None where several do, or none really.
@@ -115,6 +120,7 @@ impl View {
     }
 
     /// Where a ball of points stands.
+    #[inline]
     pub fn polar(&self, ball: &Ball) -> Polar {
         let u = ball.centre - self.contact;
         let w = ball.centre - self.pivot;
@@ -133,24 +139,34 @@ impl View {
         }
     }
 
-    /// Bounds of the distance of a ball's centre from a body over all axes of the cone.
-    pub fn range(&self, at: &Polar, solid: &Solid) -> Range {
+    /// The least distance of a ball's centre from a body over all axes of the cone, or less, mm.
+    #[inline]
+    pub fn least_mm(&self, at: &Polar, solid: &Solid) -> f64 {
         let off = solid.base_mm - self.pivot_z_mm;
-        let (shape, slack) = (&solid.shape, self.slack_mm);
-        if shape.is_end_mill() && off + shape.corner_mm() >= 0.0 {
-            let top = off + shape.length_mm();
-            let ends = [at.near, at.far].map(|(s, z)| shape.local_endless_distance(s, z - off));
-            Range {
-                least_mm: ends[0].max(at.far.1 - top) - slack,
-                most_mm: ends[1].max(at.near.1 - top) + slack,
-            }
+        let shape = &solid.shape;
+        if grows(shape, off) {
+            let side = shape.local_endless_distance(at.near.0, at.near.1 - off);
+            side.max(at.far.1 - off - shape.length_mm()) - self.slack_mm
         } else {
-            let middle = shape.local_distance(at.middle.0, at.middle.1 - off);
-            Range { least_mm: middle - at.move_mm, most_mm: middle + at.move_mm }
+            shape.local_distance(at.middle.0, at.middle.1 - off) - at.move_mm
+        }
+    }
+
+    /// The greatest distance of a ball's centre from a body over all axes of the cone, or more, mm.
+    #[inline]
+    pub fn most_mm(&self, at: &Polar, solid: &Solid) -> f64 {
+        let off = solid.base_mm - self.pivot_z_mm;
+        let shape = &solid.shape;
+        if grows(shape, off) {
+            let side = shape.local_endless_distance(at.far.0, at.far.1 - off);
+            side.max(at.near.1 - off - shape.length_mm()) + self.slack_mm
+        } else {
+            shape.local_distance(at.middle.0, at.middle.1 - off) + at.move_mm
         }
     }
 
     /// A lower bound of the distance of all points of a ball from the cutter, from where the contact is alone.
+    #[inline]
     pub fn least_at_contact_mm(&self, at: &Polar, ball: &Ball) -> f64 {
         let big = self.sphere_mm;
         let plane = -at.above_mm;
@@ -164,6 +180,12 @@ impl View {
         };
         least - ball.radius_mm - self.rounding_mm
     }
+}
+
+/// Whether the distance to a body, its lower end at the height `off_mm` above T, grows with the angle from the axis.
+#[inline]
+fn grows(shape: &Cutter, off_mm: f64) -> bool {
+    shape.is_end_mill() && off_mm + shape.corner_mm() >= 0.0
 }
 
 /// A bound of `|m(a) - m(a0)|` over a cone about an axis of a lean.
