@@ -13,9 +13,11 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// A ball is split where its radius is more than this many times the way that the tool moves there over the cone. Measured
-/// on a blade channel: half and double of it take up to 10 per cent more time, a quarter of it 30.
+/// on a blade channel: from 0.5 to 4 the time changes by less than a third, less with a ball end for small values and with a
+/// bull nose for large ones.
 const SPLIT: f64 = 2.0;
-/// Balls near a place are handed to the cones once they are smaller than this part of the tool.
+/// Balls near a place are handed to the cones once they are smaller than this part of the tool: larger ones are clear of it
+/// in no direction that matters, and all cones would split them again.
 const NEAR: f64 = 0.25;
 
 impl Reach<'_> {

@@ -70,7 +70,7 @@ pub(super) struct Polar {
     far: (f64, f64),
     /// How far the tool moves there, mm.
     pub move_mm: f64,
-    /// Depth below the tangent plane, and depth below the sphere, less the ball's radius, mm.
+    /// Height of the ball's centre above the tangent plane, mm, and its squared distance from the contact, mm2.
     above_mm: f64,
     contact_mm2: f64,
 }

@@ -49,9 +49,9 @@ fn a_point_stops_a_cap_of_axes() {
     }
 }
 
-/// Beside an endless wall at the distance d >= R only axes that do not lean towards it are possible. Beside a wall of the
-/// height h the side, at distance R from the axis, must pass its edge: `n.(a x e) ...`, the angle psi of the axis towards the
-/// wall, in the plane across it, is at most that of the tangent from the edge to the circle of radius R about c.
+/// The edge of a wall at the distance d and the height h is a line e along y. The cylinder of radius R about the axis a through
+/// the ball's centre misses it where the distance of the two lines, `|w . (a x y)| / |a x y|` with w from the centre to the
+/// edge, is R or more.
 #[test]
 fn a_wall_stops_what_leans_over_its_edge() {
     let (radius, d, h) = (2.0, 5.0, 8.0);
@@ -69,8 +69,6 @@ fn a_wall_stops_what_leans_over_its_edge() {
     };
     let reach = Reach::new(problem).unwrap();
     let bits = reach.bits(&AT);
-    // From the ball's centre the edge is the line through (d, h - R) along y. A cylinder about the axis a misses it if their
-    // distance |w . (a x y)| / |a x y| is R or more, or if it passes above: the sign of the same product.
     let w = Vec3::new(d, 0.0, h - radius);
     let mut seen = [0; 2];
     for (k, axis) in directions.all().iter().enumerate() {
@@ -110,7 +108,7 @@ fn a_holder_over_a_plane() {
         let over = radius + (length - radius) * cos - wide * sin - clearance_mm;
         // The nearest point of the lattice is at most step / sqrt 2 away from the lowest point of the rim, and the rim's
         // edge is off the plane by no more than that.
-        if over > 0.0 || over < -0.3 {
+        if !(-0.3..=0.0).contains(&over) {
             assert_eq!(bits.contains(k), over > 0.0, "{k} {over}");
             free += usize::from(over > 0.0);
         }

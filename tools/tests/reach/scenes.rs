@@ -125,7 +125,7 @@ pub fn scenes() -> [Scene; 4] {
     };
     let mut all = [
         scene(&[floor, left, right], 24, 15),
-        scene(&[groove], 60, 15),
+        scene(&[groove], 40, 15),
         scene(&[bump, plane], 30, 15),
         scene(&[plane], 30, 15),
     ];
