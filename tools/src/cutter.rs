@@ -206,11 +206,14 @@ impl Cutter {
     /// Signed distance of a local point to the cutter, negative inside. Exact but for points above the top end,
     /// where it is a lower bound.
     #[must_use]
+    #[inline]
     pub fn local_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
         self.local_endless_distance(rho_mm, z_mm).max(z_mm - self.length)
     }
 
-    fn local_endless_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
+    /// The same for a cutter that goes on upwards without end.
+    #[inline]
+    pub(crate) fn local_endless_distance(&self, rho_mm: f64, z_mm: f64) -> f64 {
         if let Some(m) = &self.meridian {
             return m.near(rho_mm, z_mm).distance;
         }

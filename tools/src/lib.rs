@@ -4,6 +4,7 @@
 //!   where a line enters it. [`CutterSpec`] is its plain description.
 //! - [`Contact`] puts a cutter on a surface with [`Lean`] (lead and tilt) and a feed; [`ContactMotion`] drives it along.
 //! - [`sweep`] finds how deep a moving cutter reaches along a line; [`mod@strip`] turns that into the exact strip width.
+//! - [`reach`] says which axes are possible at the places of a part.
 //! - [`removal`] judges whole paths: scallop, gouge and uncut area on sampled faces.
 //! - [`flank`] puts the side of a cutter against ruled surfaces.
 //! - [`cl`] is the path that planning hands on to posting and verification.
@@ -32,6 +33,7 @@ pub mod flank;
 mod make;
 pub mod meridian;
 mod pose;
+pub mod reach;
 pub mod removal;
 mod spec;
 pub mod strip;

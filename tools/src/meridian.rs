@@ -72,6 +72,12 @@ impl Arc {
         }
     }
 
+    /// Whether a plane whose normal the axis leans away from by `lean_rad` touches the arc itself.
+    pub(crate) fn touches_at(&self, lean_rad: f64) -> bool {
+        let (s, c) = lean_rad.sin_cos();
+        self.has_normal([s, -c])
+    }
+
     /// Whether the outward normal (rho, z) belongs to the arc.
     fn has_normal(&self, n: [f64; 2]) -> bool {
         let [a, b] = self.normals;

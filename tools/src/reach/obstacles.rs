@@ -1,0 +1,162 @@
+//! What the tool must keep out of: points in a binary tree of balls.
+//!
+//! Each ball holds all points of its node; the leaves are single points, balls of radius 0. Points of the part and points
+//! of what else is around stand in trees of their own, so that a node has one limit.
+
+use osculate_geom::{Point3, Vec3};
+
+/// Added to the radius of a ball, of the size of the coordinates: it was computed, and must not come out too small.
+const ROUNDING: f64 = 1e-14;
+
+/// What a point belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ObstacleKind {
+    /// A face of the part: the cutter may go into it as deep as the gouge limit.
+    Part,
+    /// Fixture, table, stock that is to stay: cutter and holder alike keep their clearance.
+    Surroundings,
+}
+
+/// A point that the tool must keep out of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObstaclePoint {
+    /// Where it is, mm.
+    pub point: Point3,
+    /// Index of the face or body that it lies on, as the caller counts them.
+    pub owner: u32,
+    /// What that is.
+    pub kind: ObstacleKind,
+}
+
+/// Why points are no obstacles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ObstaclesError {
+    /// A coordinate is not finite.
+    #[error("obstacle point {index} has a coordinate that is not finite")]
+    Point {
+        /// Which point.
+        index: usize,
+    },
+    /// More points than an index can hold.
+    #[error("{count} obstacle points are too many: the most is {most}")]
+    Count {
+        /// Number of points.
+        count: usize,
+        /// The most that there may be.
+        most: usize,
+    },
+}
+
+/// A ball around points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    pub centre: Point3,
+    pub radius_mm: f64,
+    /// The second half of it, the first half follows the ball itself; zero for a single point.
+    pub second: u32,
+    /// Its first point in [`Obstacles::points`].
+    pub first: u32,
+}
+
+/// All points that the tool must keep out of.
+#[derive(Clone, Debug, Default)]
+pub struct Obstacles {
+    /// In the order of the leaves.
+    points: Vec<ObstaclePoint>,
+    balls: Vec<Ball>,
+    /// Where the balls of the surroundings begin.
+    surroundings: usize,
+    /// Greatest coordinate of any point, mm.
+    size_mm: f64,
+}
+
+impl Obstacles {
+    /// Puts points into their trees.
+    ///
+    /// # Errors
+    /// [`ObstaclesError`] where a coordinate is not finite, and for more than 2^30 points.
+    pub fn new(points: impl IntoIterator<Item = ObstaclePoint>) -> Result<Self, ObstaclesError> {
+        const MOST: usize = 1 << 30;
+        let mut points: Vec<ObstaclePoint> = points.into_iter().collect();
+        if let Some(index) = points.iter().position(|p| !p.point.iter().all(|x| x.is_finite())) {
+            return Err(ObstaclesError::Point { index });
+        }
+        if points.len() > MOST {
+            return Err(ObstaclesError::Count { count: points.len(), most: MOST });
+        }
+        points.sort_by_key(|p| p.kind == ObstacleKind::Surroundings);
+        let of_part = points.partition_point(|p| p.kind == ObstacleKind::Part);
+        let size_mm = points.iter().map(|p| p.point.coords.amax()).fold(0.0, f64::max);
+        let mut all = Self { balls: Vec::with_capacity(2 * points.len()), points, surroundings: 0, size_mm };
+        all.add(0, of_part);
+        all.surroundings = all.balls.len();
+        all.add(of_part, all.points.len());
+        Ok(all)
+    }
+
+    /// How many points there are.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// The points, in the order of the tree.
+    #[must_use]
+    pub fn points(&self) -> &[ObstaclePoint] {
+        &self.points
+    }
+
+    pub(super) const fn size_mm(&self) -> f64 {
+        self.size_mm
+    }
+
+    pub(super) fn balls(&self) -> &[Ball] {
+        &self.balls
+    }
+
+    /// The first balls of the trees.
+    pub(super) fn roots(&self) -> impl Iterator<Item = u32> + '_ {
+        let starts = [0, self.surroundings];
+        let ends = [self.surroundings, self.balls.len()];
+        starts.into_iter().zip(ends).filter(|(start, end)| start < end).map(|(start, _)| start as u32)
+    }
+
+    /// The kind of all points in a ball.
+    pub(super) const fn kind(&self, ball: u32) -> ObstacleKind {
+        if (ball as usize) < self.surroundings { ObstacleKind::Part } else { ObstacleKind::Surroundings }
+    }
+
+    fn add(&mut self, from: usize, to: usize) {
+        if from >= to {
+            return;
+        }
+        let own = &mut self.points[from..to];
+        let (min, max) =
+            own.iter().fold((own[0].point, own[0].point), |(lo, hi), p| (lo.inf(&p.point), hi.sup(&p.point)));
+        let centre = min + (max - min) * 0.5;
+        let single = own.len() == 1;
+        let radius_mm = if single {
+            0.0
+        } else {
+            own.iter().map(|p| (p.point - centre).norm()).fold(0.0, f64::max) + ROUNDING * self.size_mm
+        };
+        let index = self.balls.len();
+        self.balls.push(Ball { centre, radius_mm, second: 0, first: from as u32 });
+        if single {
+            return;
+        }
+        let extent: Vec3 = max - min;
+        let widest = extent.imax();
+        let half = own.len() / 2;
+        own.select_nth_unstable_by(half, |a, b| a.point[widest].total_cmp(&b.point[widest]));
+        self.add(from, from + half);
+        self.balls[index].second = self.balls.len() as u32;
+        self.add(from + half, to);
+    }
+}

@@ -1,0 +1,88 @@
+//! One axis at a place: where points stand against the axis of the tool.
+
+use super::obstacles::Ball;
+use super::problem::{Place, Reach};
+use crate::contact::pose_with_axis;
+use crate::pose::Pose;
+use osculate_geom::{Point3, Unit3};
+
+/// A tool that touches a place with one axis.
+pub(super) struct Stance {
+    pose: Pose,
+    rounding_mm: f64,
+}
+
+impl Stance {
+    pub fn new(reach: &Reach<'_>, place: &Place, axis: &Unit3) -> Self {
+        let pose = pose_with_axis(&reach.solids[0].shape, &place.point, &place.normal, axis);
+        Self { pose, rounding_mm: reach.rounding_mm(place) }
+    }
+
+    /// Distance from the axis and height above the tip, mm.
+    fn local(&self, p: &Point3) -> (f64, f64) {
+        let w = p - self.pose.tip;
+        let z = w.dot(&self.pose.axis);
+        ((w - self.pose.axis.into_inner() * z).norm(), z)
+    }
+
+    /// The first ball found that no axis of this stance may have, from one on; `members` are the bits of the solids that are
+    /// to be looked at.
+    pub fn blocker(
+        &self,
+        reach: &Reach<'_>,
+        from: u32,
+        members: u32,
+        stack: &mut Vec<[u32; 2]>,
+    ) -> Option<u32> {
+        let balls = reach.obstacles.balls();
+        let kind = reach.obstacles.kind(from);
+        stack.clear();
+        stack.push([from, members]);
+        while let Some([at, members]) = stack.pop() {
+            let ball = &balls[at as usize];
+            let (rho, z) = self.local(&ball.centre);
+            let (mut open, mut left) = (0, members);
+            while left != 0 {
+                let k = left.trailing_zeros();
+                left &= left - 1;
+                let solid = &reach.solids[k as usize];
+                let spare = solid.shape.local_distance(rho, z - solid.base_mm) - solid.limit_mm(kind);
+                if ball.second == 0 {
+                    // A distance that is none is not clear.
+                    if !spare.ge(&0.0) {
+                        return Some(at);
+                    }
+                } else {
+                    let around = ball.radius_mm + self.rounding_mm;
+                    if spare + around < 0.0 {
+                        return Some(at);
+                    }
+                    if spare < around {
+                        open |= 1 << k;
+                    }
+                }
+            }
+            if open != 0 {
+                stack.push([ball.second, open]);
+                stack.push([at + 1, open]);
+            }
+        }
+        None
+    }
+
+    /// The least spare of the centre of a ball, with the solid that has it.
+    pub fn spare(&self, reach: &Reach<'_>, at: u32, ball: &Ball) -> (f64, usize) {
+        let kind = reach.obstacles.kind(at);
+        let (rho, z) = self.local(&ball.centre);
+        let spares =
+            reach.solids.iter().enumerate().map(|(k, solid)| {
+                (solid.shape.local_distance(rho, z - solid.base_mm) - solid.limit_mm(kind), k)
+            });
+        spares.fold((f64::INFINITY, 0), |best, own| if own.0 < best.0 { own } else { best })
+    }
+
+    /// What computed distances may be wrong by, mm.
+    pub const fn rounding_mm(&self) -> f64 {
+        self.rounding_mm
+    }
+}
