@@ -65,6 +65,7 @@ mod target;
 mod tooth;
 mod tree;
 mod trial;
+mod unreached;
 mod verdict;
 
 pub use boundary::{sample_boundary, sample_triangles};

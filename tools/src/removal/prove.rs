@@ -18,6 +18,8 @@ use super::verdict::{Figures, Verdict};
 const HOPELESS: f64 = 10.0;
 /// The share of the area left uncut by the first look that ends the work.
 const HOPELESS_UNCUT: f64 = 0.05;
+/// Rounds in which places between samples that stand too high are counted into an area that is accepted.
+const GIVEN_UP: u32 = 3;
 /// A first look is this many times as coarse: it costs a twenty-fifth.
 const COARSE: f64 = 5.0;
 /// Shares of the work, for its progress.
@@ -55,10 +57,19 @@ pub fn prove(
     if !coarse {
         let rest = SHARES[1] - SHARES[0];
         look = trial.look(spacing, &|f| progress(SHARES[0] + rest * f))?;
+        trial.give_up(&mut look, spacing)?;
     }
     let mut marks = trial.marks(&look.measured.samples, &look.measured.cuts);
     let crest_median_mm = trial.crests(&look.measured)?;
-    let refined = if coarse { unbounded() } else { trial.refine(&mut look, &mut marks)? };
+    let mut refined = if coarse { unbounded() } else { trial.refine(&mut look, &mut marks)? };
+    // Samples that were added may stand too high where an area that does is accepted.
+    for _ in 0..GIVEN_UP {
+        if coarse || !trial.is_to_give_up(&look) {
+            break;
+        }
+        trial.give_up(&mut look, spacing)?;
+        refined = trial.refine(&mut look, &mut marks)?;
+    }
     progress(SHARES[2]);
     let stock = if coarse { None } else { trial.carve(&|f| progress(SHARES[2] + (1.0 - SHARES[2]) * f))? };
     progress(1.0);

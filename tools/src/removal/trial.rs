@@ -12,6 +12,7 @@ use super::sampling::{Patch, Sampling, SamplingError, sample_surface};
 use super::stock::{BlankError, Stock, StockJob, Upper};
 use super::tally::{Limits, Tally, TallyError, tally};
 use super::tooth::{Marks, Teeth};
+use super::unreached::give_up;
 use super::verdict::StockFound;
 use osculate_geom::Surface;
 
@@ -192,6 +193,25 @@ impl<'a> Trial<'a> {
         let cuts = cut(&Job { samples: &samples, ..self.job_without() }, progress)?;
         let tally = self.tally(&samples, &cuts, &density)?;
         Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost })
+    }
+
+    /// Whether a sample stands too high where the goal accepts an area that does.
+    pub fn is_to_give_up(&self, look: &Look) -> bool {
+        let Measured { samples, cuts, .. } = &look.measured;
+        let high = |(s, c): (&Sample, &Cut)| {
+            !s.check_only && c.by.is_some() && c.standoff_mm > self.limits.scallop_mm
+        };
+        self.goal.limits.unreached_mm2 > 0.0 && samples.iter().zip(cuts).any(high)
+    }
+
+    /// Where the goal accepts an area that is not reached: takes what stands too high, and what is around it, as never touched.
+    pub fn give_up(&self, look: &mut Look, spacing: f64) -> Result<(), ProveError> {
+        if self.goal.limits.unreached_mm2 > 0.0 {
+            let Measured { samples, cuts, .. } = &mut look.measured;
+            give_up(samples, cuts, self.limits.scallop_mm, spacing);
+            look.tally = self.tally(samples, cuts, &look.density)?;
+        }
+        Ok(())
     }
 
     pub fn tally(&self, samples: &[Sample], cuts: &[Cut], density: &Density) -> Result<Tally, ProveError> {
