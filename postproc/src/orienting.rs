@@ -84,6 +84,27 @@ impl<'a> Orienting<'a> {
         pairs.min_by(f64::total_cmp)
     }
 
+    /// The axes that a machine of three or four axes reaches, no further than `step_rad` of its rotary joint apart; `None` with two
+    /// rotary joints, whose axes fill a part of the sphere.
+    #[must_use]
+    pub fn line(&self, step_rad: f64) -> Option<Vec<Unit3>> {
+        let back = self.part.inverse();
+        match *self.machine.rotary() {
+            [] => Some(vec![back * self.machine.tool_axis()]),
+            [only] => {
+                let joint = self.machine.joint_at(only);
+                let (from, to) = match (joint.min, joint.max) {
+                    (Some(from), Some(to)) if to - from < std::f64::consts::TAU => (from, to),
+                    _ => (-std::f64::consts::PI, std::f64::consts::PI),
+                };
+                let steps = ((to - from) / step_rad).ceil().max(1.0);
+                let at = |k: usize| from + (to - from) * (k as f64 / steps);
+                Some((0..=steps as usize).map(|k| back * self.machine.axis_at(&[at(k), 0.0])).collect())
+            }
+            _ => None,
+        }
+    }
+
     /// The axis nearest to `axis` that the rotary joints reach within their limits: `axis` itself where they reach it,
     /// else one on a border, where rounding decides whether it is reached.
     #[must_use]

@@ -307,6 +307,15 @@ impl<'a> Contact<'a> {
         self
     }
 
+    /// The same contact with the axis leaning otherwise.
+    ///
+    /// # Errors
+    /// [`ContactError::Lean`].
+    pub fn leaning(mut self, lean: Lean) -> Result<Self, ContactError> {
+        self.lean = lean.checked()?;
+        Ok(self)
+    }
+
     /// The feed line and the line parameter of the contact.
     ///
     /// # Errors

@@ -25,6 +25,9 @@ pub enum DirectionsError {
         /// The highest.
         most: u32,
     },
+    /// A row of no directions.
+    #[error("a row of directions needs one at least")]
+    Row,
 }
 
 /// A fixed even set of directions, each with its neighbours.
@@ -39,9 +42,11 @@ pub enum DirectionsError {
 #[derive(Clone, Debug)]
 pub struct Directions {
     all: Vec<Unit3>,
-    /// Five or six of each, ascending; the sixth place of the first twelve is empty.
+    /// Six of each at most, ascending; places that are not needed are empty at the end.
     neighbours: Vec<[u32; 6]>,
     spacing_rad: f64,
+    /// How many of the first a walk begins among.
+    coarse: usize,
     pub(super) tree: ConeTree,
 }
 
@@ -77,7 +82,31 @@ impl Directions {
         let longest = neighbours.iter().enumerate().flat_map(|(k, of)| of.iter().map(move |&j| (k, j)));
         let longest = longest.filter(|(_, j)| *j != NONE).map(|(k, j)| chord(k, j)).fold(0.0, f64::max);
         let tree = ConeTree::new(&all);
-        Ok(Self { all, neighbours, spacing_rad: 2.0 * (0.5 * longest).asin(), tree })
+        Ok(Self { all, neighbours, spacing_rad: 2.0 * (0.5 * longest).asin(), coarse: COARSE, tree })
+    }
+
+    /// Directions in a row, each next to the one before and the one after: those of a machine with one rotary joint, or none.
+    ///
+    /// # Errors
+    /// [`DirectionsError::Row`] without any.
+    pub fn row(all: Vec<Unit3>) -> Result<Self, DirectionsError> {
+        if all.is_empty() {
+            return Err(DirectionsError::Row);
+        }
+        let last = all.len() - 1;
+        let neighbours = (0..=last).map(|k| {
+            let mut of = [NONE; 6];
+            let near = [k.checked_sub(1), (k < last).then_some(k + 1)];
+            for (place, k) in of.iter_mut().zip(near.into_iter().flatten()) {
+                *place = k as u32;
+            }
+            of
+        });
+        let neighbours = neighbours.collect();
+        let spacing_rad = all.windows(2).map(|w| w[0].angle(&w[1])).fold(0.0, f64::max);
+        // Both ends of a row may be near: all of it is looked at.
+        let (tree, coarse) = (ConeTree::new(&all), all.len());
+        Ok(Self { all, neighbours, spacing_rad, coarse, tree })
     }
 
     /// The directions.
@@ -86,14 +115,14 @@ impl Directions {
         &self.all
     }
 
-    /// The directions next to one, five or six, ascending.
+    /// The directions next to one, five or six in a sphere and two at most in a row, ascending.
     ///
     /// # Panics
     /// For an index that is none.
     #[must_use]
     pub fn neighbours(&self, k: usize) -> &[u32] {
         let of = &self.neighbours[k];
-        if of[5] == NONE { &of[..5] } else { of }
+        &of[..of.iter().position(|k| *k == NONE).unwrap_or(of.len())]
     }
 
     /// The direction nearest to an axis; of several equally near ones any.
@@ -103,7 +132,7 @@ impl Directions {
             let dot = self.all[k].dot(axis);
             if dot > most { (k, dot) } else { (best, most) }
         };
-        let mut at = (0..COARSE.min(self.all.len())).fold((0, f64::NEG_INFINITY), closer);
+        let mut at = (0..self.coarse.min(self.all.len())).fold((0, f64::NEG_INFINITY), closer);
         loop {
             let next = self.neighbours(at.0).iter().map(|&k| k as usize).fold(at, closer);
             if next.0 == at.0 {

@@ -3,6 +3,8 @@
 //! Each ball holds all points of its node; the leaves are single points, balls of radius 0. Points of the part and points
 //! of what else is around stand in trees of their own, so that a node has one limit.
 
+use crate::cutter::Cutter;
+use crate::pose::Pose;
 use osculate_geom::{Point3, Vec3};
 
 /// Added to the radius of a ball, of the size of the coordinates: it was computed, and must not come out too small.
@@ -110,6 +112,22 @@ impl Obstacles {
     #[must_use]
     pub fn points(&self) -> &[ObstaclePoint] {
         &self.points
+    }
+
+    /// Whether a point is nearer to a body at a pose than so much, whatever its kind.
+    #[must_use]
+    pub fn is_within(&self, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
+        self.roots().any(|root| self.any_within(root, body, pose, limit_mm))
+    }
+
+    fn any_within(&self, at: u32, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
+        let ball = &self.balls[at as usize];
+        if body.distance(pose, &ball.centre) - ball.radius_mm >= limit_mm {
+            return false;
+        }
+        ball.second == 0
+            || self.any_within(at + 1, body, pose, limit_mm)
+            || self.any_within(ball.second, body, pose, limit_mm)
     }
 
     pub(super) const fn size_mm(&self) -> f64 {
