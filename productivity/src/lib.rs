@@ -23,6 +23,7 @@
 //! # Ok::<(), osculate_productivity::closed_form::DomainError>(())
 //! ```
 
+pub mod axis;
 pub mod closed_form;
 pub mod compare;
 pub mod engagement;
@@ -34,5 +35,8 @@ pub mod levels;
 pub mod optimum;
 pub mod plan;
 pub mod rate;
+mod rectangle;
 pub mod rough;
+mod spline;
 pub mod split;
+mod width;

@@ -59,4 +59,13 @@ impl Cloud {
         }
         depth
     }
+
+    /// Whether a point is nearer to the cutter than so much.
+    pub fn is_within(&self, cutter: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
+        self.groups.iter().any(|(middle, reach, points)| {
+            near(cutter, pose, middle, reach + limit_mm)
+                && cutter.distance(pose, middle) - reach < limit_mm
+                && points.iter().any(|p| cutter.distance(pose, p) < limit_mm)
+        })
+    }
 }

@@ -6,8 +6,8 @@
 
 use super::Task;
 use super::level::widest_mm;
-use super::line::{AXES, meets_itself};
 use super::seat::Seat;
+use crate::rectangle::{AXES, meets_itself};
 use osculate_geom::{Axis, Domain, Interval, Jet2, Jet3, Surface, Taylor, Uv, Vec3, forward_surface};
 
 /// Strip widths that passes can run out over the border.

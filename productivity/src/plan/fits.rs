@@ -4,7 +4,7 @@ use super::line::PassLine;
 use super::seat::Seat;
 use super::{PlanError, Task};
 use osculate_geom::{Darboux, Uv};
-use osculate_tools::{Contact, ContactError, FeedLine};
+use osculate_tools::{ContactError, FeedLine};
 use rayon::prelude::*;
 
 /// Angle of a line's tangent from S_u towards S_v, rad.
@@ -26,7 +26,7 @@ pub(super) fn fits(seat: &Seat<'_>, line: &dyn PassLine, parameters: &[f64]) -> 
             let (frame, _) = line.frame(*t).ok()?;
             // The fit depends on the direction of the feed alone, not on how the line bends.
             let feed = FeedLine::Angle(angle(task, at, &frame)?);
-            let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean.at(at)).ok()?;
+            let contact = task.contact_at(at, feed).ok()?;
             let refusal = contact.fits().err()?;
             let wide = seat.wide_lift(line, *t).ok()?;
             (task.surface.contains(at) && wide > task.tolerance.gouge_mm).then_some(refusal)

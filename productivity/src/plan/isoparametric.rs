@@ -22,8 +22,8 @@ use super::walk::Walk;
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task, Tolerance, shorter};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::{Axis, Diagnostic, Interval, Jet2, Uv};
+use osculate_tools::FeedLine;
 use osculate_tools::strip::{self, StripError, standoff};
-use osculate_tools::{Contact, FeedLine};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
@@ -350,8 +350,7 @@ fn measure(
             return Ok(None);
         }
         let feed = if reversed { FeedLine::IsoReversed(along) } else { FeedLine::Iso(along) };
-        let contact = Contact::new(task.surface, at, task.cutter, feed, task.lean.at(at))
-            .map_err(|e| task.contact(e))?;
+        let contact = task.contact_at(at, feed).map_err(|e| task.contact(e))?;
         match strip::exact(&contact, task.tolerance.scallop_mm) {
             Ok(s) => Ok(Some((t, s.width_mm))),
             // Where a line runs into a pole, or a ripple throws the unseated tool off its own contact, there is no

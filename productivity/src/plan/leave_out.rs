@@ -5,14 +5,15 @@
 //! balls far off are passed over. A stretch that goes too deep is left out as far as the tool is deeper than half of
 //! what is accepted on either side. What remains is the same motion as before, less these stretches.
 //!
-//! *Limits.* Depth is the signed distance of a sample to the tool. Verification measures along the face's normal, which is more
-//! where the tool meets the edge of a face from the side: a tool of radius R that is d deep there is sqrt(2 R d) deep along it.
-//! Between samples the tool may be a little deeper, and moves between passes are not looked at: verification has the last word.
+//! *Limits.* Depth is measured at samples along their normals, as verification does. Between samples the tool may be a little
+//! deeper, and moves between passes are not looked at: verification has the last word.
 //! A stretch is left out, never machined in another way: leads are chosen before.
 
 use super::walls;
 use super::{CcPoint, Named, Pass, Passes, Tolerance};
-use osculate_geom::{Point3, Vec3, quadrature};
+use crate::axis::sunk;
+use osculate_geom::quadrature;
+use osculate_tools::reach::Obstacles;
 use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept};
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
 use osculate_tools::{Cutter, Pose};
@@ -29,12 +30,16 @@ const HIDDEN: f64 = 0.05;
 const ADDED: f64 = 0.75;
 /// Distance of poses along a pass, in radii of the cutter.
 const STEP: f64 = 0.05;
+/// The share of the accepted depth beyond which a stretch is left out: words, chords and edges, along whose normals the depth is more,
+/// need the rest.
+const ACCEPTED: f64 = 0.7;
+/// The share of that for faces that are not machined, which the side of the tool meets at their edges: there the depth grows from
+/// nothing to all of it between two samples.
+const BESIDE: f64 = 0.4;
 /// The share of the accepted depth that ends a stretch left out.
 const RELEASE: f64 = 0.5;
 /// What remains between two stretches left out is left out too where it is shorter than this part of its strip's width.
 const SHORT: f64 = 0.25;
-/// Points in a leaf of the tree.
-const LEAF: usize = 12;
 
 /// What passes are held against. Lengths mm.
 #[derive(Clone, Copy)]
@@ -104,83 +109,35 @@ fn sampled(faces: &[Named<'_>], [spacing_mm, most]: [f64; 2]) -> Result<(Vec<Sam
     Ok((samples, coarsest))
 }
 
-/// A ball around points, and where it is divided.
-struct Node {
-    centre: Point3,
-    radius: f64,
-    kind: Kind,
+/// Points of faces, and the same sunk into them by what is accepted of a pass, and by what ends a stretch left out.
+struct Points {
+    at: Obstacles,
+    sunk: [Obstacles; 2],
 }
 
-enum Kind {
-    /// Points from, to.
-    Leaf(usize, usize),
-    /// The two halves.
-    Inner(usize, usize),
+impl Points {
+    fn new(samples: &[Sample], gouge_mm: f64) -> Self {
+        // Samples have finite coordinates, and there are far fewer than an index can hold.
+        let by = |mm: f64| Obstacles::new(samples.iter().map(|s| sunk(s, mm))).unwrap_or_default();
+        Self { at: by(0.0), sunk: [by(ACCEPTED * gouge_mm), by(RELEASE * gouge_mm)] }
+    }
 }
 
-/// Points in balls within balls.
-struct Tree {
-    points: Vec<Point3>,
-    nodes: Vec<Node>,
-}
-
-impl Tree {
-    fn new(mut points: Vec<Point3>) -> Self {
-        let mut nodes = Vec::new();
-        if !points.is_empty() {
-            let n = points.len();
-            Self::grow(&mut points, 0, n, &mut nodes);
-        }
-        Self { points, nodes }
-    }
-
-    /// Puts the points of a range in order; the node's place.
-    fn grow(points: &mut [Point3], from: usize, to: usize, nodes: &mut Vec<Node>) -> usize {
-        let here = &mut points[from..to];
-        let mut low = Vec3::repeat(f64::INFINITY);
-        let mut high = -low;
-        for p in here.iter() {
-            (low, high) = (low.inf(&p.coords), high.sup(&p.coords));
-        }
-        let centre = Point3::from(0.5 * (low + high));
-        let radius = here.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
-        let place = nodes.len();
-        nodes.push(Node { centre, radius, kind: Kind::Leaf(from, to) });
-        if here.len() > LEAF {
-            let axis = (high - low).imax();
-            let half = here.len() / 2;
-            here.select_nth_unstable_by(half, |a, b| a[axis].total_cmp(&b[axis]));
-            let left = Self::grow(points, from, from + half, nodes);
-            let right = Self::grow(points, from + half, to, nodes);
-            nodes[place].kind = Kind::Inner(left, right);
-        }
-        place
-    }
-
-    /// Whether a point is nearer to the body than `limit_mm`.
-    fn any_within(&self, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
-        !self.nodes.is_empty() && self.within(0, body, pose, limit_mm)
-    }
-
-    fn within(&self, place: usize, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
-        let node = &self.nodes[place];
-        if body.distance(pose, &node.centre) - node.radius >= limit_mm {
-            return false;
-        }
-        match node.kind {
-            Kind::Leaf(from, to) => self.points[from..to].iter().any(|p| body.distance(pose, p) < limit_mm),
-            Kind::Inner(a, b) => self.within(a, body, pose, limit_mm) || self.within(b, body, pose, limit_mm),
-        }
-    }
+/// Which depth counts.
+#[derive(Clone, Copy)]
+enum Depth {
+    Accepted,
+    Release,
 }
 
 /// Faces and tool ready to be asked.
 struct Watch<'a> {
     guard: &'a Guard<'a>,
-    faces: Tree,
-    check: Tree,
-    /// Signed distance that is kept from faces to machine by the holder and from check faces by all, mm.
-    keep_mm: f64,
+    faces: Points,
+    check: Points,
+    /// Distance that is kept from faces to machine by the holder and from check faces by all, mm; None where they may go in as far as
+    /// is accepted.
+    keep_mm: Option<f64>,
 }
 
 impl<'a> Watch<'a> {
@@ -192,30 +149,33 @@ impl<'a> Watch<'a> {
         let gouge_mm = guard.tolerance.gouge_mm;
         // Between two samples on a plane a ball comes deeper by s^2 / 8 r.
         let spacing_mm = (8.0 * guard.cutter.radius_mm() * HIDDEN * gouge_mm).sqrt();
-        let points = |s: Vec<Sample>| s.into_iter().map(|s| s.point).collect();
         let (faces, apart) = sampled(guard.faces, [spacing_mm, MOST])?;
         let (check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
-        let keep_mm = if keep > 0.0 { keep + ADDED * apart.max(check_apart) } else { -gouge_mm };
-        Ok(Self { guard, faces: Tree::new(points(faces)), check: Tree::new(points(check)), keep_mm })
+        let keep_mm = (keep > 0.0).then(|| keep + ADDED * apart.max(check_apart));
+        let (faces, check) = (Points::new(&faces, gouge_mm), Points::new(&check, BESIDE * gouge_mm));
+        Ok(Self { guard, faces, check, keep_mm })
     }
 
-    /// Whether the tool is where it must not be, with limits of this share of the depths accepted.
-    fn is_in(&self, pose: &Pose, share: f64) -> bool {
-        let depth = -share * self.guard.tolerance.gouge_mm;
-        let keep = if self.keep_mm > 0.0 { self.keep_mm } else { share * self.keep_mm };
+    /// Whether the tool is where it must not be.
+    fn is_in(&self, pose: &Pose, depth: Depth) -> bool {
         let Guard { cutter, holder, .. } = self.guard;
-        self.faces.any_within(cutter, pose, depth)
-            || self.check.any_within(cutter, pose, keep)
+        let meets = |points: &Points, body: &Cutter, pose: &Pose| match self.keep_mm {
+            Some(keep) => points.at.is_within(body, pose, keep),
+            None => points.sunk[depth as usize].is_within(body, pose, 0.0),
+        };
+        self.faces.sunk[depth as usize].is_within(cutter, pose, 0.0)
+            || meets(&self.check, cutter, pose)
             || holder.is_some_and(|h| {
                 let pose = pose.retracted(cutter.length_mm());
-                self.faces.any_within(h, &pose, keep) || self.check.any_within(h, &pose, keep)
+                meets(&self.faces, h, &pose) || meets(&self.check, h, &pose)
             })
     }
 
     /// The pieces of a pass that remain; None where it remains whole.
     fn remaining(&self, pass: &Pass) -> Option<Vec<Pass>> {
         let stations = stations(pass, STEP * self.guard.cutter.radius_mm());
-        let mut out: Vec<bool> = stations.iter().map(|s| self.is_in(&s.point.pose, 1.0)).collect();
+        let mut out: Vec<bool> =
+            stations.iter().map(|s| self.is_in(&s.point.pose, Depth::Accepted)).collect();
         if !out.iter().any(|b| *b) {
             return None;
         }
@@ -224,7 +184,7 @@ impl<'a> Watch<'a> {
         let grow = |out: &mut Vec<bool>, order: &mut dyn Iterator<Item = usize>| {
             let mut before = false;
             for k in order {
-                out[k] = out[k] || (before && self.is_in(&stations[k].point.pose, RELEASE));
+                out[k] = out[k] || (before && self.is_in(&stations[k].point.pose, Depth::Release));
                 before = out[k];
             }
         };

@@ -9,11 +9,11 @@
 //! that does not either, by a retract.
 
 use super::around::Cloud;
+use super::kept::Kept;
 use super::walls::Walls;
 use super::{CcPoint, Pass};
 use osculate_geom::{Box3, Point3, Unit3, Vec3};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
-use osculate_tools::sweep::{LinearMotion, SweptMotion};
 use osculate_tools::{Cutter, Pose};
 
 /// How passes are linked. Lengths mm, feeds mm/min.
@@ -27,6 +27,8 @@ pub struct Links {
     pub approach_mm: f64,
     /// The least lift of a hop; one that is not clear is doubled until it is, up to `approach_mm`.
     pub hop_mm: f64,
+    /// Material that may stand on the faces yet: rapids do not go into it.
+    pub layer_mm: f64,
     /// The cutter.
     pub cutter: Cutter,
     /// The holder, a body whose lower end sits where the cutter's length ends.
@@ -56,13 +58,17 @@ const SWING_STEP: f64 = 0.1;
 const HOP_SWING: f64 = 0.9;
 /// Distance of the points along passes that stand for the part in a hop, in radii of the cutter.
 const NEAR_POINTS: f64 = 0.25;
-/// The tool may lie by this part of its radius deeper in the points on its way than at the contacts: chords between points
-/// of a bent pass, and rounding.
-const SLACK: f64 = 1e-4;
 /// Share of its lift that a low hop may lose and be clear still: the part is known at points only.
 const SPARE: f64 = 0.5;
-/// Poses of one piece of a hop at which the tool is held against the part.
-const LOOKS: u32 = 6;
+/// Shares of the way along the normal on which a tool leaves that leans far over.
+const ASIDE: [f64; 6] = [1.0, 0.5, 0.35, 0.25, 0.18, 0.125];
+/// Quotient of the heights at which a way over what stands between two passes is looked for.
+const HIGHER: f64 = 1.5;
+
+/// The pose over a contact, off it along the normal.
+fn lifted(p: &CcPoint, mm: f64) -> Pose {
+    Pose { tip: p.pose.tip + p.normal.into_inner() * mm, axis: p.pose.axis }
+}
 
 struct Builder<'a> {
     links: &'a Links,
@@ -100,16 +106,23 @@ impl Builder<'_> {
     /// The pose on the axis of `pose` whose tip is on the safe plane, never below `pose` itself.
     fn above(&self, pose: &Pose) -> Pose {
         let height = (pose.tip - self.centre).dot(&pose.axis);
-        pose.retracted((self.radius - height).max(self.links.approach_mm))
+        pose.retracted((self.radius - height).max(0.0))
     }
 
     fn pole(&self, axis: &Unit3) -> Pose {
         Pose { tip: self.centre + axis.into_inner() * self.radius, axis: *axis }
     }
 
-    fn retract(&mut self, from: &Pose) {
-        self.go(from.retracted(self.links.approach_mm), Motion::Feed(self.links.feed_mm_min), None);
-        self.go(self.above(from), Motion::Rapid, None);
+    /// Leaves a contact, as far up the axis as is given.
+    fn leave(&mut self, from: &CcPoint, height_mm: f64) {
+        let off = self.off(from);
+        self.go(off, Motion::Feed(self.links.feed_mm_min), None);
+        self.go(off.retracted(height_mm), Motion::Rapid, None);
+    }
+
+    fn retract(&mut self, from: &CcPoint) {
+        let off = self.off(from);
+        self.leave(from, (self.above(&off).tip - off.tip).norm());
     }
 
     fn travel(&mut self, from: &Unit3, to: &Unit3) {
@@ -135,46 +148,36 @@ impl Builder<'_> {
         }
     }
 
-    fn approach(&mut self, to: &Pose) {
-        self.go(self.above(to), Motion::Rapid, None);
-        self.go(to.retracted(self.links.approach_mm), Motion::Rapid, None);
-        self.go(*to, Motion::Feed(self.links.plunge_mm_min), None);
+    fn approach(&mut self, to: &CcPoint) {
+        let off = self.off(to);
+        let above = self.above(&off);
+        self.go(above, Motion::Rapid, None);
+        self.come(to, (above.tip - off.tip).norm());
+    }
+
+    /// Comes down to a contact from so far up its axis; in a narrow place the last of the way is fed.
+    fn come(&mut self, to: &CcPoint, height_mm: f64) {
+        let off = self.off(to);
+        let step = self.links.cutter.radius_mm();
+        let steps = (height_mm / step) as usize;
+        let free = (0..=steps).map(|k| off.retracted(k as f64 * step)).find(|p| self.is_free(p));
+        self.go(free.unwrap_or_else(|| off.retracted(height_mm)), Motion::Rapid, None);
+        self.go(off, Motion::Feed(self.links.feed_mm_min), None);
+        self.go(to.pose, Motion::Feed(self.links.plunge_mm_min), None);
+    }
+
+    /// The tool on ways that begin and end at poses.
+    fn kept(&self, ends: [Pose; 2]) -> Kept<'_> {
+        Kept::new([&self.links.cutter].into_iter().chain(&self.links.holder), ends, (&self.cloud, self.walls))
     }
 
     /// The poses above both ends of a hop on a way that is clear of the part, if there is one.
     fn hop_over(&self, from: &CcPoint, to: &CcPoint) -> Option<[Pose; 2]> {
-        let lift =
-            |p: &CcPoint, mm: f64| Pose { tip: p.pose.tip + p.normal.into_inner() * mm, axis: p.pose.axis };
-        let ends = [from.pose, to.pose];
-        let slack_mm = SLACK * self.links.cutter.radius_mm();
-        let cutter = (&self.links.cutter, 0.0);
-        let holder = self.links.holder.as_ref().map(|h| (h, self.links.cutter.length_mm()));
-        // Of each body how far above the tip it sits, and how deep it is in at the ends: what the tool is into the points of
-        // the contacts' own neighbourhood is no obstacle.
-        let bodies = [Some(cutter), holder].into_iter().flatten().map(|(body, up_mm)| {
-            let ends = ends.map(|p| p.retracted(up_mm));
-            let limit = ends.iter().map(|p| self.cloud.depth_mm(body, p)).fold(0.0, f64::max) + slack_mm;
-            (body, up_mm, ends, limit)
-        });
-        let bodies: Vec<_> = bodies.collect();
-        let is_clear = |pose: &Pose| {
-            bodies.iter().all(|(body, up_mm, ends, limit)| {
-                let pose = pose.retracted(*up_mm);
-                self.cloud.depth_mm(body, &pose) <= *limit
-                    && self.walls.cleared_by(body, &pose, ends, slack_mm)
-            })
-        };
-        let clear = |[up, over]: &[Pose; 2]| {
-            [(from.pose, *up), (*up, *over), (to.pose, *over)].iter().all(|(a, b)| {
-                let motion = LinearMotion { from: *a, to: *b };
-                (1..=LOOKS).all(|k| {
-                    let now = motion.at(f64::from(k) / f64::from(LOOKS));
-                    now.is_some_and(|now| is_clear(&now.pose))
-                })
-            })
-        };
+        let kept = self.kept([from.pose, to.pose]);
+        let clear =
+            |[up, over]: &[Pose; 2]| kept.room(&[from.pose, *up, *over, to.pose]).is_some_and(|r| r >= 1.0);
         let highest = self.links.approach_mm;
-        let lifted = |mm: f64| [lift(from, mm), lift(to, mm)];
+        let lifted = |mm: f64| [lifted(from, mm), lifted(to, mm)];
         let mut low = self.links.hop_mm.min(highest);
         while low > 0.0 && low < highest {
             let hop = lifted(low);
@@ -185,6 +188,27 @@ impl Builder<'_> {
         }
         let along_axes = [from, to].map(|p| p.pose.retracted(highest));
         [lifted(highest), along_axes].into_iter().find(clear)
+    }
+
+    /// Where the tool is off a contact by the approach distance. One that leans far over would rub along the face if it left along
+    /// its axis alone: it leaves along the normal too, as far as there is most room.
+    fn off(&self, p: &CcPoint) -> Pose {
+        let straight = p.pose.retracted(self.links.approach_mm);
+        let most = self.links.approach_mm * p.pose.axis.angle(&p.normal).sin();
+        let kept = self.kept([p.pose, p.pose]);
+        let aside =
+            |share: f64| Pose { tip: straight.tip + p.normal.into_inner() * (share * most), ..straight };
+        let all = ASIDE.iter().map(|share| aside(*share));
+        let rooms = all.filter_map(|off| Some((kept.room(&[p.pose, off])?, off)));
+        rooms.fold((0.0, straight), |best, next| if next.0 > best.0 { next } else { best }).1
+    }
+
+    /// Whether a rapid down the axis to a pose leaves what may stand on the faces where it is.
+    fn is_free(&self, pose: &Pose) -> bool {
+        !self.cloud.is_within(&self.links.cutter, pose, self.links.layer_mm)
+            && self.links.holder.as_ref().is_none_or(|h| {
+                !self.cloud.is_within(h, &pose.retracted(self.links.cutter.length_mm()), self.links.layer_mm)
+            })
     }
 
     fn hop(&mut self, [up, over]: [Pose; 2], to: &CcPoint) {
@@ -201,9 +225,34 @@ impl Builder<'_> {
             self.hop(over, to);
             return;
         }
-        self.retract(&from.pose);
+        if let Some(height_mm) = self.height_over(from, to) {
+            self.leave(from, height_mm);
+            self.go(self.off(to).retracted(height_mm), Motion::Feed(self.links.feed_mm_min), None);
+            self.come(to, height_mm);
+            return;
+        }
+        self.retract(from);
         self.travel(&from.pose.axis, &to.pose.axis);
-        self.approach(&to.pose);
+        self.approach(to);
+    }
+
+    /// How far up their axes both ends of a way are over what stands between them, where that is lower than the safe plane.
+    fn height_over(&self, from: &CcPoint, to: &CcPoint) -> Option<f64> {
+        if from.pose.axis.angle(&to.pose.axis) > HOP_SWING {
+            return None;
+        }
+        let kept = self.kept([from.pose, to.pose]);
+        let [a, b] = [self.off(from), self.off(to)];
+        let most = [a, b].iter().map(|p| (self.above(p).tip - p.tip).norm()).fold(f64::INFINITY, f64::min);
+        let mut height = self.links.approach_mm;
+        while height < most {
+            let way = [a, a.retracted(height), b.retracted(height), b];
+            if kept.room(&way).is_some_and(|room| room >= 1.0) {
+                return Some(height);
+            }
+            height *= HIGHER;
+        }
+        None
     }
 }
 
@@ -232,7 +281,7 @@ pub fn link(passes: &[Pass], links: &Links, walls: &Walls) -> Linked {
         match &last {
             None => {
                 b.go(b.pole(&first.pose.axis), Motion::Rapid, None);
-                b.approach(&first.pose);
+                b.approach(first);
             }
             Some(from) => b.join(from, first),
         }
@@ -242,7 +291,7 @@ pub fn link(passes: &[Pass], links: &Links, walls: &Walls) -> Linked {
         last = Some(*end);
     }
     if let Some(end) = &last {
-        b.retract(&end.pose);
+        b.retract(end);
         b.go(b.pole(&end.pose.axis), Motion::Rapid, None);
     }
     b.out
@@ -256,6 +305,7 @@ mod tests {
     use osculate_geom::analytic::Line;
     use osculate_geom::{Extruded, Interval, uv};
     use osculate_tools::CutterSpec;
+    use osculate_tools::sweep::{LinearMotion, SweptMotion};
 
     const TROUGH_MM: f64 = 4.0;
     const BALL_MM: f64 = 3.0;
@@ -284,6 +334,7 @@ mod tests {
             clearance_mm: 5.0,
             approach_mm: 4.0 * (TROUGH_MM - BALL_MM),
             hop_mm: 4.0 * (TROUGH_MM - BALL_MM),
+            layer_mm: 0.0,
             cutter,
             holder: None,
             feed_mm_min: 1000.0,
@@ -332,17 +383,17 @@ mod tests {
             clearance_mm: 5.0,
             approach_mm: 2.0,
             hop_mm,
+            layer_mm: 0.0,
             cutter,
             holder: None,
             feed_mm_min: 1000.0,
             plunge_mm_min: 500.0,
         };
+        // Of the hop from the first pass to the second.
         let top = |linked: &Linked| {
-            let hops = linked.path.moves.iter().zip(&linked.pass_of_move).skip(3);
-            let hops = hops.filter(|(m, pass)| pass.is_none() && m.motion != Motion::Rapid);
-            // The last one is the retract.
-            let heights: Vec<f64> = hops.map(|(m, _)| m.pose.tip.z).collect();
-            heights[..heights.len() - 1].iter().copied().fold(0.0, f64::max)
+            let moves = linked.path.moves.iter().zip(&linked.pass_of_move);
+            let hop = moves.skip_while(|m| *m.1 != Some(0)).take_while(|m| *m.1 != Some(1));
+            hop.filter(|m| m.1.is_none()).map(|(m, _)| m.pose.tip.z).fold(0.0, f64::max)
         };
         let flat = over_plane(4.0, 3.0);
         let low = link(&flat, &links(0.125), &Walls::default());
@@ -371,6 +422,7 @@ mod tests {
             clearance_mm: 5.0,
             approach_mm: 1.2,
             hop_mm: 1.2,
+            layer_mm: 0.0,
             cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 })
                 .unwrap(),
             holder: None,
@@ -382,7 +434,7 @@ mod tests {
             let foot = Line::new(Point3::origin(), Vec3::y(), Interval::new(-2.0, 10.0)).unwrap();
             let wall = Extruded::new(foot, Vec3::z(), Interval::new(0.0, height)).unwrap();
             let named = Named { face: "wall", surface: &wall };
-            link(&passes, &links, &Walls::of(&[named], clearance).unwrap())
+            link(&passes, &links, &Walls::of(&[named], clearance, 0.0).unwrap())
         };
         // How far the ball's surface is off the wall at the nearest, in the closed form.
         let gap = |linked: &Linked, height: f64| {
@@ -423,6 +475,7 @@ mod tests {
             clearance_mm: 5.0,
             approach_mm: 1.2,
             hop_mm: 1.2,
+            layer_mm: 0.0,
             cutter: ball,
             holder,
             feed_mm_min: 1000.0,
@@ -432,7 +485,7 @@ mod tests {
         // 4.2 mm off that of a tool half way between.
         let foot = Line::new(Point3::new(0.0, 12.2, 12.0), Vec3::x(), Interval::new(-0.2, 0.2)).unwrap();
         let post = Extruded::new(foot, Vec3::z(), Interval::new(0.0, 8.0)).unwrap();
-        let walls = Walls::of(&[Named { face: "post", surface: &post }], 0.5).unwrap();
+        let walls = Walls::of(&[Named { face: "post", surface: &post }], 0.5, 0.0).unwrap();
         let without = link(&passes, &with(None), &walls);
         assert_eq!(without, link(&passes, &with(None), &Walls::default()));
         let holder = Some(Cutter::cylinder(9.0, 30.0).unwrap());

@@ -15,7 +15,6 @@ pub(super) struct PassMotion<'a> {
 impl SweptMotion for PassMotion<'_> {
     fn at(&self, t: f64) -> Option<Moving> {
         let (frame, speed) = self.led.frame(t).ok()?;
-        let (lean, rate) = self.task.lean.along(self.line, t);
-        Some(lean.moving(self.task.cutter, &frame, 0.0, (speed, rate)))
+        Some(self.task.lean.moving(self.task.cutter, self.line, t, (&frame, speed)))
     }
 }

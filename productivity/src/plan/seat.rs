@@ -7,7 +7,8 @@
 //! nothing: the average of a symmetric stretch is the normal up to second order, and the contact itself is the highest place.
 
 use super::Task;
-use super::line::{PassLine, Rectangle};
+use super::line::PassLine;
+use crate::rectangle::Rectangle;
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::{Axis, Darboux, Domain, Unit3, Uv, Vec3};
 use osculate_tools::Pose;
@@ -247,7 +248,7 @@ impl<'a> Seat<'a> {
     /// The seated pose at a line parameter, its frame, and the lift.
     pub(super) fn at(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
         let (frame, _) = self.frame(line, t)?;
-        let pose = self.task.lean.along(line, t).0.pose(self.task.cutter, &frame, 0.0);
+        let pose = self.task.lean.on(line, t, &frame).pose(self.task.cutter, &frame, 0.0);
         let radius = self.task.cutter.radius_mm();
         let near = (2.0 * ROUGHNESS).sqrt() * radius;
         let (seated, lift) =
@@ -285,7 +286,7 @@ impl<'a> Seat<'a> {
     /// How far the whole end of the tool, not only the part of it next to the contact, is held off the face.
     pub(super) fn wide_lift(&self, line: &dyn PassLine, t: f64) -> Result<f64, LineError> {
         let (frame, _) = self.frame(line, t)?;
-        let pose = self.task.lean.along(line, t).0.pose(self.task.cutter, &frame, 0.0);
+        let pose = self.task.lean.on(line, t, &frame).pose(self.task.cutter, &frame, 0.0);
         Ok(self.rest(line.uv(t), &frame.normal, pose, WIDE * self.task.cutter.radius_mm()).1)
     }
 }

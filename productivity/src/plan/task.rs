@@ -3,7 +3,7 @@
 use super::lead::Leaning;
 use osculate_geom::{Axis, Diagnostic, Point3, Surface, Unit3, Uv};
 use osculate_tools::strip::StripError;
-use osculate_tools::{ContactError, Cutter, Pose};
+use osculate_tools::{Contact, ContactError, Cutter, FeedLine, Lean, Pose};
 
 /// What a plan must hold, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub struct Task<'a> {
     pub face: &'a str,
     /// The cutter.
     pub cutter: &'a Cutter,
-    /// Lead and tilt.
+    /// The tool's axis.
     pub lean: Leaning<'a>,
     /// What must hold.
     pub tolerance: Tolerance,
@@ -170,6 +170,9 @@ pub enum PlanError {
     },
 }
 
+/// Axes of a field lean off the normal by so much at most where strips are asked for, rad.
+const MOST_LEAN_RAD: f64 = 1.55;
+
 /// Passes on one face beyond which a plan is refused.
 pub(super) const MAX_PASSES: usize = 20_000;
 
@@ -188,6 +191,17 @@ impl Task<'_> {
         check_tolerance(&self.tolerance)?;
         self.lean.checked().map_err(|e| self.contact(e))?;
         Ok(())
+    }
+
+    /// The contact at a place, with the tool's axis there on a line along `feed`.
+    pub(super) fn contact_at(&self, at: Uv, feed: FeedLine) -> Result<Contact<'_>, ContactError> {
+        let upright = Contact::new(self.surface, at, self.cutter, feed, Lean::default())?;
+        let lean = self.lean.against(at, &upright.frame);
+        // Between places that no axis reaches a field may lean over: passes there are cut off, or verification says so.
+        upright.leaning(match self.lean {
+            Leaning::Axes(_) => Lean { lead_rad: lean.lead_rad.min(MOST_LEAN_RAD), ..lean },
+            _ => lean,
+        })
     }
 
     pub(super) fn contact(&self, source: ContactError) -> PlanError {

@@ -7,7 +7,7 @@
 //! *Limits.* Where a pass ends nearer to a wall than the clearance the way to the next must not come nearer than that.
 
 use super::Named;
-use osculate_geom::{Point3, Surface, quadrature};
+use osculate_geom::{Point3, Surface, Unit3, quadrature};
 use osculate_tools::removal::{Sampling, SamplingError, sample_surface};
 use osculate_tools::{Cutter, Pose};
 
@@ -27,19 +27,21 @@ const GROUP: usize = 48;
 struct Group {
     middle: Point3,
     reach_mm: f64,
-    /// What the tool keeps from the points, mm.
+    /// What the tool keeps from the points, mm, and what of that is for what lies between them.
     keep_mm: f64,
-    points: Vec<Point3>,
+    between_mm: f64,
+    points: Vec<(Point3, Unit3)>,
 }
 
 /// Points of faces from which the tool keeps a distance in hops.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Walls {
     groups: Vec<Group>,
+    accepted_mm: f64,
 }
 
 /// Samples of a face however narrow it is.
-pub(super) fn sampled(
+pub(crate) fn sampled(
     surface: &dyn Surface,
     face: u32,
     spacing_mm: f64,
@@ -56,11 +58,12 @@ pub(super) fn sampled(
 }
 
 impl Walls {
-    /// Points of faces from which hops keep `clearance_mm`.
+    /// Points of faces from which hops keep `clearance_mm`, and into which they go by no more than `accepted_mm` along the normals where
+    /// passes begin or end nearer than that.
     ///
     /// # Errors
     /// A clearance that is not positive and finite ([`SamplingError::Spacing`]), or faces that cannot be sampled.
-    pub fn of(faces: &[Named<'_>], clearance_mm: f64) -> Result<Self, SamplingError> {
+    pub fn of(faces: &[Named<'_>], clearance_mm: f64, accepted_mm: f64) -> Result<Self, SamplingError> {
         let areas: Vec<f64> = faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
         let all: f64 = areas.iter().sum();
         let mut groups = Vec::new();
@@ -69,26 +72,40 @@ impl Walls {
             let share = if all > 0.0 { area / all } else { 1.0 };
             let most = ((MOST * share) as usize).max(FEWEST);
             let found = sampled(face.surface, k as u32, SPACING * clearance_mm, most)?;
-            let keep_mm = clearance_mm + ADDED * found.density.spacing_mm;
+            let between_mm = ADDED * found.density.spacing_mm;
+            let keep_mm = clearance_mm + between_mm;
             groups.extend(found.samples.chunks(GROUP).map(|chunk| {
-                let points: Vec<Point3> = chunk.iter().map(|s| s.point).collect();
-                let middle = points[points.len() / 2];
-                let reach_mm = points.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
-                Group { middle, reach_mm, keep_mm, points }
+                let points: Vec<(Point3, Unit3)> = chunk.iter().map(|s| (s.point, s.normal)).collect();
+                let middle = points[points.len() / 2].0;
+                let reach_mm = points.iter().map(|p| (p.0 - middle).norm()).fold(0.0, f64::max);
+                Group { middle, reach_mm, keep_mm, between_mm, points }
             }));
         }
-        Ok(Self { groups })
+        Ok(Self { groups, accepted_mm })
     }
 
-    /// Whether a body at a pose keeps its clearance, or is no nearer to any point than at the nearer one of two other poses.
-    pub(super) fn cleared_by(&self, body: &Cutter, pose: &Pose, ends: &[Pose; 2], slack_mm: f64) -> bool {
-        self.groups.iter().all(|g| {
+    /// What a body keeps from the walls of what it should, 1 at most; None where it may touch one. Walls that it is as near to at one of
+    /// the ends of its way do not count.
+    pub(super) fn room(&self, body: &Cutter, pose: &Pose, ends: &[Pose; 2], slack_mm: f64) -> Option<f64> {
+        self.groups.iter().try_fold(1.0, |least: f64, g| {
             if body.distance(pose, &g.middle) - g.reach_mm >= g.keep_mm {
-                return true;
+                return Some(least);
             }
-            g.points.iter().all(|p| {
+            g.points.iter().try_fold(least, |least, (p, normal)| {
                 let off = body.distance(pose, p);
-                off >= g.keep_mm || ends.iter().any(|end| off >= body.distance(end, p) - slack_mm)
+                if off >= g.keep_mm {
+                    return Some(least);
+                }
+                // The side of a tool that is hardly in an edge goes deep along the normal of its face.
+                let sunk = p - normal.into_inner() * self.accepted_mm;
+                if off < 0.0 && body.distance(pose, &sunk) < 0.0 {
+                    return None;
+                }
+                if ends.iter().any(|end| off >= body.distance(end, p) - slack_mm) {
+                    return Some(least);
+                }
+                let room = (off - g.between_mm) / (g.keep_mm - g.between_mm);
+                (room > 0.0).then(|| least.min(room))
             })
         })
     }

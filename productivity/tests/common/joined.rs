@@ -19,6 +19,7 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         clearance_mm: 5.0,
         approach_mm: 2.0,
         hop_mm: 0.25,
+        layer_mm: 0.0,
         cutter: *cutter,
         holder: None,
         feed_mm_min: 1000.0,

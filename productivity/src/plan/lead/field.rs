@@ -8,9 +8,9 @@
 use super::envelope::{Network, raise};
 use super::lean::{Feed, LeadField, LocalLead};
 use super::need::{Clearance, Stand};
-use crate::plan::level::Spline;
-use crate::plan::line::{Rectangle, lengths};
 use crate::plan::{Passes, PlanError, Task};
+use crate::rectangle::{Rectangle, lengths};
+use crate::spline::Spline;
 use osculate_geom::{Axis, Diagnostic, Uv};
 use rayon::prelude::*;
 
@@ -68,7 +68,7 @@ impl LeadField {
     ) -> Result<Self, PlanError> {
         let rectangle = Rectangle::of(task.surface);
         let clearance = Clearance::new(task, local, rough);
-        let mut spline = Spline::zero(&rectangle, spans(task, &rectangle));
+        let mut spline = Spline::constant(&rectangle, spans(task, &rectangle), 0.0);
         let spans = spline.bases.map(|b| b.spans);
         let stands = |at: Uv| -> Vec<Stand> {
             let way = feed(at, &task.surface.jet2(at));

@@ -1,10 +1,13 @@
-//! Lead and tilt of a task: held, to be found, or a field over the face.
+//! The tool's axis in a task: lead and tilt held, a lead to be found, as found, or a field of axes.
 
+use crate::axis::AxisField;
 use crate::compare::Around;
-use crate::plan::level::Spline;
-use crate::plan::line::{PassLine, Rectangle};
-use osculate_geom::{Axis, Forms, Jet2, Uv, Vec3};
-use osculate_tools::{ContactError, Cutter, Lean};
+use crate::plan::line::PassLine;
+use crate::rectangle::Rectangle;
+use crate::spline::Spline;
+use osculate_geom::{Darboux, Forms, Jet2, Uv, Vec3};
+use osculate_tools::sweep::Moving;
+use osculate_tools::{ContactError, Cutter, Lean, moving_with_axis};
 
 /// How a local lead is found. Angles rad, rates rad/mm.
 #[derive(Clone, Copy)]
@@ -30,15 +33,17 @@ impl LocalLead<'_> {
     pub const MOST_RAD: f64 = std::f64::consts::FRAC_PI_4;
 }
 
-/// Lead and tilt of a task.
+/// The tool's axis in a task.
 #[derive(Clone, Copy)]
 pub enum Leaning<'a> {
-    /// Held along all passes.
+    /// Lead and tilt held along all passes.
     Held(Lean),
-    /// To be found place by place, before passes are laid out.
+    /// A lead to be found place by place, before passes are laid out.
     Local(&'a LocalLead<'a>),
-    /// As found.
+    /// A lead as found.
     Field(&'a LeadField),
+    /// Axes in the part's frame, the same for passes to and fro.
+    Axes(&'a AxisField),
 }
 
 impl From<Lean> for Leaning<'_> {
@@ -51,20 +56,21 @@ impl From<Lean> for Leaning<'_> {
 pub(in crate::plan) type Feed<'a> = dyn Fn(Uv, &Jet2) -> Option<Vec3> + Sync + 'a;
 
 impl Leaning<'_> {
-    /// Lead and tilt at a place; the least lead where it has not been found yet.
+    /// Lead and tilt at a place against the frame of a line there; the least lead where it has not been found yet.
     #[must_use]
-    pub fn at(&self, at: Uv) -> Lean {
+    pub fn against(&self, at: Uv, frame: &Darboux) -> Lean {
         match self {
             Self::Held(lean) => *lean,
             Self::Local(l) => Lean { lead_rad: l.least_rad, tilt_rad: l.tilt_rad },
             Self::Field(f) => f.at(at).0,
+            Self::Axes(f) => Lean::of(&f.at(at).0, frame),
         }
     }
 
     /// Lead and tilt at a place, about, where they have not been found yet: at a lead of sine `R k` the far side of a disc of radius R
     /// just clears a face that is hollow by k, to second order and whatever the feed.
-    pub(in crate::plan) fn about(&self, at: Uv, forms: &Forms, cutter: &Cutter) -> Lean {
-        let Self::Local(l) = self else { return self.at(at) };
+    pub(in crate::plan) fn about(&self, at: Uv, forms: &Forms, frame: &Darboux, cutter: &Cutter) -> Lean {
+        let Self::Local(l) = self else { return self.against(at, frame) };
         let sine = cutter.radius_mm() * (-forms.principal().k_min).max(0.0);
         let lead_rad = sine.min(1.0).asin().clamp(l.least_rad, l.most_rad);
         Lean { lead_rad, tilt_rad: l.tilt_rad }
@@ -80,18 +86,39 @@ impl Leaning<'_> {
                 }
                 Ok(())
             }
-            Self::Field(_) => Ok(()),
+            Self::Field(_) | Self::Axes(_) => Ok(()),
         }
     }
 
-    /// Lead and tilt along a line, and the lead's rate by the line's parameter.
-    pub(in crate::plan) fn along(&self, line: &dyn PassLine, t: f64) -> (Lean, f64) {
+    /// Lead and tilt on a line, against its frame at `t` or an average of that.
+    pub(in crate::plan) fn on(&self, line: &dyn PassLine, t: f64, frame: &Darboux) -> Lean {
+        match self {
+            Self::Held(lean) => *lean,
+            _ => self.against(line.uv(t), frame),
+        }
+    }
+
+    /// The tool's motion on a line at `t`, held against a frame that moves at `speed` by the line's parameter.
+    pub(in crate::plan) fn moving(
+        &self,
+        cutter: &Cutter,
+        line: &dyn PassLine,
+        t: f64,
+        (frame, speed): (&Darboux, f64),
+    ) -> Moving {
         match self {
             Self::Field(f) => {
                 let ((lean, slope), rate) = (f.at(line.uv(t)), line.rate(t));
-                (lean, slope[0] * rate.u + slope[1] * rate.v)
+                let lead_rate = slope[0] * rate.u + slope[1] * rate.v;
+                lean.moving(cutter, frame, 0.0, (speed, lead_rate))
             }
-            held => (held.at(Uv { u: 0.0, v: 0.0 }), 0.0),
+            Self::Axes(f) => {
+                let ((axis, slope), rate) = (f.at(line.uv(t)), line.rate(t));
+                moving_with_axis(cutter, frame, speed, &axis, &(slope[0] * rate.u + slope[1] * rate.v))
+            }
+            Self::Held(_) | Self::Local(_) => {
+                self.on(line, t, frame).moving(cutter, frame, 0.0, (speed, 0.0))
+            }
         }
     }
 }
@@ -110,19 +137,7 @@ impl LeadField {
     /// Lead and tilt at a place, and the lead's derivatives by u and v; beyond the border of the face its border's.
     #[must_use]
     pub fn at(&self, at: Uv) -> (Lean, [f64; 2]) {
-        let mut within = [true; 2];
-        let held = |axis: Axis, within: &mut bool| {
-            let (i, t) = (self.rectangle.domain.get(axis), at.get(axis));
-            if t >= i.lo && t <= i.hi {
-                t
-            } else if self.rectangle.closes(axis) {
-                (t - i.lo).rem_euclid(i.length()) + i.lo
-            } else {
-                *within = false;
-                t.clamp(i.lo, i.hi)
-            }
-        };
-        let place = Uv { u: held(Axis::U, &mut within[0]), v: held(Axis::V, &mut within[1]) };
+        let (place, within) = self.rectangle.held(at);
         let jet = self.spline.jet(place);
         let slope = [0, 1].map(|k| if within[k] { jet.slope[k] } else { 0.0 });
         (Lean { lead_rad: jet.value, tilt_rad: self.tilt_rad }, slope)

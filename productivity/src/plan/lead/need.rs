@@ -11,7 +11,7 @@
 
 use super::lean::LocalLead;
 use crate::plan::Task;
-use crate::plan::line::{Rectangle, lengths};
+use crate::rectangle::{Rectangle, lengths};
 use osculate_geom::{Axis, Darboux, Point3, Unit3, Uv, Vec3};
 use osculate_tools::{Cutter, Lean, Pose};
 use rayon::prelude::*;

@@ -9,11 +9,11 @@
 
 use super::field::Face;
 use super::fit::{Place, Problem};
-use super::spline::Spline;
-use crate::closed_form::{Section, width_37};
-use crate::plan::line::{Rectangle, lengths};
 use crate::plan::{PlanError, Task};
-use osculate_geom::{Axis, Darboux, Forms, Jet2, Relative, Uv, Vec3};
+use crate::rectangle::{Rectangle, lengths};
+use crate::spline::Spline;
+use crate::width::planar_width_mm;
+use osculate_geom::{Axis, Darboux, Forms, Jet2, Uv, Vec3};
 use rayon::prelude::*;
 
 /// Spans of the spline along the longer side of a face, and fewest along any.
@@ -21,8 +21,6 @@ const SPANS: [f64; 2] = [36.0, 8.0];
 /// Rounds at most, and the change of the mean deviation at which they end.
 const ROUNDS: u32 = 40;
 const SETTLED: f64 = 2e-4;
-/// Strips are not counted on to be wider than this, of the tool's radius: there the closed form ends.
-const WIDEST: f64 = 1.6;
 /// The share of the face whose strips may stay narrower than what the path is predicted by.
 const NARROW: f64 = 0.02;
 
@@ -51,16 +49,8 @@ pub(super) fn width_mm(task: &Task<'_>, jet: &Jet2, forms: &Forms, c: [f64; 2]) 
     let left: Vec3 = e1.into_inner() * c[0] + e2.into_inner() * c[1];
     let feed = left.cross(&forms.normal);
     let frame = Darboux::with_forms(jet, forms, &feed, 0.0);
-    let tool = task.lean.about(jet.uv, forms, task.cutter).tool_curvature(task.cutter, &frame);
-    let q = Relative::new(forms, &tool).along(&left);
-    let most = WIDEST * task.cutter.radius_mm();
-    let part_per_mm = forms.normal_curvature(&left);
-    let section =
-        Section { part_per_mm, tool_per_mm: q - part_per_mm, scallop_mm: task.tolerance.scallop_mm };
-    if q.is_nan() || q <= 0.0 {
-        return most;
-    }
-    width_37(section).unwrap_or(most).min(most)
+    let lean = task.lean.about(jet.uv, forms, &frame, task.cutter);
+    planar_width_mm(forms, &frame, (task.cutter, lean), task.tolerance.scallop_mm)
 }
 
 impl Place {

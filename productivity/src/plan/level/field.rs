@@ -4,20 +4,11 @@
 //! `(u, v)' = (-phi_v, phi_u)` the field is constant, and one more derivative gives the path's acceleration, so that the
 //! Darboux frame with its geodesic curvature is exact.
 
-use crate::plan::line::Rectangle;
+use crate::rectangle::Rectangle;
+use crate::spline::{FieldJet, Spline};
 use osculate_geom::line::LineError;
 use osculate_geom::solve::symmetric;
 use osculate_geom::{Darboux, Degenerate, Jet2, Surface, Unit3, Uv, Vec3, geodesic_curvature, uv};
-
-/// A field's value and derivatives by the parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(crate) struct FieldJet {
-    pub value: f64,
-    /// By u and v.
-    pub slope: [f64; 2],
-    /// By uu, uv and vv.
-    pub bend: [f64; 3],
-}
 
 /// A field over a face with two derivatives.
 pub(crate) trait ScalarField: Sync {
@@ -37,6 +28,12 @@ impl ScalarField for Height {
             slope: [jet.du.dot(&d), jet.dv.dot(&d)],
             bend: [jet.duu.dot(&d), jet.duv.dot(&d), jet.dvv.dot(&d)],
         }
+    }
+}
+
+impl ScalarField for Spline {
+    fn at(&self, at: Uv, _: &Jet2) -> FieldJet {
+        self.jet(at)
     }
 }
 

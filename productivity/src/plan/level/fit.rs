@@ -6,9 +6,9 @@
 //! gradient matters X follows the field's own direction and the problem is solved again: the matrix stays the same.
 
 use super::band::{Band, Factor, NotDefinite};
-use super::spline::{Four, Spline};
 use crate::plan::Task;
-use crate::plan::line::Rectangle;
+use crate::rectangle::Rectangle;
+use crate::spline::{Four, Spline};
 use osculate_geom::{Axis, Forms, Jet2, Uv};
 use rayon::prelude::*;
 
@@ -41,7 +41,7 @@ pub(super) struct Place {
 impl Place {
     /// The gradient of a field in the tangent frame, 1/mm.
     pub fn gradient(&self, field: &Spline) -> [f64; 2] {
-        let [a, b] = field.slope(&self.u, &self.v);
+        let [a, b] = field.first(&self.u, &self.v).1;
         self.along.map(|r| a * r.u + b * r.v)
     }
 
@@ -66,7 +66,7 @@ impl Problem {
         spans: [usize; 2],
         wishes: bool,
     ) -> Result<Self, NotDefinite> {
-        let zero = Spline::zero(rectangle, spans);
+        let zero = Spline::constant(rectangle, spans, 0.0);
         let places = places(task, rectangle, &zero);
         let mut band = zero.band();
         for p in &places {

@@ -14,15 +14,14 @@ mod fit;
 mod meet;
 mod passes;
 mod reach;
-mod spline;
 mod trace;
 mod ways;
 
 use super::extended::Extended;
 use super::lead::{LeadField, Leaning, LocalLead};
-use super::line::Rectangle;
 use super::seat::Seat;
 use super::{Passes, PlanError, Task, Tolerance, shorter};
+use crate::rectangle::Rectangle;
 use cells::Cells;
 
 pub(super) use even::widest_mm;
@@ -31,7 +30,6 @@ use field::{Face, Height, ScalarField};
 use fit::Place;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv};
 use rayon::prelude::*;
-pub(super) use spline::Spline;
 use std::f64::consts::PI;
 
 /// Rounds of leads along the passes and passes for these leads, before widths are corrected.

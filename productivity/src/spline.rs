@@ -1,12 +1,22 @@
-//! A scalar field as a uniform bicubic spline over the parameter rectangle, closed where the face closes.
+//! Fields of numbers or vectors as uniform bicubic splines over the parameter rectangle, closed where the face closes.
 
-use super::field::{FieldJet, ScalarField};
-use crate::plan::line::Rectangle;
-use osculate_geom::{Axis, Interval, Jet2, Uv};
+use crate::rectangle::Rectangle;
+use osculate_geom::{Axis, Interval, Uv};
+use std::ops::{Add, Mul};
+
+/// A field's value and derivatives by the parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct FieldJet {
+    pub value: f64,
+    /// By u and v.
+    pub slope: [f64; 2],
+    /// By uu, uv and vv.
+    pub bend: [f64; 3],
+}
 
 /// Uniform cubic B-splines over an interval.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::plan) struct Basis {
+pub(crate) struct Basis {
     interval: Interval,
     pub spans: usize,
     closed: bool,
@@ -14,7 +24,7 @@ pub(in crate::plan) struct Basis {
 
 /// The four splines that do not vanish at a parameter: their indices, values, and first and second derivatives.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::plan) struct Four {
+pub(crate) struct Four {
     pub index: [usize; 4],
     pub value: [f64; 4],
     pub first: [f64; 4],
@@ -67,39 +77,43 @@ impl Basis {
 
 /// The field.
 #[derive(Clone, Debug)]
-pub(in crate::plan) struct Spline {
+pub(crate) struct Spline<T = f64> {
     pub bases: [Basis; 2],
     /// In rows of v for each u.
-    pub poles: Vec<f64>,
+    pub poles: Vec<T>,
 }
 
-impl Spline {
-    /// Zero everywhere.
-    pub fn zero(rectangle: &Rectangle, spans: [usize; 2]) -> Self {
+impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Spline<T> {
+    /// The same everywhere.
+    pub fn constant(rectangle: &Rectangle, spans: [usize; 2], value: T) -> Self {
         let basis = |axis: Axis, spans: usize| Basis {
             interval: rectangle.domain.get(axis),
             spans: spans.max(4),
             closed: rectangle.closes(axis),
         };
         let bases = [basis(Axis::U, spans[0]), basis(Axis::V, spans[1])];
-        Self { bases, poles: vec![0.0; bases[0].count() * bases[1].count()] }
+        Self { bases, poles: vec![value; bases[0].count() * bases[1].count()] }
     }
 
     pub fn index(&self, i: usize, j: usize) -> usize {
         i * self.bases[1].count() + j
     }
 
-    /// Gradient by the parameters from bases at hand.
-    pub fn slope(&self, u: &Four, v: &Four) -> [f64; 2] {
-        let mut out = [0.0; 2];
-        for a in 0..4 {
-            for b in 0..4 {
-                let c = self.poles[self.index(u.index[a], v.index[b])];
-                out[0] += c * u.first[a] * v.value[b];
-                out[1] += c * u.value[a] * v.first[b];
-            }
+    /// The value, and the gradient by the parameters, from bases at hand.
+    pub fn first(&self, u: &Four, v: &Four) -> (T, [T; 2]) {
+        let first = self.poles[self.index(u.index[0], v.index[0])];
+        let mut out = [
+            first * (u.value[0] * v.value[0]),
+            first * (u.first[0] * v.value[0]),
+            first * (u.value[0] * v.first[0]),
+        ];
+        for (a, b) in (1..16).map(|k| (k / 4, k % 4)) {
+            let c = self.poles[self.index(u.index[a], v.index[b])];
+            out[0] = out[0] + c * (u.value[a] * v.value[b]);
+            out[1] = out[1] + c * (u.first[a] * v.value[b]);
+            out[2] = out[2] + c * (u.value[a] * v.first[b]);
         }
-        out
+        (out[0], [out[1], out[2]])
     }
 }
 
@@ -120,12 +134,6 @@ impl Spline {
             }
         }
         out
-    }
-}
-
-impl ScalarField for Spline {
-    fn at(&self, at: Uv, _: &Jet2) -> FieldJet {
-        self.jet(at)
     }
 }
 

@@ -1,0 +1,118 @@
+//! The faces of a part as points that a tool keeps out of.
+//!
+//! Depth is measured along the normals of faces, as verification does: a point sunk by what is accepted lies in the tool
+//! where the tool goes deeper than that. The side of a tool that is hardly in the edge of a face goes deep along its normal between two
+//! points, so that it keeps off the points of other faces but for those next to what it machines.
+
+use crate::plan::Named;
+use crate::plan::walls::sampled;
+use osculate_geom::{Point3, quadrature};
+use osculate_tools::reach::{ObstacleKind, ObstaclePoint, Obstacles};
+use osculate_tools::removal::{Sample, SamplingError};
+use rayon::prelude::*;
+use std::collections::HashSet;
+
+/// Most points over all faces, and fewest of one.
+const MOST: f64 = 5e5;
+const FEWEST: usize = 200;
+/// Points stand no closer than lets a ball go deeper between them by this part of what it may.
+const HIDDEN: f64 = 0.2;
+/// What is kept from points that are not next to what is machined, of their spacing: half the side of a cell.
+const ADDED: f64 = 0.5;
+
+/// Faces around a tool.
+#[derive(Clone, Copy)]
+pub struct Around<'a> {
+    /// Faces to machine.
+    pub faces: &'a [Named<'a>],
+    /// All others, which a tool that touches the part elsewhere keeps off.
+    pub check: &'a [Named<'a>],
+    /// Radius of the tool, mm.
+    pub radius_mm: f64,
+    /// How deep it may go into faces along their normals, mm.
+    pub gouge_mm: f64,
+}
+
+/// Points of faces, and what the tool keeps from those that are not next to what it machines.
+pub struct Surroundings {
+    /// The points, each with the place of its face among those to machine and then all others. Those that the tool may touch are sunk
+    /// into their faces.
+    pub obstacles: Obstacles,
+    /// What is kept from the others, mm.
+    pub keep_mm: f64,
+}
+
+/// A sample sunk by so much along its normal.
+pub(crate) fn sunk(s: &Sample, by_mm: f64) -> ObstaclePoint {
+    let point = s.point - s.normal.into_inner() * by_mm;
+    ObstaclePoint { point, owner: s.face, kind: ObstacleKind::Part }
+}
+
+/// Cells of a grid with a point of what is machined in them or next to them.
+struct Touched {
+    side: f64,
+    cells: HashSet<[i64; 3]>,
+}
+
+impl Touched {
+    fn cell(&self, p: &Point3) -> [i64; 3] {
+        // Cells of a part are far fewer than whole numbers.
+        [p.x, p.y, p.z].map(|x| (x / self.side).floor() as i64)
+    }
+
+    fn new(samples: &[Sample], side: f64) -> Self {
+        let mut out = Self { side, cells: HashSet::new() };
+        for s in samples {
+            let [x, y, z] = out.cell(&s.point);
+            out.cells.extend((0..27).map(|c| [x + c / 9 - 1, y + c / 3 % 3 - 1, z + c % 3 - 1]));
+        }
+        out
+    }
+}
+
+impl Surroundings {
+    /// The points of faces.
+    ///
+    /// # Errors
+    /// A face that cannot be sampled, by its name.
+    pub fn of(around: &Around<'_>) -> Result<Self, (String, SamplingError)> {
+        // Between two points on a plane a ball comes deeper by s^2 / 8 r.
+        let spacing_mm = (8.0 * around.radius_mm * HIDDEN * around.gouge_mm).sqrt();
+        let all: Vec<&Named<'_>> = around.faces.iter().chain(around.check).collect();
+        let areas: Vec<f64> = all.par_iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
+        let sum: f64 = areas.iter().sum();
+        let found: Vec<_> = all
+            .par_iter()
+            .zip(&areas)
+            .enumerate()
+            .map(|(k, (face, area))| {
+                let share = if sum > 0.0 { area / sum } else { 1.0 };
+                // As many as its share of the area: a positive number, far below any limit.
+                let most = ((MOST * share) as usize).max(FEWEST);
+                let found = sampled(face.surface, k as u32, spacing_mm, most);
+                found.map_err(|e| (face.face.to_owned(), e))
+            })
+            .collect::<Result<_, _>>()?;
+        let [machined, others] = {
+            let mut found = found;
+            let others = found.split_off(around.faces.len());
+            [found, others]
+        };
+        let apart = others.iter().map(|f| f.density.spacing_mm).fold(0.0, f64::max);
+        let own: Vec<Sample> = machined.into_iter().flat_map(|f| f.samples).collect();
+        let touched = Touched::new(&own, 0.5 * around.radius_mm);
+        let sunk = |s: &Sample| sunk(s, around.gouge_mm);
+        let other = |s: Sample| {
+            if touched.cells.contains(&touched.cell(&s.point)) {
+                sunk(&s)
+            } else {
+                ObstaclePoint { point: s.point, owner: s.face, kind: ObstacleKind::Surroundings }
+            }
+        };
+        let others = others.into_iter().flat_map(|f| f.samples).map(other);
+        let points: Vec<ObstaclePoint> = own.iter().map(sunk).chain(others).collect();
+        // Samples have finite coordinates, and there are far fewer than an index can hold.
+        let obstacles = Obstacles::new(points).unwrap_or_default();
+        Ok(Self { obstacles, keep_mm: ADDED * apart })
+    }
+}

@@ -1,0 +1,171 @@
+//! The search of a field of axes over a face: what is possible at its nodes, the axes of least time, and the way between them.
+
+use super::around::Surroundings;
+use super::field::AxisField;
+use super::joints::Joints;
+use super::lattice::{Feed, Lattice};
+use super::search::{Asked, Depths, Search, depths};
+use super::settle::settle;
+use osculate_geom::{Point3, Surface, Unit3, Uv};
+use osculate_tools::Cutter;
+use osculate_tools::reach::{
+    Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
+};
+use rayon::prelude::*;
+
+/// Subdivisions of the icosahedron whose corners are tried: 2,562 directions, 4.3 degrees apart.
+const LEVEL: u32 = 4;
+/// Places asked along each side of a cell.
+const ASKED: usize = 2;
+
+/// What a field is for.
+#[derive(Clone, Copy)]
+pub struct Wish<'a> {
+    /// The face, with its trims and material side.
+    pub surface: &'a dyn Surface,
+    /// The direction in which passes run.
+    pub feed: &'a Feed<'a>,
+    /// Highest material left between passes, mm.
+    pub scallop_mm: f64,
+    /// Feed, mm/min.
+    pub feed_mm_min: f64,
+    /// The machine's joints.
+    pub joints: &'a dyn Joints,
+    /// The tool.
+    pub tool: &'a Tool,
+    /// What it must keep out of; what it may go into is sunk by as much.
+    pub around: &'a Surroundings,
+    /// Least and greatest angle between axis and normal, rad.
+    pub lean_rad: [f64; 2],
+}
+
+/// A place of the face with no possible axis.
+#[derive(Clone, Debug)]
+pub struct Unreached {
+    /// Its parameters.
+    pub at: Uv,
+    /// The place.
+    pub point: Point3,
+    /// Area of the face that it stands for, mm2.
+    pub area_mm2: f64,
+    /// The best axis of all, and what stands in its way; None where the machine has no axis there at all.
+    pub best: Option<Best>,
+}
+
+/// A field as found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The field.
+    pub field: AxisField,
+    /// Places that no axis reaches.
+    pub unreached: Vec<Unreached>,
+    /// Area of the nodes of the face, mm2.
+    pub area_mm2: f64,
+    /// Places at which the field as a whole keeps the tool from none of its possible axes, and all that were asked.
+    pub unsettled: [usize; 2],
+}
+
+/// Why there is no field.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NoField {
+    /// Leans that are none.
+    #[error(transparent)]
+    Reach(#[from] ReachError),
+    /// The joints reach no direction at all.
+    #[error("the machine's joints reach no tool axis at all")]
+    NoAxis,
+    /// No place of the face is reached.
+    #[error("no axis is possible at any of its {places} places")]
+    Nowhere {
+        /// Places that were looked at.
+        places: usize,
+    },
+}
+
+/// Finds the field of axes of least time over a face.
+///
+/// # Errors
+/// Where the machine has no axis, or none is possible anywhere on the face.
+pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
+    let cutter: &Cutter = wish.tool.cutter();
+    let lattice = Lattice::new(wish.surface, cutter.radius_mm(), wish.feed);
+    let line = wish.joints.line();
+    let on_line = line.is_some();
+    let directions = line.map_or_else(|| Directions::icosphere(LEVEL), Directions::row);
+    let directions = directions.map_err(|_| NoField::NoAxis)?;
+    let all = directions.all();
+    let mask = Bits::of(all.len(), |k| wish.joints.reaches(&all[k]));
+    if mask.is_empty() {
+        return Err(NoField::NoAxis);
+    }
+    let limits = ReachLimits {
+        gouge_mm: 0.0,
+        clearance_mm: wish.around.keep_mm,
+        least_lean_rad: wish.lean_rad[0],
+        most_lean_rad: wish.lean_rad[1],
+    };
+    let obstacles = &wish.around.obstacles;
+    let reach = Reach::new(ReachProblem {
+        tool: wish.tool,
+        limits,
+        obstacles,
+        directions: &directions,
+        allowed: Some(&mask),
+    })?;
+    let places: Vec<Option<Place>> = lattice
+        .nodes
+        .iter()
+        .map(|n| n.normal.filter(|_| n.inside).map(|normal| Place { point: n.point, normal }))
+        .collect();
+    let on_face: Vec<Place> = places.iter().flatten().copied().collect();
+    let mut found = reach.map(&on_face).into_iter();
+    let bits: Vec<Option<Bits>> = places.iter().map(|p| p.as_ref().and_then(|_| found.next())).collect();
+    // Where no axis is possible one that leans no further than it may keeps the field within reason.
+    let leaning = |place: &Place| {
+        Bits::of(all.len(), |k| mask.contains(k) && reach.leans_within_limits(place, &all[k]))
+    };
+    let depths: Vec<Depths> = places
+        .par_iter()
+        .zip(&bits)
+        .map(|both| match both {
+            (Some(place), Some(bits)) if bits.is_empty() => depths(&directions, &leaning(place)),
+            (_, Some(bits)) => depths(&directions, bits),
+            _ => Vec::new(),
+        })
+        .collect();
+    let asked = Asked {
+        cutter,
+        scallop_mm: wish.scallop_mm,
+        feed_mm_min: wish.feed_mm_min,
+        directions: &directions,
+        joints: wish.joints,
+        on_line,
+    };
+    let axes =
+        Search::new(&asked, &lattice, &depths).best().ok_or(NoField::Nowhere { places: on_face.len() })?;
+    let mut spline = lattice.spline.clone();
+    spline.poles = axes.iter().map(|a| a.into_inner()).collect();
+    let mut field = AxisField { spline, rectangle: lattice.rectangle };
+    let clear = |point: &Point3, normal: &Unit3, axis: &Unit3| {
+        wish.joints.reaches(axis) && reach.is_clear(&Place { point: *point, normal: *normal }, axis)
+    };
+    let between = lattice.between(ASKED);
+    let count = between.len();
+    let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
+    let unsettled = settle(&mut field, wish.surface, between, (&clear, &held));
+    let unreached = lattice
+        .nodes
+        .par_iter()
+        .zip(places.par_iter().zip(&bits))
+        .filter_map(|(n, (place, bits))| Some((n, place.as_ref()?, bits.as_ref()?)))
+        .filter(|(n, _, bits)| bits.is_empty() && n.area_mm2 > 0.0)
+        .map(|(n, place, _)| Unreached {
+            at: n.at,
+            point: n.point,
+            area_mm2: n.area_mm2,
+            best: reach.best(place),
+        })
+        .collect();
+    let area_mm2 = lattice.nodes.iter().map(|n| n.area_mm2).sum();
+    Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, count] })
+}

@@ -1,0 +1,141 @@
+//! The poles of a field as nodes over a face: places, areas and neighbours.
+
+use crate::rectangle::{AXES, Rectangle, lengths};
+use crate::spline::Spline;
+use osculate_geom::{Darboux, Forms, Jet2, Point3, Surface, Unit3, Uv, Vec3, uv};
+use rayon::prelude::*;
+
+/// Distance of nodes, in radii of the tool: a tool sees no more of what stands around it. Fewest and most along a parameter, and
+/// most of all.
+const APART: f64 = 0.5;
+const ALONG: [f64; 2] = [8.0, 96.0];
+const NODES: f64 = 1600.0;
+
+/// The direction in which passes run at a place, in either sense; None where there is none.
+pub type Feed<'a> = dyn Fn(Uv, &Jet2) -> Option<Vec3> + Sync + 'a;
+
+/// A pole of the field and the place that it stands over.
+pub(super) struct Node {
+    pub at: Uv,
+    pub point: Point3,
+    /// Outward normal; None where the face has none.
+    pub normal: Option<Unit3>,
+    /// The forms and the frame of the passes; None where these have no direction.
+    pub frame: Option<(Forms, Darboux)>,
+    /// Whether the place is on the face.
+    pub inside: bool,
+    /// Area of the face that it stands for, mm2.
+    pub area_mm2: f64,
+}
+
+/// Two neighbouring nodes.
+#[derive(Clone, Copy)]
+pub(super) struct Edge {
+    pub ends: [usize; 2],
+    pub length_mm: f64,
+    /// Length across it of what it stands for, mm.
+    pub across_mm: f64,
+    /// How far passes run along it, as a cosine.
+    pub along: f64,
+}
+
+/// The nodes over a face.
+pub(super) struct Lattice {
+    pub rectangle: Rectangle,
+    pub spline: Spline<Vec3>,
+    pub nodes: Vec<Node>,
+    pub edges: Vec<Edge>,
+    /// For each node its edges, by their place among all.
+    pub of_node: Vec<Vec<u32>>,
+}
+
+impl Lattice {
+    pub fn new(surface: &dyn Surface, radius_mm: f64, feed: &Feed<'_>) -> Self {
+        let rectangle = Rectangle::of(surface);
+        let long = lengths(surface, &rectangle);
+        let side = (APART * radius_mm).max((long[0] * long[1] / NODES).sqrt());
+        let spans = long.map(|l| (l / side).clamp(ALONG[0], ALONG[1]).ceil() as usize);
+        let spline = Spline::constant(&rectangle, spans, Vec3::z());
+        let spans = spline.bases.map(|b| b.spans);
+        let counts = spline.bases.map(|b| b.count());
+        // Poles stand over the corners of cells, one row of them outside.
+        let part = |k: usize, axis: usize| {
+            let n = spans[axis] as f64;
+            let x = k as f64 - 1.0;
+            if rectangle.closes[axis] { x.rem_euclid(n) / n } else { (x / n).clamp(0.0, 1.0) }
+        };
+        let outer = |k: usize, axis: usize| !rectangle.closes[axis] && (k == 0 || k + 1 == counts[axis]);
+        let cell = AXES.map(|axis| rectangle.domain.get(axis).length()).map(|l| l.abs());
+        let cell = [cell[0] / spans[0] as f64, cell[1] / spans[1] as f64];
+        let nodes: Vec<Node> = (0..counts[0] * counts[1])
+            .into_par_iter()
+            .map(|k| {
+                let (i, j) = (k / counts[1], k % counts[1]);
+                let at = rectangle.domain.at(part(i, 0), part(j, 1));
+                let jet = surface.jet2(at);
+                let inside = surface.contains(at);
+                let forms = jet.forms().ok();
+                let frame = forms.and_then(|forms| {
+                    let way = feed(at, &jet)?;
+                    let frame = Darboux::with_forms(&jet, &forms, &way, 0.0);
+                    frame.tangent.iter().all(|x| x.is_finite()).then_some((forms, frame))
+                });
+                let whole = jet.du.cross(&jet.dv).norm() * cell[0] * cell[1];
+                let border = |k: usize, axis: usize| {
+                    let ends = [1, counts[axis] - 2];
+                    if !rectangle.closes[axis] && ends.contains(&k) { 0.5 } else { 1.0 }
+                };
+                let share = if outer(i, 0) || outer(j, 1) { 0.0 } else { border(i, 0) * border(j, 1) };
+                Node {
+                    at,
+                    point: jet.point,
+                    normal: jet.normal().ok(),
+                    frame,
+                    inside,
+                    area_mm2: if inside { share * whole } else { 0.0 },
+                }
+            })
+            .collect();
+        let mut lattice = Self { rectangle, spline, nodes, edges: Vec::new(), of_node: Vec::new() };
+        lattice.joined(surface, cell);
+        lattice
+    }
+
+    /// Finds the edges between neighbouring nodes.
+    fn joined(&mut self, surface: &dyn Surface, cell: [f64; 2]) {
+        let counts = self.spline.bases.map(|b| b.count());
+        self.of_node = vec![Vec::new(); self.nodes.len()];
+        for k in 0..self.nodes.len() {
+            let at = [k / counts[1], k % counts[1]];
+            let jet = surface.jet2(self.nodes[k].at);
+            let sides = [jet.du * cell[0], jet.dv * cell[1]];
+            for axis in 0..2 {
+                let mut next = at;
+                next[axis] += 1;
+                if next[axis] == counts[axis] {
+                    if !self.rectangle.closes[axis] {
+                        continue;
+                    }
+                    next[axis] = 0;
+                }
+                let end = next[0] * counts[1] + next[1];
+                let [length_mm, across_mm] = [sides[axis].norm(), sides[1 - axis].norm()];
+                let along = self.nodes[k].frame.as_ref().map_or(0.0, |(_, f)| {
+                    (f.tangent.dot(&sides[axis]) / length_mm.max(f64::MIN_POSITIVE)).abs().min(1.0)
+                });
+                let place = self.edges.len() as u32;
+                self.edges.push(Edge { ends: [k, end], length_mm, across_mm, along });
+                self.of_node[k].push(place);
+                self.of_node[end].push(place);
+            }
+        }
+    }
+
+    /// Places at equal parts of the cells, `parts` of them along each side.
+    pub fn between(&self, parts: usize) -> Vec<Uv> {
+        let counts = self.spline.bases.map(|b| parts * b.spans + 1);
+        let part = |k: usize, axis: usize| k as f64 / (counts[axis] - 1) as f64;
+        let all = (0..counts[0] * counts[1]).map(|k| (k / counts[1], k % counts[1]));
+        all.map(|(i, j)| self.rectangle.domain.at(part(i, 0), part(j, 1))).map(|at| uv(at.u, at.v)).collect()
+    }
+}
