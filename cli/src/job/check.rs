@@ -189,14 +189,17 @@ fn check(kind: &Kind, value: &DeValue<'_>) -> Result<(), Wrong> {
     let within = |r: &Range, v: &DeValue<'_>| number(v).is_some_and(|x| r.holds(x));
     let list = |n: usize, r: &Range| numbers(value).filter(|x| x.len() == n && x.iter().all(|x| r.holds(*x)));
     let any = Range { least: f64::NEG_INFINITY, most: f64::INFINITY, open: [false; 2] };
+    let direction = || list(3, &any).is_some_and(|d| d.iter().any(|x| x.abs() > 1e-9));
     let words = kind.words();
     let good = match kind {
         Kind::Number(r, _) => within(r, value),
         Kind::Whole(a, b) => whole(value).is_some_and(|x| (*a..=*b).contains(&x)),
+        Kind::Flag => value.as_bool().is_some(),
         Kind::Sign => whole(value).is_some_and(|x| x.abs() == 1),
         Kind::NumberOr(r, ..) => within(r, value) || value.as_str().is_some_and(|w| words.contains(&w)),
         Kind::Numbers(n, r, _) => list(*n, r).is_some(),
-        Kind::Direction => list(3, &any).is_some_and(|d| d.iter().any(|x| x.abs() > 1e-9)),
+        Kind::Direction => direction(),
+        Kind::DirectionOr(_) => direction() || value.as_str().is_some_and(|w| words.contains(&w)),
         Kind::Between(r, _) => list(2, r).is_some_and(|d| d[0] < d[1]),
         Kind::Corners(_) => list(6, &any).is_some_and(|c| (0..3).all(|k| c[k] < c[k + 3])),
         Kind::Word(_) | Kind::Name(_) => value.as_str().is_some_and(|w| words.contains(&w)),

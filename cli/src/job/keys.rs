@@ -2,8 +2,8 @@
 
 use crate::job::schema::{Key, Kind, Range, Table};
 use crate::job::words::{
-    Accept, AlongWord, AxisWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey, Method, Normals,
-    StrategyWord, Tip, ToolKind, Turns,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey,
+    Method, Normals, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_postproc::built_in_names;
 use osculate_postproc::nc::Dialect;
@@ -96,7 +96,11 @@ pub static TABLES: &[Table] = &[
             "lead_deg = \"local\": its greatest change along the face"),
         may("tilt_deg", Kind::Number(TURN, "deg"), "0", "5", "turn of the leaning axis about the normal"),
         may("along", Kind::Word(AlongWord::WORDS), "auto", "\"u\"", "isoparametric, regions: the parameter along the passes"),
-        may("axis", Kind::Direction, "[0, 0, 1]", "[0, 0, 1]", "contour_2cl, gradient_3c, isoplanar_3c, z_level: the tool axis"),
+        may("axis", Kind::DirectionOr(AxisKey::WORDS), "\"feed\", or [0, 0, 1]", "\"field\"",
+            "\"feed\": it leans along the feed; \"field\": the same for passes to and fro; a direction: contour_2cl, gradient_3c, isoplanar_3c, z_level keep it"),
+        may("one_way", Kind::Flag, "false", "true", "axis = \"field\": neighbouring passes all run the same way"),
+        may("climb", Kind::Word(ClimbWord::WORDS), "any", "\"climb\"",
+            "axis = \"field\": chips from thick to thin (M3: what is still to be cut on the right of the feed), or the other way"),
         may("feed_direction", Kind::Direction, "the longest side", "[1, 0, 0]", "gradient_3c, isoplanar_3c, z_level: way of the passes"),
         may("normal", Kind::Direction, "[0, 1, 0]", "[0, 1, 0]", "isoplanar: normal of the planes"),
         may("stepdown_mm", MM, "", "3", "z_level: deepest cut along the axis"),

@@ -1,8 +1,8 @@
 //! The tables of a job file as written; what they mean is made of them in [`crate::job::Job`].
 
 use crate::job::words::{
-    Accept, AlongWord, AxisWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey, Method, Normals,
-    StrategyWord, Tip, ToolKind, Turns,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey,
+    Method, Normals, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;
@@ -127,7 +127,11 @@ pub struct Strategy {
     pub lead_rate_deg_per_mm: Option<f64>,
     pub tilt_deg: f64,
     pub along: AlongWord,
-    pub axis: Option<[f64; 3]>,
+    pub axis: Option<AxisKey>,
+    #[serde(default)]
+    pub one_way: bool,
+    #[serde(default)]
+    pub climb: ClimbWord,
     pub feed_direction: Option<[f64; 3]>,
     pub normal: Option<[f64; 3]>,
     pub stepdown_mm: Option<f64>,

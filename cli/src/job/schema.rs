@@ -47,12 +47,16 @@ pub enum Kind {
     Whole(i64, i64),
     /// 1 or -1.
     Sign,
+    /// true or false.
+    Flag,
     /// A number or one of these words.
     NumberOr(Range, &'static str, &'static [&'static str]),
     /// So many numbers.
     Numbers(usize, Range, &'static str),
     /// Three numbers that are not all zero.
     Direction,
+    /// Three numbers that are not all zero, or one of these words.
+    DirectionOr(&'static [&'static str]),
     /// A lower and a greater number.
     Between(Range, &'static str),
     /// Two corners, the lower one first.
@@ -82,7 +86,7 @@ impl Kind {
     #[must_use]
     pub fn words(&self) -> Vec<&'static str> {
         match self {
-            Self::NumberOr(_, _, w) | Self::Word(w) => w.to_vec(),
+            Self::NumberOr(_, _, w) | Self::DirectionOr(w) | Self::Word(w) => w.to_vec(),
             Self::Name(names) => names(),
             _ => Vec::new(),
         }
@@ -98,9 +102,13 @@ impl Kind {
             Self::Whole(a, b) if a == b => format!("{a}: this version reads format = {a}"),
             Self::Whole(a, b) => format!("a whole number from {a} to {b}"),
             Self::Sign => "1 or -1".to_owned(),
+            Self::Flag => "true or false".to_owned(),
             Self::NumberOr(r, unit, w) => format!("{} or one of {}", with(r.to_string(), unit), list(w)),
             Self::Numbers(n, r, unit) => with(format!("a list of {n} numbers, each {r}"), unit),
             Self::Direction => "a direction: three finite numbers that are not all zero".to_owned(),
+            Self::DirectionOr(w) => {
+                format!("a direction (three finite numbers that are not all zero) or one of {}", list(w))
+            }
             Self::Between(r, unit) => with(format!("two numbers, the lower one first, each {r}"), unit),
             Self::Corners(unit) => {
                 with("six finite numbers: the lower corner and the upper one, x y z each, as a flat box has no volume".to_owned(), unit)

@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::job::problem::Places;
 use crate::job::raw;
-use crate::job::words::{AlongWord, Gouges, LeadKey, StrategyWord};
+use crate::job::words::{AlongWord, AxisKey, ClimbWord, Gouges, LeadKey, StrategyWord};
 use osculate_geom::{Axis, Unit3, Vec3};
-use osculate_productivity::plan::{self, Along};
+use osculate_productivity::plan::{self, Along, Milling, Senses};
 
 /// Greatest change of a local lead where the job says none: at 2000 mm/min some 30 degrees a second, as rotary axes can.
 const LEAD_RATE_DEG_PER_MM: f64 = 1.0;
@@ -68,6 +68,10 @@ pub struct Strategy {
     pub tilt_deg: f64,
     /// The axis of tools that keep it.
     pub axis: Unit3,
+    /// Whether passes to and fro share the axes of a tool that leans.
+    pub axis_field: bool,
+    /// In which senses passes are run.
+    pub senses: Senses,
     /// The way of passes of a tool that keeps its axis, across the axis; the longest side of the faces where not given.
     pub feed_direction: Option<Vec3>,
     /// What becomes of places where the tool would go into the part or a check face.
@@ -101,7 +105,10 @@ impl Strategy {
     /// The strategy of a table, for so many tools.
     pub(super) fn of(places: &Places, t: &raw::Strategy, tools: usize) -> Result<Self, Failure> {
         left_out(places, t, tools)?;
-        let axis = direction(t.axis.unwrap_or([0.0, 0.0, 1.0]));
+        let axis = direction(match t.axis {
+            Some(AxisKey::Given(axis)) => axis,
+            Some(AxisKey::Feed | AxisKey::Field) | None => [0.0, 0.0, 1.0],
+        });
         let along = match t.along {
             AlongWord::Auto => Along::Auto,
             AlongWord::U => Along::Fixed(Axis::U),
@@ -131,17 +138,26 @@ impl Strategy {
             lead_rate_rad_per_mm: t.lead_rate_deg_per_mm.unwrap_or(LEAD_RATE_DEG_PER_MM).to_radians(),
             tilt_deg: t.tilt_deg,
             axis,
+            axis_field: t.axis == Some(AxisKey::Field),
+            senses: Senses {
+                one_way: t.one_way,
+                milling: match t.climb {
+                    ClimbWord::Any => Milling::Any,
+                    ClimbWord::Climb => Milling::Climb,
+                    ClimbWord::Conventional => Milling::Conventional,
+                },
+            },
             feed_direction: t.feed_direction.map(Vec3::from),
             gouges: t.gouges,
             keep_off_mm: t.keep_off_mm.unwrap_or(0.0),
         };
-        found.belongs(places)?;
+        found.belongs(places, t)?;
         found.agrees(places, t, tools)?;
         Ok(found)
     }
 
     /// Refuses keys that say nothing of this kind.
-    fn belongs(&self, places: &Places) -> Result<(), Failure> {
+    fn belongs(&self, places: &Places, t: &raw::Strategy) -> Result<(), Failure> {
         use StrategyWord as W;
         let is = |all: &[W]| all.contains(&self.word);
         let drops = is(&[W::Gradient3c, W::Isoplanar3c, W::ZLevel]);
@@ -150,7 +166,6 @@ impl Strategy {
         let lined = is(&[W::Isoparametric, W::Regions]);
         let rows = [
             ("along", lined, "isoparametric and regions"),
-            ("axis", keeps_axis || is(&[W::Auto]), "contour_2cl, gradient_3c, isoplanar_3c and z_level"),
             ("feed_direction", drops, "gradient_3c, isoplanar_3c and z_level"),
             ("normal", is(&[W::Isoplanar]), "isoplanar"),
             ("stepdown_mm", layers, "z_level"),
@@ -158,7 +173,17 @@ impl Strategy {
             ("allowance_mm", layers, "z_level"),
             ("ramp_deg", layers, "z_level"),
             ("lead_rate_deg_per_mm", !keeps_axis, "strategies that lean"),
+            ("one_way", self.axis_field, "axis = \"field\""),
+            ("climb", self.axis_field, "axis = \"field\""),
         ];
+        let axis = match t.axis {
+            Some(AxisKey::Given(_)) => {
+                (keeps_axis || is(&[W::Auto]), "contour_2cl, gradient_3c, isoplanar_3c and z_level")
+            }
+            Some(AxisKey::Feed | AxisKey::Field) => (!keeps_axis && !is(&[W::Flank]), "strategies that lean"),
+            None => (true, ""),
+        };
+        let rows = rows.into_iter().chain([("axis", axis.0, axis.1)]);
         for (key, fits, owners) in rows {
             if !fits && places.has(TABLE, key) {
                 let what = format!("{key} is for {owners}, not for kind = \"{}\": leave it out", self.name());
@@ -170,6 +195,11 @@ impl Strategy {
             LeadKey::Local => true,
             LeadKey::Given(deg) => deg != 0.0,
         };
+        if self.axis_field && (leans || self.tilt_deg != 0.0) {
+            let key = if leans { "lead_deg" } else { "tilt_deg" };
+            let what = "axis = \"field\" finds the axis at each place: leave out lead_deg and tilt_deg";
+            return Err(places.refuse(TABLE, key, what.to_owned()));
+        }
         if keeps_axis && (leans || self.tilt_deg != 0.0) {
             let key = if leans { "lead_deg" } else { "tilt_deg" };
             let what =

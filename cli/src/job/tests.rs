@@ -132,13 +132,16 @@ fn every_numeric_key_refuses_nonsense() {
                 Kind::Whole(a, b) => {
                     vec![(a - 1).to_string(), (b + 1).to_string(), "nan".into(), "1.5".into(), "\"x\"".into()]
                 }
+                Kind::Flag => vec!["1".into(), "\"true\"".into()],
                 Kind::Sign => vec!["0".into(), "2".into(), "nan".into()],
                 Kind::Numbers(n, ..) => vec![
                     format!("[{}]", vec!["nan"; n].join(", ")),
                     format!("[{}]", vec!["0"; n + 1].join(", ")),
                     "1".into(),
                 ],
-                Kind::Direction => vec!["[0, 0, 0]".into(), "[0, nan, 1]".into(), "[1, 0]".into()],
+                Kind::Direction | Kind::DirectionOr(_) => {
+                    vec!["[0, 0, 0]".into(), "[0, nan, 1]".into(), "[1, 0]".into()]
+                }
                 Kind::Between(..) => vec!["[1, 0]".into(), "[1, 1]".into(), "[0, nan]".into(), "[0]".into()],
                 Kind::Corners(_) => {
                     vec!["[0, 0, 0, 1, 1, -1]".into(), "[0, 0, 0, 1, 1, nan]".into(), "[0]".into()]

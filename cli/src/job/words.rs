@@ -107,6 +107,19 @@ words! {
 }
 
 words! {
+    /// How chips are cut.
+    ClimbWord {
+        /// As it comes.
+        #[default]
+        Any = "any",
+        /// From thick to thin.
+        Climb = "climb",
+        /// From thin to thick.
+        Conventional = "conventional",
+    }
+}
+
+words! {
     /// One parameter of a face.
     AxisWord {
         /// The first.
@@ -264,6 +277,41 @@ impl<'de> Deserialize<'de> for LeadKey {
             Raw::Word(w) if w == "local" => Ok(Self::Local),
             Raw::Word(w) => Err(serde::de::Error::custom(format!(
                 "expected a number, \"auto\" or \"local\", got \"{w}\""
+            ))),
+        }
+    }
+}
+
+/// The tool's axis: a direction that it keeps, or how it goes along.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AxisKey {
+    /// It leans against the feed of every pass.
+    Feed,
+    /// One axis at each place of the part, the same for passes to and fro.
+    Field,
+    /// As given.
+    Given([f64; 3]),
+}
+
+impl AxisKey {
+    /// The words that stand for an axis.
+    pub const WORDS: &'static [&'static str] = &["feed", "field"];
+}
+
+impl<'de> Deserialize<'de> for AxisKey {
+    fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Raw {
+            Direction([f64; 3]),
+            Word(String),
+        }
+        match Raw::deserialize(d)? {
+            Raw::Direction(x) => Ok(Self::Given(x)),
+            Raw::Word(w) if w == "feed" => Ok(Self::Feed),
+            Raw::Word(w) if w == "field" => Ok(Self::Field),
+            Raw::Word(w) => Err(serde::de::Error::custom(format!(
+                "expected a direction, \"feed\" or \"field\", got \"{w}\""
             ))),
         }
     }

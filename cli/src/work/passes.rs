@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::{Job, LeadKey};
 use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
+use crate::work::axes;
 use crate::work::budget;
 use crate::work::left_out;
 use crate::work::look::Look;
@@ -12,7 +13,7 @@ use osculate_geom::{Box3, Diagnostic, Surface};
 use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
     Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Walls, link, predicted_length_mm,
-    run as plan_face,
+    run as plan_face, run_in,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::{Cutter, Lean};
@@ -23,6 +24,9 @@ use std::sync::Arc;
 pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
 /// Lead of a ball where the job leaves the choice: enough to keep the tip, which does not cut, off the part.
 pub const BALL_LEAD_DEG: f64 = 15.0;
+
+/// Share of the gouge tolerance by which ways between passes may go into faces that are not machined.
+const INTO_WALLS: f64 = 0.2;
 
 /// How the passes of a job are joined.
 pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
@@ -36,6 +40,7 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
         clearance_mm: job.setup().clearance_mm,
         approach_mm: job.setup().approach_mm,
         hop_mm: job.setup().hop_mm,
+        layer_mm: job.layer_mm(),
         cutter: *cutter,
         holder: job.holder(),
         feed_mm_min,
@@ -46,7 +51,7 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
 /// Faces as hops see them.
 fn walls_of<'a>(job: &Job, faces: impl Iterator<Item = &'a LoadedFace>) -> Result<Walls, Failure> {
     let named: Vec<Named<'_>> = faces.map(|f| Named { face: &f.id, surface: &*f.surface }).collect();
-    Walls::of(&named, job.setup().check_clearance_mm)
+    Walls::of(&named, job.setup().check_clearance_mm, INTO_WALLS * job.tolerance().gouge_mm)
         .map_err(|e| Failure::file(job.path(), format!("faces that hops keep off: {e}")))
 }
 
@@ -125,14 +130,28 @@ pub fn each_face(
         holder: holder.as_ref(),
         around: around.as_ref(),
     };
-    let lean = if way.local { Leaning::Local(&local) } else { way.lean.into() };
+    let surroundings =
+        job.strategy().axis_field.then(|| axes::surroundings(job, faces, cutter)).transpose()?;
     let n = faces.faces.len();
     let mut out = Passes::default();
     for (k, face) in faces.faces.iter().enumerate() {
         let here = move |f: f64| progress((k as f64 + f) / n as f64);
+        let field = surroundings
+            .as_ref()
+            .map(|around| axes::found(job, faces, (face, around), (tolerance, &axes::feed_of(way.strategy))))
+            .transpose()?;
+        let lean = match &field {
+            Some((found, said)) => {
+                out.diagnostics.extend(said.iter().cloned());
+                Leaning::Axes(&found.field)
+            }
+            None if way.local => Leaning::Local(&local),
+            None => way.lean.into(),
+        };
         let (surface, face) = (&*face.surface, face.id.as_str());
         let task = Task { surface, face, cutter, lean, tolerance, progress: &here };
-        let p = plan_face(&task, way.strategy).map_err(|e| Failure::file(job.path(), e))?;
+        let mut p = plan_face(&task, way.strategy).map_err(|e| Failure::file(job.path(), e))?;
+        run_in(&mut p.passes, job.strategy().senses);
         out.passes.extend(p.passes);
         out.diagnostics.extend(p.diagnostics);
         if way.watch.wants_partial() && k + 1 < n {
@@ -158,7 +177,7 @@ pub fn with_best_lead(
 ) -> Result<(Passes, Lean), Failure> {
     let cutter = &job.cutter();
     let way = |lean: Lean, local: bool| Way { strategy, lean, local, share: 1.0, watch };
-    if job.strategy().lead == LeadKey::Local {
+    if job.strategy().lead == LeadKey::Local || job.strategy().axis_field {
         let lean = job.lean(LocalLead::LEAST_RAD);
         return Ok((each_face(job, faces, &way(lean, true), progress)?, lean));
     }

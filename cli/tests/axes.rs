@@ -1,0 +1,100 @@
+//! The tool's axis as a field: machines of three and four axes, the sense of passes, and keys that do not go together.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+use common::{Run, Scratch, osculate};
+use serde_json::Value;
+use std::path::Path;
+
+fn text(tool: &str, strategy: &str, machine: &str) -> String {
+    format!(
+        "format = 1\n[part]\n\
+         builtin = {{ kind = \"ellipsoid\", semi_axes_mm = [30, 25, 20], u_range = [-0.4, 0.4], v_range = [0.5, 0.9] }}\n\
+         [tool]\n{tool}\nlength_mm = 40\nteeth = 2\n[tolerance]\nscallop_mm = 0.05\ngouge_mm = 0.02\nchord_mm = 0.01\n\
+         [strategy]\nkind = \"isoparametric\"\n{strategy}\n[cutting]\nspindle_rpm = 8000\nfeed_mm_min = 1000\n\
+         [setup]\npart_zero_mm = [0, 0, 0]\n[machine]\nname = \"{machine}\"\ndialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n"
+    )
+}
+
+const BALL: &str = "kind = \"ball\"\ndiameter_mm = 8";
+const TOROIDAL: &str = "kind = \"toroidal\"\ndiameter_mm = 8\ncorner_radius_mm = 2";
+
+fn plan(job: &Path, out: &Path) -> Run {
+    osculate(&["plan", job.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"])
+}
+
+fn answer(v: &Value) -> &str {
+    v["verdict"]["answer"].as_str().unwrap()
+}
+
+#[test]
+fn machines_of_three_and_four_axes_are_no_strategies_of_their_own() {
+    let s = Scratch::new();
+    for (k, (tool, machine)) in
+        [(BALL, "3-axis"), (TOROIDAL, "3-axis"), (BALL, "mill-turn-xyzc")].into_iter().enumerate()
+    {
+        let job = s.write(&format!("{k}.toml"), &text(tool, "axis = \"field\"", machine));
+        let run = plan(&job, &s.path(&format!("out{k}")));
+        let v = run.json();
+        assert_eq!((run.code, answer(&v)), (0, "held"), "{tool} {machine}: {v}");
+        // One rotary joint at most, and it has nothing to turn for.
+        for (_, step) in v["joints"]["largest_step_deg"].as_object().unwrap() {
+            assert!(step.as_f64().unwrap() < 1e-3, "{v}");
+        }
+    }
+    // Without a field the axis leans against the feed, where none of these joints can take it.
+    let job = s.write("feed.toml", &text(BALL, "", "3-axis"));
+    let run = plan(&job, &s.path("feed"));
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert!(run.err.contains("rotary joints"), "{}", run.err);
+}
+
+/// The ends of the cutting moves of a path, pass by pass, from its CL text.
+fn feeds(v: &Value, out: &Path) -> Vec<[f64; 3]> {
+    assert_eq!(answer(v), "held", "{v}");
+    let cl = std::fs::read_to_string(out.join("path.cl")).unwrap();
+    let of = |line: &str| -> Option<[f64; 3]> {
+        let numbers = line.strip_prefix("GOTO/")?.split(',').take(3).map(|x| x.parse().ok());
+        numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
+    };
+    cl.lines().filter_map(of).collect()
+}
+
+#[test]
+fn a_wish_for_one_way_or_climb_is_kept_and_what_is_left_stays_the_same() {
+    let s = Scratch::new();
+    let mut found = Vec::new();
+    for (name, wish) in [("any", ""), ("one", "one_way = true"), ("climb", "climb = \"climb\"")] {
+        let strategy = format!("along = \"u\"\naxis = \"field\"\n{wish}");
+        let job = s.write(&format!("{name}.toml"), &text(BALL, &strategy, "trunnion-ac"));
+        let out = s.path(name);
+        let v = plan(&job, &out).json();
+        assert!(!feeds(&v, &out).is_empty());
+        found.push(v);
+    }
+    let height = |v: &Value| v["verification"]["scallop_max_mm"].as_f64().unwrap();
+    for v in &found[1..] {
+        assert_eq!(v["passes"], found[0]["passes"]);
+        // Poses are those of the same passes; NC words round them otherwise.
+        assert!((height(v) - height(&found[0])).abs() < 1e-3, "{} {}", height(v), height(&found[0]));
+        assert!(v["air_length_mm"].as_f64() > found[0]["air_length_mm"].as_f64());
+    }
+}
+
+#[test]
+fn keys_of_a_field_need_one() {
+    let s = Scratch::new();
+    for (strategy, key) in [
+        ("one_way = true", "one_way"),
+        ("climb = \"climb\"", "climb"),
+        ("axis = [0, 0, 1]", "axis"),
+        ("axis = \"feild\"", "axis"),
+        ("axis = \"field\"\nlead_deg = 5", "lead_deg"),
+    ] {
+        let job = s.write("job.toml", &text(BALL, strategy, "trunnion-ac"));
+        let run = plan(&job, &s.path("out"));
+        assert_eq!(run.code, 1, "{}", run.out);
+        assert!(run.err.contains(key) && run.err.contains("line "), "{}", run.err);
+        assert!(!s.path("out").exists());
+    }
+}
