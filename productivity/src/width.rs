@@ -5,7 +5,7 @@ use osculate_geom::{Darboux, Forms, Relative};
 use osculate_tools::{Cutter, Lean};
 
 /// Strips are not counted on to be wider than this, of the tool's radius: there the closed form ends.
-const WIDEST: f64 = 1.6;
+pub(crate) const WIDEST: f64 = 1.6;
 
 /// Width across the feed of a frame, mm: that of [`width_37`], and [`WIDEST`] radii where the tool fits closer than it knows.
 pub(crate) fn planar_width_mm(

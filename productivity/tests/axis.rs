@@ -104,11 +104,10 @@ fn along_v(_: Uv, jet: &Jet2) -> Option<Vec3> {
 
 fn found(tool: &Tool, machine: &Machine) -> Found {
     let [floor, wall] = corner();
-    let radius_mm = tool.cutter().radius_mm();
     let around = Around {
         faces: &[Named { face: "floor", surface: &floor }],
         check: &[Named { face: "wall", surface: &wall }],
-        radius_mm,
+        cutter: tool.cutter(),
         gouge_mm: 0.005,
     };
     let wish = Wish {

@@ -16,7 +16,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Axes of a machine with one rotary joint are tried so far apart, rad.
 const LINE_RAD: f64 = 0.02;
 /// Share of the gouge tolerance that axes may use: chords and words need the rest.
-const ACCEPTED: f64 = 0.8;
+const ACCEPTED: f64 = 0.6;
 /// Axes lean off the normal by a right angle less this at most, rad.
 const UPRIGHT_RAD: f64 = 0.035;
 /// A flat bottom leans so much at least, rad: else it rubs where it should cut.
@@ -48,7 +48,7 @@ pub fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surround
     let around = Around {
         faces: &named(&faces.faces),
         check: &named(&faces.check),
-        radius_mm: cutter.radius_mm(),
+        cutter,
         gouge_mm: ACCEPTED * job.tolerance().gouge_mm,
     };
     Surroundings::of(&around).map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))

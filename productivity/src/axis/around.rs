@@ -7,6 +7,7 @@
 use crate::plan::Named;
 use crate::plan::walls::sampled;
 use osculate_geom::{Point3, quadrature};
+use osculate_tools::Cutter;
 use osculate_tools::reach::{ObstacleKind, ObstaclePoint, Obstacles};
 use osculate_tools::removal::{Sample, SamplingError};
 use rayon::prelude::*;
@@ -17,6 +18,8 @@ const MOST: f64 = 5e5;
 const FEWEST: usize = 200;
 /// Points stand no closer than lets a ball go deeper between them by this part of what it may.
 const HIDDEN: f64 = 0.2;
+/// Edges sharper than this part of the tool's radius count as so round.
+const SHARP: f64 = 0.1;
 /// What is kept from points that are not next to what is machined, of their spacing: half the side of a cell.
 const ADDED: f64 = 0.5;
 
@@ -27,8 +30,8 @@ pub struct Around<'a> {
     pub faces: &'a [Named<'a>],
     /// All others, which a tool that touches the part elsewhere keeps off.
     pub check: &'a [Named<'a>],
-    /// Radius of the tool, mm.
-    pub radius_mm: f64,
+    /// The tool's end.
+    pub cutter: &'a Cutter,
     /// How deep it may go into faces along their normals, mm.
     pub gouge_mm: f64,
 }
@@ -76,8 +79,9 @@ impl Surroundings {
     /// # Errors
     /// A face that cannot be sampled, by its name.
     pub fn of(around: &Around<'_>) -> Result<Self, (String, SamplingError)> {
-        // Between two points on a plane a ball comes deeper by s^2 / 8 r.
-        let spacing_mm = (8.0 * around.radius_mm * HIDDEN * around.gouge_mm).sqrt();
+        // Between two points on a plane a ball comes deeper by s^2 / 8 r, a rounded edge too.
+        let round_mm = around.cutter.corner_mm().max(SHARP * around.cutter.radius_mm());
+        let spacing_mm = (8.0 * round_mm * HIDDEN * around.gouge_mm).sqrt();
         let all: Vec<&Named<'_>> = around.faces.iter().chain(around.check).collect();
         let areas: Vec<f64> = all.par_iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
         let sum: f64 = areas.iter().sum();
@@ -100,7 +104,7 @@ impl Surroundings {
         };
         let apart = others.iter().map(|f| f.density.spacing_mm).fold(0.0, f64::max);
         let own: Vec<Sample> = machined.into_iter().flat_map(|f| f.samples).collect();
-        let touched = Touched::new(&own, 0.5 * around.radius_mm);
+        let touched = Touched::new(&own, 0.5 * around.cutter.radius_mm());
         let sunk = |s: &Sample| sunk(s, around.gouge_mm);
         let other = |s: Sample| {
             if touched.cells.contains(&touched.cell(&s.point)) {

@@ -3,10 +3,13 @@
 use super::around::Surroundings;
 use super::field::AxisField;
 use super::joints::Joints;
-use super::lattice::{Feed, Lattice};
-use super::search::{Asked, Depths, Search, depths};
+use super::lattice::{Feed, Lattice, Node};
+use super::rim::Rim;
+use super::search::{Asked, Possible, Search};
 use super::settle::settle;
-use osculate_geom::{Point3, Surface, Unit3, Uv};
+use crate::plan::extended::Extended;
+use crate::width::WIDEST;
+use osculate_geom::{Point3, Surface, Unit3, Uv, any_perpendicular};
 use osculate_tools::Cutter;
 use osculate_tools::reach::{
     Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
@@ -16,7 +19,7 @@ use rayon::prelude::*;
 /// Subdivisions of the icosahedron whose corners are tried: 2,562 directions, 4.3 degrees apart.
 const LEVEL: u32 = 4;
 /// Places asked along each side of a cell.
-const ASKED: usize = 2;
+const ASKED: usize = 4;
 
 /// What a field is for.
 #[derive(Clone, Copy)]
@@ -88,7 +91,8 @@ pub enum NoField {
 /// Where the machine has no axis, or none is possible anywhere on the face.
 pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
     let cutter: &Cutter = wish.tool.cutter();
-    let lattice = Lattice::new(wish.surface, cutter.radius_mm(), wish.feed);
+    let face = Extended::by(wish.surface, WIDEST * cutter.radius_mm());
+    let lattice = Lattice::new(&face, cutter.radius_mm(), wish.feed);
     let line = wish.joints.line();
     let on_line = line.is_some();
     let directions = line.map_or_else(|| Directions::icosphere(LEVEL), Directions::row);
@@ -115,7 +119,7 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
     let places: Vec<Option<Place>> = lattice
         .nodes
         .iter()
-        .map(|n| n.normal.filter(|_| n.inside).map(|normal| Place { point: n.point, normal }))
+        .map(|n| n.normal.filter(|_| n.stood).map(|normal| Place { point: n.point, normal }))
         .collect();
     let on_face: Vec<Place> = places.iter().flatten().copied().collect();
     let mut found = reach.map(&on_face).into_iter();
@@ -124,13 +128,24 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
     let leaning = |place: &Place| {
         Bits::of(all.len(), |k| mask.contains(k) && reach.leans_within_limits(place, &all[k]))
     };
-    let depths: Vec<Depths> = places
+    // A ball's strip is the same at any lean.
+    let rims = !on_line && !cutter.is_ball();
+    let rim = |node: &Node, place: &Place| {
+        let x = node.frame.as_ref().map_or_else(|| any_perpendicular(&place.normal), |(_, f)| f.tangent);
+        Rim::of(&reach, place, &x, wish.lean_rad[0])
+    };
+    let possible: Vec<Possible> = lattice
+        .nodes
         .par_iter()
-        .zip(&bits)
-        .map(|both| match both {
-            (Some(place), Some(bits)) if bits.is_empty() => depths(&directions, &leaning(place)),
-            (_, Some(bits)) => depths(&directions, bits),
-            _ => Vec::new(),
+        .zip(places.par_iter().zip(&bits))
+        .map(|(node, both)| match both {
+            (Some(place), Some(bits)) => {
+                let rim = rims.then(|| rim(node, place));
+                let none = bits.is_empty() && rim.as_ref().is_none_or(Rim::is_empty);
+                let held = none.then(|| leaning(place));
+                Possible::new(&directions, held.as_ref().unwrap_or(bits), rim.filter(|_| !none))
+            }
+            _ => Possible::default(),
         })
         .collect();
     let asked = Asked {
@@ -142,7 +157,7 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
         on_line,
     };
     let axes =
-        Search::new(&asked, &lattice, &depths).best().ok_or(NoField::Nowhere { places: on_face.len() })?;
+        Search::new(&asked, &lattice, &possible).best().ok_or(NoField::Nowhere { places: on_face.len() })?;
     let mut spline = lattice.spline.clone();
     spline.poles = axes.iter().map(|a| a.into_inner()).collect();
     let mut field = AxisField { spline, rectangle: lattice.rectangle };
@@ -152,14 +167,14 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
     let between = lattice.between(ASKED);
     let count = between.len();
     let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
-    let unsettled = settle(&mut field, wish.surface, between, (&clear, &held));
+    let unsettled = settle(&mut field, &face, between, (&clear, &held));
     let unreached = lattice
         .nodes
         .par_iter()
-        .zip(places.par_iter().zip(&bits))
-        .filter_map(|(n, (place, bits))| Some((n, place.as_ref()?, bits.as_ref()?)))
-        .filter(|(n, _, bits)| bits.is_empty() && n.area_mm2 > 0.0)
-        .map(|(n, place, _)| Unreached {
+        .zip(places.par_iter().zip(&bits).zip(&possible))
+        .filter_map(|(n, ((place, bits), all))| Some((n, place.as_ref()?, bits.as_ref()?, all)))
+        .filter(|(n, _, bits, all)| bits.is_empty() && !all.has_rim() && n.area_mm2 > 0.0)
+        .map(|(n, place, ..)| Unreached {
             at: n.at,
             point: n.point,
             area_mm2: n.area_mm2,

@@ -1,5 +1,6 @@
 //! The poles of a field as nodes over a face: places, areas and neighbours.
 
+use crate::plan::extended::Extended;
 use crate::rectangle::{AXES, Rectangle, lengths};
 use crate::spline::Spline;
 use osculate_geom::{Darboux, Forms, Jet2, Point3, Surface, Unit3, Uv, Vec3, uv};
@@ -10,6 +11,8 @@ use rayon::prelude::*;
 const APART: f64 = 0.5;
 const ALONG: [f64; 2] = [8.0, 96.0];
 const NODES: f64 = 1600.0;
+/// Share of its area that a place beyond the border counts for.
+const BEYOND: f64 = 0.25;
 
 /// The direction in which passes run at a place, in either sense; None where there is none.
 pub type Feed<'a> = dyn Fn(Uv, &Jet2) -> Option<Vec3> + Sync + 'a;
@@ -22,10 +25,12 @@ pub(super) struct Node {
     pub normal: Option<Unit3>,
     /// The forms and the frame of the passes; None where these have no direction.
     pub frame: Option<(Forms, Darboux)>,
-    /// Whether the place is on the face.
-    pub inside: bool,
+    /// Whether passes may stand there: beyond the border of the face too.
+    pub stood: bool,
     /// Area of the face that it stands for, mm2.
     pub area_mm2: f64,
+    /// Area that it counts for: what lies beyond the border counts a little too.
+    pub weight_mm2: f64,
 }
 
 /// Two neighbouring nodes.
@@ -50,7 +55,7 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    pub fn new(surface: &dyn Surface, radius_mm: f64, feed: &Feed<'_>) -> Self {
+    pub fn new(surface: &Extended<'_>, radius_mm: f64, feed: &Feed<'_>) -> Self {
         let rectangle = Rectangle::of(surface);
         let long = lengths(surface, &rectangle);
         let side = (APART * radius_mm).max((long[0] * long[1] / NODES).sqrt());
@@ -74,6 +79,7 @@ impl Lattice {
                 let at = rectangle.domain.at(part(i, 0), part(j, 1));
                 let jet = surface.jet2(at);
                 let inside = surface.contains(at);
+                let stood = surface.contains(surface.inner(at));
                 let forms = jet.forms().ok();
                 let frame = forms.and_then(|forms| {
                     let way = feed(at, &jet)?;
@@ -91,8 +97,13 @@ impl Lattice {
                     point: jet.point,
                     normal: jet.normal().ok(),
                     frame,
-                    inside,
+                    stood,
                     area_mm2: if inside { share * whole } else { 0.0 },
+                    weight_mm2: if stood {
+                        BEYOND.max(if inside { share } else { 0.0 }) * whole
+                    } else {
+                        0.0
+                    },
                 }
             })
             .collect();

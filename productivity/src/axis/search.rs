@@ -7,6 +7,7 @@
 
 use super::joints::Joints;
 use super::lattice::{Edge, Lattice, Node};
+use super::rim::Rim;
 use crate::width::planar_width_mm;
 use osculate_geom::{Unit3, Vec3, any_perpendicular};
 use osculate_tools::reach::{Bits, Directions};
@@ -18,16 +19,24 @@ use std::f64::consts::PI;
 const RIM: u8 = 3;
 /// Share of a place's time that each step nearer to the rim costs.
 const AT_RIM: f64 = 0.03;
+/// The narrowest strip of a pass decides how near the next one lies: the time of a place grows by this power more than by one over
+/// its width.
+const NARROW: f64 = 2.0;
+/// Length of a step of the rim next to the normal, rad.
+const MARGIN_RAD: f64 = 0.004;
 /// Share of the whole time that a turn by a radian over a square face costs beyond what the joints take.
 const TURN: f64 = 0.1;
-/// Starts that are tried, and the least angle between two of them, rad.
+/// Starts that places share, the least angle between two of them, rad, and ways to lean least that are others.
 const STARTS: usize = 8;
+const WAYS_BEGUN: usize = 8;
 const APART: f64 = 0.35;
 /// Steps of nodes, rad, and most sweeps with one of them.
 const STEPS: [f64; 6] = [0.16, 0.08, 0.04, 0.02, 0.01, 0.005];
-/// Steps after which only the best start goes on.
+/// Steps after which only the best start goes on; sweeps after which the best few do, and how many these are.
 const COARSE: usize = 2;
 const SWEEPS: usize = 16;
+const FEW: usize = 2;
+const MOST: usize = 3;
 /// Axes tried around a node's own.
 const AROUND: usize = 6;
 /// A sweep that saves no more than this share of the time is the last with its step.
@@ -46,15 +55,43 @@ pub(super) struct Asked<'a> {
     pub on_line: bool,
 }
 
-/// The possible axes of a node, each with how far from the rim it is; empty where none is, or none is asked for.
-pub(super) type Depths = Vec<u8>;
+/// The possible axes of a node.
+#[derive(Default)]
+pub(super) struct Possible {
+    /// For each direction how far from the rim it is, zero where it is not possible; empty where none is asked for.
+    depths: Vec<u8>,
+    /// What decides next to the normal.
+    rim: Option<Rim>,
+}
+
+impl Possible {
+    pub fn new(directions: &Directions, bits: &Bits, rim: Option<Rim>) -> Self {
+        Self { depths: depths(directions, bits), rim }
+    }
+
+    /// Whether axes next to the normal are told apart.
+    pub const fn has_rim(&self) -> bool {
+        self.rim.is_some()
+    }
+
+    /// Whether nothing is asked for.
+    fn is_free(&self) -> bool {
+        self.depths.is_empty()
+    }
+
+    /// How far from the rim an axis is, in steps of it; zero where it is not possible.
+    fn depth(&self, directions: &Directions, axis: &Unit3) -> f64 {
+        match self.rim.as_ref().and_then(|rim| rim.margin_rad(axis)) {
+            Some(margin) if margin < 0.0 => 0.0,
+            Some(margin) => (1.0 + margin / MARGIN_RAD).min(f64::from(RIM)),
+            None => f64::from(self.depths[directions.nearest(axis)]),
+        }
+    }
+}
 
 /// How far each possible direction is from the rim of the possible ones, up to [`RIM`].
-pub(super) fn depths(directions: &Directions, bits: &Bits) -> Depths {
+fn depths(directions: &Directions, bits: &Bits) -> Vec<u8> {
     let all = directions.all().len();
-    if bits.is_empty() {
-        return Vec::new();
-    }
     let mut out: Vec<u8> = (0..all).map(|k| u8::from(bits.contains(k))).collect();
     for step in 1..RIM {
         let deeper: Vec<usize> = (0..all)
@@ -71,15 +108,17 @@ pub(super) fn depths(directions: &Directions, bits: &Bits) -> Depths {
 pub(super) struct Search<'a> {
     asked: &'a Asked<'a>,
     lattice: &'a Lattice,
-    depths: &'a [Depths],
+    possible: &'a [Possible],
     /// Time that a turn costs, by the square of its angle, min.
     turn_min: f64,
     /// Widths by which passes over edges are counted, mm.
     width_mm: f64,
+    /// The median over the nodes of the widest strips next to the normal, mm.
+    usual_mm: f64,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(asked: &'a Asked<'a>, lattice: &'a Lattice, depths: &'a [Depths]) -> Self {
+    pub fn new(asked: &'a Asked<'a>, lattice: &'a Lattice, possible: &'a [Possible]) -> Self {
         let widths: Vec<f64> = lattice
             .nodes
             .iter()
@@ -89,61 +128,78 @@ impl<'a> Search<'a> {
         let width_mm = widths.iter().sum::<f64>() / widths.len().max(1) as f64;
         let area: f64 = lattice.nodes.iter().map(|n| n.area_mm2).sum();
         let turn_min = TURN * area / (width_mm * asked.feed_mm_min);
-        Self { asked, lattice, depths, turn_min, width_mm }
+        let widest = |(node, possible): (&Node, &Possible)| {
+            let ways = possible.rim.iter().flat_map(|rim| rim.axes(MARGIN_RAD));
+            let widths = ways.map(|(_, axis)| self::width_mm(asked, node, &axis));
+            widths.max_by(f64::total_cmp).filter(|_| node.area_mm2 > 0.0)
+        };
+        let mut usual: Vec<f64> = lattice.nodes.iter().zip(possible).filter_map(widest).collect();
+        usual.sort_by(f64::total_cmp);
+        let usual_mm = usual.get(usual.len() / 2).copied().unwrap_or(width_mm);
+        Self { asked, lattice, possible, turn_min, width_mm, usual_mm }
     }
 
     /// The nearest possible direction, or the one itself where nothing is asked.
     fn nearest(&self, node: usize, axis: &Unit3) -> Unit3 {
-        let depths = &self.depths[node];
+        let possible = &self.possible[node];
+        if possible.is_free() || possible.depth(self.asked.directions, axis) > 0.0 {
+            return *axis;
+        }
         let all = self.asked.directions.all();
-        let possible = depths.iter().zip(all).filter(|(d, _)| **d > 0);
-        let found = possible.fold((f64::NEG_INFINITY, *axis), |best, (_, a)| {
+        let far = |a: &&Unit3| possible.rim.as_ref().is_none_or(|rim| rim.margin_rad(a).is_none());
+        let ways = possible.rim.iter().flat_map(|rim| rim.axes(MARGIN_RAD));
+        let next = ways.map(|(_, a)| a).filter(|a| self.asked.joints.reaches(a));
+        let set = possible.depths.iter().zip(all).filter(|(d, _)| **d > 0).map(|(_, a)| a).filter(far);
+        let found = set.copied().chain(next).fold((f64::NEG_INFINITY, *axis), |best, a| {
             let cosine = a.dot(axis);
-            if cosine > best.0 { (cosine, *a) } else { best }
+            if cosine > best.0 { (cosine, a) } else { best }
         });
         found.1
     }
 
     fn node_min(&self, k: usize, axis: &Unit3) -> f64 {
         let node = &self.lattice.nodes[k];
-        let depths = &self.depths[k];
-        if depths.is_empty() {
+        let possible = &self.possible[k];
+        if possible.is_free() {
             return 0.0;
         }
-        let depth = depths[self.asked.directions.nearest(axis)];
-        if depth == 0 {
+        let depth = possible.depth(self.asked.directions, axis);
+        if depth <= 0.0 || (possible.rim.is_some() && !self.asked.joints.reaches(axis)) {
             return f64::INFINITY;
         }
-        let time = node.area_mm2 / (width_mm(self.asked, node, axis) * self.asked.feed_mm_min);
-        time * (1.0 + AT_RIM * f64::from(RIM - depth))
+        let width = width_mm(self.asked, node, axis);
+        let time = node.weight_mm2 / (width * self.asked.feed_mm_min) * (self.usual_mm / width).powf(NARROW);
+        time * (1.0 + AT_RIM * (f64::from(RIM) - depth))
     }
 
     fn edge_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
         let ratio = (edge.across_mm / edge.length_mm.max(f64::MIN_POSITIVE)).min(LONGEST);
         let angle = a.angle(b);
         let smooth = self.turn_min * ratio * angle * angle;
+        if edge.along == 0.0 {
+            return smooth;
+        }
         let feed_min = edge.length_mm / self.asked.feed_mm_min;
         let late = self.asked.joints.turn_s(a, b) / 60.0 - feed_min;
-        if late <= 0.0 || edge.along == 0.0 {
+        if late <= 0.0 {
             return smooth;
         }
         // No more than what a rewind may take: an axis out of reach is refused by the node.
         smooth + edge.along * edge.across_mm / self.width_mm * late.min(1.0)
     }
 
-    /// The time around a node with an axis.
-    fn around_min(&self, k: usize, axis: &Unit3, axes: &[Unit3]) -> f64 {
-        let own = self.node_min(k, axis);
-        if own == f64::INFINITY {
-            return own;
+    /// The time around a node with an axis, or some that is no less than `enough`.
+    fn around_min(&self, k: usize, axis: &Unit3, axes: &[Unit3], enough: f64) -> f64 {
+        let mut sum = self.node_min(k, axis);
+        for e in &self.lattice.of_node[k] {
+            if sum >= enough {
+                break;
+            }
+            let e = &self.lattice.edges[*e as usize];
+            let other = if e.ends[0] == k { e.ends[1] } else { e.ends[0] };
+            sum += self.edge_min(e, axis, &axes[other]);
         }
-        let edges = self.lattice.of_node[k].iter().map(|e| &self.lattice.edges[*e as usize]);
-        own + edges
-            .map(|e| {
-                let other = if e.ends[0] == k { e.ends[1] } else { e.ends[0] };
-                self.edge_min(e, axis, &axes[other])
-            })
-            .sum::<f64>()
+        sum
     }
 
     fn total_min(&self, axes: &[Unit3]) -> f64 {
@@ -157,11 +213,11 @@ impl<'a> Search<'a> {
         let mut saved = 0.0;
         for k in 0..axes.len() {
             let own = axes[k];
-            let now = self.around_min(k, &own, axes);
+            let now = self.around_min(k, &own, axes, f64::INFINITY);
             let mut best = (now, own);
             let mut offer = |axis: Unit3| {
                 let axis = if self.asked.on_line { self.asked.joints.nearest(&axis) } else { axis };
-                let time = self.around_min(k, &axis, axes);
+                let time = self.around_min(k, &axis, axes, best.0);
                 if time < best.0 {
                     best = (time, axis);
                 }
@@ -187,9 +243,9 @@ impl<'a> Search<'a> {
         saved
     }
 
-    fn relax(&self, axes: &mut [Unit3], steps: &[f64]) {
+    fn relax(&self, axes: &mut [Unit3], steps: &[f64], sweeps: usize) {
         for step in steps {
-            for _ in 0..SWEEPS {
+            for _ in 0..sweeps {
                 let before = self.total_min(axes);
                 if self.sweep(axes, *step) <= SETTLED * before {
                     break;
@@ -202,8 +258,8 @@ impl<'a> Search<'a> {
     fn starts(&self) -> Vec<Unit3> {
         let all = self.asked.directions.all();
         let mut shared = vec![0.0; all.len()];
-        for (node, depths) in self.lattice.nodes.iter().zip(self.depths) {
-            for (sum, depth) in shared.iter_mut().zip(depths) {
+        for (node, possible) in self.lattice.nodes.iter().zip(self.possible) {
+            for (sum, depth) in shared.iter_mut().zip(&possible.depths) {
                 *sum += node.area_mm2 * f64::from(*depth);
             }
         }
@@ -221,21 +277,57 @@ impl<'a> Search<'a> {
         out
     }
 
+    /// The axis of a node to begin with.
+    fn begun(&self, node: usize, start: &Start) -> Unit3 {
+        let axis = match start {
+            Start::Shared(axis) => *axis,
+            Start::Way(k) => {
+                let way = k * Rim::ways() / WAYS_BEGUN;
+                let rim = self.possible[node].rim.as_ref();
+                let axis = rim.and_then(|rim| rim.axes(MARGIN_RAD).find(|(w, _)| *w == way));
+                match (axis, self.lattice.nodes[node].normal) {
+                    (Some((_, axis)), _) => axis,
+                    (None, Some(normal)) => normal,
+                    (None, None) => Vec3::z_axis(),
+                }
+            }
+        };
+        self.nearest(node, &axis)
+    }
+
     /// The best axes found; None where no place has any.
     pub fn best(&self) -> Option<Vec<Unit3>> {
-        let begun: Vec<(f64, Vec<Unit3>)> = self
-            .starts()
+        let shared = self.starts();
+        let near = self.possible.iter().any(|p| p.rim.is_some());
+        let ways = if near { 0..WAYS_BEGUN } else { 0..0 };
+        let starts: Vec<Start> = shared.into_iter().map(Start::Shared).chain(ways.map(Start::Way)).collect();
+        let mut begun: Vec<(f64, Vec<Unit3>)> = starts
             .par_iter()
             .map(|start| {
-                let mut axes: Vec<Unit3> = (0..self.depths.len()).map(|k| self.nearest(k, start)).collect();
-                self.relax(&mut axes, &STEPS[..COARSE]);
+                let mut axes: Vec<Unit3> = (0..self.possible.len()).map(|k| self.begun(k, start)).collect();
+                self.relax(&mut axes, &STEPS[..COARSE], FEW);
                 (self.total_min(&axes), axes)
             })
             .collect();
-        let (_, mut axes) = begun.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
-        self.relax(&mut axes, &STEPS[COARSE..]);
+        begun.sort_by(|a, b| a.0.total_cmp(&b.0));
+        begun.truncate(MOST);
+        let relaxed = begun.into_par_iter().map(|(_, mut axes)| {
+            self.relax(&mut axes, &STEPS[..COARSE], SWEEPS);
+            (self.total_min(&axes), axes)
+        });
+        let relaxed: Vec<(f64, Vec<Unit3>)> = relaxed.collect();
+        let (_, mut axes) = relaxed.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        self.relax(&mut axes, &STEPS[COARSE..], SWEEPS);
         Some(axes)
     }
+}
+
+/// What a search begins with.
+enum Start {
+    /// An axis that places share.
+    Shared(Unit3),
+    /// The least lean in one of a few ways.
+    Way(usize),
 }
 
 /// An axis that leans off a normal a little, whatever way: a flat bottom has no strip without.

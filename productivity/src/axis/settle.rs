@@ -4,6 +4,7 @@
 //! axis by what they lack. What stays unclear after some rounds is counted.
 
 use super::field::AxisField;
+use crate::plan::extended::Extended;
 use osculate_geom::{Point3, Surface, Unit3, Uv, Vec3, any_perpendicular};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -16,6 +17,14 @@ const RINGS: [f64; 7] = [0.005, 0.01, 0.02, 0.04, 0.08, 0.12, 0.16];
 const AROUND: usize = 12;
 /// Poles move further than they must by this part, so that rounds end.
 const BEYOND: f64 = 0.25;
+
+/// A place that is asked.
+#[derive(Clone, Copy)]
+struct Asked {
+    at: Uv,
+    point: Point3,
+    normal: Unit3,
+}
 
 /// A place where the tool may not be clear.
 struct Short {
@@ -35,16 +44,22 @@ pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 /// `held` brings an axis to where the joints can take it.
 pub(super) fn settle(
     field: &mut AxisField,
-    surface: &dyn Surface,
+    face: &Extended<'_>,
     places: Vec<Uv>,
     (clear, held): (&Clear<'_>, &Held<'_>),
 ) -> usize {
-    let all: Vec<(Uv, Point3, Unit3)> = places
+    let all: Vec<Asked> = places
         .into_par_iter()
-        .filter(|at| surface.contains(*at))
+        .filter(|at| face.contains(face.inner(*at)))
         .filter_map(|at| {
-            let jet = surface.jet2(at);
-            Some((at, jet.point, jet.normal().ok()?))
+            let jet = face.jet2(at);
+            let normal = jet.normal().ok()?;
+            let axis = field.at(at).0;
+            let is_clear = |a: &Unit3| clear(&jet.point, &normal, a);
+            // Beyond the border the tool may have no place to stand at all.
+            let stands =
+                face.contains(at) || is_clear(&axis) || nearest_clear(&axis, held, &is_clear).is_some();
+            stands.then_some(Asked { at, point: jet.point, normal })
         })
         .collect();
     let mut asked = all.clone();
@@ -52,7 +67,7 @@ pub(super) fn settle(
     for round in 0..=ROUNDS {
         let short: Vec<Option<Short>> = asked
             .par_iter()
-            .map(|(at, point, normal)| {
+            .map(|Asked { at, point, normal }| {
                 let axis = field.at(*at).0;
                 (!clear(point, normal, &axis)).then(|| {
                     let near = nearest_clear(&axis, held, &|a| clear(point, normal, a));

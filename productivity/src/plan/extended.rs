@@ -22,7 +22,7 @@ const LOOKS: u32 = 16;
 const CURL: f64 = 0.35;
 
 /// The continued face.
-pub(super) struct Extended<'a> {
+pub(crate) struct Extended<'a> {
     base: &'a dyn Surface,
     inner: Domain,
     outer: Domain,
@@ -39,6 +39,11 @@ impl<'a> Extended<'a> {
     /// axis `cut`.
     pub fn of(task: &Task<'a>, cut: Option<Axis>) -> Self {
         Self::new(task.surface, RUN_OUT * widest_mm(task), cut, Seat::any(task).rough())
+    }
+
+    /// The face as far as passes of strips no wider than `widest_mm` may run out over the border.
+    pub(crate) fn by(base: &'a dyn Surface, widest_mm: f64) -> Self {
+        Self::new(base, RUN_OUT * widest_mm, None, false)
     }
 
     /// Continued by `margin_mm`, but not where the face closes, unless a field is cut there, nor at poles.
@@ -77,7 +82,7 @@ impl<'a> Extended<'a> {
     }
 
     /// The place of the face itself that stands for one of the continuation: the nearest of the border.
-    pub fn inner(&self, at: Uv) -> Uv {
+    pub(crate) fn inner(&self, at: Uv) -> Uv {
         let held = |axis: Axis| {
             let i = self.inner.get(axis);
             let t = at.get(axis);

@@ -9,7 +9,7 @@ mod contour;
 mod cover;
 mod drop;
 mod ends;
-mod extended;
+pub(crate) mod extended;
 mod fits;
 mod isoparametric;
 mod kept;

@@ -1,7 +1,8 @@
 //! What the tool must keep out of: points in a binary tree of balls.
 //!
 //! Each ball holds all points of its node; the leaves are single points, balls of radius 0. Points of the part and points
-//! of what else is around stand in trees of their own, so that a node has one limit.
+//! of what else is around stand in trees of their own, so that a node has one limit. Points of a face lie in a thin slab as well:
+//! next to a tool that touches the face the slab says far more than the ball.
 
 use crate::cutter::Cutter;
 use crate::pose::Pose;
@@ -58,6 +59,50 @@ pub(super) struct Ball {
     pub second: u32,
     /// Its first point in [`Obstacles::points`].
     pub first: u32,
+    /// Its slab among all; none where it is this.
+    pub slab: u32,
+}
+
+/// No slab.
+const NONE: u32 = u32::MAX;
+/// Balls of so many points have slabs: fewer are as soon looked at, more are seldom flat.
+const SLABS: [usize; 2] = [4, 4096];
+
+/// The space between two planes, in which all points of a ball lie.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slab {
+    /// Unit normal of both.
+    normal: Vec3,
+    /// Heights of both above the centre of the ball, mm.
+    from_mm: f64,
+    to_mm: f64,
+}
+
+impl Slab {
+    /// A slab about points, as thin as three of them say.
+    fn about(points: &[ObstaclePoint], centre: &Point3) -> Option<Self> {
+        let furthest = |by: &dyn Fn(&Vec3) -> f64| {
+            let all = points.iter().map(|p| p.point - centre);
+            all.fold((0.0, Vec3::zeros()), |best, w| {
+                let own = by(&w);
+                if own > best.0 { (own, w) } else { best }
+            })
+        };
+        let (_, along) = furthest(&Vec3::norm_squared);
+        let (_, other) = furthest(&|w| w.cross(&along).norm_squared());
+        let normal = along.cross(&other).try_normalize(f64::MIN_POSITIVE)?;
+        let heights = || points.iter().map(|p| normal.dot(&(p.point - centre)));
+        let (from_mm, to_mm) = (heights().fold(0.0, f64::min), heights().fold(0.0, f64::max));
+        Some(Self { normal, from_mm, to_mm })
+    }
+
+    /// The least that a function may change from the centre of a ball to any point of it in this slab, whose slope is the
+    /// unit vector `slope`, mm.
+    pub fn least_mm(&self, slope: &Vec3, radius_mm: f64) -> f64 {
+        let up = self.normal.dot(slope);
+        let along = (1.0 - up * up).max(0.0).sqrt();
+        (up * self.from_mm).min(up * self.to_mm) - along * radius_mm
+    }
 }
 
 /// All points that the tool must keep out of.
@@ -66,6 +111,7 @@ pub struct Obstacles {
     /// In the order of the leaves.
     points: Vec<ObstaclePoint>,
     balls: Vec<Ball>,
+    slabs: Vec<Slab>,
     /// Where the balls of the surroundings begin.
     surroundings: usize,
     /// Greatest coordinate of any point, mm.
@@ -89,7 +135,13 @@ impl Obstacles {
         points.sort_by_key(|p| p.kind == ObstacleKind::Surroundings);
         let of_part = points.partition_point(|p| p.kind == ObstacleKind::Part);
         let size_mm = points.iter().map(|p| p.point.coords.amax()).fold(0.0, f64::max);
-        let mut all = Self { balls: Vec::with_capacity(2 * points.len()), points, surroundings: 0, size_mm };
+        let mut all = Self {
+            balls: Vec::with_capacity(2 * points.len()),
+            slabs: Vec::new(),
+            points,
+            surroundings: 0,
+            size_mm,
+        };
         all.add(0, of_part);
         all.surroundings = all.balls.len();
         all.add(of_part, all.points.len());
@@ -145,6 +197,11 @@ impl Obstacles {
         starts.into_iter().zip(ends).filter(|(start, end)| start < end).map(|(start, _)| start as u32)
     }
 
+    /// The slab of a ball, where it has one.
+    pub(super) fn slab(&self, ball: &Ball) -> Option<&Slab> {
+        self.slabs.get(ball.slab as usize)
+    }
+
     /// The kind of all points in a ball.
     pub(super) const fn kind(&self, ball: u32) -> ObstacleKind {
         if (ball as usize) < self.surroundings { ObstacleKind::Part } else { ObstacleKind::Surroundings }
@@ -164,8 +221,13 @@ impl Obstacles {
         } else {
             own.iter().map(|p| (p.point - centre).norm()).fold(0.0, f64::max) + ROUNDING * self.size_mm
         };
+        let flat = own.len() >= SLABS[0] && own.len() <= SLABS[1];
+        let slab = flat.then(|| Slab::about(own, &centre)).flatten().map_or(NONE, |slab| {
+            self.slabs.push(slab);
+            self.slabs.len() as u32 - 1
+        });
         let index = self.balls.len();
-        self.balls.push(Ball { centre, radius_mm, second: 0, first: from as u32 });
+        self.balls.push(Ball { centre, radius_mm, second: 0, first: from as u32, slab });
         if single {
             return;
         }

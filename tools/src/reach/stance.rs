@@ -1,10 +1,10 @@
 //! One axis at a place: where points stand against the axis of the tool.
 
 use super::obstacles::Ball;
-use super::problem::{Place, Reach};
+use super::problem::{Place, Reach, Solid};
 use crate::contact::pose_with_axis;
 use crate::pose::Pose;
-use osculate_geom::{Point3, Unit3};
+use osculate_geom::{Point3, Unit3, Vec3};
 
 /// A tool that touches a place with one axis.
 pub(super) struct Stance {
@@ -20,9 +20,28 @@ impl Stance {
 
     /// Distance from the axis and height above the tip, mm.
     fn local(&self, p: &Point3) -> (f64, f64) {
+        let (across, z) = self.apart(p);
+        (across.norm(), z)
+    }
+
+    /// The way from the axis, and the height above the tip, mm.
+    fn apart(&self, p: &Point3) -> (Vec3, f64) {
         let w = p - self.pose.tip;
         let z = w.dot(&self.pose.axis);
-        ((w - self.pose.axis.into_inner() * z).norm(), z)
+        (w - self.pose.axis.into_inner() * z, z)
+    }
+
+    /// The least distance of a body from any point of a ball that lies in its slab, mm: the distance to a convex body is nowhere
+    /// below its tangent at the centre. None where the body or the ball has none.
+    fn least_mm(&self, reach: &Reach<'_>, solid: &Solid, ball: &Ball) -> Option<f64> {
+        let slab = reach.obstacles.slab(ball)?;
+        let (across, z) = self.apart(&ball.centre);
+        let rho = across.norm();
+        let [by_rho, by_z] = solid.shape.local_slope(rho, z - solid.base_mm)?;
+        let out = if rho > 0.0 { across / rho } else { across };
+        let slope = out * by_rho + self.pose.axis.into_inner() * by_z;
+        let at = solid.shape.local_endless_distance(rho, z - solid.base_mm);
+        Some(at + slab.least_mm(&slope, ball.radius_mm))
     }
 
     /// The first ball found that no axis of this stance may have, from one on; `members` are the bits of the solids that are
@@ -57,7 +76,11 @@ impl Stance {
                     if spare + around < 0.0 {
                         return Some(at);
                     }
-                    if spare < around {
+                    let is_clear = spare >= around
+                        || self
+                            .least_mm(reach, solid, ball)
+                            .is_some_and(|least| least >= solid.limit_mm(kind) + self.rounding_mm);
+                    if !is_clear {
                         open |= 1 << k;
                     }
                 }
