@@ -48,19 +48,28 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
     }
 }
 
-/// Faces as hops see them.
-fn walls_of<'a>(job: &Job, faces: impl Iterator<Item = &'a LoadedFace>) -> Result<Walls, Failure> {
-    let named: Vec<Named<'_>> = faces.map(|f| Named { face: &f.id, surface: &*f.surface }).collect();
-    Walls::of(&named, job.setup().check_clearance_mm, INTO_WALLS * job.tolerance().gouge_mm)
+/// Faces that hops keep off, and such that they go over no lower than passes.
+fn walls_of<'a>(
+    job: &Job,
+    faces: impl Iterator<Item = &'a LoadedFace>,
+    own: &'a [LoadedFace],
+) -> Result<Walls, Failure> {
+    fn named(f: &LoadedFace) -> Named<'_> {
+        Named { face: &f.id, surface: &*f.surface }
+    }
+    let check: Vec<Named<'_>> = faces.map(named).collect();
+    let own: Vec<Named<'_>> = own.iter().map(named).collect();
+    Walls::of(&check, job.setup().check_clearance_mm, INTO_WALLS * job.tolerance().gouge_mm)
+        .and_then(|walls| walls.over(&own))
         .map_err(|e| Failure::file(job.path(), format!("faces that hops keep off: {e}")))
 }
 
-/// The check faces as hops see them, made once for all plans of a job.
+/// The faces as hops see them, made once for all plans of a job.
 fn walls(job: &Job, faces: &Part) -> Result<Arc<Walls>, Failure> {
     if let Some(made) = faces.walls.get() {
         return Ok(Arc::clone(made));
     }
-    let walls = walls_of(job, faces.check.iter())?;
+    let walls = walls_of(job, faces.check.iter(), &faces.faces)?;
     Ok(Arc::clone(faces.walls.get_or_init(|| Arc::new(walls))))
 }
 
@@ -76,7 +85,7 @@ pub fn linked_around_all(
     passes: &Passes,
     cutter: &Cutter,
 ) -> Result<Linked, Failure> {
-    let walls = walls_of(job, faces.faces.iter().chain(&faces.check))?;
+    let walls = walls_of(job, faces.faces.iter().chain(&faces.check), &[])?;
     Ok(link(&passes.passes, &links(job, faces, cutter), &walls))
 }
 

@@ -91,8 +91,9 @@ pub enum NoField {
 /// Where the machine has no axis, or none is possible anywhere on the face.
 pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
     let cutter: &Cutter = wish.tool.cutter();
-    let face = Extended::by(wish.surface, WIDEST * cutter.radius_mm());
-    let lattice = Lattice::new(&face, cutter.radius_mm(), wish.feed);
+    let widest_mm = WIDEST * cutter.radius_mm();
+    let face = Extended::by(wish.surface, widest_mm);
+    let lattice = Lattice::new(&face, cutter.radius_mm(), widest_mm, wish.feed);
     let line = wish.joints.line();
     let on_line = line.is_some();
     let directions = line.map_or_else(|| Directions::icosphere(LEVEL), Directions::row);
@@ -160,11 +161,12 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
         Search::new(&asked, &lattice, &possible).best().ok_or(NoField::Nowhere { places: on_face.len() })?;
     let mut spline = lattice.spline.clone();
     spline.poles = axes.iter().map(|a| a.into_inner()).collect();
-    let mut field = AxisField { spline, rectangle: lattice.rectangle };
+    let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
     let clear = |point: &Point3, normal: &Unit3, axis: &Unit3| {
         wish.joints.reaches(axis) && reach.is_clear(&Place { point: *point, normal: *normal }, axis)
     };
-    let between = lattice.between(ASKED);
+    let mut between = lattice.between(ASKED);
+    between.retain(|at| lattice.stands(*at));
     let count = between.len();
     let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
     let unsettled = settle(&mut field, &face, between, (&clear, &held));

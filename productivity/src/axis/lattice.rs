@@ -1,16 +1,17 @@
 //! The poles of a field as nodes over a face: places, areas and neighbours.
 
+use super::pace::{Pace, paces};
 use crate::plan::extended::Extended;
 use crate::rectangle::{AXES, Rectangle, lengths};
 use crate::spline::Spline;
-use osculate_geom::{Darboux, Forms, Jet2, Point3, Surface, Unit3, Uv, Vec3, uv};
+use osculate_geom::{Axis, Darboux, Forms, Jet2, Point3, Surface, Unit3, Uv, Vec3, uv};
 use rayon::prelude::*;
 
 /// Distance of nodes, in radii of the tool: a tool sees no more of what stands around it. Fewest and most along a parameter, and
 /// most of all.
 const APART: f64 = 0.5;
 const ALONG: [f64; 2] = [8.0, 96.0];
-const NODES: f64 = 1600.0;
+const NODES: f64 = 2000.0;
 /// Share of its area that a place beyond the border counts for.
 const BEYOND: f64 = 0.25;
 
@@ -47,6 +48,7 @@ pub(super) struct Edge {
 /// The nodes over a face.
 pub(super) struct Lattice {
     pub rectangle: Rectangle,
+    pub paces: [Pace; 2],
     pub spline: Spline<Vec3>,
     pub nodes: Vec<Node>,
     pub edges: Vec<Edge>,
@@ -55,11 +57,14 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    pub fn new(surface: &Extended<'_>, radius_mm: f64, feed: &Feed<'_>) -> Self {
+    /// The nodes over a face for passes that run out by `beyond_mm` at most.
+    pub fn new(surface: &Extended<'_>, radius_mm: f64, beyond_mm: f64, feed: &Feed<'_>) -> Self {
         let rectangle = Rectangle::of(surface);
         let long = lengths(surface, &rectangle);
         let side = (APART * radius_mm).max((long[0] * long[1] / NODES).sqrt());
-        let spans = long.map(|l| (l / side).clamp(ALONG[0], ALONG[1]).ceil() as usize);
+        let (paces, spans) = paces(surface, &rectangle, side);
+        let many = (NODES / (spans[0] * spans[1])).min(1.0).sqrt();
+        let spans = spans.map(|n| (many * n).clamp(ALONG[0], ALONG[1]).ceil() as usize);
         let spline = Spline::constant(&rectangle, spans, Vec3::z());
         let spans = spline.bases.map(|b| b.spans);
         let counts = spline.bases.map(|b| b.count());
@@ -70,16 +75,17 @@ impl Lattice {
             if rectangle.closes[axis] { x.rem_euclid(n) / n } else { (x / n).clamp(0.0, 1.0) }
         };
         let outer = |k: usize, axis: usize| !rectangle.closes[axis] && (k == 0 || k + 1 == counts[axis]);
-        let cell = AXES.map(|axis| rectangle.domain.get(axis).length()).map(|l| l.abs());
+        let cell = AXES.map(|axis| rectangle.domain.get(axis).length());
         let cell = [cell[0] / spans[0] as f64, cell[1] / spans[1] as f64];
         let nodes: Vec<Node> = (0..counts[0] * counts[1])
             .into_par_iter()
             .map(|k| {
                 let (i, j) = (k / counts[1], k % counts[1]);
-                let at = rectangle.domain.at(part(i, 0), part(j, 1));
+                let stretched = rectangle.domain.at(part(i, 0), part(j, 1));
+                let at = uv(paces[0].back(stretched.u), paces[1].back(stretched.v));
+                let cell = [cell[0] / paces[0].at(at.u).1, cell[1] / paces[1].at(at.v).1];
                 let jet = surface.jet2(at);
                 let inside = surface.contains(at);
-                let stood = surface.contains(surface.inner(at));
                 let forms = jet.forms().ok();
                 let frame = forms.and_then(|forms| {
                     let way = feed(at, &jet)?;
@@ -97,19 +103,41 @@ impl Lattice {
                     point: jet.point,
                     normal: jet.normal().ok(),
                     frame,
-                    stood,
+                    stood: surface.contains(surface.inner(at)),
                     area_mm2: if inside { share * whole } else { 0.0 },
-                    weight_mm2: if stood {
-                        BEYOND.max(if inside { share } else { 0.0 }) * whole
-                    } else {
-                        0.0
-                    },
+                    weight_mm2: whole * if inside { share.max(BEYOND) } else { BEYOND },
                 }
             })
             .collect();
-        let mut lattice = Self { rectangle, spline, nodes, edges: Vec::new(), of_node: Vec::new() };
+        let mut lattice = Self { rectangle, paces, spline, nodes, edges: Vec::new(), of_node: Vec::new() };
         lattice.joined(surface, cell);
+        for _ in 0..(beyond_mm / side).ceil() as usize {
+            lattice.widened();
+        }
         lattice
+    }
+
+    /// Has tools stand at the neighbours of all nodes that they stand at.
+    fn widened(&mut self) {
+        let stood: Vec<bool> = self.nodes.iter().map(|n| n.stood).collect();
+        for e in &self.edges {
+            let [a, b] = e.ends;
+            self.nodes[a].stood |= stood[b];
+            self.nodes[b].stood |= stood[a];
+        }
+    }
+
+    /// Whether passes may stand at a place.
+    pub fn stands(&self, at: Uv) -> bool {
+        let near = AXES.map(|axis| {
+            let k = usize::from(axis == Axis::V);
+            let (i, basis) = (self.rectangle.domain.get(axis), &self.spline.bases[k]);
+            let x = (self.paces[k].at(at.get(axis)).0 - i.lo) / i.length() * basis.spans as f64;
+            // Within the rectangle: no more than the spans.
+            let k = x.round().clamp(0.0, basis.spans as f64) as usize;
+            if self.rectangle.closes(axis) { (k + 1) % basis.count() } else { k + 1 }
+        });
+        self.nodes[self.spline.index(near[0], near[1])].stood
     }
 
     /// Finds the edges between neighbouring nodes.
@@ -118,8 +146,10 @@ impl Lattice {
         self.of_node = vec![Vec::new(); self.nodes.len()];
         for k in 0..self.nodes.len() {
             let at = [k / counts[1], k % counts[1]];
-            let jet = surface.jet2(self.nodes[k].at);
-            let sides = [jet.du * cell[0], jet.dv * cell[1]];
+            let place = self.nodes[k].at;
+            let jet = surface.jet2(place);
+            let speeds = [self.paces[0].at(place.u).1, self.paces[1].at(place.v).1];
+            let sides = [jet.du * (cell[0] / speeds[0]), jet.dv * (cell[1] / speeds[1])];
             for axis in 0..2 {
                 let mut next = at;
                 next[axis] += 1;
@@ -147,6 +177,8 @@ impl Lattice {
         let counts = self.spline.bases.map(|b| parts * b.spans + 1);
         let part = |k: usize, axis: usize| k as f64 / (counts[axis] - 1) as f64;
         let all = (0..counts[0] * counts[1]).map(|k| (k / counts[1], k % counts[1]));
-        all.map(|(i, j)| self.rectangle.domain.at(part(i, 0), part(j, 1))).map(|at| uv(at.u, at.v)).collect()
+        all.map(|(i, j)| self.rectangle.domain.at(part(i, 0), part(j, 1)))
+            .map(|at| uv(self.paces[0].back(at.u), self.paces[1].back(at.v)))
+            .collect()
     }
 }

@@ -9,6 +9,7 @@ mod field;
 mod find;
 mod joints;
 mod lattice;
+mod pace;
 mod rim;
 mod search;
 mod settle;

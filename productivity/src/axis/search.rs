@@ -26,6 +26,9 @@ const NARROW: f64 = 2.0;
 const MARGIN_RAD: f64 = 0.004;
 /// Share of the whole time that a turn by a radian over a square face costs beyond what the joints take.
 const TURN: f64 = 0.1;
+/// Ways that the contact moves on the tool count so many times what they take at the feed, by the fourth power of their angle: what
+/// turns with the face goes free, what flips does not.
+const SWING: f64 = 1.0;
 /// Starts that places share, the least angle between two of them, rad, and ways to lean least that are others.
 const STARTS: usize = 8;
 const WAYS_BEGUN: usize = 8;
@@ -172,10 +175,24 @@ impl<'a> Search<'a> {
         time * (1.0 + AT_RIM * (f64::from(RIM) - depth))
     }
 
+    /// What it costs that the contact lies on another side of the tool at the next node: the tool moves on by so much more, and where
+    /// the lean passes through none it cannot at all.
+    fn swing_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
+        let core_mm = self.asked.cutter.core_mm();
+        let [n, m] = edge.ends.map(|k| self.lattice.nodes[k].normal);
+        let (Some(n), Some(m)) = (n, m) else { return 0.0 };
+        if core_mm <= 0.0 {
+            return 0.0;
+        }
+        let apart = toward(&n, a) - toward(&m, b);
+        SWING * core_mm * apart.norm_squared().powi(2) * edge.across_mm
+            / (self.width_mm * self.asked.feed_mm_min)
+    }
+
     fn edge_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
         let ratio = (edge.across_mm / edge.length_mm.max(f64::MIN_POSITIVE)).min(LONGEST);
         let angle = a.angle(b);
-        let smooth = self.turn_min * ratio * angle * angle;
+        let smooth = self.turn_min * ratio * angle * angle + self.swing_min(edge, a, b);
         if edge.along == 0.0 {
             return smooth;
         }
@@ -333,6 +350,13 @@ enum Start {
 /// An axis that leans off a normal a little, whatever way: a flat bottom has no strip without.
 fn leant(normal: &Unit3) -> Unit3 {
     Unit3::new_normalize(normal.into_inner() + any_perpendicular(normal).into_inner() * 0.1)
+}
+
+/// The way from the tool's axis to the contact: the unit vector at right angles to the axis, towards the normal; none where they agree.
+fn toward(normal: &Unit3, axis: &Unit3) -> Vec3 {
+    let across = normal.into_inner() - axis.into_inner() * normal.dot(axis);
+    let length = across.norm();
+    if length > 0.0 { across / length } else { Vec3::zeros() }
 }
 
 /// Width of the strip at a node with an axis, mm.

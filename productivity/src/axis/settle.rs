@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Rounds of looking and moving.
-const ROUNDS: u32 = 8;
+const ROUNDS: u32 = 30;
 /// Rings around an axis that is not clear, rad: the spacing of directions and what is finer.
 const RINGS: [f64; 7] = [0.005, 0.01, 0.02, 0.04, 0.08, 0.12, 0.16];
 /// Axes on a ring.
@@ -50,7 +50,6 @@ pub(super) fn settle(
 ) -> usize {
     let all: Vec<Asked> = places
         .into_par_iter()
-        .filter(|at| face.contains(face.inner(*at)))
         .filter_map(|at| {
             let jet = face.jet2(at);
             let normal = jet.normal().ok()?;
@@ -103,7 +102,7 @@ fn move_poles<'a>(field: &mut AxisField, short: impl Iterator<Item = &'a Short>)
     let n = field.spline.poles.len();
     let mut sums = vec![(Vec3::zeros(), 0.0); n];
     for s in short {
-        let (u, v) = (field.spline.bases[0].at(s.at.u), field.spline.bases[1].at(s.at.v));
+        let ([u, v], _) = field.bases(s.at);
         for (a, b) in (0..16).map(|k| (k / 4, k % 4)) {
             let weight = u.value[a] * v.value[b];
             let (sum, all) = &mut sums[field.spline.index(u.index[a], v.index[b])];

@@ -1,7 +1,7 @@
 //! The contact points of passes as a picture of the part: how deep a tool goes into it where it does not cut.
 //!
-//! Passes lie as close as their strips reach and their points are filled up along them, so that the tool finds what it could
-//! run into of the faces that it machines. Depths are those at points: what lies between them can be a little deeper.
+//! Their points are filled up along them, and points of the faces lie between: strips may be as wide as the tool. So the tool finds
+//! what it could run into of the faces that it machines. Depths are those at points: what lies between them can be a little deeper.
 
 use super::Pass;
 use osculate_geom::Point3;
@@ -25,9 +25,14 @@ pub(super) struct Cloud {
 }
 
 impl Cloud {
-    /// The contact points of passes, no further apart along them than `spacing_mm`.
-    pub fn of(passes: &[Pass], spacing_mm: f64) -> Self {
-        let mut groups = Vec::new();
+    /// The contact points of passes, no further apart along them than `spacing_mm`, and other points of the faces.
+    pub fn of(passes: &[Pass], spacing_mm: f64, ground: &[Point3]) -> Self {
+        let grouped = |chunk: &[Point3]| {
+            let middle = chunk[chunk.len() / 2];
+            let reach = chunk.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+            (middle, reach, chunk.to_vec())
+        };
+        let mut groups: Vec<_> = ground.chunks(GROUP).map(grouped).collect();
         for pass in passes {
             let mut points: Vec<Point3> = Vec::new();
             for p in &pass.points {
@@ -38,11 +43,7 @@ impl Cloud {
                 }
                 points.push(p.point);
             }
-            groups.extend(points.chunks(GROUP).map(|chunk| {
-                let middle = chunk[chunk.len() / 2];
-                let reach = chunk.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
-                (middle, reach, chunk.to_vec())
-            }));
+            groups.extend(points.chunks(GROUP).map(grouped));
         }
         Self { groups }
     }

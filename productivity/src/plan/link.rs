@@ -273,7 +273,7 @@ fn near(links: &Links, from: &CcPoint, to: &CcPoint) -> bool {
 pub fn link(passes: &[Pass], links: &Links, walls: &Walls) -> Linked {
     let centre = links.obstacles.centre();
     let radius = 0.5 * links.obstacles.diagonal_mm() + links.clearance_mm;
-    let cloud = Cloud::of(passes, NEAR_POINTS * links.cutter.radius_mm());
+    let cloud = Cloud::of(passes, NEAR_POINTS * links.cutter.radius_mm(), walls.ground());
     let mut b = Builder { links, walls, cloud, out: Linked::default(), centre, radius };
     let mut last: Option<CcPoint> = None;
     for (k, pass) in passes.iter().enumerate() {

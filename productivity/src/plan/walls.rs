@@ -22,6 +22,8 @@ const DENSER: f64 = 4.0;
 const TRIES: u32 = 4;
 /// Points in a group.
 const GROUP: usize = 48;
+/// Points over the faces that are machined.
+const GROUND: f64 = 2e4;
 
 #[derive(Clone, Debug, PartialEq)]
 struct Group {
@@ -38,6 +40,7 @@ struct Group {
 pub struct Walls {
     groups: Vec<Group>,
     accepted_mm: f64,
+    ground: Vec<Point3>,
 }
 
 /// Samples of a face however narrow it is.
@@ -81,7 +84,29 @@ impl Walls {
                 Group { middle, reach_mm, keep_mm, between_mm, points }
             }));
         }
-        Ok(Self { groups, accepted_mm })
+        Ok(Self { groups, accepted_mm, ground: Vec::new() })
+    }
+
+    /// The same, with points of faces that are machined: hops go no deeper into them than passes do where they end.
+    ///
+    /// # Errors
+    /// Faces that cannot be sampled.
+    pub fn over(self, faces: &[Named<'_>]) -> Result<Self, SamplingError> {
+        let areas: Vec<f64> = faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
+        let all: f64 = areas.iter().sum();
+        let spacing_mm = (all / GROUND).sqrt();
+        let mut ground = Vec::new();
+        for (k, (face, area)) in faces.iter().zip(&areas).enumerate() {
+            let most = ((2.0 * GROUND * area / all) as usize).max(FEWEST);
+            let found = sampled(face.surface, k as u32, spacing_mm, most)?;
+            ground.extend(found.samples.iter().map(|s| s.point));
+        }
+        Ok(Self { ground, ..self })
+    }
+
+    /// Points of the faces that are machined.
+    pub(super) fn ground(&self) -> &[Point3] {
+        &self.ground
     }
 
     /// What a body keeps from the walls of what it should, 1 at most; None where it may touch one. Walls that it is as near to at one of

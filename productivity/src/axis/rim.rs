@@ -1,0 +1,102 @@
+//! The least lean at a place, by the way that the axis leans: what a set of directions some degrees apart cannot tell.
+//!
+//! The strip of a flat or toroidal end is widest where the end lies closest, and there the lean is a degree or a few. So
+//! next to the normal the axes are told apart by bisection, not by bits.
+
+use osculate_geom::{Unit3, Vec3};
+use osculate_tools::reach::{Place, Reach};
+use std::f64::consts::PI;
+
+/// Ways to lean that are asked.
+const WAYS: usize = 16;
+/// Leans up to here are asked, rad: three times the distance of directions of the set.
+const MOST_RAD: f64 = 0.26;
+/// The first lean that is asked where none is the least, quotient of those asked, and halvings between the last two.
+const FIRST_RAD: f64 = 0.004;
+const STEP: f64 = 1.6;
+const HALVINGS: u32 = 5;
+
+/// The least leans at a place.
+pub(super) struct Rim {
+    normal: Unit3,
+    /// The first way, and the one a quarter of a turn on.
+    x: Vec3,
+    y: Vec3,
+    /// By the way; infinite where no lean that was asked is possible.
+    least_rad: [f64; WAYS],
+}
+
+impl Rim {
+    /// Asks the leans at a place, the first way along `x`, a unit tangent.
+    pub fn of(reach: &Reach<'_>, place: &Place, x: &Unit3, from_rad: f64) -> Self {
+        let y = place.normal.cross(x);
+        let mut out = Self { normal: place.normal, x: x.into_inner(), y, least_rad: [f64::INFINITY; WAYS] };
+        for k in 0..WAYS {
+            let clear = |lean: f64| reach.is_clear(place, &out.axis(k, lean));
+            out.least_rad[k] = least(&clear, from_rad);
+        }
+        out
+    }
+
+    /// The axis that leans so far in one of the ways.
+    fn axis(&self, way: usize, lean_rad: f64) -> Unit3 {
+        let (s, c) = (2.0 * PI * way as f64 / WAYS as f64).sin_cos();
+        let (sin, cos) = lean_rad.sin_cos();
+        Unit3::new_normalize(self.normal.into_inner() * cos + (self.x * c + self.y * s) * sin)
+    }
+
+    /// How much further an axis leans than it must, rad; None where it leans further than was asked.
+    pub fn margin_rad(&self, axis: &Unit3) -> Option<f64> {
+        let (a, b) = (axis.dot(&self.x), axis.dot(&self.y));
+        let lean = a.hypot(b).atan2(axis.dot(&self.normal));
+        if lean > MOST_RAD {
+            return None;
+        }
+        let turn = (b.atan2(a) / (2.0 * PI)).rem_euclid(1.0) * WAYS as f64;
+        let (k, f) = (turn.floor(), turn.fract());
+        // A whole number of ways, at most their count.
+        let k = k as usize % WAYS;
+        let ends = [self.least_rad[k], self.least_rad[(k + 1) % WAYS]];
+        let least = if ends.iter().all(|e| e.is_finite()) {
+            ends[0] + (ends[1] - ends[0]) * f
+        } else {
+            f64::INFINITY
+        };
+        Some(lean - least)
+    }
+
+    /// Whether no lean that was asked is possible.
+    pub fn is_empty(&self) -> bool {
+        self.least_rad.iter().all(|l| l.is_infinite())
+    }
+
+    /// An axis for each way that has one, with so much more lean than it must have.
+    pub fn axes(&self, more_rad: f64) -> impl Iterator<Item = (usize, Unit3)> + '_ {
+        let found = self.least_rad.iter().enumerate().filter(|(_, l)| l.is_finite());
+        found.map(move |(k, l)| (k, self.axis(k, (l + more_rad).min(MOST_RAD))))
+    }
+
+    /// The ways that are asked.
+    pub const fn ways() -> usize {
+        WAYS
+    }
+}
+
+/// The least lean from one on that is clear.
+fn least(clear: &dyn Fn(f64) -> bool, from_rad: f64) -> f64 {
+    if clear(from_rad) {
+        return from_rad;
+    }
+    let (mut low, mut high) = (from_rad, from_rad.max(FIRST_RAD) * STEP);
+    while !clear(high) {
+        if high >= MOST_RAD {
+            return f64::INFINITY;
+        }
+        (low, high) = (high, (high * STEP).min(MOST_RAD));
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if clear(middle) { high = middle } else { low = middle }
+    }
+    high
+}
