@@ -112,7 +112,7 @@ fn found(tool: &Tool, machine: &Machine) -> Found {
     };
     let wish = Wish {
         surface: &floor,
-        feed: &along_v,
+        feeds: &[&along_v],
         scallop_mm: 0.02,
         feed_mm_min: 1000.0,
         joints: machine,
@@ -120,7 +120,7 @@ fn found(tool: &Tool, machine: &Machine) -> Found {
         around: &Surroundings::of(&around).unwrap(),
         lean_rad: [0.0, 1.5],
     };
-    find(&wish).unwrap()
+    find(&wish).unwrap().remove(0)
 }
 
 #[test]

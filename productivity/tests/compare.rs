@@ -4,7 +4,7 @@
 use osculate_geom::analytic::{Paraboloid, Sphere};
 use osculate_geom::{Axis, Surface};
 use osculate_productivity::closed_form::{Section, width_37};
-use osculate_productivity::compare::{Around, Candidate, Reason, Screened, Setting, Tool, screen};
+use osculate_productivity::compare::{Around, Axes, Candidate, Reason, Screened, Setting, Tool, screen};
 use osculate_productivity::ideal::{Feeding, Patch, Search, ideal};
 use osculate_productivity::optimum::Range;
 use osculate_productivity::plan::{Along, Strategy, Tolerance};
@@ -27,7 +27,7 @@ fn along(axis: Axis, lead_deg: f64) -> Candidate {
     Candidate {
         tool: 0,
         strategy: Strategy::Isoparametric { along: Along::Fixed(axis) },
-        local: false,
+        axes: Axes::Held,
         lean: Lean { lead_rad: f64::to_radians(lead_deg), tilt_rad: 0.0 },
     }
 }

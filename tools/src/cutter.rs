@@ -222,24 +222,6 @@ impl Cutter {
         (if x > 0.0 && y > 0.0 { (x * x + y * y).sqrt() } else { x.max(y) }) - self.corner
     }
 
-    /// The slope of [`Cutter::local_endless_distance`] by the distance from the axis and the height, a unit vector; None for
-    /// shapes that are not convex as they are described.
-    #[inline]
-    pub(crate) fn local_slope(&self, rho_mm: f64, z_mm: f64) -> Option<[f64; 2]> {
-        if self.meridian.is_some() {
-            return None;
-        }
-        let (x, y) = (rho_mm - self.core_mm(), self.corner - z_mm);
-        Some(if x > 0.0 && y > 0.0 {
-            let length = (x * x + y * y).sqrt();
-            [x / length, -y / length]
-        } else if x > y {
-            [1.0, 0.0]
-        } else {
-            [0.0, -1.0]
-        })
-    }
-
     /// Signed distance of a point to the cutter in a pose, see [`Cutter::local_distance`].
     #[must_use]
     pub fn distance(&self, pose: &Pose, p: &Point3) -> f64 {

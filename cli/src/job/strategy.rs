@@ -70,6 +70,8 @@ pub struct Strategy {
     pub axis: Unit3,
     /// Whether passes to and fro share the axes of a tool that leans.
     pub axis_field: bool,
+    /// Whether the job leaves open how axes are found.
+    axis_open: bool,
     /// In which senses passes are run.
     pub senses: Senses,
     /// The way of passes of a tool that keeps its axis, across the axis; the longest side of the faces where not given.
@@ -94,6 +96,12 @@ impl Strategy {
             Kind::Layers(l) => Some(l),
             _ => None,
         }
+    }
+
+    /// Whether axes may be a field: the job asks for one, or for nothing that a field has not.
+    #[must_use]
+    pub fn may_be_field(&self) -> bool {
+        self.axis_field || (self.axis_open && self.lead == LeadKey::Auto && self.tilt_deg == 0.0)
     }
 
     /// Whether it is to be chosen.
@@ -139,6 +147,7 @@ impl Strategy {
             tilt_deg: t.tilt_deg,
             axis,
             axis_field: t.axis == Some(AxisKey::Field),
+            axis_open: t.axis.is_none(),
             senses: Senses {
                 one_way: t.one_way,
                 milling: match t.climb {

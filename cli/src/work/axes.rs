@@ -12,6 +12,7 @@ use osculate_tools::Cutter;
 use osculate_tools::reach::{Member, Tool};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Axes of a machine with one rotary joint are tried so far apart, rad.
 const LINE_RAD: f64 = 0.02;
@@ -21,6 +22,11 @@ const ACCEPTED: f64 = 0.6;
 const UPRIGHT_RAD: f64 = 0.035;
 /// A flat bottom leans so much at least, rad: else it rubs where it should cut.
 const LEAST_RAD: f64 = 0.017_453_292_519_943_295;
+
+/// Whether the job's machine leaves axes no more than a line: three or four joints.
+pub fn is_line(job: &Job) -> bool {
+    job.control().machine.rotary().len() < 2
+}
 
 /// The rotary joints of the job's machine.
 struct Rotary<'a>(Orienting<'a>);
@@ -40,8 +46,75 @@ impl Joints for Rotary<'_> {
     }
 }
 
+/// The direction in which passes of a strategy run, where it says one before they are laid out.
+fn feed_of(strategy: &Strategy) -> impl Fn(Uv, &Jet2) -> Option<Vec3> + Sync + use<> {
+    let along = match strategy {
+        Strategy::Isoparametric { along: Along::Fixed(axis) }
+        | Strategy::Regions { along: Along::Fixed(axis) } => Some(*axis),
+        _ => None,
+    };
+    move |_: Uv, jet: &Jet2| along.map(|axis| if axis == Axis::U { jet.du } else { jet.dv })
+}
+
+/// A field, and what is to be said of it.
+type Told = (Found, Vec<Diagnostic>);
+
+/// Fields of axes over the faces of a job with one tool, each found once.
+#[derive(Default)]
+pub struct Fields {
+    around: OnceLock<Surroundings>,
+    /// By the place of the face and the direction of passes.
+    found: Mutex<BTreeMap<(usize, &'static str), Arc<Told>>>,
+}
+
+impl Fields {
+    /// The field over a face for passes of a strategy.
+    pub fn of(
+        &self,
+        job: &Job,
+        faces: &Part,
+        (place, face): (usize, &LoadedFace),
+        (tolerance, strategy): (Tolerance, &Strategy),
+    ) -> Result<Arc<Told>, Failure> {
+        let key = |s: &Strategy| (place, direction(s));
+        let known = |k: &(usize, &'static str)| {
+            let all = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+            all.get(k).cloned()
+        };
+        if let Some(found) = known(&key(strategy)) {
+            return Ok(found);
+        }
+        if self.around.get().is_none() {
+            let _ = self.around.set(surroundings(job, faces, &job.cutter())?);
+        }
+        let around = self.around.get_or_init(Surroundings::default);
+        // What is possible is the same for all directions: those that are likely to be asked for next are found with it.
+        let lines = [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) });
+        let wanted = if direction(strategy).is_empty() { vec![*strategy] } else { lines.to_vec() };
+        let feeds: Vec<_> = wanted.iter().map(feed_of).collect();
+        let feeds: Vec<&Feed<'_>> = feeds.iter().map(|f| f as &Feed<'_>).collect();
+        let told = found(job, faces, (face, around), (tolerance, &feeds))?;
+        let mut all = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        all.extend(wanted.iter().map(key).zip(told.into_iter().map(Arc::new)));
+        drop(all);
+        known(&key(strategy)).ok_or_else(|| Failure::job("no field of axes for a strategy"))
+    }
+}
+
+/// The direction of a strategy's passes where it is one of the parameters'.
+const fn direction(strategy: &Strategy) -> &'static str {
+    match strategy {
+        Strategy::Isoparametric { along: Along::Fixed(axis) }
+        | Strategy::Regions { along: Along::Fixed(axis) } => match axis {
+            Axis::U => "u",
+            Axis::V => "v",
+        },
+        _ => "",
+    }
+}
+
 /// All faces of a job as points that the tool keeps out of.
-pub fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surroundings, Failure> {
+fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surroundings, Failure> {
     fn named(all: &[LoadedFace]) -> Vec<Named<'_>> {
         all.iter().map(|f| Named { face: &f.id, surface: &*f.surface }).collect()
     }
@@ -54,30 +127,20 @@ pub fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surround
     Surroundings::of(&around).map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))
 }
 
-/// The direction in which passes of a strategy run, where it says one before they are laid out.
-pub fn feed_of(strategy: &Strategy) -> impl Fn(Uv, &Jet2) -> Option<Vec3> + Sync + use<> {
-    let along = match strategy {
-        Strategy::Isoparametric { along: Along::Fixed(axis) }
-        | Strategy::Regions { along: Along::Fixed(axis) } => Some(*axis),
-        _ => None,
-    };
-    move |_: Uv, jet: &Jet2| along.map(|axis| if axis == Axis::U { jet.du } else { jet.dv })
-}
-
-/// The field of axes over a face for passes that run along `feed`, and what is to be said of it.
-pub fn found(
+/// The fields of axes over a face for passes that run along each of `feeds`, and what is to be said of them.
+fn found(
     job: &Job,
     faces: &Part,
     (face, around): (&LoadedFace, &Surroundings),
-    (tolerance, feed): (Tolerance, &Feed<'_>),
-) -> Result<(Found, Vec<Diagnostic>), Failure> {
+    (tolerance, feeds): (Tolerance, &[&Feed<'_>]),
+) -> Result<Vec<Told>, Failure> {
     let (cutter, holder) = (job.cutter(), job.holder());
     let (setup, _) = setup::of(job, faces, None);
     let control = job.control();
     let joints = Rotary(Orienting::new(&control.machine, &setup.part_zero.rotation));
     let wish = Wish {
         surface: &*face.surface,
-        feed,
+        feeds,
         scallop_mm: tolerance.scallop_mm,
         feed_mm_min: job.feed_mm_min(),
         joints: &joints,
@@ -86,6 +149,11 @@ pub fn found(
         lean_rad: [if cutter.is_ball() { 0.0 } else { LEAST_RAD }, FRAC_PI_2 - UPRIGHT_RAD],
     };
     let found = axis::find(&wish).map_err(|e| Failure::file(job.path(), format!("face {}: {e}", face.id)))?;
+    Ok(found.into_iter().map(|found| told(faces, face, found)).collect())
+}
+
+/// A field with what is to be said of it.
+fn told(faces: &Part, face: &LoadedFace, found: Found) -> Told {
     let mut said = Vec::new();
     if !found.unreached.is_empty() {
         let mut by: BTreeMap<String, f64> = BTreeMap::new();
@@ -119,5 +187,5 @@ pub fn found(
             format!("the field of axes is not clear at {unsettled} of {asked} places"),
         ));
     }
-    Ok((found, said))
+    (found, said)
 }

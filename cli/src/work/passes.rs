@@ -4,16 +4,16 @@ use crate::failure::Failure;
 use crate::job::{Job, LeadKey};
 use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
-use crate::work::axes;
+use crate::work::axes::Fields;
 use crate::work::budget;
 use crate::work::left_out;
 use crate::work::look::Look;
 use crate::work::nc;
-use osculate_geom::{Box3, Diagnostic, Surface};
-use osculate_productivity::compare::Around;
+use osculate_geom::{Axis, Box3, Diagnostic, Surface};
+use osculate_productivity::compare::{Around, Axes};
 use osculate_productivity::plan::{
-    Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Walls, link, predicted_length_mm,
-    run as plan_face, run_in,
+    Along, Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Walls, link,
+    predicted_length_mm, run as plan_face, run_in,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::{Cutter, Lean};
@@ -105,14 +105,28 @@ pub fn title(job: &Job) -> String {
     name.map_or_else(|| "osculate".to_owned(), |t| t.to_string_lossy().into_owned())
 }
 
+/// A strategy whose direction is open, with both directions.
+pub fn each_direction(strategy: Strategy) -> Vec<Strategy> {
+    let both = [Axis::U, Axis::V].map(Along::Fixed);
+    match strategy {
+        Strategy::Isoparametric { along: Along::Auto } => {
+            both.map(|along| Strategy::Isoparametric { along }).to_vec()
+        }
+        Strategy::Regions { along: Along::Auto } => both.map(|along| Strategy::Regions { along }).to_vec(),
+        other => vec![other],
+    }
+}
+
 /// How passes are to be placed, and who hears of those that are finished.
 pub struct Way<'a> {
     /// The strategy.
     pub strategy: &'a Strategy,
     /// Lead and tilt.
     pub lean: Lean,
-    /// Whether the lead is found place by place; that of `lean` is then the least.
-    pub local: bool,
+    /// How axes are found; the lead of `lean` is the least where it is found place by place.
+    pub axes: Axes,
+    /// The fields of the job's faces with its tool, as far as they are known.
+    pub fields: &'a Fields,
     /// The share of the scallop tolerance that passes are laid out for.
     pub share: f64,
     /// Who hears what is finished.
@@ -130,7 +144,8 @@ pub fn each_face(
     let cutter = &job.cutter();
     let holder = job.holder();
     let all = faces.faces.iter().chain(&faces.check);
-    let around = way.local.then(|| Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str()))));
+    let around = (way.axes == Axes::Local)
+        .then(|| Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str()))));
     let local = LocalLead {
         tilt_rad: way.lean.tilt_rad,
         least_rad: way.lean.lead_rad,
@@ -139,27 +154,32 @@ pub fn each_face(
         holder: holder.as_ref(),
         around: around.as_ref(),
     };
-    let surroundings =
-        job.strategy().axis_field.then(|| axes::surroundings(job, faces, cutter)).transpose()?;
     let n = faces.faces.len();
     let mut out = Passes::default();
     for (k, face) in faces.faces.iter().enumerate() {
         let here = move |f: f64| progress((k as f64 + f) / n as f64);
-        let field = surroundings
-            .as_ref()
-            .map(|around| axes::found(job, faces, (face, around), (tolerance, &axes::feed_of(way.strategy))))
-            .transpose()?;
-        let lean = match &field {
-            Some((found, said)) => {
-                out.diagnostics.extend(said.iter().cloned());
-                Leaning::Axes(&found.field)
-            }
-            None if way.local => Leaning::Local(&local),
-            None => way.lean.into(),
+        let plan = |strategy: &Strategy, lean: Leaning<'_>| {
+            let (surface, face) = (&*face.surface, face.id.as_str());
+            let task = Task { surface, face, cutter, lean, tolerance, progress: &here };
+            plan_face(&task, strategy).map_err(|e| Failure::file(job.path(), e))
         };
-        let (surface, face) = (&*face.surface, face.id.as_str());
-        let task = Task { surface, face, cutter, lean, tolerance, progress: &here };
-        let mut p = plan_face(&task, way.strategy).map_err(|e| Failure::file(job.path(), e))?;
+        let mut p = match way.axes {
+            Axes::Held => plan(way.strategy, way.lean.into())?,
+            Axes::Local => plan(way.strategy, Leaning::Local(&local))?,
+            Axes::Field => {
+                let mut best: Option<Passes> = None;
+                // Each direction has a field of its own.
+                for strategy in each_direction(*way.strategy) {
+                    let (found, said) = &*way.fields.of(job, faces, (k, face), (tolerance, &strategy))?;
+                    let mut p = plan(&strategy, Leaning::Axes(&found.field))?;
+                    p.diagnostics.extend(said.iter().cloned());
+                    if best.as_ref().is_none_or(|b| p.length_mm() < b.length_mm()) {
+                        best = Some(p);
+                    }
+                }
+                best.unwrap_or_default()
+            }
+        };
         run_in(&mut p.passes, job.strategy().senses);
         out.passes.extend(p.passes);
         out.diagnostics.extend(p.diagnostics);
@@ -185,10 +205,14 @@ pub fn with_best_lead(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<(Passes, Lean), Failure> {
     let cutter = &job.cutter();
-    let way = |lean: Lean, local: bool| Way { strategy, lean, local, share: 1.0, watch };
-    if job.strategy().lead == LeadKey::Local || job.strategy().axis_field {
+    let fields = &Fields::default();
+    let way = |lean: Lean, axes: Axes| Way { strategy, lean, axes, fields, share: 1.0, watch };
+    if job.strategy().axis_field {
+        return Ok((each_face(job, faces, &way(Lean::default(), Axes::Field), progress)?, Lean::default()));
+    }
+    if job.strategy().lead == LeadKey::Local {
         let lean = job.lean(LocalLead::LEAST_RAD);
-        return Ok((each_face(job, faces, &way(lean, true), progress)?, lean));
+        return Ok((each_face(job, faces, &way(lean, Axes::Local), progress)?, lean));
     }
     let mut leads: Vec<f64> = match job.strategy().lead {
         LeadKey::Given(deg) => vec![deg],
@@ -203,7 +227,7 @@ pub fn with_best_lead(
     let mut refused: Option<Failure> = None;
     for deg in leads {
         let lean = job.lean(deg.to_radians());
-        match each_face(job, faces, &way(lean, false), progress) {
+        match each_face(job, faces, &way(lean, Axes::Held), progress) {
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
                 let gouge = Look::at(job, faces, &linked(job, faces, &p, cutter)?)?.gouge_mm;

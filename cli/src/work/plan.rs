@@ -7,6 +7,7 @@ use crate::job::{Job, LeadKey};
 use crate::part::{self, Part};
 use crate::report::fill::{self, Story};
 use crate::watch::{Stage, Watch};
+use crate::work::axes::Fields;
 use crate::work::choice::{self, Choice, Row};
 use crate::work::joints::JointFigures;
 use crate::work::passes::{self, Way};
@@ -15,6 +16,7 @@ use crate::work::summary::{Productivity, Summary};
 use crate::work::verify::{VerdictKeys, Verified};
 use crate::work::{drop, ideal, left_out, rough};
 use osculate_geom::Diagnostic;
+use osculate_productivity::compare::Axes;
 use osculate_productivity::levels::{Totals, levels};
 use osculate_tools::Lean;
 use osculate_tools::removal::Verdict;
@@ -280,13 +282,14 @@ fn planned(
     };
     let (passes, lean) = match strategy.fixed_axis() {
         Some(_) => {
-            let way = Way { strategy, lean: Lean::default(), local: false, share: 1.0, watch };
+            let fields = &Fields::default();
+            let way = Way { strategy, lean: Lean::default(), axes: Axes::Held, fields, share: 1.0, watch };
             (passes::each_face(job, faces, &way, progress)?, Lean::default())
         }
         None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
     };
     let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
     let strategy = strategy.name().to_owned();
-    let local = job.strategy().lead == LeadKey::Local;
+    let local = job.strategy().lead == LeadKey::Local || job.strategy().axis_field;
     Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
 }

@@ -37,6 +37,7 @@ pub struct Around<'a> {
 }
 
 /// Points of faces, and what the tool keeps from those that are not next to what it machines.
+#[derive(Default)]
 pub struct Surroundings {
     /// The points, each with the place of its face among those to machine and then all others. Those that the tool may touch are sunk
     /// into their faces.

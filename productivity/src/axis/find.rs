@@ -9,7 +9,7 @@ use super::search::{Asked, Possible, Search};
 use super::settle::settle;
 use crate::plan::extended::Extended;
 use crate::width::WIDEST;
-use osculate_geom::{Point3, Surface, Unit3, Uv, any_perpendicular};
+use osculate_geom::{Point3, Surface, Unit3, Uv};
 use osculate_tools::Cutter;
 use osculate_tools::reach::{
     Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
@@ -26,8 +26,8 @@ const ASKED: usize = 4;
 pub struct Wish<'a> {
     /// The face, with its trims and material side.
     pub surface: &'a dyn Surface,
-    /// The direction in which passes run.
-    pub feed: &'a Feed<'a>,
+    /// The directions in which passes may run: a field is found for each.
+    pub feeds: &'a [&'a Feed<'a>],
     /// Highest material left between passes, mm.
     pub scallop_mm: f64,
     /// Feed, mm/min.
@@ -85,15 +85,15 @@ pub enum NoField {
     },
 }
 
-/// Finds the field of axes of least time over a face.
+/// Finds the field of axes of least time over a face, for each direction of passes.
 ///
 /// # Errors
 /// Where the machine has no axis, or none is possible anywhere on the face.
-pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
+pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
     let cutter: &Cutter = wish.tool.cutter();
     let widest_mm = WIDEST * cutter.radius_mm();
     let face = Extended::by(wish.surface, widest_mm);
-    let lattice = Lattice::new(&face, cutter.radius_mm(), widest_mm, wish.feed);
+    let lattice = Lattice::new(&face, cutter.radius_mm(), widest_mm);
     let line = wish.joints.line();
     let on_line = line.is_some();
     let directions = line.map_or_else(|| Directions::icosphere(LEVEL), Directions::row);
@@ -132,8 +132,8 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
     // A ball's strip is the same at any lean.
     let rims = !on_line && !cutter.is_ball();
     let rim = |node: &Node, place: &Place| {
-        let x = node.frame.as_ref().map_or_else(|| any_perpendicular(&place.normal), |(_, f)| f.tangent);
-        Rim::of(&reach, place, &x, wish.lean_rad[0])
+        let jet = face.jet2(node.at);
+        Rim::of(&reach, place, [jet.du, jet.dv], wish.lean_rad[0])
     };
     let possible: Vec<Possible> = lattice
         .nodes
@@ -155,21 +155,15 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
         feed_mm_min: wish.feed_mm_min,
         directions: &directions,
         joints: wish.joints,
+        clear: &|place: &Place, axis: &Unit3| reach.is_clear(place, axis),
         on_line,
     };
-    let axes =
-        Search::new(&asked, &lattice, &possible).best().ok_or(NoField::Nowhere { places: on_face.len() })?;
-    let mut spline = lattice.spline.clone();
-    spline.poles = axes.iter().map(|a| a.into_inner()).collect();
-    let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
     let clear = |point: &Point3, normal: &Unit3, axis: &Unit3| {
         wish.joints.reaches(axis) && reach.is_clear(&Place { point: *point, normal: *normal }, axis)
     };
+    let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
     let mut between = lattice.between(ASKED);
     between.retain(|at| lattice.stands(*at));
-    let count = between.len();
-    let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
-    let unsettled = settle(&mut field, &face, between, (&clear, &held));
     let unreached = lattice
         .nodes
         .par_iter()
@@ -182,7 +176,18 @@ pub fn find(wish: &Wish<'_>) -> Result<Found, NoField> {
             area_mm2: n.area_mm2,
             best: reach.best(place),
         })
-        .collect();
+        .collect::<Vec<_>>();
     let area_mm2 = lattice.nodes.iter().map(|n| n.area_mm2).sum();
-    Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, count] })
+    let one = |feed: &&Feed<'_>| {
+        let lattice = lattice.along(&face, *feed);
+        let axes = Search::new(&asked, &lattice, &possible).best();
+        let axes = axes.ok_or(NoField::Nowhere { places: on_face.len() })?;
+        let mut spline = lattice.spline.clone();
+        spline.poles = axes.iter().map(|a| a.into_inner()).collect();
+        let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
+        let unsettled = settle(&mut field, &face, &between, (&clear, &held));
+        let unreached = unreached.clone();
+        Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, between.len()] })
+    };
+    wish.feeds.par_iter().map(one).collect()
 }

@@ -19,6 +19,7 @@ const BEYOND: f64 = 0.25;
 pub type Feed<'a> = dyn Fn(Uv, &Jet2) -> Option<Vec3> + Sync + 'a;
 
 /// A pole of the field and the place that it stands over.
+#[derive(Clone)]
 pub(super) struct Node {
     pub at: Uv,
     pub point: Point3,
@@ -46,6 +47,7 @@ pub(super) struct Edge {
 }
 
 /// The nodes over a face.
+#[derive(Clone)]
 pub(super) struct Lattice {
     pub rectangle: Rectangle,
     pub paces: [Pace; 2],
@@ -58,7 +60,7 @@ pub(super) struct Lattice {
 
 impl Lattice {
     /// The nodes over a face for passes that run out by `beyond_mm` at most.
-    pub fn new(surface: &Extended<'_>, radius_mm: f64, beyond_mm: f64, feed: &Feed<'_>) -> Self {
+    pub fn new(surface: &Extended<'_>, radius_mm: f64, beyond_mm: f64) -> Self {
         let rectangle = Rectangle::of(surface);
         let long = lengths(surface, &rectangle);
         let side = (APART * radius_mm).max((long[0] * long[1] / NODES).sqrt());
@@ -86,12 +88,6 @@ impl Lattice {
                 let cell = [cell[0] / paces[0].at(at.u).1, cell[1] / paces[1].at(at.v).1];
                 let jet = surface.jet2(at);
                 let inside = surface.contains(at);
-                let forms = jet.forms().ok();
-                let frame = forms.and_then(|forms| {
-                    let way = feed(at, &jet)?;
-                    let frame = Darboux::with_forms(&jet, &forms, &way, 0.0);
-                    frame.tangent.iter().all(|x| x.is_finite()).then_some((forms, frame))
-                });
                 let whole = jet.du.cross(&jet.dv).norm() * cell[0] * cell[1];
                 let border = |k: usize, axis: usize| {
                     let ends = [1, counts[axis] - 2];
@@ -102,7 +98,7 @@ impl Lattice {
                     at,
                     point: jet.point,
                     normal: jet.normal().ok(),
-                    frame,
+                    frame: None,
                     stood: surface.contains(surface.inner(at)),
                     area_mm2: if inside { share * whole } else { 0.0 },
                     weight_mm2: whole * if inside { share.max(BEYOND) } else { BEYOND },
@@ -115,6 +111,25 @@ impl Lattice {
             lattice.widened();
         }
         lattice
+    }
+
+    /// The nodes for passes that run along a direction.
+    pub fn along(&self, surface: &Extended<'_>, feed: &Feed<'_>) -> Self {
+        let mut out = self.clone();
+        out.nodes.par_iter_mut().for_each(|node| {
+            let jet = surface.jet2(node.at);
+            node.frame = jet.forms().ok().zip(feed(node.at, &jet)).and_then(|(forms, way)| {
+                let frame = Darboux::with_forms(&jet, &forms, &way, 0.0);
+                frame.tangent.iter().all(|x| x.is_finite()).then_some((forms, frame))
+            });
+        });
+        for e in &mut out.edges {
+            let [a, b] = e.ends.map(|k| &out.nodes[k]);
+            let way = Unit3::try_new(b.point - a.point, f64::MIN_POSITIVE);
+            let tangent = a.frame.as_ref().map(|(_, f)| f.tangent);
+            e.along = way.zip(tangent).map_or(0.0, |(way, t)| t.dot(&way).abs().min(1.0));
+        }
+        out
     }
 
     /// Has tools stand at the neighbours of all nodes that they stand at.
@@ -161,11 +176,8 @@ impl Lattice {
                 }
                 let end = next[0] * counts[1] + next[1];
                 let [length_mm, across_mm] = [sides[axis].norm(), sides[1 - axis].norm()];
-                let along = self.nodes[k].frame.as_ref().map_or(0.0, |(_, f)| {
-                    (f.tangent.dot(&sides[axis]) / length_mm.max(f64::MIN_POSITIVE)).abs().min(1.0)
-                });
                 let place = self.edges.len() as u32;
-                self.edges.push(Edge { ends: [k, end], length_mm, across_mm, along });
+                self.edges.push(Edge { ends: [k, end], length_mm, across_mm, along: 0.0 });
                 self.of_node[k].push(place);
                 self.of_node[end].push(place);
             }

@@ -3,12 +3,15 @@
 //! The strip of a flat or toroidal end is widest where the end lies closest, and there the lean is a degree or a few. So
 //! next to the normal the axes are told apart by bisection, not by bits.
 
-use osculate_geom::{Unit3, Vec3};
+use osculate_geom::{Unit3, Vec3, any_perpendicular};
 use osculate_tools::reach::{Place, Reach};
 use std::f64::consts::PI;
 
-/// Ways to lean that are asked.
+/// Ways to lean that are asked, four of them along the parameters: leans along passes often need be far less than beside them.
 const WAYS: usize = 16;
+const QUARTER: usize = WAYS / 4;
+/// The angle between the parameters' ways counts as no less than this, rad.
+const LEAST_BETWEEN_RAD: f64 = 0.1;
 /// Leans up to here are asked, rad: three times the distance of directions of the set.
 const MOST_RAD: f64 = 0.26;
 /// The first lean that is asked where none is the least, quotient of those asked, and halvings between the last two.
@@ -19,18 +22,29 @@ const HALVINGS: u32 = 5;
 /// The least leans at a place.
 pub(super) struct Rim {
     normal: Unit3,
-    /// The first way, and the one a quarter of a turn on.
+    /// The first way, the direction a quarter of a turn on, and the angle between the parameters' ways, rad.
     x: Vec3,
     y: Vec3,
+    between_rad: f64,
     /// By the way; infinite where no lean that was asked is possible.
     least_rad: [f64; WAYS],
 }
 
 impl Rim {
-    /// Asks the leans at a place, the first way along `x`, a unit tangent.
-    pub fn of(reach: &Reach<'_>, place: &Place, x: &Unit3, from_rad: f64) -> Self {
-        let y = place.normal.cross(x);
-        let mut out = Self { normal: place.normal, x: x.into_inner(), y, least_rad: [f64::INFINITY; WAYS] };
+    /// Asks the leans at a place with two tangents.
+    pub fn of(reach: &Reach<'_>, place: &Place, tangents: [Vec3; 2], from_rad: f64) -> Self {
+        let [du, dv] = tangents.map(|t| t - place.normal.into_inner() * place.normal.dot(&t));
+        let x = Unit3::try_new(du, f64::MIN_POSITIVE).unwrap_or_else(|| any_perpendicular(&place.normal));
+        let y = place.normal.cross(&x);
+        // Whatever the sense of the second tangent, its line is met within half a turn.
+        let turn = dv.dot(&y).atan2(dv.dot(&x)).rem_euclid(PI);
+        let mut out = Self {
+            normal: place.normal,
+            x: x.into_inner(),
+            y,
+            between_rad: turn.clamp(LEAST_BETWEEN_RAD, PI - LEAST_BETWEEN_RAD),
+            least_rad: [f64::INFINITY; WAYS],
+        };
         for k in 0..WAYS {
             let clear = |lean: f64| reach.is_clear(place, &out.axis(k, lean));
             out.least_rad[k] = least(&clear, from_rad);
@@ -40,29 +54,41 @@ impl Rim {
 
     /// The axis that leans so far in one of the ways.
     fn axis(&self, way: usize, lean_rad: f64) -> Unit3 {
-        let (s, c) = (2.0 * PI * way as f64 / WAYS as f64).sin_cos();
+        let (half, k) = (way / (2 * QUARTER), way % (2 * QUARTER));
+        let share = (k % QUARTER) as f64 / QUARTER as f64;
+        let [from, to] = if k < QUARTER { [0.0, self.between_rad] } else { [self.between_rad, PI] };
+        let (s, c) = (PI * half as f64 + from + (to - from) * share).sin_cos();
         let (sin, cos) = lean_rad.sin_cos();
         Unit3::new_normalize(self.normal.into_inner() * cos + (self.x * c + self.y * s) * sin)
     }
 
-    /// How much further an axis leans than it must, rad; None where it leans further than was asked.
-    pub fn margin_rad(&self, axis: &Unit3) -> Option<f64> {
+    /// How much further an axis leans than it must, rad, as far as the ways next to it say: the least and the most; None where it leans
+    /// further than was asked.
+    pub fn margin_rad(&self, axis: &Unit3) -> Option<[f64; 2]> {
         let (a, b) = (axis.dot(&self.x), axis.dot(&self.y));
         let lean = a.hypot(b).atan2(axis.dot(&self.normal));
         if lean > MOST_RAD {
             return None;
         }
-        let turn = (b.atan2(a) / (2.0 * PI)).rem_euclid(1.0) * WAYS as f64;
-        let (k, f) = (turn.floor(), turn.fract());
-        // A whole number of ways, at most their count.
-        let k = k as usize % WAYS;
+        let turn = b.atan2(a).rem_euclid(2.0 * PI);
+        let half = if turn < PI { 0 } else { 2 };
+        let rest = turn - if half == 0 { 0.0 } else { PI };
+        let (quarter, share) = if rest < self.between_rad {
+            (half, rest / self.between_rad)
+        } else {
+            (half + 1, (rest - self.between_rad) / (PI - self.between_rad))
+        };
+        let x = share.min(1.0) * QUARTER as f64;
+        // A whole number of ways, less than their count.
+        let k = (quarter * QUARTER + x.floor() as usize) % WAYS;
+        let f = x.fract();
         let ends = [self.least_rad[k], self.least_rad[(k + 1) % WAYS]];
         let least = if ends.iter().all(|e| e.is_finite()) {
             ends[0] + (ends[1] - ends[0]) * f
         } else {
             f64::INFINITY
         };
-        Some(lean - least)
+        Some([lean - least, lean - ends[0].min(ends[1])])
     }
 
     /// Whether no lean that was asked is possible.

@@ -10,7 +10,7 @@ use super::lattice::{Edge, Lattice, Node};
 use super::rim::Rim;
 use crate::width::planar_width_mm;
 use osculate_geom::{Unit3, Vec3, any_perpendicular};
-use osculate_tools::reach::{Bits, Directions};
+use osculate_tools::reach::{Bits, Directions, Place};
 use osculate_tools::{Cutter, Lean};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -26,8 +26,9 @@ const NARROW: f64 = 2.0;
 const MARGIN_RAD: f64 = 0.004;
 /// Share of the whole time that a turn by a radian over a square face costs beyond what the joints take.
 const TURN: f64 = 0.1;
-/// Ways that the contact moves on the tool count so many times what they take at the feed, by the fourth power of their angle: what
-/// turns with the face goes free, what flips does not.
+/// Ways of the contact on the tool from node to node, of its core and squared, go free up to here: they turn with the face. Beyond that
+/// they count by their square so many times what they take at the feed: what flips tears passes.
+const FREE: f64 = 0.5;
 const SWING: f64 = 1.0;
 /// Starts that places share, the least angle between two of them, rad, and ways to lean least that are others.
 const STARTS: usize = 8;
@@ -54,6 +55,8 @@ pub(super) struct Asked<'a> {
     pub feed_mm_min: f64,
     pub directions: &'a Directions,
     pub joints: &'a dyn Joints,
+    /// Whether a tool is clear that touches a place with an axis.
+    pub clear: &'a (dyn Fn(&Place, &Unit3) -> bool + Sync),
     /// Whether the joints reach but a line of axes, on which all stay.
     pub on_line: bool,
 }
@@ -83,10 +86,12 @@ impl Possible {
     }
 
     /// How far from the rim an axis is, in steps of it; zero where it is not possible.
-    fn depth(&self, directions: &Directions, axis: &Unit3) -> f64 {
+    fn depth(&self, directions: &Directions, axis: &Unit3, clear: &dyn Fn(&Unit3) -> bool) -> f64 {
         match self.rim.as_ref().and_then(|rim| rim.margin_rad(axis)) {
-            Some(margin) if margin < 0.0 => 0.0,
-            Some(margin) => (1.0 + margin / MARGIN_RAD).min(f64::from(RIM)),
+            Some([least, _]) if least >= 0.0 => (1.0 + least / MARGIN_RAD).min(f64::from(RIM)),
+            // Between two ways the least lean may be far less than both say.
+            Some([_, most]) if most > 0.0 && clear(axis) => 1.0,
+            Some(_) => 0.0,
             None => f64::from(self.depths[directions.nearest(axis)]),
         }
     }
@@ -142,10 +147,18 @@ impl<'a> Search<'a> {
         Self { asked, lattice, possible, turn_min, width_mm, usual_mm }
     }
 
+    fn depth(&self, node: usize, axis: &Unit3) -> f64 {
+        let n = &self.lattice.nodes[node];
+        let clear = |a: &Unit3| {
+            n.normal.is_some_and(|normal| (self.asked.clear)(&Place { point: n.point, normal }, a))
+        };
+        self.possible[node].depth(self.asked.directions, axis, &clear)
+    }
+
     /// The nearest possible direction, or the one itself where nothing is asked.
     fn nearest(&self, node: usize, axis: &Unit3) -> Unit3 {
         let possible = &self.possible[node];
-        if possible.is_free() || possible.depth(self.asked.directions, axis) > 0.0 {
+        if possible.is_free() || self.depth(node, axis) > 0.0 {
             return *axis;
         }
         let all = self.asked.directions.all();
@@ -166,7 +179,7 @@ impl<'a> Search<'a> {
         if possible.is_free() {
             return 0.0;
         }
-        let depth = possible.depth(self.asked.directions, axis);
+        let depth = self.depth(k, axis);
         if depth <= 0.0 || (possible.rim.is_some() && !self.asked.joints.reaches(axis)) {
             return f64::INFINITY;
         }
@@ -185,8 +198,8 @@ impl<'a> Search<'a> {
             return 0.0;
         }
         let apart = toward(&n, a) - toward(&m, b);
-        SWING * core_mm * apart.norm_squared().powi(2) * edge.across_mm
-            / (self.width_mm * self.asked.feed_mm_min)
+        let beyond = (apart.norm_squared() - FREE).max(0.0);
+        SWING * core_mm * beyond * beyond * edge.across_mm / (self.width_mm * self.asked.feed_mm_min)
     }
 
     fn edge_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {

@@ -45,20 +45,20 @@ pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 pub(super) fn settle(
     field: &mut AxisField,
     face: &Extended<'_>,
-    places: Vec<Uv>,
+    places: &[Uv],
     (clear, held): (&Clear<'_>, &Held<'_>),
 ) -> usize {
     let all: Vec<Asked> = places
-        .into_par_iter()
+        .par_iter()
         .filter_map(|at| {
-            let jet = face.jet2(at);
+            let jet = face.jet2(*at);
             let normal = jet.normal().ok()?;
-            let axis = field.at(at).0;
+            let axis = field.at(*at).0;
             let is_clear = |a: &Unit3| clear(&jet.point, &normal, a);
             // Beyond the border the tool may have no place to stand at all.
             let stands =
-                face.contains(at) || is_clear(&axis) || nearest_clear(&axis, held, &is_clear).is_some();
-            stands.then_some(Asked { at, point: jet.point, normal })
+                face.contains(*at) || is_clear(&axis) || nearest_clear(&axis, held, &is_clear).is_some();
+            stands.then_some(Asked { at: *at, point: jet.point, normal })
         })
         .collect();
     let mut asked = all.clone();

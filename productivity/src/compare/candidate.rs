@@ -37,8 +37,19 @@ pub struct Candidate {
     pub strategy: Strategy,
     /// Lead and tilt.
     pub lean: Lean,
-    /// Whether the lead is the least that fits at every place, from that of `lean` on.
-    pub local: bool,
+    /// How the axis is found.
+    pub axes: Axes,
+}
+
+/// How the axes of a tool that leans are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// One lead and tilt everywhere.
+    Held,
+    /// The least lead that fits at every place, from a given one on.
+    Local,
+    /// A field in the part's frame, the same for passes to and fro.
+    Field,
 }
 
 /// What screening says of a candidate.

@@ -12,5 +12,5 @@ mod course;
 mod screen;
 
 pub use around::Around;
-pub use candidate::{Candidate, Reason, Screened, Setting, Tool};
+pub use candidate::{Axes, Candidate, Reason, Screened, Setting, Tool};
 pub use screen::screen;

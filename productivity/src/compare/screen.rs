@@ -1,7 +1,7 @@
 //! The two cheap levels: strips at places, and what constant spacing makes of them.
 
 use super::course::{Course, Level, courses, level};
-use super::{Candidate, Reason, Screened, Setting};
+use super::{Axes, Candidate, Reason, Screened, Setting};
 use crate::ideal::{Place, shared_places};
 use crate::plan::LocalLead;
 use osculate_geom::{Axis, Forms, Jet2, Surface, Unit3};
@@ -88,10 +88,9 @@ fn look(setting: &Setting<'_>, spot: &Spot<'_>, candidates: &[Candidate]) -> Vec
         let all = courses(c, &spot.jet, &spot.forms);
         let mut best = if all.is_empty() { There::Away } else { There::NoStrip };
         for course in all {
-            let here = if c.local {
-                least(setting, spot, chart, c, &course)
-            } else {
-                posture(setting, spot, chart, c, &course)
+            let here = match c.axes {
+                Axes::Held => posture(setting, spot, chart, c, &course),
+                Axes::Local | Axes::Field => least(setting, spot, chart, c, &course),
             };
             best = match (best, here) {
                 (There::Strip { width_mm: a, .. }, There::Strip { width_mm: b, .. }) if b > a => here,
@@ -202,7 +201,9 @@ fn sum(setting: &Setting<'_>, spots: &[Spot<'_>], candidate: &Candidate, there: 
         pointwise_min: scaled(bare_mm) / feed,
         layout_min: scaled(layout_mm) / feed,
         length_mm: scaled(layout_mm),
-        out: (area - good > BAD_SHARE * area).then(|| reason(setting, spots, there, area)),
+        // A field has other ways to lean than along the feed: what is possible is told by its search.
+        out: (candidate.axes != Axes::Field && area - good > BAD_SHARE * area)
+            .then(|| reason(setting, spots, there, area)),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::obstacles::Ball;
 use super::problem::{Place, Reach, Solid};
 use crate::contact::pose_with_axis;
+use crate::cutter::Cutter;
 use crate::pose::Pose;
 use osculate_geom::{Point3, Unit3, Vec3};
 
@@ -37,7 +38,7 @@ impl Stance {
         let slab = reach.obstacles.slab(ball)?;
         let (across, z) = self.apart(&ball.centre);
         let rho = across.norm();
-        let [by_rho, by_z] = solid.shape.local_slope(rho, z - solid.base_mm)?;
+        let [by_rho, by_z] = slope(&solid.shape, rho, z - solid.base_mm)?;
         let out = if rho > 0.0 { across / rho } else { across };
         let slope = out * by_rho + self.pose.axis.into_inner() * by_z;
         let at = solid.shape.local_endless_distance(rho, z - solid.base_mm);
@@ -108,4 +109,20 @@ impl Stance {
     pub const fn rounding_mm(&self) -> f64 {
         self.rounding_mm
     }
+}
+
+/// The slope of a cutter's distance by the distance from its axis and the height, a unit vector; None for shapes that need not be convex.
+fn slope(cutter: &Cutter, rho_mm: f64, z_mm: f64) -> Option<[f64; 2]> {
+    if !cutter.is_end_mill() {
+        return None;
+    }
+    let (x, y) = (rho_mm - cutter.core_mm(), cutter.corner_mm() - z_mm);
+    Some(if x > 0.0 && y > 0.0 {
+        let length = (x * x + y * y).sqrt();
+        [x / length, -y / length]
+    } else if x > y {
+        [1.0, 0.0]
+    } else {
+        [0.0, -1.0]
+    })
 }

@@ -4,9 +4,10 @@ use crate::failure::Failure;
 use crate::job::strategy::Kind;
 use crate::job::{Job, LeadKey};
 use crate::part::{self, Part};
-use crate::work::passes::BALL_LEAD_DEG;
+use crate::work::axes;
+use crate::work::passes::{BALL_LEAD_DEG, each_direction};
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
-use osculate_productivity::compare::Candidate;
+use osculate_productivity::compare::{Axes, Candidate};
 use osculate_productivity::plan::{Along, LocalLead, Strategy};
 use osculate_tools::{Cutter, Lean};
 
@@ -52,10 +53,10 @@ pub(super) fn of_job(job: &Job, faces: &Part, cutters: &[Cutter]) -> Result<Vec<
                 continue;
             }
             // Regions pay where leads, and with them strips, differ over the face.
-            let only_local = auto && matches!(strategy, Strategy::Regions { .. });
+            let not_held = auto && matches!(strategy, Strategy::Regions { .. });
             let leans = leans(job, cutter, strategy);
-            for (lean, local) in leans.into_iter().filter(|(_, local)| *local || !only_local) {
-                out.push(Candidate { tool, strategy: *strategy, lean, local });
+            for (lean, axes) in leans.into_iter().filter(|(_, axes)| *axes != Axes::Held || !not_held) {
+                out.push(Candidate { tool, strategy: *strategy, lean, axes });
             }
         }
     }
@@ -69,24 +70,32 @@ pub(super) fn of_job(job: &Job, faces: &Part, cutters: &[Cutter]) -> Result<Vec<
     Ok(out)
 }
 
-/// Leads of a tool and strategy, and whether each is held or the least of one that is found place by place.
-fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, bool)> {
+/// Leads of a tool and strategy, and whether each is held, the least of one that is found place by place, or none as axes are a field.
+fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
     if strategy.fixed_axis().is_some() {
-        return vec![(Lean::default(), false)];
+        return vec![(Lean::default(), Axes::Held)];
     }
-    let held = |leads: &[f64]| -> Vec<(Lean, bool)> {
-        leads.iter().map(|deg| (job.lean(deg.to_radians()), false)).collect()
+    let of_field = || (job.lean(LocalLead::LEAST_RAD), Axes::Field);
+    // Three or four joints take no lead along every feed.
+    if job.strategy().axis_field || (axes::is_line(job) && job.strategy().may_be_field()) {
+        return vec![of_field()];
+    }
+    let held = |leads: &[f64]| -> Vec<(Lean, Axes)> {
+        leads.iter().map(|deg| (job.lean(deg.to_radians()), Axes::Held)).collect()
     };
+    let local = || (job.lean(LocalLead::LEAST_RAD), Axes::Local);
+    // A field goes by the direction of passes, which level lines have not yet.
+    let lined = matches!(strategy, Strategy::Regions { .. });
+    // Next to the normal a sharp edge tells nothing of what lies between points: a flat end keeps to leads, unless the machine leaves it
+    // no choice.
+    let round = cutter.corner_mm() > 0.0 || axes::is_line(job);
+    let field = (lined && round && job.strategy().may_be_field()).then(of_field);
     match job.strategy().lead {
         LeadKey::Given(deg) => held(&[deg]),
         // A ball is the same at any lead.
-        _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]),
-        LeadKey::Local => vec![(job.lean(LocalLead::LEAST_RAD), true)],
-        LeadKey::Auto => {
-            let mut all = held(&LEADS_DEG);
-            all.push((job.lean(LocalLead::LEAST_RAD), true));
-            all
-        }
+        LeadKey::Local if !cutter.is_ball() => vec![local()],
+        _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]).into_iter().chain(field).collect(),
+        _ => held(&LEADS_DEG).into_iter().chain([local()]).chain(field).collect(),
     }
 }
 
@@ -112,19 +121,6 @@ fn plane_normals(faces: &Part) -> [Unit3; 2] {
     let up = Unit3::try_new(sum, 1e-9).unwrap_or_else(Vec3::z_axis);
     let first = any_perpendicular(&up);
     [first, Unit3::new_unchecked(up.cross(&first))]
-}
-
-/// A strategy whose direction is open, with both directions.
-fn each_direction(strategy: Strategy) -> Vec<Strategy> {
-    match strategy {
-        Strategy::Isoparametric { along: Along::Auto } => {
-            [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) }).to_vec()
-        }
-        Strategy::Regions { along: Along::Auto } => {
-            [Axis::U, Axis::V].map(|a| Strategy::Regions { along: Along::Fixed(a) }).to_vec()
-        }
-        other => vec![other],
-    }
 }
 
 /// A strategy in words, with its direction.

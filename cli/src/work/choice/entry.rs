@@ -2,7 +2,7 @@
 
 use super::measured::Measured;
 use crate::work::program::{Planned, Posted};
-use osculate_productivity::compare::{Candidate, Screened};
+use osculate_productivity::compare::{Axes, Candidate, Screened};
 
 /// How far a candidate has come.
 pub(super) enum State {
@@ -43,6 +43,16 @@ pub(super) struct Entry {
 }
 
 impl Entry {
+    /// Whether its lead is found place by place.
+    pub fn is_local(&self) -> bool {
+        self.candidate.axes == Axes::Local
+    }
+
+    /// Whether its axes are a field.
+    pub fn is_field(&self) -> bool {
+        self.candidate.axes == Axes::Field
+    }
+
     /// The least time known of a candidate, min.
     pub fn least_min(&self) -> f64 {
         match self.figures {

@@ -1,6 +1,6 @@
 //! Which tool, strategy, direction and lead machine a job fastest: many are screened, few planned, fewer posted.
 //!
-//! Candidates wait in the order of the least time known of them: by strips at places, then by the planned length, then by the
+//! Fields of axes come first: a few are planned, and the quickest that holds is hard to undercut. Then candidates wait in the order of the least time known of them: by strips at places, then by the planned length, then by the
 //! posted program. The first is taken a level further, or out when it fails there, until the first one is posted. What screening
 //! leaves out is optimistic as a rule (overlaps, links), so that little is missed. Of the leads of one tool and strategy only
 //! the best is open at a time, and each plan of them that fails puts the next one back in the order. A plan that leaves a

@@ -8,12 +8,13 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{self, Part};
 use crate::watch::Watch;
+use crate::work::axes::Fields;
 use crate::work::extras::Extras;
 use crate::work::look::{Look, Objection};
 use crate::work::passes::{self, Way};
 use crate::work::program::{Planned, Posted, WallS};
 use osculate_geom::Surface;
-use osculate_productivity::compare::{Around, Candidate, Setting, Tool, screen};
+use osculate_productivity::compare::{Around, Axes, Candidate, Setting, Tool, screen};
 use osculate_productivity::ideal::Patch;
 use osculate_productivity::plan::Strategy;
 
@@ -24,6 +25,11 @@ const MOST_IN_NEED: usize = 28;
 const MOST_LOCAL: usize = 6;
 const MOST_BESIDE: usize = 3;
 const MOST_OTHERS: usize = 3;
+/// The same where one with a field of axes holds; nothing else is tried then.
+const MOST_LOCAL_BESIDE_FIELD: usize = 3;
+/// Plans with fields of axes, which are the first, and with those that are tried around one that holds.
+const MOST_FIELDS: usize = 3;
+const MOST_FIELDS_AROUND: usize = 4;
 /// Plans with other tools then, and with one of them.
 const MOST_ELSEWHERE: usize = 4;
 const MOST_OF_ANOTHER: usize = 2;
@@ -68,6 +74,8 @@ pub struct Choice<'a> {
     plans: usize,
     /// For each tool the greatest lead at which it dug in, whatever the strategy, rad.
     dug_in_rad: Vec<f64>,
+    /// For each tool its fields of axes over the faces.
+    fields: Vec<Fields>,
     holder: Option<Holder>,
 }
 
@@ -121,7 +129,8 @@ impl<'a> Choice<'a> {
             })
             .collect();
         let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
-        let choice = Self { faces, jobs, entries, plans: 0, dug_in_rad, holder: None };
+        let fields = jobs.iter().map(|_| Fields::default()).collect();
+        let choice = Self { faces, jobs, entries, plans: 0, dug_in_rad, fields, holder: None };
         choice.any_left(job)?;
         Ok(choice)
     }
@@ -139,7 +148,7 @@ impl<'a> Choice<'a> {
 
     /// Plans of the tool and strategy of an entry that failed.
     fn failures(&self, entry: &Entry) -> usize {
-        let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
+        let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy, e.is_field());
         let failed = |e: &&Entry| matches!(e.state, State::Out(_)) && e.tried;
         self.entries.iter().filter(failed).filter(|e| group(e) == group(entry)).count()
     }
@@ -149,13 +158,18 @@ impl<'a> Choice<'a> {
         if let Some(holder) = &self.holder {
             return self.first_around(holder);
         }
+        if let Some(field) = self.first_field() {
+            return Some(field);
+        }
         let holds = self.entries.iter().any(|e| e.verified.is_some_and(|v| v.within_tolerance));
         let more = self.plans < MOST_PLANS;
         let in_need = !more && !holds && self.plans < MOST_IN_NEED;
         // Leads found place by place wait for a plan that holds, where one is held elsewhere.
-        let only_local = self.entries.iter().all(|e| e.candidate.local);
+        let only_local = self.entries.iter().all(|e| e.candidate.axes != Axes::Held);
         let waiting = |e: &Entry| {
-            Self::waiting(e) && (!e.candidate.local || in_need || only_local || e.figures.is_some())
+            !e.is_field()
+                && Self::waiting(e)
+                && (!e.is_local() || in_need || only_local || e.figures.is_some())
         };
         let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
         let mut open: Vec<usize> = Vec::new();
@@ -164,7 +178,7 @@ impl<'a> Choice<'a> {
             // tool dug in on other lines come first.
             let key = |e: &Entry| {
                 let doubtful =
-                    !e.candidate.local && e.candidate.lean.lead_rad <= self.dug_in_rad[e.candidate.tool];
+                    !e.is_local() && e.candidate.lean.lead_rad <= self.dug_in_rad[e.candidate.tool];
                 (e.figures.is_none(), doubtful, e.least_min())
             };
             let ahead = |o: usize| key(&self.entries[o]) <= key(e);
@@ -181,12 +195,30 @@ impl<'a> Choice<'a> {
             let put_back = e.least_min() * (1.0 + SET_BACK * failed as f64);
             // In need what is planned is settled before more is planned, of which leads found place by place come first.
             let later = in_need && e.figures.is_none();
-            ((later, later && !e.candidate.local, if in_need { failed } else { 0 }), put_back)
+            ((later, later && !e.is_local(), if in_need { failed } else { 0 }), put_back)
         };
         open.into_iter().min_by(|a, b| {
             let (a, b) = (order(a), order(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         })
+    }
+
+    /// Plans with fields of axes that were tried.
+    fn fields_made(&self) -> usize {
+        self.entries.iter().filter(|e| e.is_field() && e.tried).count()
+    }
+
+    /// The field to go on with while nothing holds: a few are planned, of which the quickest is verified, then the next.
+    fn first_field(&self) -> Option<usize> {
+        let least =
+            |(_, a): &(usize, &Entry), (_, b): &(usize, &Entry)| a.least_min().total_cmp(&b.least_min());
+        let fields = || self.entries.iter().enumerate().filter(|(_, e)| e.is_field() && Self::waiting(e));
+        let planned = fields().filter(|(_, e)| e.figures.is_some() || e.tried).min_by(least);
+        let quicker = |e: &Entry| planned.is_none_or(|(_, p)| e.least_min() < p.least_min());
+        let most = if self.entries.iter().all(Entry::is_field) { MOST_PLANS } else { MOST_FIELDS };
+        let more = self.fields_made() < most;
+        let open = fields().filter(|(_, e)| more && !e.tried && quicker(e)).min_by(least);
+        open.or(planned).map(|(k, _)| k)
     }
 
     /// The rank of leads found place by place with another tool than the one that holds: along the lines on which that tool was the
@@ -196,7 +228,7 @@ impl<'a> Choice<'a> {
         let c = &entry.candidate;
         let planned: Vec<&Entry> =
             self.entries.iter().filter(|e| e.candidate.tool == c.tool && e.tried).collect();
-        if planned.iter().filter(|e| e.candidate.local).count() >= MOST_OF_ANOTHER {
+        if planned.iter().filter(|e| e.is_local()).count() >= MOST_OF_ANOTHER {
             return None;
         }
         let quickest = planned
@@ -212,7 +244,7 @@ impl<'a> Choice<'a> {
 
     /// Plans with leads found place by place that were tried.
     fn locals(&self) -> impl Iterator<Item = &Entry> {
-        self.entries.iter().filter(|e| e.candidate.local && e.tried)
+        self.entries.iter().filter(|e| e.is_local() && e.tried)
     }
 
     const fn waiting(entry: &Entry) -> bool {
@@ -227,7 +259,11 @@ impl<'a> Choice<'a> {
         let held = self.entries[holder.entry].candidate;
         let made_local = self.locals().filter(|e| e.candidate.tool == held.tool).count();
         let made = (self.plans - holder.plans).saturating_sub(self.locals().count() - holder.locals);
-        let elsewhere = self.entries.iter().filter(|e| e.elsewhere).count();
+        let elsewhere = self.entries.iter().filter(|e| e.elsewhere && !e.is_field()).count();
+        let holds = |e: &Entry| e.verified.is_some_and(|v| v.within_tolerance);
+        let by_field = self.entries.iter().any(|e| e.is_field() && holds(e));
+        let fields = self.fields_made();
+        let most_alone = if self.entries.iter().all(Entry::is_field) { MOST_PLANS } else { 0 };
         let order = |e: &Entry| {
             let c = &e.candidate;
             if !Self::waiting(e) || e.least_min() >= holder.time_min {
@@ -237,23 +273,28 @@ impl<'a> Choice<'a> {
             if e.figures.is_some() || e.tried {
                 return Some((0, 0.0, e.least_min()));
             }
+            if e.is_field() {
+                return (fields < MOST_FIELDS_AROUND.max(most_alone)).then(|| (1, 0.0, e.least_min()));
+            }
             if c.tool != held.tool {
-                let wanted = c.local && keeps_lines(&c.strategy) && elsewhere < MOST_ELSEWHERE;
+                let wanted =
+                    e.is_local() && !by_field && keeps_lines(&c.strategy) && elsewhere < MOST_ELSEWHERE;
                 return wanted.then(|| self.with_another(e)).flatten();
             }
             let beside = c.strategy == held.strategy;
-            let (made, most) = match (c.local, beside) {
-                (true, _) => (made_local, MOST_LOCAL),
+            let (made, most) = match (e.is_local(), beside) {
+                (true, _) => (made_local, if by_field { MOST_LOCAL_BESIDE_FIELD } else { MOST_LOCAL }),
+                (false, _) if by_field => return None,
                 (false, true) => (made, MOST_BESIDE),
                 (false, false) => (made, MOST_BESIDE + MOST_OTHERS),
             };
-            let kind = match c.local {
+            let kind = match e.is_local() {
                 false => 3 + usize::from(!beside),
                 true => 2 - usize::from(keeps_lines(&c.strategy)),
             };
             let away =
                 (c.lean.lead_rad - held.lean.lead_rad).abs() + (c.lean.tilt_rad - held.lean.tilt_rad).abs();
-            let away = if c.local { 0.0 } else { away };
+            let away = if e.is_local() { 0.0 } else { away };
             (made < most).then_some((kind, away, e.least_min()))
         };
         let ranked = self.entries.iter().enumerate().filter_map(|(k, e)| order(e).map(|o| (o, k)));
@@ -314,9 +355,10 @@ impl<'a> Choice<'a> {
     /// Plans a candidate and looks at what it leaves.
     fn planned(&mut self, k: usize) -> Result<State, Failure> {
         self.plans += 1;
-        let Entry { candidate: Candidate { tool, strategy, lean, local }, share, .. } = self.entries[k];
+        let Entry { candidate: Candidate { tool, strategy, lean, axes }, share, .. } = self.entries[k];
         let job = &self.jobs[tool];
-        let way = Way { strategy: &strategy, lean, local, share, watch: &() };
+        let fields = &self.fields[tool];
+        let way = Way { strategy: &strategy, lean, axes, fields, share, watch: &() };
         let passes = match passes::each_face(job, self.faces, &way, &|_| {}) {
             Ok(p) => p,
             Err(e) => {
@@ -349,7 +391,7 @@ impl<'a> Choice<'a> {
             linked,
             strategy,
             lean,
-            local,
+            local: axes != Axes::Held,
             extras,
             with_strips: true,
         })))
@@ -367,8 +409,8 @@ impl<'a> Choice<'a> {
 
     /// Leaves out the smaller leads of a candidate that digs in: the heel comes down with the lead.
     fn no_smaller_lead(&mut self, k: usize) {
-        let Candidate { tool, strategy, lean, local } = self.entries[k].candidate;
-        if local {
+        let Candidate { tool, strategy, lean, axes } = self.entries[k].candidate;
+        if axes != Axes::Held {
             return;
         }
         self.dug_in_rad[tool] = self.dug_in_rad[tool].max(lean.lead_rad);
@@ -376,7 +418,7 @@ impl<'a> Choice<'a> {
             let c = &e.candidate;
             let same = (c.tool, c.strategy, c.lean.tilt_rad) == (tool, strategy, lean.tilt_rad);
             let near = c.lean.lead_rad < STEEPER * lean.lead_rad;
-            if same && near && !c.local && matches!(e.state, State::Open) {
+            if same && near && c.axes == Axes::Held && matches!(e.state, State::Open) {
                 let why = format!("a lead of {:.0} deg does not fit already", lean.lead_rad.to_degrees());
                 e.state = State::Out(why);
             }

@@ -6,6 +6,7 @@ use super::measured::Measured;
 use crate::job::Job;
 use crate::report;
 use crate::words::Table;
+use osculate_productivity::compare::Axes;
 use serde::Serialize;
 
 /// Characters of a reason in the table; all of it is in the JSON.
@@ -38,6 +39,8 @@ pub struct Row {
     pub lead_deg: f64,
     /// Whether the lead was found place by place.
     pub local_lead: bool,
+    /// Whether axes are measured from the `feed` or are a `field` in the part's frame.
+    pub axis: &'static str,
     /// Tilt.
     pub tilt_deg: f64,
     /// Leads looked at.
@@ -82,7 +85,8 @@ fn of_entry(jobs: &[Job], entry: &Entry, leads: usize) -> Row {
         tool: jobs[c.tool].tool_words(),
         strategy: candidates::words(&c.strategy),
         lead_deg: c.lean.lead_rad.to_degrees(),
-        local_lead: c.local,
+        local_lead: c.axes == Axes::Local,
+        axis: if c.axes == Axes::Field { "field" } else { "feed" },
         tilt_deg: c.lean.tilt_rad.to_degrees(),
         leads,
         pointwise_min: finite(entry.screened.pointwise_min),
@@ -116,8 +120,8 @@ fn rank(entry: &Entry) -> (u8, f64) {
 pub(super) fn rows(entries: &[Entry], jobs: &[Job]) -> Vec<Row> {
     let mut best: Vec<(&Entry, usize)> = Vec::new();
     for e in entries {
-        let group =
-            |o: &Entry| (o.candidate.tool, o.candidate.strategy) == (e.candidate.tool, e.candidate.strategy);
+        let key = |e: &Entry| (e.candidate.tool, e.candidate.strategy, e.is_field());
+        let group = |o: &Entry| key(o) == key(e);
         match best.iter_mut().find(|(o, _)| group(o)) {
             Some((o, leads)) => {
                 *leads += 1;
@@ -148,7 +152,11 @@ fn cells(row: &Row) -> [String; 9] {
     [
         row.tool.clone(),
         row.strategy.clone(),
-        if row.local_lead { "local".to_owned() } else { format!("{:.0}", row.lead_deg) },
+        match row.axis {
+            "feed" if row.local_lead => "local".to_owned(),
+            "feed" => format!("{:.0}", row.lead_deg),
+            field => field.to_owned(),
+        },
         time(row.pointwise_min),
         time(row.layout_min),
         length.map_or_else(|| "-".to_owned(), |l| format!("{l:.0}")),
