@@ -201,9 +201,10 @@ fn sum(setting: &Setting<'_>, spots: &[Spot<'_>], candidate: &Candidate, there: 
         pointwise_min: scaled(bare_mm) / feed,
         layout_min: scaled(layout_mm) / feed,
         length_mm: scaled(layout_mm),
-        // A field has other ways to lean than along the feed: what is possible is told by its search.
-        out: (candidate.axes != Axes::Field && area - good > BAD_SHARE * area)
-            .then(|| reason(setting, spots, there, area)),
+        // A field has other ways to lean than along the feed: what stands in the way then is told by its search.
+        out: (area - good > BAD_SHARE * area)
+            .then(|| reason(setting, spots, there, area))
+            .filter(|why| candidate.axes != Axes::Field || matches!(why, Reason::TooLarge { .. })),
     }
 }
 
