@@ -4,7 +4,8 @@
 //! face whose points have a sample within `d`. Samples lie in rows, half a spacing or less off the corners of their cells, so
 //! that `d` is 0.71 of the spacing, and a little more where the face bends.
 //!
-//! *Limits.* Where a pass ends nearer to a face than the clearance the way to the next must not come nearer to that face than that.
+//! *Limits.* Where a pass ends nearer to a face than the clearance the way to the next may come half as near to
+//! that face: between two places next to a hollow wall it lies nearer than both.
 
 use super::Named;
 use osculate_geom::{Point3, Surface, Unit3, quadrature};
@@ -20,6 +21,8 @@ const FEWEST: usize = 400;
 /// Slivers on which no sample lies are sampled this many times as densely, so often.
 const DENSER: f64 = 4.0;
 const TRIES: u32 = 4;
+/// Share of what is kept from a face at the ends of a way that is kept along it, where that is less than the clearance.
+const NEARER: f64 = 0.5;
 /// Points in a group.
 const GROUP: usize = 48;
 /// Points over the faces that are machined.
@@ -126,11 +129,14 @@ impl Walls {
         nearest
     }
 
-    /// What a body keeps from the walls of what it should, 1 at most; None where it may touch one. From a face that it comes near to at
-    /// the ends of its way it keeps no more than there.
+    /// What a body keeps from the walls of what it should, 1 at most; None where it may touch one. From a face that it comes nearer to at
+    /// the ends of its way than it should it keeps a share of that.
     pub(super) fn room(&self, body: &Cutter, pose: &Pose, nearest: &[f64], slack_mm: f64) -> Option<f64> {
         self.groups.iter().try_fold(1.0, |least: f64, g| {
-            let enough = g.keep_mm.min(nearest[g.face] - slack_mm);
+            let enough = match nearest[g.face] {
+                near if near >= g.keep_mm => g.keep_mm,
+                near => (NEARER * near).min(near - slack_mm),
+            };
             if body.distance(pose, &g.middle) - g.reach_mm >= g.keep_mm.min(enough.max(0.0)) {
                 return Some(least);
             }
