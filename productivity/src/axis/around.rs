@@ -5,12 +5,11 @@
 //! points, so that it keeps off the points of other faces but for those next to what it machines.
 
 use crate::plan::Named;
-use crate::plan::walls::sampled;
-use osculate_geom::{Point3, quadrature};
+use crate::plan::samples::{Wanted, samples};
+use osculate_geom::Point3;
 use osculate_tools::Cutter;
 use osculate_tools::reach::{ObstacleKind, ObstaclePoint, Obstacles};
 use osculate_tools::removal::{Sample, SamplingError};
-use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// Most points over all faces, and fewest of one.
@@ -84,20 +83,7 @@ impl Surroundings {
         let round_mm = around.cutter.corner_mm().max(SHARP * around.cutter.radius_mm());
         let spacing_mm = (8.0 * round_mm * HIDDEN * around.gouge_mm).sqrt();
         let all: Vec<&Named<'_>> = around.faces.iter().chain(around.check).collect();
-        let areas: Vec<f64> = all.par_iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
-        let sum: f64 = areas.iter().sum();
-        let found: Vec<_> = all
-            .par_iter()
-            .zip(&areas)
-            .enumerate()
-            .map(|(k, (face, area))| {
-                let share = if sum > 0.0 { area / sum } else { 1.0 };
-                // As many as its share of the area: a positive number, far below any limit.
-                let most = ((MOST * share) as usize).max(FEWEST);
-                let found = sampled(face.surface, k as u32, spacing_mm, most);
-                found.map_err(|e| (face.face.to_owned(), e))
-            })
-            .collect::<Result<_, _>>()?;
+        let found = samples(&all, Wanted { spacing_mm, most: MOST, fewest: FEWEST })?;
         let [machined, others] = {
             let mut found = found;
             let others = found.split_off(around.faces.len());

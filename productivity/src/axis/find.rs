@@ -20,6 +20,8 @@ use rayon::prelude::*;
 const LEVEL: u32 = 4;
 /// Places asked along each side of a cell.
 const ASKED: usize = 4;
+/// Shares of the scallop by which a tool is lifted that no axis takes down to the face: dents narrower than the tool.
+const LIFTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
 /// What a field is for.
 #[derive(Clone, Copy)]
@@ -85,6 +87,15 @@ pub enum NoField {
     },
 }
 
+/// The place with the tool lifted along the normal by the first of some lengths with which an axis is possible, and those that are.
+fn lifted(reach: &Reach<'_>, place: &Place, lifts_mm: &[f64]) -> Option<(Place, Bits)> {
+    lifts_mm.iter().find_map(|mm| {
+        let place = Place { point: place.point + place.normal.into_inner() * *mm, ..*place };
+        let bits = reach.map(&[place]).pop()?;
+        (!bits.is_empty()).then_some((place, bits))
+    })
+}
+
 /// Finds the field of axes of least time over a face, for each direction of passes.
 ///
 /// # Errors
@@ -117,14 +128,24 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         directions: &directions,
         allowed: Some(&mask),
     })?;
-    let places: Vec<Option<Place>> = lattice
+    let lifts_mm = LIFTS.map(|share| share * wish.scallop_mm);
+    let mut places: Vec<Option<Place>> = lattice
         .nodes
         .iter()
         .map(|n| n.normal.filter(|_| n.stood).map(|normal| Place { point: n.point, normal }))
         .collect();
     let on_face: Vec<Place> = places.iter().flatten().copied().collect();
     let mut found = reach.map(&on_face).into_iter();
-    let bits: Vec<Option<Bits>> = places.iter().map(|p| p.as_ref().and_then(|_| found.next())).collect();
+    let mut bits: Vec<Option<Bits>> = places.iter().map(|p| p.as_ref().and_then(|_| found.next())).collect();
+    // Where the tool cannot come down to the face it may still stand off by what may be left.
+    places.par_iter_mut().zip(&mut bits).for_each(|(place, bits)| {
+        let (Some(place), Some(bits)) = (place, bits) else { return };
+        if bits.is_empty()
+            && let Some((lifted, found)) = lifted(&reach, place, &lifts_mm)
+        {
+            (*place, *bits) = (lifted, found);
+        }
+    });
     // Where no axis is possible one that leans no further than it may keeps the field within reason.
     let leaning = |place: &Place| {
         Bits::of(all.len(), |k| mask.contains(k) && reach.leans_within_limits(place, &all[k]))
@@ -185,7 +206,7 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         let mut spline = lattice.spline.clone();
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
         let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
-        let unsettled = settle(&mut field, &face, &between, (&clear, &held));
+        let unsettled = settle(&mut field, &face, (&between, &lifts_mm), (&clear, &held));
         let unreached = unreached.clone();
         Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, between.len()] })
     };

@@ -18,12 +18,36 @@ const AROUND: usize = 12;
 /// Poles move further than they must by this part, so that rounds end.
 const BEYOND: f64 = 0.25;
 
+/// An axis that was found for a place counts until the field has turned so far there, rad.
+const KNOWN: f64 = 0.02;
+
 /// A place that is asked.
 #[derive(Clone, Copy)]
 struct Asked {
     at: Uv,
     point: Point3,
     normal: Unit3,
+    /// An axis that is not clear and the nearest to it that is, where there is one: what was found last.
+    known: Option<(Unit3, Option<Unit3>)>,
+}
+
+impl Asked {
+    /// Whether the tool is clear with an axis; if not, the nearest with which it is becomes known.
+    fn is_clear(&mut self, axis: &Unit3, (clear, held): (&Clear<'_>, &Held<'_>)) -> bool {
+        let is_clear = |a: &Unit3| clear(&self.point, &self.normal, a);
+        if is_clear(axis) {
+            return true;
+        }
+        if self.known.is_none_or(|(from, _)| from.angle(axis) > KNOWN) {
+            self.known = Some((*axis, nearest_clear(axis, held, &is_clear)));
+        }
+        false
+    }
+
+    /// The clear axis that is known.
+    fn near(&self) -> Option<Unit3> {
+        self.known.and_then(|(_, near)| near)
+    }
 }
 
 /// A place where the tool may not be clear.
@@ -41,42 +65,49 @@ pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 
 /// Moves the poles of a field until the tool is clear at places of a face; how many of them it is not at.
 ///
-/// `held` brings an axis to where the joints can take it.
+/// `held` brings an axis to where the joints can take it. A place at which no axis near the field's is clear is asked with the tool
+/// lifted by `lifts_mm`, the first that will do.
 pub(super) fn settle(
     field: &mut AxisField,
     face: &Extended<'_>,
-    places: &[Uv],
+    (places, lifts_mm): (&[Uv], &[f64]),
     (clear, held): (&Clear<'_>, &Held<'_>),
 ) -> usize {
-    let all: Vec<Asked> = places
+    let how = (clear, held);
+    let mut all: Vec<Asked> = places
         .par_iter()
         .filter_map(|at| {
             let jet = face.jet2(*at);
             let normal = jet.normal().ok()?;
             let axis = field.at(*at).0;
-            let is_clear = |a: &Unit3| clear(&jet.point, &normal, a);
+            let lifted = |mm: f64| {
+                let point = jet.point + normal.into_inner() * mm;
+                let mut asked = Asked { at: *at, point, normal, known: None };
+                (asked.is_clear(&axis, how) || asked.near().is_some()).then_some(asked)
+            };
+            let found = [0.0].iter().chain(lifts_mm).find_map(|mm| lifted(*mm));
             // Beyond the border the tool may have no place to stand at all.
-            let stands =
-                face.contains(*at) || is_clear(&axis) || nearest_clear(&axis, held, &is_clear).is_some();
-            stands.then_some(Asked { at: *at, point: jet.point, normal })
+            let none = || Asked { at: *at, point: jet.point, normal, known: Some((axis, None)) };
+            found.or_else(|| face.contains(*at).then(none))
         })
         .collect();
-    let mut asked = all.clone();
+    let mut asked: Vec<usize> = (0..all.len()).collect();
     let mut best = (usize::MAX, field.spline.poles.clone());
     for round in 0..=ROUNDS {
-        let short: Vec<Option<Short>> = asked
-            .par_iter()
-            .map(|Asked { at, point, normal }| {
-                let axis = field.at(*at).0;
-                (!clear(point, normal, &axis)).then(|| {
-                    let near = nearest_clear(&axis, held, &|a| clear(point, normal, a));
-                    Short {
-                        at: *at,
-                        by: near.map_or_else(Vec3::zeros, |a| a.into_inner() - axis.into_inner()),
-                    }
+        let mut now: Vec<(usize, Asked)> = asked.iter().map(|k| (*k, all[*k])).collect();
+        let short: Vec<Option<Short>> = now
+            .par_iter_mut()
+            .map(|(_, place)| {
+                let axis = field.at(place.at).0;
+                (!place.is_clear(&axis, how)).then(|| {
+                    let by = place.near().map_or_else(Vec3::zeros, |a| a.into_inner() - axis.into_inner());
+                    Short { at: place.at, by }
                 })
             })
             .collect();
+        for (k, place) in now {
+            all[k] = place;
+        }
         let count = short.iter().flatten().count();
         if asked.len() == all.len() && count < best.0 {
             best = (count, field.spline.poles.clone());
@@ -87,9 +118,9 @@ pub(super) fn settle(
         // What was clear may be so no more: every other round all are asked again.
         if round % 2 == 0 {
             let near = asked.iter().zip(&short).filter(|(_, s)| s.is_some());
-            asked = near.map(|(a, _)| *a).collect();
+            asked = near.map(|(k, _)| *k).collect();
         } else {
-            asked.clone_from(&all);
+            asked = (0..all.len()).collect();
         }
         move_poles(field, short.iter().flatten());
     }

@@ -9,10 +9,9 @@
 //! deeper, and moves between passes are not looked at: verification has the last word.
 //! A stretch is left out, never machined in another way: leads are chosen before.
 
-use super::walls;
+use super::samples::{Wanted, samples};
 use super::{CcPoint, Named, Pass, Passes, Tolerance};
 use crate::axis::sunk;
-use osculate_geom::quadrature;
 use osculate_tools::reach::Obstacles;
 use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept};
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
@@ -21,7 +20,7 @@ use rayon::prelude::*;
 
 /// Most samples that the tool is held against, over all faces, and fewest of one face.
 const MOST: f64 = 4e5;
-const FEWEST: usize = 400;
+const FEWEST: usize = 4000;
 /// Samples by which areas are measured, over all faces to machine.
 const MOST_MEASURED: f64 = 4e4;
 /// Samples stand no closer than lets the cutter's radius go deeper between them by this part of the gouge tolerance.
@@ -39,7 +38,7 @@ const BESIDE: f64 = 0.4;
 /// The share of the accepted depth that ends a stretch left out.
 const RELEASE: f64 = 0.5;
 /// What remains between two stretches left out is left out too where it is shorter than this part of its strip's width.
-const SHORT: f64 = 0.25;
+const SHORT: f64 = 1.0;
 
 /// What passes are held against. Lengths mm.
 #[derive(Clone, Copy)]
@@ -94,18 +93,11 @@ pub enum LeaveOutError {
 
 /// Samples of faces, and their greatest spacing, mm.
 fn sampled(faces: &[Named<'_>], [spacing_mm, most]: [f64; 2]) -> Result<(Vec<Sample>, f64), LeaveOutError> {
-    let areas: Vec<f64> = faces.par_iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
-    let all: f64 = areas.iter().sum();
-    let (mut samples, mut coarsest) = (Vec::new(), 0.0f64);
-    for (k, (face, area)) in faces.iter().zip(&areas).enumerate() {
-        // A share of what may be no number goes to the sampling, which says so.
-        let share = if all > 0.0 { area / all } else { 1.0 };
-        let most = ((most * share) as usize).max(FEWEST);
-        let found = walls::sampled(face.surface, k as u32, spacing_mm, most)
-            .map_err(|source| LeaveOutError::Sampling { face: face.face.to_owned(), source })?;
-        coarsest = coarsest.max(found.density.spacing_mm);
-        samples.extend(found.samples);
-    }
+    let all: Vec<&Named<'_>> = faces.iter().collect();
+    let found = samples(&all, Wanted { spacing_mm, most, fewest: FEWEST })
+        .map_err(|(face, source)| LeaveOutError::Sampling { face, source })?;
+    let coarsest = found.iter().map(|f| f.density.spacing_mm).fold(0.0, f64::max);
+    let samples = found.into_iter().flat_map(|f| f.samples).collect();
     Ok((samples, coarsest))
 }
 

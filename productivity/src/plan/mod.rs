@@ -23,6 +23,7 @@ mod motion;
 mod predict;
 mod regions;
 mod resample;
+pub(crate) mod samples;
 mod seat;
 mod senses;
 mod strategy;

@@ -8,8 +8,9 @@
 //! that face: between two places next to a hollow wall it lies nearer than both.
 
 use super::Named;
-use osculate_geom::{Point3, Surface, Unit3, quadrature};
-use osculate_tools::removal::{Sampling, SamplingError, sample_surface};
+use super::samples::{Wanted, samples};
+use osculate_geom::{Point3, Unit3, quadrature};
+use osculate_tools::removal::SamplingError;
 use osculate_tools::{Cutter, Pose};
 
 /// Spacing of samples, of the clearance, and what it adds to the clearance at the samples, of itself.
@@ -18,9 +19,6 @@ const ADDED: f64 = 0.75;
 /// Most points over all faces, and fewest of one: with more room between them the clearance at the samples grows.
 const MOST: f64 = 2e5;
 const FEWEST: usize = 400;
-/// Slivers on which no sample lies are sampled this many times as densely, so often.
-const DENSER: f64 = 4.0;
-const TRIES: u32 = 4;
 /// Share of what is kept from a face at the ends of a way that is kept along it, where that is less than the clearance.
 const NEARER: f64 = 0.5;
 /// Points in a group.
@@ -49,23 +47,6 @@ pub struct Walls {
     ground: Vec<Point3>,
 }
 
-/// Samples of a face however narrow it is.
-pub(crate) fn sampled(
-    surface: &dyn Surface,
-    face: u32,
-    spacing_mm: f64,
-    most: usize,
-) -> Result<Sampling, SamplingError> {
-    let mut found = sample_surface(surface, face, spacing_mm, most);
-    for k in 1..TRIES {
-        if !matches!(found, Err(SamplingError::Nothing { .. })) {
-            break;
-        }
-        found = sample_surface(surface, face, spacing_mm / DENSER.powi(k as i32), most);
-    }
-    found
-}
-
 impl Walls {
     /// Points of faces from which hops keep `clearance_mm`, and into which they go by no more than `accepted_mm` along the normals where
     /// passes begin or end nearer than that.
@@ -73,14 +54,11 @@ impl Walls {
     /// # Errors
     /// A clearance that is not positive and finite ([`SamplingError::Spacing`]), or faces that cannot be sampled.
     pub fn of(faces: &[Named<'_>], clearance_mm: f64, accepted_mm: f64) -> Result<Self, SamplingError> {
-        let areas: Vec<f64> = faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
-        let all: f64 = areas.iter().sum();
+        let all: Vec<&Named<'_>> = faces.iter().collect();
+        let wanted = Wanted { spacing_mm: SPACING * clearance_mm, most: MOST, fewest: FEWEST };
+        let found = samples(&all, wanted).map_err(|(_, e)| e)?;
         let mut groups = Vec::new();
-        for (k, (face, area)) in faces.iter().zip(&areas).enumerate() {
-            // A share of what may be no number goes to the sampling, which says so.
-            let share = if all > 0.0 { area / all } else { 1.0 };
-            let most = ((MOST * share) as usize).max(FEWEST);
-            let found = sampled(face.surface, k as u32, SPACING * clearance_mm, most)?;
+        for (k, found) in found.iter().enumerate() {
             let between_mm = ADDED * found.density.spacing_mm;
             let keep_mm = clearance_mm + between_mm;
             groups.extend(found.samples.chunks(GROUP).map(|chunk| {
@@ -98,15 +76,11 @@ impl Walls {
     /// # Errors
     /// Faces that cannot be sampled.
     pub fn over(self, faces: &[Named<'_>]) -> Result<Self, SamplingError> {
-        let areas: Vec<f64> = faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
-        let all: f64 = areas.iter().sum();
-        let spacing_mm = (all / GROUND).sqrt();
-        let mut ground = Vec::new();
-        for (k, (face, area)) in faces.iter().zip(&areas).enumerate() {
-            let most = ((2.0 * GROUND * area / all) as usize).max(FEWEST);
-            let found = sampled(face.surface, k as u32, spacing_mm, most)?;
-            ground.extend(found.samples.iter().map(|s| s.point));
-        }
+        let area: f64 = faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value).sum();
+        let all: Vec<&Named<'_>> = faces.iter().collect();
+        let wanted = Wanted { spacing_mm: (area / GROUND).sqrt(), most: 2.0 * GROUND, fewest: FEWEST };
+        let found = samples(&all, wanted).map_err(|(_, e)| e)?;
+        let ground = found.iter().flat_map(|f| f.samples.iter().map(|s| s.point)).collect();
         Ok(Self { ground, ..self })
     }
 
