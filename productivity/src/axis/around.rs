@@ -71,6 +71,11 @@ impl Touched {
         }
         out
     }
+
+    /// Whether a point is in or next to one of the cells.
+    fn holds(&self, p: &Point3) -> bool {
+        self.cells.contains(&self.cell(p))
+    }
 }
 
 impl Surroundings {
@@ -94,7 +99,7 @@ impl Surroundings {
         let touched = Touched::new(&own, 0.5 * around.cutter.radius_mm());
         let sunk = |s: &Sample| sunk(s, around.gouge_mm);
         let other = |s: Sample| {
-            if touched.cells.contains(&touched.cell(&s.point)) {
+            if touched.holds(&s.point) {
                 sunk(&s)
             } else {
                 ObstaclePoint { point: s.point, owner: s.face, kind: ObstacleKind::Surroundings }

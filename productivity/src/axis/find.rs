@@ -146,10 +146,6 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
             (*place, *bits) = (lifted, found);
         }
     });
-    // Where no axis is possible one that leans no further than it may keeps the field within reason.
-    let leaning = |place: &Place| {
-        Bits::of(all.len(), |k| mask.contains(k) && reach.leans_within_limits(place, &all[k]))
-    };
     // A ball's strip is the same at any lean.
     let rims = !on_line && !cutter.is_ball();
     let rim = |node: &Node, place: &Place| {
@@ -163,9 +159,9 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         .map(|(node, both)| match both {
             (Some(place), Some(bits)) => {
                 let rim = rims.then(|| rim(node, place));
+                // Where no axis is possible nothing is cut: there the field goes on as it comes.
                 let none = bits.is_empty() && rim.as_ref().is_none_or(Rim::is_empty);
-                let held = none.then(|| leaning(place));
-                Possible::new(&directions, held.as_ref().unwrap_or(bits), rim.filter(|_| !none))
+                if none { Possible::default() } else { Possible::new(&directions, bits, rim) }
             }
             _ => Possible::default(),
         })

@@ -21,7 +21,7 @@ const RIM: u8 = 3;
 const AT_RIM: f64 = 0.03;
 /// The narrowest strip of a pass decides how near the next one lies: the time of a place grows by this power more than by one over
 /// its width.
-const NARROW: f64 = 2.0;
+const NARROW: f64 = 6.0;
 /// Length of a step of the rim next to the normal, rad.
 const MARGIN_RAD: f64 = 0.004;
 /// Share of the whole time that a turn by a radian over a square face costs beyond what the joints take.
@@ -30,6 +30,8 @@ const TURN: f64 = 0.1;
 /// they count by their square so many times what they take at the feed: what flips tears passes.
 const FREE: f64 = 0.5;
 const SWING: f64 = 1.0;
+/// How many times as much turns cost at first: a field that is stiff has no walls between parts that lean to different sides.
+const STIFF: [f64; 3] = [100.0, 10.0, 1.0];
 /// Starts that places share, the least angle between two of them, rad, and ways to lean least that are others.
 const STARTS: usize = 8;
 const WAYS_BEGUN: usize = 8;
@@ -119,6 +121,8 @@ pub(super) struct Search<'a> {
     possible: &'a [Possible],
     /// Time that a turn costs, by the square of its angle, min.
     turn_min: f64,
+    /// How many times as much turns and swings cost now.
+    stiffness: f64,
     /// Widths by which passes over edges are counted, mm.
     width_mm: f64,
     /// The median over the nodes of the widest strips next to the normal, mm.
@@ -144,7 +148,7 @@ impl<'a> Search<'a> {
         let mut usual: Vec<f64> = lattice.nodes.iter().zip(possible).filter_map(widest).collect();
         usual.sort_by(f64::total_cmp);
         let usual_mm = usual.get(usual.len() / 2).copied().unwrap_or(width_mm);
-        Self { asked, lattice, possible, turn_min, width_mm, usual_mm }
+        Self { asked, lattice, possible, turn_min, stiffness: 1.0, width_mm, usual_mm }
     }
 
     fn depth(&self, node: usize, axis: &Unit3) -> f64 {
@@ -205,7 +209,7 @@ impl<'a> Search<'a> {
     fn edge_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
         let ratio = (edge.across_mm / edge.length_mm.max(f64::MIN_POSITIVE)).min(LONGEST);
         let angle = a.angle(b);
-        let smooth = self.turn_min * ratio * angle * angle + self.swing_min(edge, a, b);
+        let smooth = self.stiffness * (self.turn_min * ratio * angle * angle + self.swing_min(edge, a, b));
         if edge.along == 0.0 {
             return smooth;
         }
@@ -325,6 +329,11 @@ impl<'a> Search<'a> {
         self.nearest(node, &axis)
     }
 
+    /// The same search where turns cost so many times as much.
+    fn stiffer(&self, times: f64) -> Self {
+        Self { stiffness: self.stiffness * times, ..*self }
+    }
+
     /// The best axes found; None where no place has any.
     pub fn best(&self) -> Option<Vec<Unit3>> {
         let shared = self.starts();
@@ -335,7 +344,9 @@ impl<'a> Search<'a> {
             .par_iter()
             .map(|start| {
                 let mut axes: Vec<Unit3> = (0..self.possible.len()).map(|k| self.begun(k, start)).collect();
-                self.relax(&mut axes, &STEPS[..COARSE], FEW);
+                for stiffness in STIFF {
+                    self.stiffer(stiffness).relax(&mut axes, &STEPS[..COARSE], FEW);
+                }
                 (self.total_min(&axes), axes)
             })
             .collect();

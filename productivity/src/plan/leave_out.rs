@@ -27,6 +27,10 @@ const MOST_MEASURED: f64 = 4e4;
 const HIDDEN: f64 = 0.05;
 /// What half a cell's diagonal and a little bend add to a distance kept at samples, of their spacing.
 const ADDED: f64 = 0.75;
+/// How far the end of a tool reaches from its contact, in radii: it may touch check faces there, beside an inner edge.
+const END: f64 = 3.0;
+/// What is kept from points of check faces further off, of their spacing.
+const APART: f64 = 0.5;
 /// Distance of poses along a pass, in radii of the cutter.
 const STEP: f64 = 0.05;
 /// The share of the accepted depth beyond which a stretch is left out: words, chords and edges, along whose normals the depth is more,
@@ -108,10 +112,11 @@ struct Points {
 }
 
 impl Points {
-    fn new(samples: &[Sample], gouge_mm: f64) -> Self {
+    fn new(samples: &[Sample], gouge_mm: f64, aside_mm: f64) -> Self {
         // Samples have finite coordinates, and there are far fewer than an index can hold.
         let by = |mm: f64| Obstacles::new(samples.iter().map(|s| sunk(s, mm))).unwrap_or_default();
-        Self { at: by(0.0), sunk: [by(ACCEPTED * gouge_mm), by(RELEASE * gouge_mm)] }
+        let deep = |share: f64| by(share * gouge_mm + aside_mm);
+        Self { at: by(0.0), sunk: [deep(ACCEPTED), deep(RELEASE)] }
     }
 }
 
@@ -127,6 +132,12 @@ struct Watch<'a> {
     guard: &'a Guard<'a>,
     faces: Points,
     check: Points,
+    /// What the side of the tool keeps from check faces further from its contact than its end reaches, mm: half a cell, as a side that is
+    /// hardly in an edge goes deep along its normal between two points.
+    apart_mm: f64,
+    /// Samples are sunk by so much more, and a tool keeps that from them: one that lies along a face may be as deep as it may, one that
+    /// comes at it from beside, over an edge, keeps off by what the post may stray, mm.
+    aside_mm: f64,
     /// Distance that is kept from faces to machine by the holder and from check faces by all, mm; None where they may go in as far as
     /// is accepted.
     keep_mm: Option<f64>,
@@ -144,30 +155,36 @@ impl<'a> Watch<'a> {
         let (faces, apart) = sampled(guard.faces, [spacing_mm, MOST])?;
         let (check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
         let keep_mm = (keep > 0.0).then(|| keep + ADDED * apart.max(check_apart));
-        let (faces, check) = (Points::new(&faces, gouge_mm), Points::new(&check, BESIDE * gouge_mm));
-        Ok(Self { guard, faces, check, keep_mm })
+        let aside_mm = guard.tolerance.chord_mm;
+        let points = |samples: &[Sample], gouge_mm: f64| Points::new(samples, gouge_mm, aside_mm);
+        let (faces, check) = (points(&faces, gouge_mm), points(&check, BESIDE * gouge_mm));
+        Ok(Self { guard, faces, check, apart_mm: APART * check_apart, aside_mm, keep_mm })
     }
 
     /// Whether the tool is where it must not be.
-    fn is_in(&self, pose: &Pose, depth: Depth) -> bool {
+    fn is_in(&self, at: &CcPoint, depth: Depth) -> bool {
         let Guard { cutter, holder, .. } = self.guard;
+        let (pose, end_mm) = (&at.pose, END * cutter.radius_mm());
         let meets = |points: &Points, body: &Cutter, pose: &Pose| match self.keep_mm {
             Some(keep) => points.at.is_within(body, pose, keep),
-            None => points.sunk[depth as usize].is_within(body, pose, 0.0),
+            None => points.sunk[depth as usize].is_within(body, pose, self.aside_mm),
         };
-        self.faces.sunk[depth as usize].is_within(cutter, pose, 0.0)
-            || meets(&self.check, cutter, pose)
+        let beside = |body: &Cutter, pose: &Pose| {
+            meets(&self.check, body, pose)
+                || self.check.at.is_within_beyond((body, pose), self.apart_mm, (&at.point, end_mm))
+        };
+        self.faces.sunk[depth as usize].is_within(cutter, pose, self.aside_mm)
+            || beside(cutter, pose)
             || holder.is_some_and(|h| {
                 let pose = pose.retracted(cutter.length_mm());
-                meets(&self.faces, h, &pose) || meets(&self.check, h, &pose)
+                meets(&self.faces, h, &pose) || beside(h, &pose)
             })
     }
 
     /// The pieces of a pass that remain; None where it remains whole.
     fn remaining(&self, pass: &Pass) -> Option<Vec<Pass>> {
         let stations = stations(pass, STEP * self.guard.cutter.radius_mm());
-        let mut out: Vec<bool> =
-            stations.iter().map(|s| self.is_in(&s.point.pose, Depth::Accepted)).collect();
+        let mut out: Vec<bool> = stations.iter().map(|s| self.is_in(&s.point, Depth::Accepted)).collect();
         if !out.iter().any(|b| *b) {
             return None;
         }
@@ -176,7 +193,7 @@ impl<'a> Watch<'a> {
         let grow = |out: &mut Vec<bool>, order: &mut dyn Iterator<Item = usize>| {
             let mut before = false;
             for k in order {
-                out[k] = out[k] || (before && self.is_in(&stations[k].point.pose, Depth::Release));
+                out[k] = out[k] || (before && self.is_in(&stations[k].point, Depth::Release));
                 before = out[k];
             }
         };

@@ -182,6 +182,30 @@ impl Obstacles {
             || self.any_within(ball.second, body, pose, limit_mm)
     }
 
+    /// The same of the points that are further than `beyond_mm` from `from`.
+    #[must_use]
+    pub fn is_within_beyond(
+        &self,
+        (body, pose): (&Cutter, &Pose),
+        limit_mm: f64,
+        (from, beyond_mm): (&Point3, f64),
+    ) -> bool {
+        let mut open: Vec<u32> = self.roots().collect();
+        while let Some(at) = open.pop() {
+            let ball = &self.balls[at as usize];
+            if body.distance(pose, &ball.centre) - ball.radius_mm >= limit_mm
+                || (ball.centre - from).norm() + ball.radius_mm <= beyond_mm
+            {
+                continue;
+            }
+            if ball.second == 0 {
+                return true;
+            }
+            open.extend([ball.second, at + 1]);
+        }
+        false
+    }
+
     pub(super) const fn size_mm(&self) -> f64 {
         self.size_mm
     }
