@@ -33,6 +33,7 @@ mod mesh;
 mod part;
 pub mod patches;
 pub mod sections;
+pub mod sides;
 pub mod step;
 pub mod stl;
 mod topology;
