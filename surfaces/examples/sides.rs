@@ -4,17 +4,27 @@
 //! each file: faces right, wrong and open, groups, neighbours that do not fit, time. Then each group, and the volume behind the
 //! faces that are not open, mm3.
 
-use osculate_geom::Side;
+use osculate_geom::{Jet2, Point3, Side, Vec3};
+use osculate_surfaces::Face;
 use osculate_surfaces::sides::settle;
-use osculate_surfaces::{Face, tessellate};
 use std::time::Instant;
 
-/// Volume behind a face seen from a point, mm3, with its area.
-fn behind(face: &Face, side: Side, chord_mm: f64, from: nalgebra::Vector3<f64>) -> f64 {
-    let mesh = tessellate(&face.surface, chord_mm, None);
-    let at = |k: u32| nalgebra::Vector3::from(mesh.positions[k as usize]) - from;
-    let sum: f64 = mesh.triangles.iter().map(|t| at(t[0]).dot(&at(t[1]).cross(&at(t[2]))) / 6.0).sum();
-    sum * side.sign()
+/// Volume behind a face seen from a point, mm3.
+fn behind(face: &Face, side: Side, from: Point3) -> f64 {
+    let flux = |jet: &Jet2| jet.normal().map_or(0.0, |n| (jet.point - from).dot(&n) / 3.0);
+    face.surface.integrate(1e-4, &flux) * side.sign()
+}
+
+/// What normals times areas do not cancel, mm2: nothing for a closed shell.
+fn leak(faces: &[Face], sides: &[Option<Side>]) -> f64 {
+    let mut sum = Vec3::zeros();
+    for (f, s) in faces.iter().zip(sides) {
+        for k in 0..3 {
+            let sign = s.map_or(0.0, Side::sign);
+            sum[k] += sign * f.surface.integrate(1e-4, &|jet| jet.normal().map_or(0.0, |n| n[k]));
+        }
+    }
+    sum.norm()
 }
 
 fn main() {
@@ -72,11 +82,15 @@ fn main() {
             let [a, b] = c.faces.map(|f| faces[f].id.as_str());
             println!("  conflict {a} {b} {:.3} mm within {}", c.length_mm, c.within);
         }
-        let b = part.bbox();
-        let from = b.centre().coords;
-        let volume: f64 = (0..faces.len())
-            .filter_map(|k| found.of[k].map(|s| behind(&faces[k], s, 2e-4 * b.diagonal_mm(), from)))
-            .sum();
-        println!("  volume {volume:.1}");
+        let from = part.bbox().centre();
+        let volume: f64 =
+            (0..faces.len()).filter_map(|k| found.of[k].map(|s| behind(&faces[k], s, from))).sum();
+        let said: f64 = part.faces.iter().map(|f| behind(f, Side::Along, from)).sum();
+        let area: f64 = part.faces.iter().map(Face::area_mm2).sum();
+        println!(
+            "  volume {volume:.1} mm3, leak {:.3} mm2; as the file has it {said:.1} mm3, {:.3} mm2; area {area:.1} mm2",
+            leak(&faces, &found.of),
+            leak(&part.faces, &vec![Some(Side::Along); faces.len()])
+        );
     }
 }

@@ -46,7 +46,6 @@ mod closest;
 mod convert;
 mod knots;
 mod nurbs;
-pub mod orient;
 mod quad;
 mod refine;
 mod ruled;

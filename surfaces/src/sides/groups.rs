@@ -61,7 +61,8 @@ mod tests {
     #[test]
     fn sides_go_along_links_and_the_lightest_of_a_contradiction_gives_way() {
         let link = |a, b, agree, weight_mm| Link { faces: [a, b], agree, weight_mm };
-        let all = [link(0, 2, false, 3.0), link(2, 3, false, 2.0), link(0, 3, false, 1.0), link(1, 4, true, 1.0)];
+        let all =
+            [link(0, 2, false, 3.0), link(2, 3, false, 2.0), link(0, 3, false, 1.0), link(1, 4, true, 1.0)];
         let (groups, against) = groups(6, &all);
         let (w, a) = (Side::Along, Side::Against);
         assert_eq!(groups[0], Joined { faces: vec![0, 2, 3], sides: vec![w, a, w] });

@@ -37,6 +37,8 @@ pub(super) struct Links {
     pub(super) clear: Vec<Link>,
     /// Pairs whose common edges say both, with their common length, mm.
     pub(super) mixed: Vec<([usize; 2], f64)>,
+    /// Of each face: length of rim that another face goes on from, and length of rim, mm.
+    pub(super) rims_mm: Vec<[f64; 2]>,
 }
 
 /// Whether the normals of two faces along a common edge are on the same side of the part; none where the faces are folded onto
@@ -96,21 +98,23 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// The links between the faces of rims. Within the first slack rims are one edge, up to the second one where nothing is nearer.
-pub(super) fn links(bits: &[Bit], slack_mm: [f64; 2]) -> Links {
+/// The links between `count` faces by the pieces of their rims. Within the first slack rims are one edge, up to the second one where nothing is nearer.
+pub(super) fn links(count: usize, bits: &[Bit], slack_mm: [f64; 2]) -> Links {
     let longest = bits.iter().map(|b| b.length_mm).fold(0.0, f64::max);
     let grid = Grid::new(bits, (longest + slack_mm[1]).max(f64::MIN_POSITIVE));
     let found: Vec<Option<(usize, bool)>> =
         bits.par_iter().with_min_len(256).map(|b| grid.partner(b, slack_mm)).collect();
     let mut votes: BTreeMap<[usize; 2], [f64; 2]> = BTreeMap::new();
+    let mut out = Links { rims_mm: vec![[0.0; 2]; count], ..Links::default() };
     for (b, found) in bits.iter().zip(found) {
+        out.rims_mm[b.face][1] += b.length_mm;
         if let Some((other, same)) = found {
             let pair = [b.face.min(other), b.face.max(other)];
             // Either face votes for the edge once.
             votes.entry(pair).or_default()[usize::from(same)] += 0.5 * b.length_mm;
+            out.rims_mm[b.face][0] += b.length_mm;
         }
     }
-    let mut out = Links::default();
     for (faces, [against, with]) in votes {
         let (agree, most) = (with > against, with.max(against));
         if most >= CLEAR * (with + against) {

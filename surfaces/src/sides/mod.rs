@@ -2,11 +2,12 @@
 //!
 //! Faces whose rims run together are joined: along a common edge their normals either agree or not, whatever the angle between
 //! them. Within a group of joined faces one face settles all others: one of which the side is known, or else a single vote of
-//! rays from the whole group. What is neither joined to a known face nor voted on clearly stays open.
+//! rays from the whole group, or the volume that it closes around. What none of these says stays open.
 
 mod groups;
 mod link;
 mod rim;
+mod shell;
 mod tree;
 mod vote;
 
@@ -29,6 +30,9 @@ const JOIN: f64 = 1e-5;
 /// Rims may gape this far, as a part of the part's size, where no other face is nearer.
 const GAP: f64 = 5e-4;
 
+/// Share of the rims of faces that close that other faces go on from: the rest is folds and places where more than two meet.
+const CLOSED: f64 = 0.95;
+
 /// What settles the sides of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settled {
@@ -36,6 +40,8 @@ pub enum Settled {
     Known,
     /// The vote of rays: the part encloses material there.
     Enclosed,
+    /// The faces close, with the material inside, and rays do not say otherwise: walls so thin that rays miss them.
+    Closed,
     /// Nothing: the group stays open.
     Open,
 }
@@ -87,16 +93,18 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
     if !(size_mm.is_finite() && size_mm > 0.0) {
         return Sides { of: (0..faces.len()).map(told).collect(), ..Sides::default() };
     }
-    let (joined, conflicts) = joined(faces, size_mm, uncertainty_mm);
+    let (joined, rims_mm, conflicts) = joined(faces, size_mm, uncertainty_mm);
     let meshes: Vec<Mesh> = faces.par_iter().map(|f| tessellate(&f.surface, CHORD * size_mm, None)).collect();
     let at = |m: &Mesh, k: u32| Point3::from(m.positions[k as usize]);
     let soup = meshes.iter().flat_map(|m| m.triangles.iter().map(|t| t.map(|k| at(m, k))));
     let part = tree::Tree::new(soup.collect());
     let mut out = Sides { of: (0..faces.len()).map(told).collect(), groups: Vec::new(), conflicts };
     for group in joined {
-        let of: Vec<(&Mesh, Side)> = group.faces.iter().zip(&group.sides).map(|(f, s)| (&meshes[*f], *s)).collect();
+        let of: Vec<(&Mesh, Side)> =
+            group.faces.iter().zip(&group.sides).map(|(f, s)| (&meshes[*f], *s)).collect();
         // What all the known faces say, by their areas.
-        let says = |(f, s): (&usize, &Side)| told(*f).map_or(0.0, |k| k.seen(*s).sign() * meshes[*f].area_mm2());
+        let says =
+            |(f, s): (&usize, &Side)| told(*f).map_or(0.0, |k| k.seen(*s).sign() * meshes[*f].area_mm2());
         let word: f64 = group.faces.iter().zip(&group.sides).map(says).sum();
         let vote = vote::enclosure(&vote::places(&of), &part, SKIP * size_mm);
         let (sign, settled) = if word != 0.0 {
@@ -104,7 +112,13 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
         } else if vote.abs() >= CLEAR_VOTE {
             (vote, Settled::Enclosed)
         } else {
-            (1.0, Settled::Open)
+            let [met, whole] =
+                group.faces.iter().fold([0.0; 2], |s, f| [s[0] + rims_mm[*f][0], s[1] + rims_mm[*f][1]]);
+            let of: Vec<(&Face, Side)> =
+                group.faces.iter().zip(&group.sides).map(|(f, s)| (faces[*f], *s)).collect();
+            let closes = met >= CLOSED * whole;
+            let sign = if closes { shell::volume_sign(&of) } else { None };
+            sign.map_or((1.0, Settled::Open), |sign| (sign, Settled::Closed))
         };
         let turn = if sign < 0.0 { Side::Against } else { Side::Along };
         let sides: Vec<Side> = group.sides.iter().map(|s| s.seen(turn)).collect();
@@ -122,17 +136,26 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
     out
 }
 
-/// The groups of faces that hang together, and the neighbours that do not fit.
-fn joined(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> (Vec<groups::Joined>, Vec<SideConflict>) {
-    let bits: Vec<rim::Bit> =
-        faces.par_iter().enumerate().map(|(k, f)| rim::rim(k, f, STEP * size_mm)).collect::<Vec<_>>().concat();
+/// Groups, the rims of each face as [`link::Links`] has them, and neighbours that do not fit.
+type Hanging = (Vec<groups::Joined>, Vec<[f64; 2]>, Vec<SideConflict>);
+
+/// The groups of faces that hang together.
+fn joined(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> Hanging {
+    let bits: Vec<rim::Bit> = faces
+        .par_iter()
+        .enumerate()
+        .map(|(k, f)| rim::rim(k, f, STEP * size_mm))
+        .collect::<Vec<_>>()
+        .concat();
     let join_mm = uncertainty_mm.filter(|u| u.is_finite()).unwrap_or(0.0).max(JOIN * size_mm);
-    let links = link::links(&bits, [join_mm, join_mm.max(GAP * size_mm)]);
+    let links = link::links(faces.len(), &bits, [join_mm, join_mm.max(GAP * size_mm)]);
     let (joined, against) = groups::groups(faces.len(), &links.clear);
     let within = links.mixed.iter().map(|(faces, length_mm)| (*faces, *length_mm, true));
     let among = against.iter().map(|l| (l.faces, l.weight_mm, false));
-    let mut conflicts: Vec<SideConflict> =
-        within.chain(among).map(|(faces, length_mm, within)| SideConflict { faces, length_mm, within }).collect();
+    let mut conflicts: Vec<SideConflict> = within
+        .chain(among)
+        .map(|(faces, length_mm, within)| SideConflict { faces, length_mm, within })
+        .collect();
     conflicts.sort_by(|a, b| a.length_mm.total_cmp(&b.length_mm).then(a.faces.cmp(&b.faces)));
-    (joined, conflicts)
+    (joined, links.rims_mm, conflicts)
 }
