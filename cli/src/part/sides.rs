@@ -51,7 +51,7 @@ pub(super) fn settle(job: &Job, part: &mut Loaded, machined: &[String]) -> Vec<u
         part.diagnostics.push(Diagnostic::note(
             ids,
             "nothing says on which side of these faces the material is: they hang together with no face whose side is known, and \
-             the part does not enclose anything there; they are left out unless [part] normals or [[part.side]] says it",
+             the part does not enclose anything there; they are left out; [part] normals says it for faces to machine",
         ));
         return left;
     }
