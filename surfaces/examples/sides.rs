@@ -1,8 +1,10 @@
-//! Sides of faces against what the file says: `cargo run --release --example sides -- FILE...`
+//! Sides of faces against what the file says: `cargo run --release -p osculate-surfaces --example sides -- FILE...`
 //!
 //! Where a file says all sides, its faces are turned over at random and the sides found again, without the file's word. A line for
 //! each file: faces right, wrong and open, groups, neighbours that do not fit, time. Then each group, and the volume behind the
 //! faces that are not open, mm3.
+
+#![allow(clippy::print_stdout, reason = "it prints its findings")]
 
 use osculate_geom::{Jet2, Point3, Side, Vec3};
 use osculate_surfaces::Face;
