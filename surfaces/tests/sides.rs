@@ -1,5 +1,7 @@
 //! The side of the material from the whole part, held against files that say it.
 
+#![allow(clippy::unwrap_used)]
+
 mod part21;
 mod solids;
 
