@@ -34,9 +34,9 @@ pub(super) fn settle(job: &Job, part: &mut Loaded, machined: &[String]) -> Vec<u
     let Some(shapes) = shapes else { return Vec::new() };
     let found = sides::settle(&shapes.iter().collect::<Vec<_>>(), &known, part.uncertainty_mm);
     let mut left = Vec::new();
-    for k in 0..part.faces.len() {
-        match found.of[k] {
-            Some(Side::Against) if known[k].is_none() => flip(part, k),
+    for (k, (of, known)) in found.of.iter().zip(&known).enumerate() {
+        match of {
+            Some(Side::Against) if known.is_none() => flip(part, k),
             None => left.push(k),
             Some(_) => {}
         }
