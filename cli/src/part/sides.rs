@@ -1,7 +1,7 @@
 //! On which side of each face of a part the material is, as file, job and shape of the part say it.
 
-use super::Loaded;
 use crate::job::{Job, Normals};
+use crate::part::loaded::Loaded;
 use osculate_geom::{Diagnostic, Side};
 use osculate_surfaces::sides::{self, Settled, SideGroup, Sides};
 use osculate_surfaces::{Face, TrimmedSurface};
