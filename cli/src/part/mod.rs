@@ -1,91 +1,19 @@
 //! Parts as commands see them: faces with names, from a file or built in.
 
+mod loaded;
+mod sides;
+
+pub use loaded::{Loaded, LoadedFace};
+
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
-use crate::job::{FaceChoice, Job, Normals, Source};
-use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
+use crate::job::{FaceChoice, Job, Source};
+use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::plan::Walls;
-use osculate_surfaces::orient::Enclosure;
-use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface, orient, tessellate};
+use osculate_surfaces::TrimmedSurface;
 use osculate_tools::removal::Unseen;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
-
-/// Certainty below which a vote on the material side does not count.
-const CLEAR_VOTE: f64 = 0.5;
-/// Rays are cast from a grid of this many points a side.
-const VOTE_GRID: usize = 12;
-/// Chord tolerance of the triangles that the vote counts, as a part of the box's diagonal.
-const VOTE_CHORD: f64 = 1e-3;
-
-/// A face ready for work.
-#[derive(Clone)]
-pub struct LoadedFace {
-    /// `F1`, `F2`, ...
-    pub id: String,
-    /// Name in the file.
-    pub name: String,
-    /// Kind as `inspect` prints it.
-    pub kind: String,
-    /// The face with trims and material side.
-    pub surface: Arc<TrimmedSurface>,
-    /// The imported face, where it comes from a file.
-    pub source: Option<Arc<Face>>,
-    /// The spline, where it is a built-in one.
-    pub spline: Option<Arc<NurbsSurface>>,
-    /// What of the face is looked at, where that is not all of it.
-    pub part_of_it: Option<String>,
-}
-
-/// A part ready for work.
-pub struct Loaded {
-    /// `step`, `iges`, `patches`, `sections`, `json` or `builtin`.
-    pub format: &'static str,
-    /// The file's unit.
-    pub unit: String,
-    /// The file's schema.
-    pub schema: String,
-    /// Faces.
-    pub faces: Vec<LoadedFace>,
-    /// What the file has that is not used.
-    pub not_used: Vec<NotUsed>,
-    /// The message for a file that ends too early.
-    pub truncated: Option<String>,
-    /// Findings.
-    pub diagnostics: Vec<Diagnostic>,
-}
-
-impl LoadedFace {
-    /// The spline that the face is a piece of, where it is one.
-    pub fn nurbs(&self) -> Option<&NurbsSurface> {
-        self.spline.as_deref().or_else(|| self.source.as_ref().and_then(|f| f.carrier.nurbs()).map(|n| &**n))
-    }
-}
-
-impl Loaded {
-    /// The only face, or the one with this id.
-    pub fn one(&self, id: Option<&str>) -> Result<&LoadedFace, Failure> {
-        match (id, self.faces.as_slice()) {
-            (Some(id), _) => self.face(id),
-            (None, [one]) => Ok(one),
-            (None, all) => {
-                Err(Failure::Usage(format!("the part has {} faces: say which with --face", all.len())))
-            }
-        }
-    }
-
-    /// The face of this id.
-    pub fn face(&self, id: &str) -> Result<&LoadedFace, Failure> {
-        self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
-            let ids: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).take(12).collect();
-            let more = if self.faces.len() > ids.len() { ", ..." } else { "" };
-            Failure::job(format!(
-                "there is no face {id}; the part has {}{more} (see inspect)",
-                ids.join(", ")
-            ))
-        })
-    }
-}
 
 fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
     let surface = TrimmedSurface::new(b.surface, &[], Side::Along).map_err(Failure::job)?;
@@ -102,6 +30,7 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         format: "builtin",
         unit: "mm".to_owned(),
         schema: String::new(),
+        uncertainty_mm: None,
         faces: vec![face],
         not_used: Vec::new(),
         truncated: None,
@@ -153,6 +82,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         format,
         unit: part.unit,
         schema: part.schema,
+        uncertainty_mm: part.uncertainty_mm,
         faces,
         not_used: part.not_used,
         truncated: part.truncated.then(|| {
@@ -212,21 +142,23 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         Source::File { path, unit_mm } => whole(from_file(path, *unit_mm)?)?,
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
-    let mut faces = choose(&part, job.part().faces(), "faces").map_err(here)?;
-    if faces.is_empty() {
+    let chosen = choose(&part, job.part().faces(), "faces").map_err(here)?;
+    if chosen.is_empty() {
         return Err(Failure::file(job.path(), "[part] faces chooses no face"));
     }
-    if let Some(k) = settle_sides(job, &mut part, &mut faces)?.first() {
+    let chosen: Vec<String> = chosen.into_iter().map(|f| f.id).collect();
+    let open: Vec<String> =
+        sides::settle(job, &mut part, &chosen).into_iter().map(|k| part.faces[k].id.clone()).collect();
+    if let Some(id) = chosen.iter().find(|id| open.contains(id)) {
         return Err(Failure::file(
             job.path(),
             format!(
-                "[part] {}: neither the file nor the shape of the part says on which side of the face the material is; say \
-                 normals = \"file\" or normals = \"reversed\" (probe shows the normal)",
-                faces[*k].id
+                "[part] {id}: neither the file nor the shape of the part says on which side of the face the material is; say \
+                 normals = \"file\" or normals = \"reversed\" (probe shows the normal)"
             ),
         ));
     }
-    doubt_sides(job, &mut part, &faces);
+    let faces: Vec<LoadedFace> = chosen.iter().map(|id| part.face(id).cloned()).collect::<Result<_, _>>()?;
     let machined = |f: &LoadedFace| faces.iter().any(|m| m.id == f.id);
     if let Some(named) = job.part().check_faces().filter(|c| !c.is_all()) {
         let named = choose(&part, Some(named), "check_faces").map_err(here)?;
@@ -246,20 +178,16 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
     // All other faces of the part are there, whether the job names them or not.
     let hit = |f: &LoadedFace| may_hit.iter().any(|m| m.id == f.id);
     let mut check: Vec<LoadedFace> = part.faces.iter().filter(|f| !machined(f) && !hit(f)).cloned().collect();
-    let open = settle_sides(job, &mut part, &mut check)?;
     let ids = |all: &mut dyn Iterator<Item = &LoadedFace>| all.map(|f| f.id.clone()).collect::<Vec<_>>();
     let mut unseen = Vec::new();
     let allowed = ids(&mut may_hit.iter().filter(|f| !machined(f)));
     if !allowed.is_empty() {
         unseen.push(Unseen::MayBeHit(allowed));
     }
-    if !open.is_empty() {
-        unseen.push(Unseen::NoSide(ids(&mut open.iter().map(|k| &check[*k]))));
-        let mut k = 0;
-        check.retain(|_| {
-            k += 1;
-            !open.contains(&(k - 1))
-        });
+    let no_side = ids(&mut check.iter().filter(|f| open.contains(&f.id)));
+    if !no_side.is_empty() {
+        unseen.push(Unseen::NoSide(no_side));
+        check.retain(|f| !open.contains(&f.id));
     }
     Ok(Part { part, faces, check, unseen, walls: OnceLock::new(), import_s: 0.0 })
 }
@@ -333,91 +261,6 @@ pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, 
         }
     }
     out
-}
-
-/// Triangles of a whole part.
-fn soup(part: &Loaded) -> Vec<[Point3; 3]> {
-    let whole = part.faces.iter().fold(Box3::empty(), |b, f| b.union(&bounds(f)));
-    let chord = VOTE_CHORD * whole.diagonal_mm();
-    let mut triangles: Vec<[Point3; 3]> = Vec::new();
-    for f in &part.faces {
-        let m = tessellate(&f.surface, chord, None);
-        let at = |k: u32| Point3::from(m.positions[k as usize]);
-        triangles.extend(m.triangles.iter().map(|t| t.map(at)));
-    }
-    triangles
-}
-
-/// On which side of a face the part encloses material, where it does so clearly.
-fn enclosed(face: &LoadedFace, triangles: &[[Point3; 3]]) -> Option<Enclosure> {
-    let points: Vec<(Point3, Unit3)> =
-        grid(&*face.surface, VOTE_GRID).into_iter().map(|(_, p, n)| (p, n)).collect();
-    orient::enclosed_side(&points, triangles).filter(|e| e.certainty >= CLEAR_VOTE)
-}
-
-/// Faces whose file does not say where the material is.
-fn unsaid(faces: &[LoadedFace]) -> Vec<usize> {
-    (0..faces.len()).filter(|k| faces[*k].source.as_ref().is_some_and(|f| !f.oriented)).collect()
-}
-
-/// Turns faces over whose file does not say where the material is, or all of them where the job says so; the faces for which
-/// nothing says it come back, by their places.
-fn settle_sides(job: &Job, part: &mut Loaded, faces: &mut [LoadedFace]) -> Result<Vec<usize>, Failure> {
-    let open = unsaid(faces);
-    let flip = |f: &mut LoadedFace| f.surface = Arc::new(TrimmedSurface::clone(&f.surface).flipped());
-    match job.part().normals() {
-        Normals::File => return Ok(Vec::new()),
-        Normals::Reversed => {
-            faces.iter_mut().for_each(flip);
-            return Ok(Vec::new());
-        }
-        Normals::Auto if open.is_empty() => return Ok(Vec::new()),
-        Normals::Auto => {}
-    }
-    let triangles = soup(part);
-    let mut unknown = Vec::new();
-    for k in open {
-        let face = &mut faces[k];
-        match enclosed(face, &triangles) {
-            Some(e) => {
-                if e.side == Side::Against {
-                    flip(face);
-                }
-                part.diagnostics.push(Diagnostic::note(
-                    face.id.clone(),
-                    format!(
-                        "the file does not say where the material is; it is on the side that the part encloses \
-                         (certainty {:.0} %)",
-                        100.0 * e.certainty
-                    ),
-                ));
-            }
-            None => unknown.push(k),
-        }
-    }
-    Ok(unknown)
-}
-
-/// Warns of faces that the job has machined from the side on which the part has its material: a blade from within. Only
-/// where the file itself says no side, as a job may well turn over what a file says.
-fn doubt_sides(job: &Job, part: &mut Loaded, faces: &[LoadedFace]) {
-    let open = unsaid(faces);
-    if open.is_empty() || job.part().normals() == Normals::Auto {
-        return;
-    }
-    let triangles = soup(part);
-    for face in open.into_iter().map(|k| &faces[k]) {
-        if let Some(e) = enclosed(face, &triangles).filter(|e| e.side == Side::Against) {
-            part.diagnostics.push(Diagnostic::warning(
-                face.id.clone(),
-                format!(
-                    "the tool is on the side that the part encloses (certainty {:.0} %), as [part] normals has it: the \
-                     part would be cut from within; leave normals out, or turn it over",
-                    100.0 * e.certainty
-                ),
-            ));
-        }
-    }
 }
 
 /// Range of the principal curvatures over a face, 1/mm, from a grid of its inside.

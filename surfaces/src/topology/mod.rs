@@ -20,7 +20,7 @@ mod way;
 pub(crate) use bodies::bodies;
 pub(crate) use chart::{Chart, Wrapped};
 pub(crate) use course::{Course, Follower, Spacing, on_polyline};
-pub(crate) use local::LocalEdge;
+pub(crate) use local::{LocalEdge, edges as local_edges};
 pub(crate) use loops::{Step, natural_loops, outward, turned};
 pub(crate) use pcurve::{Ground, pcurves};
 pub(crate) use shared::{Edge, FaceEdges, Topology};

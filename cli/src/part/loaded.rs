@@ -1,0 +1,77 @@
+//! A part as it was read: its faces with names, and what was found on the way.
+
+use crate::failure::Failure;
+use osculate_geom::Diagnostic;
+use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface};
+use std::sync::Arc;
+
+/// A face ready for work.
+#[derive(Clone)]
+pub struct LoadedFace {
+    /// `F1`, `F2`, ...
+    pub id: String,
+    /// Name in the file.
+    pub name: String,
+    /// Kind as `inspect` prints it.
+    pub kind: String,
+    /// The face with trims and material side.
+    pub surface: Arc<TrimmedSurface>,
+    /// The imported face, where it comes from a file.
+    pub source: Option<Arc<Face>>,
+    /// The spline, where it is a built-in one.
+    pub spline: Option<Arc<NurbsSurface>>,
+    /// What of the face is looked at, where that is not all of it.
+    pub part_of_it: Option<String>,
+}
+
+/// A part ready for work.
+pub struct Loaded {
+    /// `step`, `iges`, `patches`, `sections`, `json` or `builtin`.
+    pub format: &'static str,
+    /// The file's unit.
+    pub unit: String,
+    /// The file's schema.
+    pub schema: String,
+    /// What the file says of its own exactness, mm.
+    pub uncertainty_mm: Option<f64>,
+    /// Faces.
+    pub faces: Vec<LoadedFace>,
+    /// What the file has that is not used.
+    pub not_used: Vec<NotUsed>,
+    /// The message for a file that ends too early.
+    pub truncated: Option<String>,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl LoadedFace {
+    /// The spline that the face is a piece of, where it is one.
+    pub fn nurbs(&self) -> Option<&NurbsSurface> {
+        self.spline.as_deref().or_else(|| self.source.as_ref().and_then(|f| f.carrier.nurbs()).map(|n| &**n))
+    }
+}
+
+impl Loaded {
+    /// The only face, or the one with this id.
+    pub fn one(&self, id: Option<&str>) -> Result<&LoadedFace, Failure> {
+        match (id, self.faces.as_slice()) {
+            (Some(id), _) => self.face(id),
+            (None, [one]) => Ok(one),
+            (None, all) => {
+                Err(Failure::Usage(format!("the part has {} faces: say which with --face", all.len())))
+            }
+        }
+    }
+
+    /// The face of this id.
+    pub fn face(&self, id: &str) -> Result<&LoadedFace, Failure> {
+        self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
+            let ids: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).take(12).collect();
+            let more = if self.faces.len() > ids.len() { ", ..." } else { "" };
+            Failure::job(format!(
+                "there is no face {id}; the part has {}{more} (see inspect)",
+                ids.join(", ")
+            ))
+        })
+    }
+}

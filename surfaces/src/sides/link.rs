@@ -1,0 +1,170 @@
+//! Which faces hang together along their rims, and whether their normals are on the same side of the part.
+//!
+//! Two faces that bound one body run along their common edge in opposite senses when each has its face on the left, whatever the
+//! angle between them. Walked along `w` with the normal `n` a face lies towards `n x w`; turning the normal over turns `w` over.
+
+use super::rim::Bit;
+use osculate_geom::Point3;
+#[cfg(test)]
+use osculate_geom::Vec3;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, HashMap};
+
+/// Cosine above which two rims may be one edge.
+const PARALLEL: f64 = 0.9;
+/// Cosine above which two faces leave their edge the same way: folded onto each other, which may be two faces of one body or the
+/// same face twice.
+const FOLDED: f64 = 0.995;
+/// Other faces this many times as far as the nearest one are not meant.
+const NEXT: f64 = 3.0;
+/// Share of the common edge that has to say the same.
+const CLEAR: f64 = 0.9;
+
+/// What two faces say of each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Link {
+    /// Numbers of the faces, the smaller one first.
+    pub(super) faces: [usize; 2],
+    /// Whether their normals agree.
+    pub(super) agree: bool,
+    /// Length of edge that says so, less that which says otherwise, mm.
+    pub(super) weight_mm: f64,
+}
+
+/// The links between faces.
+#[derive(Debug, Default)]
+pub(super) struct Links {
+    pub(super) clear: Vec<Link>,
+    /// Pairs whose common edges say both, with their common length, mm.
+    pub(super) mixed: Vec<([usize; 2], f64)>,
+    /// Of each face: length of rim that another face goes on from, and length of rim, mm.
+    pub(super) rims_mm: Vec<[f64; 2]>,
+}
+
+/// Whether the normals of two faces along a common edge are on the same side of the part; none where the faces are folded onto
+/// each other or the rims are not one edge.
+pub(super) fn agree(a: &Bit, b: &Bit) -> Option<bool> {
+    let along = a.along.dot(&b.along);
+    if along.abs() < PARALLEL || a.inward().dot(&b.inward()) > FOLDED {
+        return None;
+    }
+    Some(along < 0.0)
+}
+
+/// Cells of rims' middles.
+struct Grid<'a> {
+    bits: &'a [Bit],
+    cell_mm: f64,
+    cells: HashMap<[i64; 3], Vec<usize>>,
+}
+
+impl<'a> Grid<'a> {
+    fn new(bits: &'a [Bit], cell_mm: f64) -> Self {
+        let mut grid = Self { bits, cell_mm, cells: HashMap::new() };
+        for (k, b) in bits.iter().enumerate() {
+            grid.cells.entry(grid.cell(&b.points[1])).or_default().push(k);
+        }
+        grid
+    }
+
+    fn cell(&self, p: &Point3) -> [i64; 3] {
+        [p.x, p.y, p.z].map(|c| (c / self.cell_mm).floor() as i64)
+    }
+
+    /// The face that shares the edge with a piece of a rim, and whether the normals agree. None where there is no such face, or more
+    /// than one.
+    fn partner(&self, of: &Bit, slack_mm: [f64; 2]) -> Option<(usize, bool)> {
+        let home = self.cell(&of.points[1]);
+        // The nearest piece of each face near by.
+        let mut near: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
+        for k in 0..27 {
+            let at = [home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1];
+            for other in self.cells.get(&at).map_or(&[][..], Vec::as_slice) {
+                let b = &self.bits[*other];
+                if b.face == of.face || of.along.dot(&b.along).abs() < PARALLEL {
+                    continue;
+                }
+                let d = b.distance_mm(&of.points[1]);
+                if d <= slack_mm[1] && near.get(&b.face).is_none_or(|n| (d, *other) < *n) {
+                    near.insert(b.face, (d, *other));
+                }
+            }
+        }
+        let least = near.values().map(|n| n.0).fold(f64::INFINITY, f64::min);
+        let limit = slack_mm[0].max(NEXT * least);
+        let mut meant = near.into_iter().filter(|(_, n)| n.0 <= limit);
+        let ((face, (_, k)), None) = (meant.next()?, meant.next()) else { return None };
+        agree(of, &self.bits[k]).map(|same| (face, same))
+    }
+}
+
+/// The links between `count` faces by the pieces of their rims. Within the first slack rims are one edge, up to the second one where nothing is nearer.
+pub(super) fn links(count: usize, bits: &[Bit], slack_mm: [f64; 2]) -> Links {
+    let longest = bits.iter().map(|b| b.length_mm).fold(0.0, f64::max);
+    let grid = Grid::new(bits, (longest + slack_mm[1]).max(f64::MIN_POSITIVE));
+    let found: Vec<Option<(usize, bool)>> =
+        bits.par_iter().with_min_len(256).map(|b| grid.partner(b, slack_mm)).collect();
+    let mut votes: BTreeMap<[usize; 2], [f64; 2]> = BTreeMap::new();
+    let mut out = Links { rims_mm: vec![[0.0; 2]; count], ..Links::default() };
+    for (b, found) in bits.iter().zip(found) {
+        out.rims_mm[b.face][1] += b.length_mm;
+        if let Some((other, same)) = found {
+            let pair = [b.face.min(other), b.face.max(other)];
+            // Either face votes for the edge once.
+            votes.entry(pair).or_default()[usize::from(same)] += 0.5 * b.length_mm;
+            out.rims_mm[b.face][0] += b.length_mm;
+        }
+    }
+    for (faces, [against, with]) in votes {
+        let (agree, most) = (with > against, with.max(against));
+        if most >= CLEAR * (with + against) {
+            out.clear.push(Link { faces, agree, weight_mm: (with - against).abs() });
+        } else {
+            out.mixed.push((faces, with + against));
+        }
+    }
+    out
+}
+
+/// A piece of a rim in the plane of `along` and `inward`, for tests of the rule.
+#[cfg(test)]
+pub(super) fn bit(along: Vec3, inward: Vec3) -> Bit {
+    let points = [-0.5, 0.0, 0.5].map(|t| Point3::origin() + along * t);
+    Bit { face: 0, points, along, normal: along.cross(&inward), length_mm: 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use osculate_geom::Unit3;
+
+    /// The wedge of two planes: its normals agree at any angle, convex or hollow, and one turned over does not.
+    #[test]
+    fn two_planes_agree_at_every_angle_between_them() {
+        let axis = Unit3::new_normalize(Vec3::new(0.3, -0.7, 0.5)).into_inner();
+        let e = Unit3::new_normalize(axis.cross(&Vec3::x())).into_inner();
+        let f = axis.cross(&e);
+        for degrees in (6..355).step_by(7) {
+            let angle = f64::from(degrees).to_radians();
+            // The material fills the angle from the first face to the second one.
+            let (d1, d2) = (e, e * angle.cos() + f * angle.sin());
+            let (n1, n2) = (-f, axis.cross(&d2));
+            for sense in [1.0, -1.0] {
+                let walk = |n: &Vec3, d: &Vec3| d.cross(n);
+                let made = |n: Vec3, d: Vec3| bit(walk(&n, &d), d);
+                let (a, b) = (made(n1 * sense, d1), made(n2 * sense, d2));
+                assert!((a.normal - n1 * sense).norm() < 1e-12 && (b.inward() - d2).norm() < 1e-12);
+                assert_eq!(agree(&a, &b), Some(true), "{degrees}");
+                assert_eq!(agree(&a, &made(-n2 * sense, d2)), Some(false), "{degrees}");
+            }
+        }
+    }
+
+    #[test]
+    fn folds_and_crossing_rims_say_nothing() {
+        let a = bit(Vec3::z(), Vec3::x());
+        let slightly = Unit3::new_normalize(Vec3::new(1.0, 0.05, 0.0)).into_inner();
+        assert_eq!(agree(&a, &bit(Vec3::z(), slightly)), None);
+        assert_eq!(agree(&a, &bit(Vec3::y(), -Vec3::x())), None);
+    }
+}

@@ -1,0 +1,161 @@
+//! On which side of each face the material is, where the file does not say, from the whole part.
+//!
+//! Faces whose rims run together are joined: along a common edge their normals either agree or not, whatever the angle between
+//! them. Within a group of joined faces one face settles all others: one of which the side is known, or else a single vote of
+//! rays from the whole group, or the volume that it closes around. What none of these says stays open.
+
+mod groups;
+mod link;
+mod rim;
+mod shell;
+mod tree;
+mod vote;
+
+use crate::mesh::{Mesh, tessellate};
+use crate::part::Face;
+use osculate_geom::{Box3, Point3, Side};
+use rayon::prelude::*;
+
+/// Certainty below which a vote does not count.
+const CLEAR_VOTE: f64 = 0.5;
+/// Chord tolerance of the triangles that rays cross, as a part of the part's size.
+const CHORD: f64 = 1e-3;
+/// Crossings this near to the start of a ray are the face itself, as a part of the part's size: beyond the chord error of the
+/// triangles, well below the thickness of anything that is machined.
+const SKIP: f64 = 1e-4;
+/// Length of the pieces of rims, as a part of the part's size.
+const STEP: f64 = 5e-3;
+/// Rims are one edge within this part of the part's size; a file that is less exact says so.
+const JOIN: f64 = 1e-5;
+/// Rims may gape this far, as a part of the part's size, where no other face is nearer.
+const GAP: f64 = 5e-4;
+
+/// Share of the rims of faces that close that other faces go on from: the rest is folds and places where more than two meet.
+const CLOSED: f64 = 0.95;
+
+/// What settles the sides of a group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settled {
+    /// Faces of the group whose side was known.
+    Known,
+    /// The vote of rays: the part encloses material there.
+    Enclosed,
+    /// The faces close, with the material inside, and rays do not say otherwise: walls so thin that rays miss them.
+    Closed,
+    /// Nothing: the group stays open.
+    Open,
+}
+
+/// Faces that hang together, with the side of each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SideGroup {
+    /// Numbers of the faces, ascending.
+    pub faces: Vec<usize>,
+    /// The outward side of each relative to its present normal. Of an open group the sides are right relative to each other only.
+    pub sides: Vec<Side>,
+    /// What settled it.
+    pub settled: Settled,
+    /// How much the rays speak for these sides: 1 for a closed body, 0 for an open sheet, negative where they speak against them.
+    pub certainty: f64,
+    /// Known faces of the group that say otherwise than `sides`.
+    pub otherwise: Vec<usize>,
+}
+
+/// Two neighbours that do not fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SideConflict {
+    /// Their numbers.
+    pub faces: [usize; 2],
+    /// Length of their common edge, mm.
+    pub length_mm: f64,
+    /// True where stretches of the common edge contradict each other, false where the other neighbours say otherwise.
+    pub within: bool,
+}
+
+/// The sides of all faces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sides {
+    /// The outward side of each face relative to its present normal; none where it is open. Known faces are as they were told.
+    pub of: Vec<Option<Side>>,
+    /// The groups, in the order of their first faces.
+    pub groups: Vec<SideGroup>,
+    /// Neighbours that do not fit, heaviest last.
+    pub conflicts: Vec<SideConflict>,
+}
+
+/// Finds the side of the material of every face. `known` are the faces whose side is known, relative to their present normals;
+/// `uncertainty_mm` is what the file says of its own exactness. The answer is the same for any number of threads.
+#[must_use]
+pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f64>) -> Sides {
+    let told = |f: usize| known.get(f).copied().flatten();
+    let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
+    let size_mm = boxes.iter().fold(Box3::empty(), |b, f| b.union(f)).diagonal_mm();
+    if !(size_mm.is_finite() && size_mm > 0.0) {
+        return Sides { of: (0..faces.len()).map(told).collect(), ..Sides::default() };
+    }
+    let (joined, rims_mm, conflicts) = joined(faces, size_mm, uncertainty_mm);
+    let meshes: Vec<Mesh> = faces.par_iter().map(|f| tessellate(&f.surface, CHORD * size_mm, None)).collect();
+    let at = |m: &Mesh, k: u32| Point3::from(m.positions[k as usize]);
+    let soup = meshes.iter().flat_map(|m| m.triangles.iter().map(|t| t.map(|k| at(m, k))));
+    let part = tree::Tree::new(soup.collect());
+    let mut out = Sides { of: (0..faces.len()).map(told).collect(), groups: Vec::new(), conflicts };
+    for group in joined {
+        let of: Vec<(&Mesh, Side)> =
+            group.faces.iter().zip(&group.sides).map(|(f, s)| (&meshes[*f], *s)).collect();
+        // What all the known faces say, by their areas.
+        let says =
+            |(f, s): (&usize, &Side)| told(*f).map_or(0.0, |k| k.seen(*s).sign() * meshes[*f].area_mm2());
+        let word: f64 = group.faces.iter().zip(&group.sides).map(says).sum();
+        let vote = vote::enclosure(&vote::places(&of), &part, SKIP * size_mm);
+        let (sign, settled) = if word != 0.0 {
+            (word, Settled::Known)
+        } else if vote.abs() >= CLEAR_VOTE {
+            (vote, Settled::Enclosed)
+        } else {
+            let [met, whole] =
+                group.faces.iter().fold([0.0; 2], |s, f| [s[0] + rims_mm[*f][0], s[1] + rims_mm[*f][1]]);
+            let of: Vec<(&Face, Side)> =
+                group.faces.iter().zip(&group.sides).map(|(f, s)| (faces[*f], *s)).collect();
+            let closes = met >= CLOSED * whole;
+            let sign = if closes { shell::volume_sign(&of) } else { None };
+            sign.map_or((1.0, Settled::Open), |sign| (sign, Settled::Closed))
+        };
+        let turn = if sign < 0.0 { Side::Against } else { Side::Along };
+        let sides: Vec<Side> = group.sides.iter().map(|s| s.seen(turn)).collect();
+        let mut otherwise = Vec::new();
+        for (f, s) in group.faces.iter().zip(&sides) {
+            match told(*f) {
+                Some(k) if k != *s => otherwise.push(*f),
+                None if settled != Settled::Open => out.of[*f] = Some(*s),
+                _ => {}
+            }
+        }
+        let certainty = vote * turn.sign();
+        out.groups.push(SideGroup { faces: group.faces, sides, settled, certainty, otherwise });
+    }
+    out
+}
+
+/// Groups, the rims of each face as [`link::Links`] has them, and neighbours that do not fit.
+type Hanging = (Vec<groups::Joined>, Vec<[f64; 2]>, Vec<SideConflict>);
+
+/// The groups of faces that hang together.
+fn joined(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> Hanging {
+    let bits: Vec<rim::Bit> = faces
+        .par_iter()
+        .enumerate()
+        .map(|(k, f)| rim::rim(k, f, STEP * size_mm))
+        .collect::<Vec<_>>()
+        .concat();
+    let join_mm = uncertainty_mm.filter(|u| u.is_finite()).unwrap_or(0.0).max(JOIN * size_mm);
+    let links = link::links(faces.len(), &bits, [join_mm, join_mm.max(GAP * size_mm)]);
+    let (joined, against) = groups::groups(faces.len(), &links.clear);
+    let within = links.mixed.iter().map(|(faces, length_mm)| (*faces, *length_mm, true));
+    let among = against.iter().map(|l| (l.faces, l.weight_mm, false));
+    let mut conflicts: Vec<SideConflict> = within
+        .chain(among)
+        .map(|(faces, length_mm, within)| SideConflict { faces, length_mm, within })
+        .collect();
+    conflicts.sort_by(|a, b| a.length_mm.total_cmp(&b.length_mm).then(a.faces.cmp(&b.faces)));
+    (joined, links.rims_mm, conflicts)
+}
