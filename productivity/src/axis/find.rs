@@ -104,7 +104,10 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
     let cutter: &Cutter = wish.tool.cutter();
     let widest_mm = WIDEST * cutter.radius_mm();
     let face = Extended::by(wish.surface, widest_mm);
-    let lattice = Lattice::new(&face, cutter.radius_mm(), widest_mm);
+    // Half the strip of the tool's corner: what is narrower is the face's roughness, not its shape.
+    let look_mm = (2.0 * cutter.corner_mm() * wish.scallop_mm).sqrt();
+    let lattice = Lattice::new(&face, cutter.radius_mm(), (widest_mm, look_mm));
+    let rough = lattice.nodes.iter().any(|n| n.rough);
     let line = wish.joints.line();
     let on_line = line.is_some();
     let directions = line.map_or_else(|| Directions::icosphere(LEVEL), Directions::row);
@@ -202,7 +205,8 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         let mut spline = lattice.spline.clone();
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
         let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
-        let unsettled = settle(&mut field, &face, (&between, &lifts_mm), (&clear, &held));
+        let unsettled =
+            settle(&mut field, (&face, rough.then_some(look_mm)), (&between, &lifts_mm), (&clear, &held));
         let unreached = unreached.clone();
         Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, between.len()] })
     };

@@ -4,7 +4,7 @@ use super::pace::{Pace, paces};
 use crate::plan::extended::Extended;
 use crate::rectangle::{AXES, Rectangle, lengths};
 use crate::spline::Spline;
-use osculate_geom::{Axis, Darboux, Forms, Jet2, Point3, Surface, Unit3, Uv, Vec3, uv};
+use osculate_geom::{Axis, Darboux, Forms, Jet2, Point3, Surface, Unit3, Uv, Vec3, any_perpendicular, uv};
 use rayon::prelude::*;
 
 /// Distance of nodes, in radii of the tool: a tool sees no more of what stands around it. Fewest and most along a parameter, and
@@ -23,8 +23,10 @@ pub type Feed<'a> = dyn Fn(Uv, &Jet2) -> Option<Vec3> + Sync + 'a;
 pub(super) struct Node {
     pub at: Uv,
     pub point: Point3,
-    /// Outward normal; None where the face has none.
+    /// Outward normal, the mean of what stands around where the face is rough; None where the face has none.
     pub normal: Option<Unit3>,
+    /// Whether the face is rough there.
+    pub rough: bool,
     /// The forms and the frame of the passes; None where these have no direction.
     pub frame: Option<(Forms, Darboux)>,
     /// Whether passes may stand there: beyond the border of the face too.
@@ -58,9 +60,51 @@ pub(super) struct Lattice {
     pub of_node: Vec<Vec<u32>>,
 }
 
+/// Places to each side that the normal of a rough place is the mean of.
+const AROUND: i32 = 2;
+/// A normal that is so far from the mean around it is that of a rough place, rad.
+const ROUGH_RAD: f64 = 0.15;
+
+/// The normal at a place of a face, and whether the face is rough there: then it is the mean of those around it, up to `look_mm` to each
+/// side. None where there is none.
+pub(super) fn steady_normal(
+    surface: &dyn Surface,
+    at: Uv,
+    jet: &Jet2,
+    look_mm: f64,
+) -> Option<(Unit3, bool)> {
+    let normal = jet.normal().ok();
+    let step = [jet.du, jet.dv].map(|d| look_mm / f64::from(AROUND) / d.norm().max(f64::MIN_POSITIVE));
+    let domain = surface.domain();
+    let mut sum = Vec3::zeros();
+    for (i, j) in (-AROUND..=AROUND).flat_map(|i| (-AROUND..=AROUND).map(move |j| (i, j))) {
+        // Where a face has no width along a parameter all of it is next to the place.
+        let t = [step[0] * f64::from(i), step[1] * f64::from(j)];
+        let next = |axis: Axis, by: f64| {
+            let (x, i) = (at.get(axis) + by, domain.get(axis));
+            if i.periodic { x } else { x.clamp(i.lo, i.hi) }
+        };
+        let near = surface.jet2(uv(next(Axis::U, t[0]), next(Axis::V, t[1])));
+        sum += near.normal().map_or_else(|_| Vec3::zeros(), Unit3::into_inner);
+    }
+    let mean = Unit3::try_new(sum, 1e-6);
+    match (normal, mean) {
+        (Some(normal), Some(mean)) if normal.angle(&mean) > ROUGH_RAD => Some((mean, true)),
+        (Some(normal), _) => Some((normal, false)),
+        (None, mean) => mean.map(|mean| (mean, true)),
+    }
+}
+
+/// The plane at right angles to a normal at a place.
+fn flat(jet: &Jet2, normal: &Unit3) -> Jet2 {
+    let du = any_perpendicular(normal).into_inner();
+    let none = Vec3::zeros();
+    Jet2 { du, dv: normal.cross(&du), duu: none, duv: none, dvv: none, ..*jet }
+}
+
 impl Lattice {
-    /// The nodes over a face for passes that run out by `beyond_mm` at most.
-    pub fn new(surface: &Extended<'_>, radius_mm: f64, beyond_mm: f64) -> Self {
+    /// The nodes over a face for passes that run out by `beyond_mm` at most; what is narrower than `look_mm` counts as rough.
+    pub fn new(surface: &Extended<'_>, radius_mm: f64, (beyond_mm, look_mm): (f64, f64)) -> Self {
         let rectangle = Rectangle::of(surface);
         let long = lengths(surface, &rectangle);
         let side = (APART * radius_mm).max((long[0] * long[1] / NODES).sqrt());
@@ -94,10 +138,12 @@ impl Lattice {
                     if !rectangle.closes[axis] && ends.contains(&k) { 0.5 } else { 1.0 }
                 };
                 let share = if outer(i, 0) || outer(j, 1) { 0.0 } else { border(i, 0) * border(j, 1) };
+                let steady = steady_normal(surface, at, &jet, look_mm);
                 Node {
                     at,
                     point: jet.point,
-                    normal: jet.normal().ok(),
+                    normal: steady.map(|(normal, _)| normal),
+                    rough: steady.is_some_and(|(_, rough)| rough),
                     frame: None,
                     stood: surface.contains(surface.inner(at)),
                     area_mm2: if inside { share * whole } else { 0.0 },
@@ -118,8 +164,10 @@ impl Lattice {
         let mut out = self.clone();
         out.nodes.par_iter_mut().for_each(|node| {
             let jet = surface.jet2(node.at);
-            node.frame = jet.forms().ok().zip(feed(node.at, &jet)).and_then(|(forms, way)| {
-                let frame = Darboux::with_forms(&jet, &forms, &way, 0.0);
+            // The curvatures of a rough place say nothing of the strip there: it counts as flat.
+            let seen = node.normal.filter(|_| node.rough).map_or(jet, |normal| flat(&jet, &normal));
+            node.frame = seen.forms().ok().zip(feed(node.at, &jet)).and_then(|(forms, way)| {
+                let frame = Darboux::with_forms(&seen, &forms, &way, 0.0);
                 frame.tangent.iter().all(|x| x.is_finite()).then_some((forms, frame))
             });
         });

@@ -19,9 +19,10 @@ use std::f64::consts::PI;
 const RIM: u8 = 3;
 /// Share of a place's time that each step nearer to the rim costs.
 const AT_RIM: f64 = 0.03;
-/// The narrowest strip of a pass decides how near the next one lies: the time of a place grows by this power more than by one over
-/// its width.
+/// The narrowest strip of a pass decides how near the next one lies: the time of a place grows by this power of what its strip might be
+/// over what it is, up to so many times, more than by one over its width.
 const NARROW: f64 = 6.0;
+const NARROWEST: f64 = 4.0;
 /// Length of a step of the rim next to the normal, rad.
 const MARGIN_RAD: f64 = 0.004;
 /// Share of the whole time that a turn by a radian over a square face costs beyond what the joints take.
@@ -125,8 +126,8 @@ pub(super) struct Search<'a> {
     stiffness: f64,
     /// Widths by which passes over edges are counted, mm.
     width_mm: f64,
-    /// The median over the nodes of the widest strips next to the normal, mm.
-    usual_mm: f64,
+    /// For each node the widest strip that it has next to the normal, mm; where it has none the median of all.
+    widest_mm: Vec<f64>,
 }
 
 impl<'a> Search<'a> {
@@ -142,13 +143,15 @@ impl<'a> Search<'a> {
         let turn_min = TURN * area / (width_mm * asked.feed_mm_min);
         let widest = |(node, possible): (&Node, &Possible)| {
             let ways = possible.rim.iter().flat_map(|rim| rim.axes(MARGIN_RAD));
-            let widths = ways.map(|(_, axis)| self::width_mm(asked, node, &axis));
-            widths.max_by(f64::total_cmp).filter(|_| node.area_mm2 > 0.0)
+            ways.map(|(_, axis)| self::width_mm(asked, node, &axis)).max_by(f64::total_cmp)
         };
-        let mut usual: Vec<f64> = lattice.nodes.iter().zip(possible).filter_map(widest).collect();
+        let widest: Vec<Option<f64>> = lattice.nodes.par_iter().zip(possible).map(widest).collect();
+        let on_face = lattice.nodes.iter().zip(&widest).filter(|(n, _)| n.area_mm2 > 0.0);
+        let mut usual: Vec<f64> = on_face.filter_map(|(_, w)| *w).collect();
         usual.sort_by(f64::total_cmp);
         let usual_mm = usual.get(usual.len() / 2).copied().unwrap_or(width_mm);
-        Self { asked, lattice, possible, turn_min, stiffness: 1.0, width_mm, usual_mm }
+        let widest_mm = widest.into_iter().map(|w| w.unwrap_or(usual_mm)).collect();
+        Self { asked, lattice, possible, turn_min, stiffness: 1.0, width_mm, widest_mm }
     }
 
     fn depth(&self, node: usize, axis: &Unit3) -> f64 {
@@ -188,7 +191,8 @@ impl<'a> Search<'a> {
             return f64::INFINITY;
         }
         let width = width_mm(self.asked, node, axis);
-        let time = node.weight_mm2 / (width * self.asked.feed_mm_min) * (self.usual_mm / width).powf(NARROW);
+        let time = node.weight_mm2 / (width * self.asked.feed_mm_min)
+            * (self.widest_mm[k] / width).min(NARROWEST).powf(NARROW);
         time * (1.0 + AT_RIM * (f64::from(RIM) - depth))
     }
 
@@ -331,7 +335,7 @@ impl<'a> Search<'a> {
 
     /// The same search where turns cost so many times as much.
     fn stiffer(&self, times: f64) -> Self {
-        Self { stiffness: self.stiffness * times, ..*self }
+        Self { stiffness: self.stiffness * times, widest_mm: self.widest_mm.clone(), ..*self }
     }
 
     /// The best axes found; None where no place has any.

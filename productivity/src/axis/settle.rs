@@ -4,6 +4,7 @@
 //! axis by what they lack. What stays unclear after some rounds is counted.
 
 use super::field::AxisField;
+use super::lattice::steady_normal;
 use crate::plan::extended::Extended;
 use osculate_geom::{Point3, Surface, Unit3, Uv, Vec3, any_perpendicular};
 use rayon::prelude::*;
@@ -66,10 +67,10 @@ pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 /// Moves the poles of a field until the tool is clear at places of a face; how many of them it is not at.
 ///
 /// `held` brings an axis to where the joints can take it. A place at which no axis near the field's is clear is asked with the tool
-/// lifted by `lifts_mm`, the first that will do.
+/// lifted by `lifts_mm`, the first that will do. Where the face is rough its normals are means, up to `look_mm` to each side.
 pub(super) fn settle(
     field: &mut AxisField,
-    face: &Extended<'_>,
+    (face, look_mm): (&Extended<'_>, Option<f64>),
     (places, lifts_mm): (&[Uv], &[f64]),
     (clear, held): (&Clear<'_>, &Held<'_>),
 ) -> usize {
@@ -78,7 +79,10 @@ pub(super) fn settle(
         .par_iter()
         .filter_map(|at| {
             let jet = face.jet2(*at);
-            let normal = jet.normal().ok()?;
+            let normal = match look_mm {
+                Some(mm) => steady_normal(face, *at, &jet, mm)?.0,
+                None => jet.normal().ok()?,
+            };
             let axis = field.at(*at).0;
             let lifted = |mm: f64| {
                 let point = jet.point + normal.into_inner() * mm;
