@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::{LoadedFace, Part};
+use crate::part::{self, LoadedFace, Part};
 use crate::work::setup;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv, Vec3};
 use osculate_postproc::Orienting;
@@ -26,6 +26,17 @@ const LEAST_RAD: f64 = 0.017_453_292_519_943_295;
 /// Whether the job's machine leaves axes no more than a line: three or four joints.
 pub fn is_line(job: &Job) -> bool {
     job.control().machine.rotary().len() < 2
+}
+
+/// Points a side of a face for its least leans.
+const GRID: usize = 24;
+
+/// How far axes of the job's machine must lean off the normals of its faces at least, rad, at points of them; no more than a right angle.
+pub fn least_leans_rad(job: &Job, faces: &Part) -> Vec<f64> {
+    let (setup, _) = setup::of(job, faces, None);
+    let joints = Orienting::new(&job.control().machine, &setup.part_zero.rotation);
+    let all = faces.faces.iter().flat_map(|f| part::grid(&*f.surface, GRID));
+    all.map(|(_, _, normal)| joints.nearest(&normal).angle(&normal).min(FRAC_PI_2)).collect()
 }
 
 /// The rotary joints of the job's machine.
