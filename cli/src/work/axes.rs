@@ -28,6 +28,12 @@ pub fn is_line(job: &Job) -> bool {
     job.control().machine.rotary().len() < 2
 }
 
+/// The axes of the job's machine in the part's frame where they are no more than a line.
+pub fn line(job: &Job, faces: &Part) -> Option<Vec<Unit3>> {
+    let (setup, _) = setup::of(job, faces, None);
+    Orienting::new(&job.control().machine, &setup.part_zero.rotation).line(LINE_RAD)
+}
+
 /// Points a side of a face for its least leans.
 const GRID: usize = 24;
 

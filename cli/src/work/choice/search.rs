@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{self, Part};
 use crate::watch::Watch;
-use crate::work::axes::Fields;
+use crate::work::axes::{self, Fields};
 use crate::work::extras::Extras;
 use crate::work::look::{Look, Objection};
 use crate::work::passes::{self, Way};
@@ -108,8 +108,14 @@ impl<'a> Choice<'a> {
         let all = faces.faces.iter().chain(&faces.check);
         let around = Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str())));
         let candidates = candidates::of_job(job, faces, &cutters)?;
-        let setting =
-            Setting { faces: &patches(faces), tools: &tools, tolerance: job.tolerance(), around: &around };
+        let line = axes::line(job, faces);
+        let setting = Setting {
+            faces: &patches(faces),
+            tools: &tools,
+            tolerance: job.tolerance(),
+            around: &around,
+            line: line.as_deref(),
+        };
         let screened = screen(&setting, &candidates);
         let entries: Vec<Entry> = candidates
             .into_iter()
