@@ -10,7 +10,7 @@ use super::settle::settle;
 use crate::plan::extended::Extended;
 use crate::width::WIDEST;
 use osculate_geom::{Point3, Surface, Unit3, Uv};
-use osculate_tools::Cutter;
+use osculate_tools::{Cutter, pose_with_axis};
 use osculate_tools::reach::{
     Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
 };
@@ -123,7 +123,17 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         .map(|n| n.normal.filter(|_| n.stood).map(|normal| Place { point: n.point, normal }))
         .collect();
     let on_face: Vec<Place> = places.iter().flatten().copied().collect();
-    let mut found = reach.map(&on_face).into_iter();
+    // Where the machine has few axes its other joints may leave even fewer.
+    let travels = |place: &Place, axis: &Unit3| {
+        !on_line || wish.joints.travels(&pose_with_axis(cutter, &place.point, &place.normal, axis))
+    };
+    let mut reached = reach.map(&on_face);
+    if on_line {
+        reached.par_iter_mut().zip(&on_face).for_each(|(bits, place)| {
+            *bits = Bits::of(all.len(), |k| bits.contains(k) && travels(place, &all[k]));
+        });
+    }
+    let mut found = reached.into_iter();
     let bits: Vec<Option<Bits>> = places.iter().map(|p| p.as_ref().and_then(|_| found.next())).collect();
     // Where no axis is possible one that leans no further than it may keeps the field within reason.
     let leaning = |place: &Place| {
@@ -155,11 +165,12 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         feed_mm_min: wish.feed_mm_min,
         directions: &directions,
         joints: wish.joints,
-        clear: &|place: &Place, axis: &Unit3| reach.is_clear(place, axis),
+        clear: &|place: &Place, axis: &Unit3| reach.is_clear(place, axis) && travels(place, axis),
         on_line,
     };
     let clear = |point: &Point3, normal: &Unit3, axis: &Unit3| {
-        wish.joints.reaches(axis) && reach.is_clear(&Place { point: *point, normal: *normal }, axis)
+        let place = Place { point: *point, normal: *normal };
+        wish.joints.reaches(axis) && reach.is_clear(&place, axis) && travels(&place, axis)
     };
     let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
     let mut between = lattice.between(ASKED);
