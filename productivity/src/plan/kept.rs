@@ -14,13 +14,13 @@ const LOOKS: u32 = 6;
 const STEP: f64 = 0.5;
 const LONGEST: f64 = 500.0;
 
-/// A body of the tool on ways between two poses: how far above the tip it sits, where it is at the ends, and how deep it is in
-/// there: what the tool is into the points of the contacts' own neighbourhood is no obstacle.
+/// A body of the tool on ways between two poses: how far above the tip it sits, how deep it is in the points of the contacts' own
+/// neighbourhood at the ends, which is no obstacle, and how near to the walls, by face.
 struct KeptBody<'a> {
     body: &'a Cutter,
     up_mm: f64,
-    ends: [Pose; 2],
     limit_mm: f64,
+    nearest_mm: Vec<f64>,
 }
 
 /// A tool that is to be kept off the part.
@@ -49,7 +49,8 @@ impl<'a> Kept<'a> {
             }
             let ends = ends.map(|p| p.retracted(up_mm));
             let deepest = ends.iter().map(|p| cloud.depth_mm(body, p)).fold(0.0, f64::max);
-            kept.bodies.push(KeptBody { body, up_mm, ends, limit_mm: deepest + kept.slack_mm });
+            let nearest_mm = walls.nearest(body, &ends);
+            kept.bodies.push(KeptBody { body, up_mm, limit_mm: deepest + kept.slack_mm, nearest_mm });
             up_mm += body.length_mm();
         }
         kept.step_mm = STEP * radius_mm;
@@ -61,7 +62,8 @@ impl<'a> Kept<'a> {
         self.bodies.iter().try_fold(1.0, |least: f64, b| {
             let pose = pose.retracted(b.up_mm);
             let clear = self.cloud.depth_mm(b.body, &pose) <= b.limit_mm;
-            let room = clear.then(|| self.walls.room(b.body, &pose, &b.ends, self.slack_mm)).flatten()?;
+            let room =
+                clear.then(|| self.walls.room(b.body, &pose, &b.nearest_mm, self.slack_mm)).flatten()?;
             Some(least.min(room))
         })
     }

@@ -4,9 +4,9 @@
 //! sphere (grown by the clearance) on the side the axis points to; there nothing of the part can meet the tool,
 //! whose body lies beyond the tip. From the pole of that plane the axis swings over the sphere, always pointing
 //! outward, to the pole of the next pass and down again. Passes that begin near the end of the one before are
-//! joined by a hop instead: up along the normal, across, and down, as low as keeps cutter and holder off other walls of the part
-//! on that way, and far enough from faces that are not machined; where the highest does not, up and down along the axis; where
-//! that does not either, by a retract.
+//! joined by a hop instead: up along the normal, or between it and the axis where there is no room, across, and down, as low as keeps
+//! cutter and holder off other walls of the part on that way, and far enough from faces that are not machined; where none does, by
+//! a way as high as what stands between the two ends; where that does not either, by a retract.
 
 use super::around::Cloud;
 use super::kept::Kept;
@@ -60,14 +60,19 @@ const HOP_SWING: f64 = 0.9;
 const NEAR_POINTS: f64 = 0.25;
 /// Share of its lift that a low hop may lose and be clear still: the part is known at points only.
 const SPARE: f64 = 0.5;
+/// Ways in which hops leave a contact, from the normal to the axis.
+const ALONG: [f64; 3] = [0.0, 0.5, 1.0];
 /// Shares of the way along the normal on which a tool leaves that leans far over.
 const ASIDE: [f64; 6] = [1.0, 0.5, 0.35, 0.25, 0.18, 0.125];
 /// Quotient of the heights at which a way over what stands between two passes is looked for.
 const HIGHER: f64 = 1.5;
 
-/// The pose over a contact, off it along the normal.
-fn lifted(p: &CcPoint, mm: f64) -> Pose {
-    Pose { tip: p.pose.tip + p.normal.into_inner() * mm, axis: p.pose.axis }
+/// The pose over a contact, off it between the normal (0) and the tool's axis (1).
+fn lifted(p: &CcPoint, mm: f64, along: f64) -> Pose {
+    let way = p.normal.into_inner() * (1.0 - along) + p.pose.axis.into_inner() * along;
+    // Opposite to each other they have no middle: no tool stands so.
+    let way = Unit3::try_new(way, 1e-9).unwrap_or(p.normal);
+    Pose { tip: p.pose.tip + way.into_inner() * mm, axis: p.pose.axis }
 }
 
 struct Builder<'a> {
@@ -171,23 +176,24 @@ impl Builder<'_> {
         Kept::new([&self.links.cutter].into_iter().chain(&self.links.holder), ends, (&self.cloud, self.walls))
     }
 
-    /// The poses above both ends of a hop on a way that is clear of the part, if there is one.
+    /// The poses above both ends of a hop on a way that is clear of the part, if there is one: as low as may be, along the normals
+    /// rather than along the axes, but in a narrow place there may be no other way than along them.
     fn hop_over(&self, from: &CcPoint, to: &CcPoint) -> Option<[Pose; 2]> {
         let kept = self.kept([from.pose, to.pose]);
         let clear =
             |[up, over]: &[Pose; 2]| kept.room(&[from.pose, *up, *over, to.pose]).is_some_and(|r| r >= 1.0);
         let highest = self.links.approach_mm;
-        let lifted = |mm: f64| [lifted(from, mm), lifted(to, mm)];
         let mut low = self.links.hop_mm.min(highest);
         while low > 0.0 && low < highest {
-            let hop = lifted(low);
-            if clear(&hop) && clear(&lifted((1.0 - SPARE) * low)) {
-                return Some(hop);
+            for along in ALONG {
+                let hop = |mm: f64| [from, to].map(|p| lifted(p, mm, along));
+                if clear(&hop(low)) && clear(&hop((1.0 - SPARE) * low)) {
+                    return Some(hop(low));
+                }
             }
             low *= 2.0;
         }
-        let along_axes = [from, to].map(|p| p.pose.retracted(highest));
-        [lifted(highest), along_axes].into_iter().find(clear)
+        ALONG.iter().map(|along| [from, to].map(|p| lifted(p, highest, *along))).find(clear)
     }
 
     /// Where the tool is off a contact by the approach distance. One that leans far over would rub along the face if it left along

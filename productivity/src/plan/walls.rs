@@ -4,7 +4,8 @@
 //! face whose points have a sample within `d`. Samples lie in rows, half a spacing or less off the corners of their cells, so
 //! that `d` is 0.71 of the spacing, and a little more where the face bends.
 //!
-//! *Limits.* Where a pass ends nearer to a wall than the clearance the way to the next must not come nearer than that.
+//! *Limits.* Where a pass ends nearer to a face than the clearance the way to the next may come half as near to
+//! that face: between two places next to a hollow wall it lies nearer than both.
 
 use super::Named;
 use osculate_geom::{Point3, Surface, Unit3, quadrature};
@@ -20,6 +21,8 @@ const FEWEST: usize = 400;
 /// Slivers on which no sample lies are sampled this many times as densely, so often.
 const DENSER: f64 = 4.0;
 const TRIES: u32 = 4;
+/// Share of what is kept from a face at the ends of a way that is kept along it, where that is less than the clearance.
+const NEARER: f64 = 0.5;
 /// Points in a group.
 const GROUP: usize = 48;
 /// Points over the faces that are machined.
@@ -27,6 +30,8 @@ const GROUND: f64 = 2e4;
 
 #[derive(Clone, Debug, PartialEq)]
 struct Group {
+    /// Number of the face.
+    face: usize,
     middle: Point3,
     reach_mm: f64,
     /// What the tool keeps from the points, mm, and what of that is for what lies between them.
@@ -39,6 +44,7 @@ struct Group {
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Walls {
     groups: Vec<Group>,
+    faces: usize,
     accepted_mm: f64,
     ground: Vec<Point3>,
 }
@@ -81,10 +87,10 @@ impl Walls {
                 let points: Vec<(Point3, Unit3)> = chunk.iter().map(|s| (s.point, s.normal)).collect();
                 let middle = points[points.len() / 2].0;
                 let reach_mm = points.iter().map(|p| (p.0 - middle).norm()).fold(0.0, f64::max);
-                Group { middle, reach_mm, keep_mm, between_mm, points }
+                Group { face: k, middle, reach_mm, keep_mm, between_mm, points }
             }));
         }
-        Ok(Self { groups, accepted_mm, ground: Vec::new() })
+        Ok(Self { groups, faces: faces.len(), accepted_mm, ground: Vec::new() })
     }
 
     /// The same, with points of faces that are machined: hops go no deeper into them than passes do where they end.
@@ -109,24 +115,39 @@ impl Walls {
         &self.ground
     }
 
-    /// What a body keeps from the walls of what it should, 1 at most; None where it may touch one. Walls that it is as near to at one of
-    /// the ends of its way do not count.
-    pub(super) fn room(&self, body: &Cutter, pose: &Pose, ends: &[Pose; 2], slack_mm: f64) -> Option<f64> {
+    /// How near a body comes to the faces at the ends of its way, by face, where that is nearer than it should be anywhere.
+    pub(super) fn nearest(&self, body: &Cutter, ends: &[Pose; 2]) -> Vec<f64> {
+        let mut nearest = vec![f64::INFINITY; self.faces];
+        for g in &self.groups {
+            let least = &mut nearest[g.face];
+            for end in ends {
+                if body.distance(end, &g.middle) - g.reach_mm < g.keep_mm.min(*least) {
+                    *least = g.points.iter().map(|(p, _)| body.distance(end, p)).fold(*least, f64::min);
+                }
+            }
+        }
+        nearest
+    }
+
+    /// What a body keeps from the walls of what it should, 1 at most; None where it may touch one. From a face that it comes nearer to at
+    /// the ends of its way than it should it keeps a share of that.
+    pub(super) fn room(&self, body: &Cutter, pose: &Pose, nearest: &[f64], slack_mm: f64) -> Option<f64> {
         self.groups.iter().try_fold(1.0, |least: f64, g| {
-            if body.distance(pose, &g.middle) - g.reach_mm >= g.keep_mm {
+            let enough = match nearest[g.face] {
+                near if near >= g.keep_mm => g.keep_mm,
+                near => (NEARER * near).min(near - slack_mm),
+            };
+            if body.distance(pose, &g.middle) - g.reach_mm >= g.keep_mm.min(enough.max(0.0)) {
                 return Some(least);
             }
             g.points.iter().try_fold(least, |least, (p, normal)| {
                 let off = body.distance(pose, p);
-                if off >= g.keep_mm {
-                    return Some(least);
-                }
                 // The side of a tool that is hardly in an edge goes deep along the normal of its face.
                 let sunk = p - normal.into_inner() * self.accepted_mm;
                 if off < 0.0 && body.distance(pose, &sunk) < 0.0 {
                     return None;
                 }
-                if ends.iter().any(|end| off >= body.distance(end, p) - slack_mm) {
+                if off >= enough {
                     return Some(least);
                 }
                 let room = (off - g.between_mm) / (g.keep_mm - g.between_mm);
