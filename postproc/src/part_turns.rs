@@ -220,7 +220,10 @@ mod tests {
         assert_eq!(axis_turns(&mill_turn, &stands)[0], UnitQuaternion::identity());
         // Three axes see a slope that is not too steep: a part stays as it is drawn.
         let three = Machine::built_in("3-axis").unwrap();
-        assert_eq!(axis_turns(&three, &[unit(1.0, 0.0, 0.2), unit(0.0, 0.0, 1.0)])[0], UnitQuaternion::identity());
+        assert_eq!(
+            axis_turns(&three, &[unit(1.0, 0.0, 0.2), unit(0.0, 0.0, 1.0)])[0],
+            UnitQuaternion::identity()
+        );
         let aside = axis_turns(&three, &[unit(1.0, 0.0, -0.2), unit(1.0, 0.0, 0.1)])[0] * Vec3::x();
         assert!(aside.z > 1.0 - 1e-12, "{aside:?}");
     }

@@ -15,7 +15,7 @@ use osculate_productivity::plan::{
 };
 use osculate_tools::reach::Tool;
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
-use osculate_tools::{Cutter, CutterSpec, pose_with_axis};
+use osculate_tools::{Cutter, CutterSpec, Pose, pose_with_axis};
 use proptest::prelude::*;
 
 const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.02, gouge_mm: 0.01, chord_mm: 0.002 };
@@ -46,6 +46,9 @@ impl Joints for Machine {
     }
     fn line(&self) -> Option<Vec<Unit3>> {
         self.fixed.map(|only| vec![only])
+    }
+    fn travels(&self, _: &Pose) -> bool {
+        true
     }
 }
 

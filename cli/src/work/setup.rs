@@ -147,7 +147,8 @@ fn note_of_place(setup: &Setup, moved: &Vec3) -> Diagnostic {
     } else {
         String::new()
     };
-    let place = format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces{why}", t.x, t.y, t.z);
+    let place =
+        format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces{why}", t.x, t.y, t.z);
     Diagnostic::note("setup", place)
 }
 

@@ -10,10 +10,10 @@ use super::settle::settle;
 use crate::plan::extended::Extended;
 use crate::width::WIDEST;
 use osculate_geom::{Point3, Surface, Unit3, Uv};
-use osculate_tools::{Cutter, pose_with_axis};
 use osculate_tools::reach::{
     Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
 };
+use osculate_tools::{Cutter, pose_with_axis};
 use rayon::prelude::*;
 
 /// Subdivisions of the icosahedron whose corners are tried: 2,562 directions, 4.3 degrees apart.
