@@ -17,6 +17,7 @@ fn text(tool: &str, strategy: &str, machine: &str) -> String {
 }
 
 const BALL: &str = "kind = \"ball\"\ndiameter_mm = 8";
+const FLAT: &str = "kind = \"flat\"\ndiameter_mm = 8";
 const TOROIDAL: &str = "kind = \"toroidal\"\ndiameter_mm = 8\ncorner_radius_mm = 2";
 
 fn plan(job: &Path, out: &Path) -> Run {
@@ -47,6 +48,25 @@ fn machines_of_three_and_four_axes_are_no_strategies_of_their_own() {
     let run = plan(&job, &s.path("feed"));
     assert_eq!(run.code, 1, "{}", run.out);
     assert!(run.err.contains("rotary joints"), "{}", run.err);
+}
+
+/// The edge of a flat end leaves marks of first order in the feed, for which passes leave room; a part whose normals are a belt is laid along the
+/// spindle of a turning centre.
+#[test]
+fn flat_ends_and_turned_parts_hold_by_auto() {
+    let s = Scratch::new();
+    let auto = |tool: &str, machine: &str| {
+        let by = text(tool, "", machine).replace("isoparametric", "auto");
+        by.replace("[setup]\npart_zero_mm = [0, 0, 0]\n", "")
+    };
+    for (k, (tool, machine)) in [(FLAT, "3-axis"), (BALL, "mill-turn-xyzc")].into_iter().enumerate() {
+        let job = s.write(&format!("auto{k}.toml"), &auto(tool, machine));
+        let run = plan(&job, &s.path(&format!("auto-out{k}")));
+        let v = run.json();
+        assert_eq!((run.code, answer(&v)), (0, "held"), "{tool} {machine}: {v}");
+        let mark = v["verification"]["tooth_mark_max_mm"].as_f64().unwrap();
+        assert_eq!(mark > 0.005, tool == FLAT, "{v}");
+    }
 }
 
 /// The ends of the cutting moves of a path, pass by pass, from its CL text.

@@ -52,6 +52,7 @@ mod solve_error;
 mod solve_options;
 mod source;
 mod suggest;
+mod travel;
 mod turn;
 
 pub use feed::{FeedMode, PathMetric};
@@ -71,4 +72,5 @@ pub use solve_error::SolveError;
 pub use solve_options::SolveOptions;
 pub use source::MoveSource;
 pub use suggest::{Suggestion, suggest};
+pub use travel::{in_travel, into_travel};
 pub use turn::quicker_turns;

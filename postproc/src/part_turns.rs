@@ -27,9 +27,10 @@ const VERTICAL_SINE: f64 = 1e-9;
 /// directions of the part.
 ///
 /// The part as it stands is best where nothing looks further down than [`crate::suggest`] leaves standing. Then come those that have the
-/// lowest direction highest; of the four with one direction up the least turned first.
+/// lowest direction highest; of the four with one direction up the least turned first. A machine of three or four axes has no choice where
+/// its tool looks from: there those come first with which the direction furthest from all of its axes is nearest to them.
 #[must_use]
-pub fn axis_turns(looks: &[Unit3]) -> Vec<UnitQuaternion<f64>> {
+pub fn axis_turns(machine: &Machine, looks: &[Unit3]) -> Vec<UnitQuaternion<f64>> {
     // How high the lowest one looks; a part that stands well is above all others.
     let height = |up: &Unit3| {
         if *up == Vec3::z_axis() && stands(looks) {
@@ -40,7 +41,34 @@ pub fn axis_turns(looks: &[Unit3]) -> Vec<UnitQuaternion<f64>> {
     let mut ups = ups();
     ups.sort_by(|a, b| height(b).total_cmp(&height(a)));
     let quarters = [0.0, FRAC_PI_2, -FRAC_PI_2, PI];
-    ups.iter().flat_map(|up| quarters.map(|angle_rad| about_vertical(angle_rad) * upright(up))).collect()
+    let turns = ups.iter().flat_map(|up| quarters.map(|angle| about_vertical(angle) * upright(up)));
+    let mut turns: Vec<UnitQuaternion<f64>> = turns.collect();
+    if machine.rotary().len() < 2 {
+        let identity = UnitQuaternion::identity();
+        turns.sort_by(|a, b| identity.angle_to(a).total_cmp(&identity.angle_to(b)));
+        by_line(machine, looks, &mut turns);
+    }
+    turns
+}
+
+/// Directions that are asked on a machine of three or four axes.
+const MOST_LOOKS: usize = 1000;
+/// Cosines of the angle to the nearest axis above which a part stands well: of four axes, and of three, where a part stands as it is drawn if the
+/// tool sees its faces at all.
+const WELL_BY_CIRCLE: f64 = 0.86;
+const WELL_BY_ONE: f64 = 0.1;
+
+/// Sorts turns of a part by how near the axes of a machine come to what is furthest from them; all that do well stay as they are.
+fn by_line(machine: &Machine, looks: &[Unit3], turns: &mut Vec<UnitQuaternion<f64>>) {
+    let well = if machine.rotary().is_empty() { WELL_BY_ONE } else { WELL_BY_CIRCLE };
+    let near = |turn: &UnitQuaternion<f64>| {
+        let joints = Orienting::new(machine, turn);
+        let looks = looks.iter().step_by(looks.len().div_ceil(MOST_LOOKS).max(1));
+        looks.map(|n| joints.nearest(n).dot(n)).fold(well, f64::min)
+    };
+    let mut rated: Vec<(f64, UnitQuaternion<f64>)> = turns.iter().map(|t| (near(t), *t)).collect();
+    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    *turns = rated.into_iter().map(|r| r.1).collect();
 }
 
 /// The six directions of a part along its axes, the least turned first when they come up.
@@ -64,9 +92,17 @@ pub fn clamped_turns(machine: &Machine) -> Vec<UnitQuaternion<f64>> {
 }
 
 /// Turns of a part that need not keep its axes along those of the machine: as [`crate::suggest`] has it, with the mean of what looks out
-/// along the tool, and tilts of these.
+/// along the tool, and tilts of these; on a machine of four axes tilts
+/// of the best turn by the part's own axes.
 #[must_use]
 pub fn free_turns(machine: &Machine, looks: &[Unit3]) -> Vec<UnitQuaternion<f64>> {
+    if machine.rotary().len() == 1 {
+        let by_axes = axis_turns(machine, looks);
+        let best = by_axes.first().copied().unwrap_or_default();
+        let mut turns: Vec<UnitQuaternion<f64>> = [best].into_iter().chain(tilts(&best)).collect();
+        by_line(machine, looks, &mut turns);
+        return turns;
+    }
     let suggested = turn(looks);
     let mean: Vec3 = looks.iter().map(|n| n.into_inner()).sum();
     let along_tool = UnitQuaternion::rotation_between(&mean, &machine.tool_axis());
@@ -152,17 +188,44 @@ mod tests {
 
     #[test]
     fn the_turns_of_a_cube() {
-        let turns = axis_turns(&[]);
+        let five = Machine::built_in("trunnion-ac").unwrap();
+        let turns = axis_turns(&five, &[]);
         assert_eq!(turns.len(), 24);
         assert!(turns.iter().all(keeps_axes) && distinct(&turns));
         assert_eq!(turns[0], UnitQuaternion::identity());
         // What looks about along +x comes up by a quarter of a turn about y.
         let looks = [unit(1.0, 0.2, 0.1), unit(1.0, -0.3, -0.3)];
         let quarter = UnitQuaternion::from_axis_angle(&Vec3::y_axis(), -FRAC_PI_2);
-        assert!(axis_turns(&looks)[0].angle_to(&quarter) < 1e-12);
+        assert!(axis_turns(&five, &looks)[0].angle_to(&quarter) < 1e-12);
         // Straight down it is a half turn about one axis too.
         let over = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), PI);
-        assert!(axis_turns(&[-Vec3::z_axis()])[0].angle_to(&over) < 1e-12);
+        assert!(axis_turns(&five, &[-Vec3::z_axis()])[0].angle_to(&over) < 1e-12);
+    }
+
+    /// A belt of normals about y: a turning centre takes it with y along its spindle, whatever looks up.
+    #[test]
+    fn a_belt_is_laid_along_the_spindle() {
+        let mill_turn = Machine::built_in("mill-turn-xyzc").unwrap();
+        let belt: Vec<Unit3> = (0..=16)
+            .map(|k| {
+                let (s, c) = (f64::from(k) * 0.1).sin_cos();
+                unit(c, 0.1, s)
+            })
+            .collect();
+        for turns in [axis_turns(&mill_turn, &belt), free_turns(&mill_turn, &belt)] {
+            let y = turns[0] * Vec3::y();
+            assert!(y.z.abs() > 1.0 - 1e-12, "{y:?}");
+        }
+        let stands: Vec<Unit3> = belt.iter().map(|n| unit(n.x, n.z, n.y)).collect();
+        assert_eq!(axis_turns(&mill_turn, &stands)[0], UnitQuaternion::identity());
+        // Three axes see a slope that is not too steep: a part stays as it is drawn.
+        let three = Machine::built_in("3-axis").unwrap();
+        assert_eq!(
+            axis_turns(&three, &[unit(1.0, 0.0, 0.2), unit(0.0, 0.0, 1.0)])[0],
+            UnitQuaternion::identity()
+        );
+        let aside = axis_turns(&three, &[unit(1.0, 0.0, -0.2), unit(1.0, 0.0, 0.1)])[0] * Vec3::x();
+        assert!(aside.z > 1.0 - 1e-12, "{aside:?}");
     }
 
     #[test]
@@ -183,18 +246,18 @@ mod tests {
     fn the_first_that_is_in_range() {
         let trunnion = Machine::built_in("trunnion-ac").unwrap();
         let looks = [unit(1.0, 0.0, -2.0), unit(1.0, 0.0, 0.3)];
-        let turns = axis_turns(&looks);
+        let turns = axis_turns(&trunnion, &looks);
         let found = first_in_range(&path(&looks), &trunnion, &turns).unwrap();
         assert!(found.angle_to(&turns[0]) < 1e-12);
         // A tool along (1, 1, 1) is nothing for three linear joints by the part's own axes, but for a free turn.
         let three = Machine::built_in("3-axis").unwrap();
         let corner = [unit(1.0, 1.0, 1.0)];
-        assert!(first_in_range(&path(&corner), &three, &axis_turns(&corner)).is_none());
+        assert!(first_in_range(&path(&corner), &three, &axis_turns(&three, &corner)).is_none());
         let free = first_in_range(&path(&corner), &three, &free_turns(&three, &corner)).unwrap();
         assert!((free * corner[0].into_inner() - Vec3::z()).norm() < 1e-12);
         // Along x a quarter of a turn will do.
         let side = [Vec3::x_axis()];
-        let found = first_in_range(&path(&side), &three, &axis_turns(&side)).unwrap();
+        let found = first_in_range(&path(&side), &three, &axis_turns(&three, &side)).unwrap();
         assert!(keeps_axes(&found) && (found * Vec3::x() - Vec3::z()).norm() < 1e-12);
     }
 }

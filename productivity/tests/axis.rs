@@ -8,14 +8,16 @@ mod cutting;
 
 use cutting::{motions, verdict};
 use osculate_geom::analytic::{Line, Paraboloid};
-use osculate_geom::{Axis, Extruded, Interval, Jet2, Point3, Surface, Unit3, Uv, Vec3};
+use osculate_geom::{
+    Axis, Domain, Extruded, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3,
+};
 use osculate_productivity::axis::{Around, AxisField, Found, Joints, Surroundings, Wish, find};
 use osculate_productivity::plan::{
     Along, Leaning, Milling, Named, Senses, Task, Tolerance, isoparametric, run_in,
 };
 use osculate_tools::reach::Tool;
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
-use osculate_tools::{Cutter, CutterSpec, pose_with_axis};
+use osculate_tools::{Cutter, CutterSpec, Pose, pose_with_axis};
 use proptest::prelude::*;
 
 const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.02, gouge_mm: 0.01, chord_mm: 0.002 };
@@ -46,6 +48,9 @@ impl Joints for Machine {
     }
     fn line(&self) -> Option<Vec<Unit3>> {
         self.fixed.map(|only| vec![only])
+    }
+    fn travels(&self, _: &Pose) -> bool {
+        true
     }
 }
 
@@ -87,6 +92,56 @@ proptest! {
             prop_assert!((a - b).abs() < 1e-9, "{a} {b}");
         }
     }
+}
+
+/// A plane with a groove that is narrower than columns of passes are apart, `z = -0.045 / (1 + (x / 0.08)^2)^2`.
+struct Groove;
+
+impl Surface for Groove {
+    fn domain(&self) -> Domain {
+        Domain { u: Interval::new(-20.0, 21.3), v: Interval::new(0.0, 1.2) }
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        self.taylor(at, 2).jet2()
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        let (x, y) = (Series::variable(Axis::U, at.u, order), Series::variable(Axis::V, at.v, order));
+        let wide = x * x * (1.0 / 0.0064) + Series::constant(1.0, order);
+        let z = (wide * wide).recip() * -0.045;
+        Taylor { uv: at, side: Side::Along, coordinates: [x, y, z] }
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        let i = self.domain().get(axis);
+        (0..=200).map(|k| i.at(f64::from(k) / 200.0)).collect()
+    }
+}
+
+/// A ball does not enter the groove. What it leaves there and the ridges between passes are within the scallop together: passes across
+/// the groove lie closer than on the plane for it, and go into its edges by a part of the gouge.
+#[test]
+fn a_narrow_groove_is_found_between_columns() {
+    let tolerance = Tolerance { scallop_mm: 0.05, ..TOLERANCE };
+    let cutter = ball(8.0, 40.0);
+    let field = AxisField::held(&Groove, tilted(10.0, 30.0));
+    let task = Task {
+        surface: &Groove,
+        face: "F1",
+        cutter: &cutter,
+        lean: Leaning::Axes(&field),
+        tolerance,
+        progress: &|_| {},
+    };
+    let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
+    let moves = motions(&Groove, &passes, &cutter);
+    let found = verdict(&Groove, &moves, &cutter, tolerance, 0.04);
+    assert!(found.within, "scallop {} gouge {}", found.scallop_max_mm, found.gouge_max_mm);
+    // The tool at rest would leave nearly the depth of the groove, and the ridges of a plane as much again.
+    assert!(
+        found.scallop_max_mm > 0.035 && found.gouge_max_mm > 0.002,
+        "{} {}",
+        found.scallop_max_mm,
+        found.gouge_max_mm
+    );
 }
 
 /// A floor in the plane z = 0 over `x` from 0.5 to 30 mm and a wall in the plane x = 0 that is as long and 25 mm high.

@@ -34,7 +34,7 @@ fn along(axis: Axis, lead_deg: f64) -> Candidate {
 
 fn screened(patch: Patch<'_>, tool: Tool<'_>, around: &Around, candidates: &[Candidate]) -> Vec<Screened> {
     let (faces, tools) = ([patch], [tool]);
-    screen(&Setting { faces: &faces, tools: &tools, tolerance: TOLERANCE, around }, candidates)
+    screen(&Setting { faces: &faces, tools: &tools, tolerance: TOLERANCE, around, line: None }, candidates)
 }
 
 /// Meridians of a sphere lie as far apart as the equator lets them: pi / 2 times as long as strips side by side.

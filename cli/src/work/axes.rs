@@ -2,14 +2,14 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::{LoadedFace, Part};
+use crate::part::{self, LoadedFace, Part};
 use crate::work::setup;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv, Vec3};
-use osculate_postproc::Orienting;
+use osculate_postproc::{Machine, Orienting, Setup, in_travel};
 use osculate_productivity::axis::{self, Around, Feed, Found, Joints, Surroundings, Wish};
 use osculate_productivity::plan::{Along, Named, Strategy, Tolerance};
-use osculate_tools::Cutter;
 use osculate_tools::reach::{Member, Tool};
+use osculate_tools::{Cutter, Pose};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -28,21 +28,51 @@ pub fn is_line(job: &Job) -> bool {
     job.control().machine.rotary().len() < 2
 }
 
-/// The rotary joints of the job's machine.
-struct Rotary<'a>(Orienting<'a>);
+/// The axes of the job's machine in the part's frame where they are no more than a line.
+pub fn line(job: &Job, faces: &Part) -> Option<Vec<Unit3>> {
+    let (setup, _) = setup::of(job, faces, None);
+    Orienting::new(&job.control().machine, &setup.part_zero.rotation).line(LINE_RAD)
+}
 
-impl Joints for Rotary<'_> {
+/// Points a side of a face for its least leans.
+const GRID: usize = 24;
+
+/// How far axes of the job's machine must lean off the normals of its faces at least, rad, at points of them; no more than a right angle.
+pub fn least_leans_rad(job: &Job, faces: &Part) -> Vec<f64> {
+    let (setup, _) = setup::of(job, faces, None);
+    let joints = Orienting::new(&job.control().machine, &setup.part_zero.rotation);
+    let all = faces.faces.iter().flat_map(|f| part::grid(&*f.surface, GRID));
+    all.map(|(_, _, normal)| joints.nearest(&normal).angle(&normal).min(FRAC_PI_2)).collect()
+}
+
+/// The joints of the job's machine, with the part as it stands.
+struct Standing<'a> {
+    rotary: Orienting<'a>,
+    machine: &'a Machine,
+    setup: Setup,
+}
+
+impl<'a> Standing<'a> {
+    fn new(machine: &'a Machine, setup: Setup) -> Self {
+        Self { rotary: Orienting::new(machine, &setup.part_zero.rotation), machine, setup }
+    }
+}
+
+impl Joints for Standing<'_> {
     fn reaches(&self, axis: &Unit3) -> bool {
-        self.0.reaches(axis)
+        self.rotary.reaches(axis)
     }
     fn turn_s(&self, from: &Unit3, to: &Unit3) -> f64 {
-        self.0.turn_s(from, to).unwrap_or(f64::INFINITY)
+        self.rotary.turn_s(from, to).unwrap_or(f64::INFINITY)
     }
     fn nearest(&self, axis: &Unit3) -> Unit3 {
-        self.0.nearest(axis)
+        self.rotary.nearest(axis)
     }
     fn line(&self) -> Option<Vec<Unit3>> {
-        self.0.line(LINE_RAD)
+        self.rotary.line(LINE_RAD)
+    }
+    fn travels(&self, pose: &Pose) -> bool {
+        in_travel(pose, self.machine, &self.setup)
     }
 }
 
@@ -137,7 +167,7 @@ fn found(
     let (cutter, holder) = (job.cutter(), job.holder());
     let (setup, _) = setup::of(job, faces, None);
     let control = job.control();
-    let joints = Rotary(Orienting::new(&control.machine, &setup.part_zero.rotation));
+    let joints = Standing::new(&control.machine, setup);
     let wish = Wish {
         surface: &*face.surface,
         feeds,

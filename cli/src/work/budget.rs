@@ -9,6 +9,7 @@
 
 use crate::job::Job;
 use crate::part::{self, Part};
+use crate::work::axes;
 use osculate_postproc::SolveOptions;
 use osculate_postproc::nc::Dialect;
 use osculate_productivity::plan::Tolerance;
@@ -24,8 +25,10 @@ const CONE: f64 = 0.5;
 /// Planning keeps back no more than this share of the scallop: above it passes cannot make good for a coarse machine.
 const MOST: f64 = 0.3;
 
-/// Exact marks of programs over those of leading order: at most 1.2 on a groove of a torus, where feeds at joints vary.
+/// Exact marks of programs over those of leading order: at most 1.2 on a groove of a torus, where feeds at joints vary. Those of an
+/// edge are of first order in the feed, and lie within some hundredths of it.
 const EXACT_MARKS: f64 = 1.25;
+const EXACT_EDGE: f64 = 1.03;
 /// Planning keeps back no more than this share of the scallop for the marks of teeth: the feed is capped so that they take no more
 /// on a plane.
 const MARKS: f64 = 0.6;
@@ -71,21 +74,31 @@ pub fn upright(job: &Job, faces: &Part) -> Tolerance {
     kept_back(job, faces, 1.0, words_mm(job) + blend_mm(job))
 }
 
-/// The highest mark that teeth leave on the faces at the feed of a job, to leading order, mm; zero where it is not known.
+/// The highest mark that teeth leave on the faces at the feed of a job, mm: to leading order, with what exact ones are higher; zero where it is not
+/// known.
 ///
 /// Where the part's curvature along the feed is k the tip goes `1 + k r` times as fast as the contact, and tool and part close
-/// with `1/r + k`: the mark is `f^2 / (8 r (1 + k r))`, highest where the part is most hollow.
+/// with `1/r + k`: the mark is `f^2 / (8 r (1 + k r))`, highest where the part is most hollow. An edge is no corner of any radius: see [`edge_slope`].
 fn mark_mm(job: &Job, faces: &Part) -> f64 {
     let (Some(rpm), r) = (job.spindle_rpm(), job.cutter().corner_mm()) else { return 0.0 };
     let teeth = f64::from(job.tool().teeth().unwrap_or(1).max(1));
     let f = job.feed_mm_min() / (rpm * teeth);
     if r <= 0.0 {
-        let per_mm = job.feed_per_tooth_mm(1.0);
-        return per_mm.map_or(0.0, |one| f / one);
+        return EXACT_EDGE * f * edge_slope(job, faces);
     }
     let ranges = faces.faces.iter().filter_map(|face| part::curvature_range(&*face.surface));
     let hollow = ranges.map(|[low, _]| low).fold(0.0, f64::min);
-    f * f / (8.0 * r * (1.0 + hollow * r).max(MOST_HOLLOW))
+    EXACT_MARKS * f * f / (8.0 * r * (1.0 + hollow * r).max(MOST_HOLLOW))
+}
+
+/// How high an edge that leans by L leaves a mark for each mm of feed per tooth, `sin L cos L`: of the lead where that is given, of the
+/// least leans that the faces ask for where the machine leaves axes no choice; zero where leads are to be found.
+fn edge_slope(job: &Job, faces: &Part) -> f64 {
+    if axes::is_line(job) {
+        let leans = axes::least_leans_rad(job, faces);
+        return leans.into_iter().map(|l| l.sin() * l.cos()).fold(0.0, f64::max);
+    }
+    job.feed_per_tooth_mm(1.0).map_or(0.0, |one| 1.0 / one)
 }
 
 /// Hollows that come closer to the tool's corner than this are no longer of leading order: there verification tells.
@@ -93,7 +106,7 @@ const MOST_HOLLOW: f64 = 0.5;
 
 fn kept_back(job: &Job, faces: &Part, share: f64, by_mm: f64) -> Tolerance {
     let given = job.tolerance();
-    let marks_mm = (EXACT_MARKS * mark_mm(job, faces)).min(MARKS * given.scallop_mm);
+    let marks_mm = mark_mm(job, faces).min(MARKS * given.scallop_mm);
     let scallop_mm = share * (given.scallop_mm - marks_mm - by_mm.min(MOST * given.scallop_mm));
     Tolerance { scallop_mm, ..given }
 }

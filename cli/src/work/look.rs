@@ -81,6 +81,7 @@ impl Look {
         Ok(bad.map(|(k, (what, is, limit))| Objection {
             digs_in: k == 0,
             left_mm: (k == 2).then_some(is),
+            marks_mm: 0.0,
             text: format!("{what} {is:.4} mm by a coarse look, {limit} mm is accepted"),
         }))
     }
@@ -92,6 +93,8 @@ pub struct Objection {
     pub digs_in: bool,
     /// What it leaves, where nothing is wrong but that, mm.
     pub left_mm: Option<f64>,
+    /// How much of that are marks of teeth, as far as it is known, mm.
+    pub marks_mm: f64,
     /// In words.
     pub text: String,
 }

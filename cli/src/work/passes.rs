@@ -167,17 +167,21 @@ pub fn each_face(
             Axes::Held => plan(way.strategy, way.lean.into())?,
             Axes::Local => plan(way.strategy, Leaning::Local(&local))?,
             Axes::Field => {
-                let mut best: Option<Passes> = None;
-                // Each direction has a field of its own.
+                let mut best: Option<Result<Passes, Failure>> = None;
+                // Each direction has a field of its own; one along which the tool does not fit leaves the other.
                 for strategy in each_direction(*way.strategy) {
                     let (found, said) = &*way.fields.of(job, faces, (k, face), (tolerance, &strategy))?;
-                    let mut p = plan(&strategy, Leaning::Axes(&found.field))?;
-                    p.diagnostics.extend(said.iter().cloned());
-                    if best.as_ref().is_none_or(|b| p.length_mm() < b.length_mm()) {
-                        best = Some(p);
+                    let mut made = plan(&strategy, Leaning::Axes(&found.field));
+                    if let Ok(p) = &mut made {
+                        p.diagnostics.extend(said.iter().cloned());
                     }
+                    best = Some(match (best, made) {
+                        (Some(Ok(a)), Ok(b)) => Ok(if b.length_mm() < a.length_mm() { b } else { a }),
+                        (Some(Ok(a)), Err(_)) => Ok(a),
+                        (Some(Err(_)) | None, made) => made,
+                    });
                 }
-                best.unwrap_or_default()
+                best.transpose()?.unwrap_or_default()
             }
         };
         run_in(&mut p.passes, job.strategy().senses);

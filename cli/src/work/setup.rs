@@ -7,8 +7,10 @@ use crate::part::{self, Part};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
 use osculate_postproc::{
-    Machine, Setup, axis_turns, clamped_turns, first_in_range, free_turns, quicker_turns, suggest, tilts,
+    Machine, Orienting, Setup, axis_turns, clamped_turns, first_in_range, free_turns, into_travel,
+    quicker_turns, suggest, tilts,
 };
+use osculate_tools::Pose;
 use osculate_tools::cl::ClPath;
 
 /// A path for which a setup is sought.
@@ -47,9 +49,28 @@ pub fn of(job: &Job, faces: &Part, along: Option<Along<'_>>) -> (Setup, Vec<Diag
     if let Some(zero) = s.part_zero_mm {
         setup.part_zero.translation = Translation3::from(Vec3::from(zero));
     } else {
-        notes.push(note_of_place(&setup));
+        let machine = &job.control().machine;
+        // Axes that are sought yet lie where the machine leaves them little choice.
+        let sought = || on_line(machine, &setup.part_zero.rotation, points.iter().zip(&normals));
+        let poses = along.map_or_else(sought, |a| a.path.moves.iter().map(|m| m.pose).collect());
+        let moved = into_travel(&poses, machine, &setup).unwrap_or_default();
+        setup.part_zero.translation.vector += moved;
+        notes.push(note_of_place(&setup, &moved));
     }
     (setup, notes)
+}
+
+/// The tool at places of the faces, its axis as near to the normal as a machine of three or four axes has one; nothing for others.
+fn on_line<'a>(
+    machine: &Machine,
+    turned: &UnitQuaternion<f64>,
+    looks: impl Iterator<Item = (&'a Point3, &'a Unit3)>,
+) -> Vec<Pose> {
+    if machine.rotary().len() > 1 {
+        return Vec::new();
+    }
+    let joints = Orienting::new(machine, turned);
+    looks.map(|(tip, normal)| Pose { tip: *tip, axis: joints.nearest(normal) }).collect()
 }
 
 /// How the part is turned.
@@ -63,18 +84,28 @@ impl Turn {
     /// the best at all: the post then says what is out of range.
     fn of(turns: Turns, machine: &Machine, normals: &[Unit3], along: Option<Along<'_>>) -> Self {
         let looks = along.map(|a| a.axes).filter(|axes| !axes.is_empty()).unwrap_or(normals);
-        let by_axes = || axis_turns(looks);
+        let by_axes = || axis_turns(machine, looks);
         let free = || free_turns(machine, looks);
         let (wanted, others) = match turns {
             Turns::None => (by_axes(), Vec::new()),
             Turns::Axis => (by_axes(), free()),
             Turns::Free => (free(), by_axes()),
         };
-        let up = "so that the tool's axes look up";
+        let up = match machine.rotary().len() {
+            0 | 1 => "so that the faces look where the tool comes from",
+            _ => "so that the tool's axes look up",
+        };
         let in_range = |turns: &[UnitQuaternion<f64>]| match along {
             Some(a) => first_in_range(a.path, machine, turns),
             None => turns.first().copied(),
         };
+        // Axes for three or four joints were found for a part that stands so.
+        if along.is_some() && machine.rotary().len() < 2 {
+            let found_for = Self::of(turns, machine, normals, None);
+            if in_range(&[found_for.rotation]).is_some() {
+                return found_for;
+            }
+        }
         if let Some(rotation) = in_range(&wanted) {
             return Self { rotation, why: up };
         }
@@ -108,9 +139,16 @@ fn note_of_turn(why: &str, setup: &Setup) -> Diagnostic {
     Diagnostic::note("setup", format!("the part {how} {why}: rotate_deg = [{x:.3}, {y:.3}, {z:.3}]"))
 }
 
-fn note_of_place(setup: &Setup) -> Diagnostic {
+fn note_of_place(setup: &Setup, moved: &Vec3) -> Diagnostic {
     let t = setup.part_zero.translation.vector;
-    let place = format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces", t.x, t.y, t.z);
+    let far = moved.norm();
+    let why = if far > 0.0 {
+        format!(", moved by {far:.3} mm so that the linear joints can go along the path")
+    } else {
+        String::new()
+    };
+    let place =
+        format!("part_zero_mm = [{:.4}, {:.4}, {:.4}], from the box of the faces{why}", t.x, t.y, t.z);
     Diagnostic::note("setup", place)
 }
 
@@ -148,5 +186,5 @@ pub fn notes_of_turned(setup: &Setup, before_min: Option<f64>, now_min: f64) -> 
         }
         None => "so that the joints can go along the path".to_owned(),
     };
-    vec![note_of_turn(&why, setup), note_of_place(setup)]
+    vec![note_of_turn(&why, setup), note_of_place(setup, &Vec3::zeros())]
 }

@@ -10,10 +10,10 @@ use super::settle::settle;
 use crate::plan::extended::Extended;
 use crate::width::WIDEST;
 use osculate_geom::{Point3, Surface, Unit3, Uv};
-use osculate_tools::Cutter;
 use osculate_tools::reach::{
     Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
 };
+use osculate_tools::{Cutter, pose_with_axis};
 use rayon::prelude::*;
 
 /// Subdivisions of the icosahedron whose corners are tried: 2,562 directions, 4.3 degrees apart.
@@ -87,15 +87,6 @@ pub enum NoField {
     },
 }
 
-/// The place with the tool lifted along the normal by the first of some lengths with which an axis is possible, and those that are.
-fn lifted(reach: &Reach<'_>, place: &Place, lifts_mm: &[f64]) -> Option<(Place, Bits)> {
-    lifts_mm.iter().find_map(|mm| {
-        let place = Place { point: place.point + place.normal.into_inner() * *mm, ..*place };
-        let bits = reach.map(&[place]).pop()?;
-        (!bits.is_empty()).then_some((place, bits))
-    })
-}
-
 /// Finds the field of axes of least time over a face, for each direction of passes.
 ///
 /// # Errors
@@ -138,13 +129,32 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         .map(|n| n.normal.filter(|_| n.stood).map(|normal| Place { point: n.point, normal }))
         .collect();
     let on_face: Vec<Place> = places.iter().flatten().copied().collect();
-    let mut found = reach.map(&on_face).into_iter();
-    let mut bits: Vec<Option<Bits>> = places.iter().map(|p| p.as_ref().and_then(|_| found.next())).collect();
+    // Where the machine has few axes its other joints may leave even fewer.
+    let travels = |place: &Place, axis: &Unit3| {
+        !on_line || wish.joints.travels(&pose_with_axis(cutter, &place.point, &place.normal, axis))
+    };
+    let left = |place: &Place, bits: Bits| {
+        if !on_line {
+            return bits;
+        }
+        Bits::of(all.len(), |k| bits.contains(k) && travels(place, &all[k]))
+    };
+    let reached = reach.map(&on_face);
+    let mut reached = on_face.iter().zip(reached).map(|(place, bits)| left(place, bits));
+    let mut bits: Vec<Option<Bits>> =
+        places.iter().map(|p| p.as_ref().and_then(|_| reached.next())).collect();
     // Where the tool cannot come down to the face it may still stand off by what may be left.
+    let lifted = |place: &Place| {
+        lifts_mm.iter().find_map(|mm| {
+            let place = Place { point: place.point + place.normal.into_inner() * *mm, ..*place };
+            let bits = left(&place, reach.map(&[place]).pop()?);
+            (!bits.is_empty()).then_some((place, bits))
+        })
+    };
     places.par_iter_mut().zip(&mut bits).for_each(|(place, bits)| {
         let (Some(place), Some(bits)) = (place, bits) else { return };
         if bits.is_empty()
-            && let Some((lifted, found)) = lifted(&reach, place, &lifts_mm)
+            && let Some((lifted, found)) = lifted(place)
         {
             (*place, *bits) = (lifted, found);
         }
@@ -175,11 +185,12 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         feed_mm_min: wish.feed_mm_min,
         directions: &directions,
         joints: wish.joints,
-        clear: &|place: &Place, axis: &Unit3| reach.is_clear(place, axis),
+        clear: &|place: &Place, axis: &Unit3| reach.is_clear(place, axis) && travels(place, axis),
         on_line,
     };
     let clear = |point: &Point3, normal: &Unit3, axis: &Unit3| {
-        wish.joints.reaches(axis) && reach.is_clear(&Place { point: *point, normal: *normal }, axis)
+        let place = Place { point: *point, normal: *normal };
+        wish.joints.reaches(axis) && reach.is_clear(&place, axis) && travels(&place, axis)
     };
     let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
     let mut between = lattice.between(ASKED);

@@ -1,6 +1,7 @@
 //! What a search for axes must know of a machine.
 
 use osculate_geom::Unit3;
+use osculate_tools::Pose;
 
 /// The joints of a machine that turn the tool's axis against the part, which stands as it is set up.
 pub trait Joints: Sync {
@@ -13,4 +14,6 @@ pub trait Joints: Sync {
     /// The axes that the joints reach where they are a line or a few: a machine of three or four axes. None where they fill a part
     /// of the sphere.
     fn line(&self) -> Option<Vec<Unit3>>;
+    /// Whether the joints take the tool to a pose: the linear ones too, within their limits. Asked where [`line`](Self::line) leaves little choice.
+    fn travels(&self, pose: &Pose) -> bool;
 }

@@ -4,7 +4,9 @@ use super::pace::{Pace, paces};
 use crate::plan::extended::Extended;
 use crate::rectangle::{AXES, Rectangle, lengths};
 use crate::spline::Spline;
-use osculate_geom::{Axis, Darboux, Forms, Jet2, Point3, Surface, Unit3, Uv, Vec3, any_perpendicular, uv};
+use osculate_geom::{
+    Axis, Darboux, Forms, Jet2, Point3, Side, Surface, Unit3, Uv, Vec3, any_perpendicular, uv,
+};
 use rayon::prelude::*;
 
 /// Distance of nodes, in radii of the tool: a tool sees no more of what stands around it. Fewest and most along a parameter, and
@@ -99,7 +101,7 @@ pub(super) fn steady_normal(
 fn flat(jet: &Jet2, normal: &Unit3) -> Jet2 {
     let du = any_perpendicular(normal).into_inner();
     let none = Vec3::zeros();
-    Jet2 { du, dv: normal.cross(&du), duu: none, duv: none, dvv: none, ..*jet }
+    Jet2 { du, dv: normal.cross(&du), duu: none, duv: none, dvv: none, side: Side::Along, ..*jet }
 }
 
 impl Lattice {

@@ -3,6 +3,7 @@
 use super::around::Around;
 use crate::ideal::Patch;
 use crate::plan::{Strategy, Tolerance};
+use osculate_geom::Unit3;
 use osculate_tools::{Cutter, Lean};
 
 /// A tool to choose from.
@@ -26,6 +27,8 @@ pub struct Setting<'a> {
     pub tolerance: Tolerance,
     /// Points that bodies of tools must stay out of.
     pub around: &'a Around,
+    /// The only axes that the machine has, in the part's frame, one next to the other; None where they fill a part of the sphere.
+    pub line: Option<&'a [Unit3]>,
 }
 
 /// One way to machine the faces.

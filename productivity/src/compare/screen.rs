@@ -6,7 +6,7 @@ use crate::ideal::{Place, shared_places};
 use crate::plan::LocalLead;
 use osculate_geom::{Axis, Forms, Jet2, Surface, Unit3};
 use osculate_tools::strip::{self, Chart, ChartError, StripError, Within};
-use osculate_tools::{Contact, Cutter, FeedLine, Pose};
+use osculate_tools::{Contact, Cutter, FeedLine, Lean, Pose};
 use rayon::prelude::*;
 
 /// Places over all faces, about.
@@ -90,17 +90,52 @@ fn look(setting: &Setting<'_>, spot: &Spot<'_>, candidates: &[Candidate]) -> Vec
         for course in all {
             let here = match c.axes {
                 Axes::Held => posture(setting, spot, chart, c, &course),
+                Axes::Field if setting.line.is_some() => on_line(setting, spot, chart, c, &course),
                 Axes::Local | Axes::Field => least(setting, spot, chart, c, &course),
             };
-            best = match (best, here) {
-                (There::Strip { width_mm: a, .. }, There::Strip { width_mm: b, .. }) if b > a => here,
-                (There::Strip { .. }, _) => best,
-                _ => here,
-            };
+            best = better(best, here);
         }
         best
     };
     candidates.iter().map(one).collect()
+}
+
+/// The wider of two strips, or what there is of one, or else the second.
+fn better(a: There, b: There) -> There {
+    match (a, b) {
+        (There::Strip { width_mm: x, .. }, There::Strip { width_mm: y, .. }) if y > x => b,
+        (There::Strip { .. }, _) => a,
+        _ => b,
+    }
+}
+
+/// Axes to each side of the one nearest to the normal that are tried where the machine has but a line of them, by their place in it.
+const BESIDE: [usize; 3] = [2, 6, 18];
+
+/// The widest strip of the axes that a machine has which leaves them little choice, next to the normal.
+fn on_line(
+    setting: &Setting<'_>,
+    spot: &Spot<'_>,
+    chart: &Chart,
+    candidate: &Candidate,
+    course: &Course,
+) -> There {
+    let line = setting.line.unwrap_or_default();
+    let (frame, n) = (chart.frame(course.angle_rad), spot.forms.normal);
+    let nearest = (0..line.len()).max_by(|a, b| line[*a].dot(&n).total_cmp(&line[*b].dot(&n)));
+    let Some(nearest) = nearest else { return There::Away };
+    // A ball is the same with any axis. The last axis of a circle is the first again.
+    let beside: &[usize] = if setting.tools[candidate.tool].cutter.is_ball() { &[] } else { &BESIDE };
+    let places = beside.iter().flat_map(|k| [nearest + k, nearest + line.len() - k.min(&line.len())]);
+    let tried = [nearest].into_iter().chain(places).map(|k| line[k % line.len()]);
+    let there = tried.map(|axis| {
+        if axis.dot(&n) <= 0.0 {
+            return There::Away;
+        }
+        let lean = Lean::of(&axis, &frame);
+        posture(setting, spot, chart, candidate, &Course { lean, ..*course })
+    });
+    there.reduce(better).unwrap_or(There::Away)
 }
 
 /// Quotient of leads that are tried where the lead is the least that fits, and the greatest.

@@ -10,7 +10,7 @@ use super::Task;
 use super::line::PassLine;
 use crate::rectangle::Rectangle;
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
-use osculate_geom::{Axis, Darboux, Domain, Unit3, Uv, Vec3};
+use osculate_geom::{Axis, Darboux, Domain, Point3, Unit3, Uv, Vec3};
 use osculate_tools::Pose;
 use rayon::prelude::*;
 
@@ -30,6 +30,10 @@ const FEWEST: f64 = 3.0;
 const MOST: f64 = 32.0;
 /// What a pass leaves on its own line counts as nothing up to this part of the scallop.
 const NOTHING_LEFT: f64 = 1e-4;
+/// A tool that crests hold up so that it leaves more than this part of the scallop is let into them, by this part of the gouge at most:
+/// chords and words need the rest. Under the first share the ridges between passes still have room.
+const TOO_MUCH: f64 = 0.75;
+const INTO_CRESTS: f64 = 0.4;
 /// Raising moves the place of rest, slowly where that is on a steep part of the tool; rounds end early once settled.
 const ROUNDS: usize = 10;
 
@@ -58,6 +62,20 @@ impl SurfaceLine for Averaged<'_> {
     fn frame(&self, t: f64) -> Result<(Darboux, f64), LineError> {
         self.seat.frame(self.line, t)
     }
+}
+
+/// Places before and after one, a part of [`AVERAGE`] apart, that cut at its contact too.
+const AROUND: i32 = 4;
+
+/// A tool that rests on a face.
+struct Rest {
+    pose: Pose,
+    frame: Darboux,
+}
+
+/// The pose of a tool let so far into what it rests on.
+fn sunk(rest: &Rest, by_mm: f64) -> Pose {
+    Pose { tip: rest.pose.tip - rest.frame.normal.into_inner() * by_mm, axis: rest.pose.axis }
 }
 
 /// Knots of a face, fetched once.
@@ -245,8 +263,8 @@ impl<'a> Seat<'a> {
         (seated, lift)
     }
 
-    /// The seated pose at a line parameter, its frame, and the lift.
-    pub(super) fn at(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
+    /// The pose that rests on the face at a line parameter, its frame, and the lift.
+    fn resting(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
         let (frame, _) = self.frame(line, t)?;
         let pose = self.task.lean.on(line, t, &frame).pose(self.task.cutter, &frame, 0.0);
         let radius = self.task.cutter.radius_mm();
@@ -262,25 +280,76 @@ impl<'a> Seat<'a> {
         Ok((pose, frame, lift))
     }
 
+    /// The tool at rest at `t` and at so many places before and after it, as far as the line goes.
+    fn rests(&self, line: &dyn PassLine, t: f64, places: i32) -> Result<Vec<Option<Rest>>, LineError> {
+        let (i, speed) = (line.range(), line.frame(t)?.1);
+        let step = 0.5 * AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12);
+        let at = |k: i32| {
+            let s = t + step * f64::from(k);
+            let there = i.contains(s) || k == 0;
+            let rest = || self.resting(line, s).map(|(pose, frame, _)| Rest { pose, frame });
+            there.then(rest).transpose()
+        };
+        (-places..=places).map(at).collect()
+    }
+
+    /// What tools with these poses around a place leave at its contact.
+    fn left(&self, poses: impl Iterator<Item = Pose>, contact: &Point3) -> f64 {
+        poses.map(|pose| self.task.cutter.distance(&pose, contact)).fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
+    /// By how much the tool is let into crests that have it leave so much; not where that is too much even so.
+    fn sunk_mm(&self, left_mm: f64) -> f64 {
+        let t = &self.task.tolerance;
+        let most_mm = INTO_CRESTS * t.gouge_mm;
+        let of_use_mm = t.scallop_mm + 2.0 * most_mm - left_mm;
+        (left_mm - TOO_MUCH * t.scallop_mm).min(of_use_mm).clamp(0.0, most_mm)
+    }
+
+    /// By how much the tool is let into crests at the middle of an odd number of places at rest.
+    fn sunk_among_mm(&self, rests: &[Option<Rest>]) -> f64 {
+        let Some(Some(middle)) = rests.get(rests.len() / 2) else { return 0.0 };
+        self.sunk_mm(self.left(rests.iter().flatten().map(|r| r.pose), &middle.frame.point))
+    }
+
+    /// Whether a tool that rests like this may leave too much at its own line.
+    fn may_be_sunk(&self, rest: &Rest) -> bool {
+        let left_mm = self.task.cutter.distance(&rest.pose, &rest.frame.point);
+        left_mm > TOO_MUCH * self.task.tolerance.scallop_mm
+    }
+
+    /// The seated pose at a line parameter, its frame, and the lift: at rest, or let into crests that keep it too far off the face.
+    pub(super) fn at(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
+        let (pose, frame, lift) = self.resting(line, t)?;
+        if !self.may_be_sunk(&Rest { pose, frame }) {
+            return Ok((pose, frame, lift));
+        }
+        let sunk_mm = self.sunk_among_mm(&self.rests(line, t, AROUND)?);
+        Ok((sunk(&Rest { pose, frame }, sunk_mm), frame, lift - sunk_mm))
+    }
+
     /// What a pass leaves at its own line at `t`, the tool seated there and a little before and after: zero on a smooth
     /// face, the depth of what the tool cannot enter on a rough one.
     pub(super) fn left_over(&self, line: &dyn PassLine, t: f64) -> Result<f64, LineError> {
-        let (here, speed) = line.frame(t)?;
-        let i = line.range();
-        let step = AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12);
+        let (pose, frame, _) = self.resting(line, t)?;
         // As a rule the tool rests on its contact, and there is nothing to look for around it.
-        let mut least = self.task.cutter.distance(&self.at(line, t)?.0, &here.point);
-        if least <= NOTHING_LEFT * self.task.tolerance.scallop_mm {
-            return Ok(least.max(0.0));
+        let least_mm = self.task.cutter.distance(&pose, &frame.point).max(0.0);
+        if least_mm <= NOTHING_LEFT * self.task.tolerance.scallop_mm {
+            return Ok(least_mm);
         }
-        for k in -4..=4 {
-            let s = t + 0.5 * step * f64::from(k);
-            if i.contains(s) {
-                let (pose, _, _) = self.at(line, s)?;
-                least = least.min(self.task.cutter.distance(&pose, &here.point));
-            }
-        }
-        Ok(least.max(0.0))
+        let into = self.may_be_sunk(&Rest { pose, frame });
+        let rests = self.rests(line, t, if into { 2 * AROUND } else { AROUND })?;
+        let around = 2 * AROUND as usize + 1;
+        let poses: Vec<Pose> = if into {
+            let seated = |near: &[Option<Rest>]| {
+                let rest = near[AROUND as usize].as_ref()?;
+                Some(sunk(rest, self.sunk_among_mm(near)))
+            };
+            rests.windows(around).filter_map(seated).collect()
+        } else {
+            rests.iter().flatten().map(|r| r.pose).collect()
+        };
+        Ok(self.left(poses.into_iter(), &frame.point))
     }
 
     /// How far the whole end of the tool, not only the part of it next to the contact, is held off the face.

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{self, Part};
 use crate::watch::Watch;
-use crate::work::axes::Fields;
+use crate::work::axes::{self, Fields};
 use crate::work::extras::Extras;
 use crate::work::look::{Look, Objection};
 use crate::work::passes::{self, Way};
@@ -108,8 +108,14 @@ impl<'a> Choice<'a> {
         let all = faces.faces.iter().chain(&faces.check);
         let around = Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str())));
         let candidates = candidates::of_job(job, faces, &cutters)?;
-        let setting =
-            Setting { faces: &patches(faces), tools: &tools, tolerance: job.tolerance(), around: &around };
+        let line = axes::line(job, faces);
+        let setting = Setting {
+            faces: &patches(faces),
+            tools: &tools,
+            tolerance: job.tolerance(),
+            around: &around,
+            line: line.as_deref(),
+        };
         let screened = screen(&setting, &candidates);
         let entries: Vec<Entry> = candidates
             .into_iter()
@@ -380,7 +386,7 @@ impl<'a> Choice<'a> {
             if objection.digs_in {
                 self.no_smaller_lead(k);
             }
-            if objection.left_mm.is_some_and(|left| self.for_less(k, left, limit_mm)) {
+            if self.for_less(k, &objection, limit_mm) {
                 return self.planned(k);
             }
             return Ok(State::Out(objection.text));
@@ -397,8 +403,12 @@ impl<'a> Choice<'a> {
         })))
     }
 
-    /// Has a candidate that leaves a little more than the limit laid out for less, once; whether it is.
-    fn for_less(&mut self, k: usize, left_mm: f64, limit_mm: f64) -> bool {
+    /// Has a candidate that leaves a little more than the limit laid out for less, once; whether it is. Closer passes leave the marks of
+    /// teeth as they are.
+    fn for_less(&mut self, k: usize, why: &Objection, limit_mm: f64) -> bool {
+        let Some(left_mm) = why.left_mm else { return false };
+        let (left_mm, marks_mm) = (left_mm - why.marks_mm, why.marks_mm);
+        let limit_mm = limit_mm - marks_mm;
         let again =
             self.entries[k].share == 1.0 && left_mm > limit_mm && left_mm <= LITTLE_TOO_MUCH * limit_mm;
         if again {
@@ -434,10 +444,11 @@ impl<'a> Choice<'a> {
     pub fn record(&mut self, contender: &Contender, measured: Measured, why: Option<Objection>) {
         let k = contender.entry;
         self.entries[k].verified = Some(measured);
-        let Some(Objection { text, left_mm, .. }) = why else { return };
-        self.entries[k].state = State::Out(text);
+        let Some(objection) = why else { return };
         let limit_mm = contender.job.tolerance().scallop_mm;
-        if left_mm.is_some_and(|left| self.for_less(k, left, limit_mm)) {
+        let again = self.for_less(k, &objection, limit_mm);
+        self.entries[k].state = State::Out(objection.text);
+        if again {
             self.entries[k].state = State::Open;
             self.entries[k].figures = None;
         }

@@ -88,7 +88,7 @@ fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
         Answer::NotHeld => {}
     }
     let t = job.tolerance();
-    Ok((v.scallop_max_mm / t.scallop_mm).max(v.gouge_max_mm / t.gouge_mm).max(1.0))
+    Ok((v.height_max_mm / t.scallop_mm).max(v.gouge_max_mm / t.gouge_mm).max(1.0))
 }
 
 /// Why a verification does not hold.
@@ -98,7 +98,7 @@ fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> 
         Answer::Held => return Ok(None),
         Answer::NotShown => {
             let text = format!("verified: {}", found.verdict.words());
-            return Ok(Some(Objection { digs_in: false, left_mm: None, text }));
+            return Ok(Some(Objection { digs_in: false, left_mm: None, marks_mm: 0.0, text }));
         }
         Answer::NotHeld => {}
     }
@@ -118,7 +118,9 @@ fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> 
             (k, format!("verified: {what} {is:.4} {unit}, {limit} {unit} is accepted"))
         },
     );
-    Ok(Some(Objection { digs_in: k == 0, left_mm: (k == 4).then_some(v.height_max_mm), text }))
+    let left_mm = (k == 4).then_some(v.height_max_mm);
+    let marks_mm = v.height_max_mm - v.scallop_max_mm;
+    Ok(Some(Objection { digs_in: k == 0, left_mm, marks_mm, text }))
 }
 
 fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Result<Measured, Failure> {
