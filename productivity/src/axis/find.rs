@@ -18,8 +18,9 @@ use rayon::prelude::*;
 
 /// Subdivisions of the icosahedron whose corners are tried: 2,562 directions, 4.3 degrees apart.
 const LEVEL: u32 = 4;
-/// Places asked along each side of a cell.
-const ASKED: usize = 4;
+/// Places that are asked between the nodes, and fewest and most of them along each side of a cell.
+const ASKED: f64 = 4e4;
+const ALONG: [f64; 2] = [4.0, 10.0];
 /// Shares of the scallop by which a tool is lifted that no axis takes down to the face: dents narrower than the tool.
 const LIFTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
@@ -193,7 +194,9 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         wish.joints.reaches(axis) && reach.is_clear(&place, axis) && travels(&place, axis)
     };
     let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
-    let mut between = lattice.between(ASKED);
+    // Between the two, a whole number.
+    let parts = (ASKED / lattice.nodes.len() as f64).sqrt().clamp(ALONG[0], ALONG[1]) as usize;
+    let mut between = lattice.between(parts);
     between.retain(|at| lattice.stands(*at));
     let unreached = lattice
         .nodes
