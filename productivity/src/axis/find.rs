@@ -219,8 +219,12 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         let mut spline = lattice.spline.clone();
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
         let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
-        let unsettled =
-            settle(&mut field, (&face, rough.then_some(look_mm)), (&between, &lifts_mm), (&clear, &held));
+        let unsettled = settle(
+            &mut field,
+            (&face, rough.then_some(look_mm)),
+            (&between, wish.scallop_mm),
+            (&clear, &held),
+        );
         let unreached = unreached.clone();
         Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, between.len()] })
     };

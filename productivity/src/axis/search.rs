@@ -32,7 +32,7 @@ const TURN: f64 = 0.1;
 const FREE: f64 = 0.5;
 const SWING: f64 = 1.0;
 /// How many times as much turns cost at first: a field that is stiff has no walls between parts that lean to different sides.
-const STIFF: [f64; 3] = [100.0, 10.0, 1.0];
+const STIFF: [f64; 2] = [30.0, 1.0];
 /// Starts that places share, the least angle between two of them, rad, and ways to lean least that are others.
 const STARTS: usize = 8;
 const WAYS_BEGUN: usize = 8;

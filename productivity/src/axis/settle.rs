@@ -22,6 +22,9 @@ const BEYOND: f64 = 0.25;
 /// An axis that was found for a place counts until the field has turned so far there, rad.
 const KNOWN: f64 = 0.02;
 
+/// Axes that are so near to each other count as the same, rad: a long tool differs by less than a micrometre.
+const SAME: f64 = 5e-6;
+
 /// A place that is asked.
 #[derive(Clone, Copy)]
 struct Asked {
@@ -30,13 +33,19 @@ struct Asked {
     normal: Unit3,
     /// An axis that is not clear and the nearest to it that is, where there is one: what was found last.
     known: Option<(Unit3, Option<Unit3>)>,
+    /// The axis that was found clear last.
+    clear: Option<Unit3>,
 }
 
 impl Asked {
     /// Whether the tool is clear with an axis; if not, the nearest with which it is becomes known.
     fn is_clear(&mut self, axis: &Unit3, (clear, held): (&Clear<'_>, &Held<'_>)) -> bool {
+        if self.clear.is_some_and(|last| last.angle(axis) < SAME) {
+            return true;
+        }
         let is_clear = |a: &Unit3| clear(&self.point, &self.normal, a);
-        if is_clear(axis) {
+        self.clear = is_clear(axis).then_some(*axis);
+        if self.clear.is_some() {
             return true;
         }
         if self.known.is_none_or(|(from, _)| from.angle(axis) > KNOWN) {
@@ -67,11 +76,11 @@ pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 /// Moves the poles of a field until the tool is clear at places of a face; how many of them it is not at.
 ///
 /// `held` brings an axis to where the joints can take it. A place at which no axis near the field's is clear is asked with the tool
-/// lifted by `lifts_mm`, the first that will do. Where the face is rough its normals are means, up to `look_mm` to each side.
+/// lifted by `lift_mm`. Where the face is rough its normals are means, up to `look_mm` to each side.
 pub(super) fn settle(
     field: &mut AxisField,
     (face, look_mm): (&Extended<'_>, Option<f64>),
-    (places, lifts_mm): (&[Uv], &[f64]),
+    (places, lift_mm): (&[Uv], f64),
     (clear, held): (&Clear<'_>, &Held<'_>),
 ) -> usize {
     let how = (clear, held);
@@ -86,13 +95,16 @@ pub(super) fn settle(
             let axis = field.at(*at).0;
             let lifted = |mm: f64| {
                 let point = jet.point + normal.into_inner() * mm;
-                let mut asked = Asked { at: *at, point, normal, known: None };
+                let mut asked = Asked { at: *at, point, normal, known: None, clear: None };
                 (asked.is_clear(&axis, how) || asked.near().is_some()).then_some(asked)
             };
-            let found = [0.0].iter().chain(lifts_mm).find_map(|mm| lifted(*mm));
-            // Beyond the border the tool may have no place to stand at all.
-            let none = || Asked { at: *at, point: jet.point, normal, known: Some((axis, None)) };
-            found.or_else(|| face.contains(*at).then(none))
+            lifted(0.0).or_else(|| {
+                // Beyond the border the tool may have no place to stand at all.
+                let on_face = face.contains(*at);
+                let none =
+                    || Asked { at: *at, point: jet.point, normal, known: Some((axis, None)), clear: None };
+                on_face.then(|| lifted(lift_mm).unwrap_or_else(none))
+            })
         })
         .collect();
     let mut asked: Vec<usize> = (0..all.len()).collect();
