@@ -30,7 +30,10 @@ const ADDED: f64 = 0.75;
 /// How far the end of a tool reaches from its contact, in radii: it may touch check faces there, beside an inner edge.
 const END: f64 = 3.0;
 /// What is kept from points of check faces further off, of their spacing.
-const APART: f64 = 0.5;
+const APART: f64 = 0.15;
+/// What a tool that comes at a face from beside keeps from it, of the gouge tolerance: more would leave out what lies next to sharp outer
+/// edges.
+const ASIDE: f64 = 0.1;
 /// Distance of poses along a pass, in radii of the cutter.
 const STEP: f64 = 0.05;
 /// The share of the accepted depth beyond which a stretch is left out: words, chords and edges, along whose normals the depth is more,
@@ -42,7 +45,7 @@ const BESIDE: f64 = 0.4;
 /// The share of the accepted depth that ends a stretch left out.
 const RELEASE: f64 = 0.5;
 /// What remains between two stretches left out is left out too where it is shorter than this part of its strip's width.
-const SHORT: f64 = 1.0;
+const SHORT: f64 = 0.5;
 
 /// What passes are held against. Lengths mm.
 #[derive(Clone, Copy)]
@@ -136,7 +139,7 @@ struct Watch<'a> {
     /// hardly in an edge goes deep along its normal between two points.
     apart_mm: f64,
     /// Samples are sunk by so much more, and a tool keeps that from them: one that lies along a face may be as deep as it may, one that
-    /// comes at it from beside, over an edge, keeps off by what the post may stray, mm.
+    /// comes at it from beside, over an edge, keeps off, mm.
     aside_mm: f64,
     /// Distance that is kept from faces to machine by the holder and from check faces by all, mm; None where they may go in as far as
     /// is accepted.
@@ -155,7 +158,7 @@ impl<'a> Watch<'a> {
         let (faces, apart) = sampled(guard.faces, [spacing_mm, MOST])?;
         let (check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
         let keep_mm = (keep > 0.0).then(|| keep + ADDED * apart.max(check_apart));
-        let aside_mm = guard.tolerance.chord_mm;
+        let aside_mm = (ASIDE * gouge_mm).min(guard.tolerance.chord_mm);
         let points = |samples: &[Sample], gouge_mm: f64| Points::new(samples, gouge_mm, aside_mm);
         let (faces, check) = (points(&faces, gouge_mm), points(&check, BESIDE * gouge_mm));
         Ok(Self { guard, faces, check, apart_mm: APART * check_apart, aside_mm, keep_mm })
@@ -201,6 +204,9 @@ impl<'a> Watch<'a> {
         let rounds = if pass.closed { 2 } else { 1 };
         grow(&mut out, &mut (0..rounds * n).map(|k| k % n));
         grow(&mut out, &mut (0..rounds * n).rev().map(|k| k % n));
+        // One station more: the depth of a tool that comes at a wall straight grows fast.
+        let near = |k: usize| k > 0 && out[k - 1] || k + 1 < n && out[k + 1];
+        let out: Vec<bool> = (0..n).map(|k| out[k] || near(k)).collect();
         let mut runs: Vec<Vec<CcPoint>> = Vec::new();
         let mut run: Vec<CcPoint> = Vec::new();
         for (k, s) in stations.iter().enumerate() {
