@@ -5,8 +5,7 @@
 //! whose body lies beyond the tip. From the pole of that plane the axis swings over the sphere, always pointing
 //! outward, to the pole of the next pass and down again. Passes that begin near the end of the one before are
 //! joined by a hop instead: up along the normal, or between it and the axis where there is no room, across, and down, as low as keeps
-//! cutter and holder off other walls of the part and far enough from faces that are not machined; where none does, by a way as high as
-//! what stands between the two ends; where that does not either, by a retract.
+//! the tool off other walls and far enough from faces that are not machined; where none does, by a way as high as what stands between.
 
 use super::around::Cloud;
 use super::kept::Kept;
