@@ -135,8 +135,8 @@ struct Watch<'a> {
     guard: &'a Guard<'a>,
     faces: Points,
     check: Points,
-    /// What the side of the tool keeps from check faces further from its contact than its end reaches, mm: half a cell, as a side that is
-    /// hardly in an edge goes deep along its normal between two points.
+    /// What the side of the tool keeps from check faces further from its contact than its end reaches, mm: a side that is hardly in an edge
+    /// goes deep along its normal between two points.
     apart_mm: f64,
     /// Samples are sunk by so much more, and a tool keeps that from them: one that lies along a face may be as deep as it may, one that
     /// comes at it from beside, over an edge, keeps off, mm.

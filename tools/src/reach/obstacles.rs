@@ -169,41 +169,36 @@ impl Obstacles {
     /// Whether a point is nearer to a body at a pose than so much, whatever its kind.
     #[must_use]
     pub fn is_within(&self, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
-        self.roots().any(|root| self.any_within(root, body, pose, limit_mm))
-    }
-
-    fn any_within(&self, at: u32, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
-        let ball = &self.balls[at as usize];
-        if body.distance(pose, &ball.centre) - ball.radius_mm >= limit_mm {
-            return false;
-        }
-        ball.second == 0
-            || self.any_within(at + 1, body, pose, limit_mm)
-            || self.any_within(ball.second, body, pose, limit_mm)
+        self.roots().any(|root| self.any_within(root, (body, pose), limit_mm, None))
     }
 
     /// The same of the points that are further than `beyond_mm` from `from`.
     #[must_use]
     pub fn is_within_beyond(
         &self,
-        (body, pose): (&Cutter, &Pose),
+        posed: (&Cutter, &Pose),
         limit_mm: f64,
         (from, beyond_mm): (&Point3, f64),
     ) -> bool {
-        let mut open: Vec<u32> = self.roots().collect();
-        while let Some(at) = open.pop() {
-            let ball = &self.balls[at as usize];
-            if body.distance(pose, &ball.centre) - ball.radius_mm >= limit_mm
-                || (ball.centre - from).norm() + ball.radius_mm <= beyond_mm
-            {
-                continue;
-            }
-            if ball.second == 0 {
-                return true;
-            }
-            open.extend([ball.second, at + 1]);
+        self.roots().any(|root| self.any_within(root, posed, limit_mm, Some((from, beyond_mm))))
+    }
+
+    fn any_within(
+        &self,
+        at: u32,
+        (body, pose): (&Cutter, &Pose),
+        limit_mm: f64,
+        beyond: Option<(&Point3, f64)>,
+    ) -> bool {
+        let ball = &self.balls[at as usize];
+        if body.distance(pose, &ball.centre) - ball.radius_mm >= limit_mm
+            || beyond.is_some_and(|(from, mm)| (ball.centre - from).norm() + ball.radius_mm <= mm)
+        {
+            return false;
         }
-        false
+        ball.second == 0
+            || self.any_within(at + 1, (body, pose), limit_mm, beyond)
+            || self.any_within(ball.second, (body, pose), limit_mm, beyond)
     }
 
     pub(super) const fn size_mm(&self) -> f64 {
