@@ -197,6 +197,7 @@ fn sizes(ball: &Cutter, bull: &Cutter) -> Result<(), Box<dyn Error>> {
         let job = Job {
             cutter: ball,
             holder: None,
+            changes: &[],
             motions: &motions,
             samples: &sampling.samples,
             stock_mm: 0.3,
@@ -239,6 +240,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let job = Job {
             cutter,
             holder: Some(&holder),
+            changes: &[],
             motions: &motions,
             samples: &sampling.samples,
             stock_mm,

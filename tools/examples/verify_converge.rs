@@ -161,7 +161,7 @@ impl Case {
 }
 
 fn job<'a>(cutter: &'a Cutter, motions: &'a [Swept], samples: &'a [Sample]) -> Job<'a> {
-    Job { cutter, holder: None, motions, samples, stock_mm: STOCK_MM, depth_mm: 1.0 }
+    Job { cutter, holder: None, changes: &[], motions, samples, stock_mm: STOCK_MM, depth_mm: 1.0 }
 }
 
 const STOCK_MM: f64 = 1.0;

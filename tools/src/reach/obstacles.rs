@@ -183,6 +183,20 @@ impl Obstacles {
         self.roots().any(|root| self.any_within(root, posed, limit_mm, Some((from, beyond_mm))))
     }
 
+    /// Whether a point is no further from a place than so much, whatever its kind.
+    #[must_use]
+    pub fn is_near(&self, place: &Point3, within_mm: f64) -> bool {
+        self.roots().any(|root| self.any_near(root, place, within_mm))
+    }
+
+    fn any_near(&self, at: u32, place: &Point3, within_mm: f64) -> bool {
+        let ball = &self.balls[at as usize];
+        (ball.centre - place).norm() - ball.radius_mm <= within_mm
+            && (ball.second == 0
+                || self.any_near(at + 1, place, within_mm)
+                || self.any_near(ball.second, place, within_mm))
+    }
+
     fn any_within(
         &self,
         at: u32,

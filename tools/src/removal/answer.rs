@@ -1,6 +1,6 @@
 //! From figures to an answer: what fails, what is not shown, and what the verdict covers.
 
-use super::goal::{GoalStock, Gravity, Unseen};
+use super::goal::{GoalStock, GoalTool, Gravity, Unseen};
 use super::job::Body;
 use super::tally::Tally;
 use super::trial::Trial;
@@ -70,8 +70,13 @@ impl Trial<'_> {
         if f.height_max_mm + scallop > SAME * limits.scallop_mm
             && !(at_samples && f.height_max_mm + blend_mm <= limits.scallop_mm)
         {
+            let by = if scallop.is_finite() {
+                format!("{scallop:.5} mm")
+            } else {
+                "nobody knows how much".to_owned()
+            };
             open.push(format!(
-                "between samples{blended} scallops may be {scallop:.5} mm higher than the {:.5} mm measured",
+                "between samples{blended} scallops may be {by} higher than the {:.5} mm measured",
                 f.height_max_mm
             ));
         }
@@ -79,8 +84,10 @@ impl Trial<'_> {
         if gouge_max_mm + gouge > SAME * limits.gouge_mm
             && !(at_samples && gouge_max_mm + blend_mm <= limits.gouge_mm)
         {
+            let by =
+                if gouge.is_finite() { format!("{gouge:.5} mm") } else { "nobody knows how much".to_owned() };
             open.push(format!(
-                "between samples{blended} gouges may be {gouge:.5} mm deeper than the {gouge_max_mm:.5} mm measured"
+                "between samples{blended} gouges may be {by} deeper than the {gouge_max_mm:.5} mm measured"
             ));
         }
         if !open.is_empty() && left_out > 0 {
@@ -156,13 +163,7 @@ impl Trial<'_> {
             "fixtures",
             if goal.fixtures.is_empty() { "none declared".to_owned() } else { "as declared".to_owned() },
         );
-        row(
-            "tool",
-            match goal.tool.holder {
-                Some(_) => "cutter and holder, in feed and rapid".to_owned(),
-                None => "cutter, in feed and rapid; no holder declared".to_owned(),
-            },
-        );
+        row("tool", self.tool_words());
         row("tooth marks", self.teeth_words());
         let control = &goal.control;
         row(
@@ -180,9 +181,32 @@ impl Trial<'_> {
         rows
     }
 
+    fn tool_words(&self) -> String {
+        let tools = &self.goal.tools;
+        let bare: Vec<String> = (1..)
+            .zip(tools)
+            .filter(|(_, t)| t.holder.is_none())
+            .map(|(k, _): (usize, _)| k.to_string())
+            .collect();
+        match (tools.len(), bare.len()) {
+            (1, 0) => "cutter and holder, in feed and rapid".to_owned(),
+            (1, _) => "cutter, in feed and rapid; no holder declared".to_owned(),
+            (n, 0) => format!("{n} cutters one after the other, each with its holder, in feed and rapid"),
+            (n, _) => format!(
+                "{n} cutters one after the other, with their holders, in feed and rapid; no holder declared of {}",
+                listed(&bare)
+            ),
+        }
+    }
+
     fn teeth_words(&self) -> String {
-        let tool = &self.goal.tool;
-        match (self.period_min(), tool.spindle_rpm) {
+        let mut each: Vec<String> = self.goal.tools.iter().map(|t| self.teeth_of(t)).collect();
+        each.dedup();
+        each.join("; ")
+    }
+
+    fn teeth_of(&self, tool: &GoalTool<'_>) -> String {
+        match (self.period_min(tool), tool.spindle_rpm) {
             (Some(_), Some(rpm)) => {
                 let teeth = tool
                     .teeth

@@ -12,6 +12,8 @@ use osculate_geom::Vec3;
 pub(super) struct Body<'a> {
     pub cutter: &'a Cutter,
     pub above_mm: f64,
+    /// Which of the tools has it.
+    pub tool: usize,
 }
 
 /// Signed distance, mm, and a subgradient of it (length at most one) in the frame of the arguments.
@@ -35,11 +37,21 @@ pub(super) struct Local {
 }
 
 impl<'a> Body<'a> {
-    /// The cutter of a job, and its holder where it has one.
+    /// The cutters of a job in the order of its tools, each with its holder where it has one.
     pub fn all(job: &Job<'a>) -> Vec<Self> {
-        let mut bodies = vec![Self { cutter: job.cutter, above_mm: 0.0 }];
-        bodies.extend(job.holder.map(|cutter| Self { cutter, above_mm: job.cutter.length_mm() }));
+        let mut bodies = Vec::with_capacity(2 * (1 + job.changes.len()));
+        let first = (job.cutter, job.holder);
+        let tools = std::iter::once(first).chain(job.changes.iter().map(|c| (c.cutter, c.holder)));
+        for (tool, (cutter, holder)) in tools.enumerate() {
+            bodies.push(Self { cutter, above_mm: 0.0, tool });
+            bodies.extend(holder.map(|holder| Self { cutter: holder, above_mm: cutter.length_mm(), tool }));
+        }
         bodies
+    }
+
+    /// Whether it is what cuts: all others sit above it.
+    pub fn cuts(&self) -> bool {
+        self.above_mm == 0.0
     }
 }
 
@@ -127,7 +139,7 @@ mod tests {
                 }
             };
             let cutter = Cutter::try_from(spec).unwrap();
-            let body = Body { cutter: &cutter, above_mm: 3.0 };
+            let body = Body { cutter: &cutter, above_mm: 3.0, tool: 0 };
             let (p, q) = (Vec3::from(p), Vec3::from(q));
             let (at_p, at_q) = (body.near(&p, &axis), body.near(&q, &axis));
             let pose = Pose { tip: Point3::origin() + axis.into_inner() * 3.0, axis };

@@ -25,7 +25,7 @@ pub fn cut(job: &Job<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Cut>, J
     if !(job.depth_mm > 0.0 && job.depth_mm.is_finite()) {
         return Err(JobError::Depth { got: job.depth_mm });
     }
-    cut_by(job, &Ways::of(job.motions, &Moved::all(job))?, progress)
+    cut_by(job, &Ways::of_job(job)?, progress)
 }
 
 /// The same by the ways of the job's motions.
@@ -78,12 +78,12 @@ struct Candidate {
 impl World<'_> {
     fn candidates(&self, target: &Target, which: Which) -> Vec<Candidate> {
         let mut found = Vec::new();
-        self.ways.tree.near(&self.bodies, target, which, |k, body, index| {
+        self.ways.near(&self.bodies, target, which, |k, body, index| {
             let piece = &self.ways.pieces[k as usize];
             let swept = &self.job.motions[piece.motion as usize];
             match which {
                 Which::Cutting if swept.rapid => return,
-                Which::Intruding if index == 0 && !swept.rapid => return,
+                Which::Intruding if body.cuts() && !swept.rapid => return,
                 _ => {}
             }
             let approach = Approach::new(swept, piece);
@@ -249,7 +249,7 @@ impl<'a> Work<'a> {
         let Some(height) = self.lowered_by(c) else { return false };
         let motion = self.world.ways.pieces[c.piece as usize].motion;
         let block = self.world.job.motions[motion as usize].block;
-        let body = if c.body == 0 { Body::Cutter } else { Body::Holder };
+        let body = if self.world.bodies[c.body].cuts() { Body::Cutter } else { Body::Holder };
         let touch = Touch { removed_mm: self.cut.standoff_mm - height, motion, block };
         let worse = |old: Option<Touch>| match old {
             Some(old) if old.removed_mm >= touch.removed_mm => Some(old),

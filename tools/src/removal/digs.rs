@@ -12,11 +12,13 @@
 
 use super::body::Body;
 use super::cluster::{Cluster, clusters};
+use super::edges::Edges;
 use super::job::{Cut, Job, JobError};
 use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
 use super::target::Target;
 use super::tree::{Ways, Which};
+use crate::cutter::Cutter;
 use osculate_geom::{Surface, uv};
 use rayon::prelude::*;
 
@@ -46,6 +48,8 @@ pub(super) struct Digs<'a> {
     pub ways: &'a Ways,
     /// The depth that is asked for, mm.
     pub depth_mm: f64,
+    /// All faces, where places beside their outer edges are told apart.
+    pub edges: Option<&'a Edges<'a>>,
 }
 
 /// A motion that brings a body near.
@@ -108,6 +112,7 @@ impl<'a> Digs<'a> {
                 let comers = self.near(&bodies, &back.target, which);
                 self.divide(surfaces, *sample, patch, &comers, (DIVISIONS, &mut parts));
             }
+            parts.retain(|part| !self.is_beside(surfaces, *sample, part));
             // The quick bound is one on the cutter's own gouges.
             let quick = if intrudes { f64::INFINITY } else { level };
             let known = if parts.is_empty() {
@@ -121,6 +126,18 @@ impl<'a> Digs<'a> {
             Depth { sample: *sample, most_mm, parts }
         };
         cells.iter().map(depth).collect()
+    }
+
+    /// Whether what is so deep beneath a part of a cell lies next to another face.
+    fn is_beside(&self, surfaces: &[&dyn Surface], sample: usize, part: &Patch) -> bool {
+        let Some(edges) = self.edges else { return false };
+        let face = self.job.samples[sample].face;
+        let surface = surfaces[face as usize];
+        let [[u0, u1], [v0, v1]] = [part.u, part.v];
+        [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1), part.middle()].into_iter().all(|at| {
+            let jet = surface.jet2(at);
+            jet.normal().is_ok_and(|normal| edges.is_beside((&jet.point, &normal), face, self.depth_mm))
+        })
     }
 
     /// A depth that nothing in a cell goes beyond: doubled until this is so, or until gouges are not followed.
@@ -140,14 +157,14 @@ impl<'a> Digs<'a> {
     /// Whether a cell is so large that a ball would come near parts of it wherever it cuts, with no gouge at all: a ball is as sharp
     /// everywhere as the quick bound has it, which falls with the square of the size.
     fn is_coarse(&self, level_mm: f64) -> bool {
-        self.job.cutter.is_ball() && level_mm > 4f64.powi(DIVISIONS as i32) * self.depth_mm
+        self.job.cutters().all(Cutter::is_ball) && level_mm > 4f64.powi(DIVISIONS as i32) * self.depth_mm
     }
 
     /// By how much a gouge of the cutter may be deeper than a sample so far away shows.
     fn level(&self, patch: &Patch, radius: f64) -> f64 {
-        let cutter = self.job.cutter;
-        // Cutters with a meridian of their own may have edges anywhere.
-        let corner = if cutter.is_end_mill() { cutter.corner_mm() } else { 0.0 };
+        // Cutters with a meridian of their own may have edges anywhere; of several the sharpest counts.
+        let corner = |cutter: &Cutter| if cutter.is_end_mill() { cutter.corner_mm() } else { 0.0 };
+        let corner = self.job.cutters().map(corner).fold(f64::INFINITY, f64::min);
         let relative = 1.0 / corner + patch.convex_per_mm;
         if relative * radius <= MOST_TURN { 0.5 * relative * radius * radius } else { f64::INFINITY }
     }
@@ -174,10 +191,10 @@ impl<'a> Digs<'a> {
 
     fn near(&self, bodies: &[Body<'a>], target: &Target, which: Which) -> Vec<Comer<'a>> {
         let mut found = Vec::new();
-        self.ways.tree.near(bodies, target, which, |k, body, index| {
+        self.ways.near(bodies, target, which, |k, body, _| {
             let piece = self.ways.pieces[k as usize];
             let rapid = self.job.motions[piece.motion as usize].rapid;
-            if which == Which::Intruding && index == 0 && !rapid {
+            if which == Which::Intruding && body.cuts() && !rapid {
                 return;
             }
             self.comers(*body, piece, target, HALVINGS, &mut found);

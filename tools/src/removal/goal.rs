@@ -8,6 +8,7 @@ use super::job::{Sample, Swept};
 use super::stock::{Blank, Resolution};
 use crate::cutter::Cutter;
 use osculate_geom::{Surface, Uv};
+use std::ops::Range;
 
 /// A face with its name.
 #[derive(Clone)]
@@ -31,7 +32,7 @@ pub enum Unseen {
     NoSide(Vec<String>),
 }
 
-/// The tool that all motions carry.
+/// A tool that motions carry.
 #[derive(Clone, Copy)]
 pub struct GoalTool<'a> {
     /// The whole tool below the holder.
@@ -62,6 +63,8 @@ pub enum GoalStock<'a> {
         blank: Blank<'a>,
         /// How finely it is looked at.
         resolution: Resolution,
+        /// Index of the first motion that goes through it: those before have left it so.
+        from: usize,
         /// What stands on the faces to machine at most as far as they are judged, mm.
         layer_mm: f64,
         /// In words.
@@ -99,6 +102,8 @@ pub struct Looks {
     pub spacing_mm: Option<f64>,
     /// Most samples.
     pub max_samples: usize,
+    /// Whether what may hide between them is bounded; where it is not, only limits met at the samples can be told.
+    pub between: bool,
 }
 
 /// How grave a remark on the state of the control is.
@@ -132,6 +137,15 @@ pub struct GoalControl {
     pub blend_mm: f64,
 }
 
+/// What holds the part while some of the motions are made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoalFixture {
+    /// Places on it, numbered as faces after all others; nothing may be taken from them.
+    pub samples: Vec<Sample>,
+    /// While these motions are made, by their indices; those beyond the last are none.
+    pub motions: Range<usize>,
+}
+
 /// Everything that must be so.
 pub struct Goal<'a> {
     /// Faces to machine; at least one.
@@ -140,10 +154,10 @@ pub struct Goal<'a> {
     pub checked: Vec<GoalFace<'a>>,
     /// Faces that are not looked at.
     pub unseen: Vec<Unseen>,
-    /// Places on fixtures, numbered as faces after all others; nothing may be taken from them.
-    pub fixtures: Vec<Sample>,
-    /// The tool.
-    pub tool: GoalTool<'a>,
+    /// What holds the part.
+    pub fixtures: Vec<GoalFixture>,
+    /// The tools in the order in which the program has them; at least one. A tool that comes back is there again.
+    pub tools: Vec<GoalTool<'a>>,
     /// Raw material.
     pub stock: GoalStock<'a>,
     /// Limits.
@@ -163,4 +177,14 @@ pub struct Program<'a> {
     pub motions: &'a [Swept],
     /// When each ends, min from the start; empty where nothing says, as of CL data without feeds.
     pub times_min: &'a [f64],
+    /// Indices of the motions at which the next of the goal's tools takes over; none with a single tool.
+    pub changes: &'a [usize],
+}
+
+impl Program<'_> {
+    /// Which tool makes a motion, counted from 0.
+    #[must_use]
+    pub fn tool_of(&self, motion: usize) -> usize {
+        self.changes.partition_point(|first| *first <= motion)
+    }
 }

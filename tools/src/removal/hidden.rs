@@ -28,6 +28,7 @@ use super::cluster::clusters;
 use super::deepest::Passage;
 use super::density::Hidden;
 use super::digs::{DIVISIONS, Depth, Digs};
+use super::edges::Edges;
 use super::job::{Cut, Job, JobError};
 use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
@@ -77,8 +78,8 @@ pub fn hidden(
     (patches, cuts): (&[Option<Patch>], &[Cut]),
     wanted: Wanted,
 ) -> Result<Hidden, JobError> {
-    let ways = Ways::of(job.motions, &Body::all(job))?;
-    let world = World::new(job, &ways, cuts, wanted.uncut_mm);
+    let ways = Ways::of_job(job)?;
+    let world = World::new((job, &ways), None, cuts, wanted.uncut_mm);
     let seen = world.seen;
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
     let highest = highest(&cells, seen, wanted.enough_mm, 0, &mut Vec::new());
@@ -137,12 +138,12 @@ pub(super) struct Doubts {
 /// `room` at most, those with the highest bounds.
 pub(super) fn doubts(
     surfaces: &[&dyn Surface],
-    (job, ways): (&Job<'_>, &Ways),
+    (job, ways, edges): (&Job<'_>, &Ways, Option<&Edges<'_>>),
     (patches, cuts): (&[Option<Patch>], &[Cut]),
     wanted: Wanted,
     room: usize,
 ) -> Result<Doubts, JobError> {
-    let world = World::new(job, ways, cuts, wanted.uncut_mm);
+    let world = World::new((job, ways), edges, cuts, wanted.uncut_mm);
     let cells = world.cells(surfaces, (patches, cuts), wanted)?;
     let mut places = Vec::new();
     let height_mm = highest(&cells, world.seen, wanted.enough_mm, room, &mut places);
@@ -176,8 +177,9 @@ pub(super) fn judged(job: &Job<'_>, cuts: &[Cut], uncut_mm: f64, k: usize) -> bo
 
 struct World<'a> {
     job: &'a Job<'a>,
-    body: Body<'a>,
+    bodies: Vec<Body<'a>>,
     ways: &'a Ways,
+    edges: Option<&'a Edges<'a>>,
     /// The highest standoff at a sample: bounds below need not be sharper.
     seen: f64,
 }
@@ -186,10 +188,15 @@ struct World<'a> {
 const BESIDE: usize = 10;
 
 impl<'a> World<'a> {
-    fn new(job: &'a Job<'a>, ways: &'a Ways, cuts: &[Cut], uncut_mm: f64) -> Self {
+    fn new(
+        (job, ways): (&'a Job<'a>, &'a Ways),
+        edges: Option<&'a Edges<'a>>,
+        cuts: &[Cut],
+        uncut_mm: f64,
+    ) -> Self {
         let judged = (0..cuts.len()).filter(|k| judged(job, cuts, uncut_mm, *k));
         let seen = judged.map(|k| cuts[k].standoff_mm).fold(0.0, f64::max);
-        World { job, body: Body { cutter: job.cutter, above_mm: 0.0 }, ways, seen }
+        World { job, bodies: Body::all(job), ways, edges, seen }
     }
 
     /// What looks for gouges deeper than this.
@@ -197,7 +204,8 @@ impl<'a> World<'a> {
         if !(depth_mm >= 0.0 && depth_mm.is_finite()) {
             return Err(JobError::Depth { got: depth_mm });
         }
-        Ok(Digs { job: self.job, ways: self.ways, depth_mm: depth_mm.max(LEAST_DEPTH) })
+        let (job, ways, edges) = (self.job, self.ways, self.edges);
+        Ok(Digs { job, ways, depth_mm: depth_mm.max(LEAST_DEPTH), edges })
     }
 
     /// The cells of the samples that are judged.
@@ -421,12 +429,12 @@ impl Cell<'_> {
     /// The motions of the cutter that leave least above the middle of a cell, of those that come near what is up to
     /// `height` above it.
     fn around(&self, corners: [Point3; 4], middle: Point3, normal: Unit3, height: f64) -> Vec<u32> {
-        let World { job, body, ways: Ways { pieces, tree }, .. } = self.world;
+        let World { job, bodies, ways, .. } = self.world;
         let raised = normal.into_inner() * height;
         let target = Target::around(corners.into_iter().flat_map(|p| [p, p + raised]), &normal);
         let mut found = Vec::new();
-        tree.near(std::slice::from_ref(body), &target, Which::Cutting, |k, body, _| {
-            let piece = &pieces[k as usize];
+        ways.near(bodies, &target, Which::Cutting, |k, body, _| {
+            let piece = &ways.pieces[k as usize];
             let swept = &job.motions[piece.motion as usize];
             if !swept.rapid && Approach::new(swept, piece).passes(body, &target, 0.0) != Passes::Clear {
                 found.push(piece.motion);
@@ -448,11 +456,12 @@ impl Cell<'_> {
 
     /// What one motion leaves above a point along a direction; none where that is not below `useful`.
     fn height(&self, motion: u32, origin: Point3, direction: Unit3, useful: f64) -> Option<f64> {
-        let World { job, body, .. } = self.world;
+        let World { job, .. } = self.world;
+        let body = Body { cutter: job.cutter_of(motion), above_mm: 0.0, tool: job.tool_of(motion) };
         let swept = &job.motions[motion as usize];
         let piece = Piece { motion, range: [0.0, 1.0] };
         let line = Line { origin, direction };
-        let passage = Passage { body: *body, swept, piece, line, instant: INSTANT, met: MET };
+        let passage = Passage { body, swept, piece, line, instant: INSTANT, met: MET };
         passage.height(useful, job.depth_mm)
     }
 }

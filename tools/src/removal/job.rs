@@ -60,6 +60,8 @@ pub struct Job<'a> {
     pub cutter: &'a Cutter,
     /// The holder, a body whose lower end sits where the cutter's length ends.
     pub holder: Option<&'a Cutter>,
+    /// Tools that take over from these, in the order of the motions.
+    pub changes: &'a [Change<'a>],
     /// The motions in the order in which they happen.
     pub motions: &'a [Swept],
     /// Where material is measured.
@@ -68,6 +70,34 @@ pub struct Job<'a> {
     pub stock_mm: f64,
     /// How deep gouges are followed, mm; deeper ones are reported as this deep.
     pub depth_mm: f64,
+}
+
+/// Another tool in the spindle.
+#[derive(Clone, Copy, Debug)]
+pub struct Change<'a> {
+    /// Index of the first motion that it makes; it makes all from there to the next change.
+    pub first: usize,
+    /// Its cutter.
+    pub cutter: &'a Cutter,
+    /// Its holder.
+    pub holder: Option<&'a Cutter>,
+}
+
+impl Job<'_> {
+    /// Which tool makes a motion, counted from 0.
+    pub(super) fn tool_of(&self, motion: u32) -> usize {
+        self.changes.partition_point(|c| c.first <= motion as usize)
+    }
+
+    /// The cutter that makes a motion.
+    pub(super) fn cutter_of(&self, motion: u32) -> &Cutter {
+        self.tool_of(motion).checked_sub(1).map_or(self.cutter, |k| self.changes[k].cutter)
+    }
+
+    /// All cutters, in the order of the motions.
+    pub(super) fn cutters(&self) -> impl Iterator<Item = &Cutter> {
+        std::iter::once(self.cutter).chain(self.changes.iter().map(|c| c.cutter))
+    }
 }
 
 /// A job that cannot be computed.
@@ -111,6 +141,14 @@ pub enum JobError {
         sample: usize,
         /// Its face.
         face: u32,
+    },
+    /// Tools that do not take over one after the other.
+    #[error("tool {tool} takes over at motion {first}, which is before the tool ahead of it does")]
+    Changes {
+        /// Which of the changes, from 1.
+        tool: usize,
+        /// Its first motion.
+        first: usize,
     },
     /// More of something than can be numbered or held.
     #[error("too many {what}, at most {limit}: verify in parts")]
@@ -170,4 +208,17 @@ pub struct Cut {
     /// The most that the holder took here, given what had been cut before it and by the cutter in the same
     /// motion.
     pub holder: Option<Touch>,
+}
+
+impl Cut {
+    /// The same with motions counted from so many motions before.
+    pub(super) fn later(self, by: u32) -> Self {
+        let touch = |t: Touch| Touch { motion: t.motion + by, ..t };
+        Self {
+            by: self.by.map(|b| By { motion: b.motion + by, ..b }),
+            rapid: self.rapid.map(touch),
+            holder: self.holder.map(touch),
+            ..self
+        }
+    }
 }

@@ -51,6 +51,7 @@ mod cut;
 mod deepest;
 mod density;
 mod digs;
+mod edges;
 mod goal;
 mod grid;
 mod hidden;
@@ -74,11 +75,12 @@ pub use cut::cut;
 pub use density::{Density, Hidden};
 pub use digs::DIVISIONS;
 pub use goal::{
-    Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Gravity, Looks, Program, Remark, Unseen,
+    Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Gravity, Looks, Program,
+    Remark, Unseen,
 };
 pub use hidden::{Wanted, hidden};
-pub use job::{Body, By, Cut, Job, JobError, Sample, Swept, Touch};
-pub use prove::prove;
+pub use job::{Body, By, Change, Cut, Job, JobError, Sample, Swept, Touch};
+pub use prove::{carve, prove};
 pub use refine::{Measured, Refined, refine};
 pub use sampling::{Patch, Sampling, SamplingError, sample_surface};
 pub use tally::{Bin, Kind, Limits, Tally, TallyError, Worst, tally};

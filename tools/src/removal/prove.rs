@@ -10,8 +10,8 @@ use super::goal::{Goal, Gravity, Program};
 use super::job::Cut;
 use super::refine::Measured;
 use super::tally::Tally;
-use super::trial::{LEAST_SAMPLES, Look, ProveError, Trial, unbounded};
-use super::verdict::{Figures, Verdict};
+use super::trial::{LEAST_SAMPLES, Look, ProveError, Trial, changes_of, unbounded};
+use super::verdict::{Figures, StockFound, Verdict};
 
 /// A limit exceeded this many times by the first look ends the work: what lies closer would not turn the answer, and no plan
 /// that is laid out anew makes good for it.
@@ -36,20 +36,9 @@ pub fn prove(
     program: Program<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verdict, ProveError> {
-    let (motions, times) = (program.motions.len(), program.times_min.len());
-    if motions == 0 {
-        return Err(ProveError::NoMotion);
-    }
-    if times != 0 && times != motions {
-        return Err(ProveError::Times { times, motions });
-    }
-    if goal.machined.is_empty() {
-        return Err(ProveError::NoFace);
-    }
-    if goal.looks.max_samples < LEAST_SAMPLES {
-        return Err(ProveError::Samples { got: goal.looks.max_samples });
-    }
-    let trial = Trial::new(goal, program);
+    check(goal, &program)?;
+    let changed = changes_of(goal, &program);
+    let trial = Trial::new(goal, program, &changed);
     let mut notes = Vec::new();
     let spacing = trial.spacing_mm(&mut notes);
     let mut look = trial.look(COARSE * spacing, &|f| progress(SHARES[0] * f))?;
@@ -61,10 +50,11 @@ pub fn prove(
     }
     let mut marks = trial.marks(&look.measured.samples, &look.measured.cuts);
     let crest_median_mm = trial.crests(&look.measured)?;
-    let mut refined = if coarse { unbounded() } else { trial.refine(&mut look, &mut marks)? };
+    let bounds = goal.looks.between && !coarse;
+    let mut refined = if bounds { trial.refine(&mut look, &mut marks)? } else { unbounded() };
     // Samples that were added may stand too high where an area that does is accepted.
     for _ in 0..GIVEN_UP {
-        if coarse || !trial.is_to_give_up(&look) {
+        if !bounds || !trial.is_to_give_up(&look) {
             break;
         }
         trial.give_up(&mut look, spacing)?;
@@ -110,6 +100,43 @@ pub fn prove(
         samples,
         cuts,
     })
+}
+
+/// Moves the tools through the declared raw material, whatever else may hold: what is left of it is where the next operation begins. None
+/// where none is declared.
+///
+/// # Errors
+/// As [`prove`].
+pub fn carve(
+    goal: &Goal<'_>,
+    program: Program<'_>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Option<StockFound>, ProveError> {
+    check(goal, &program)?;
+    let changed = changes_of(goal, &program);
+    Trial::new(goal, program, &changed).carve(progress)
+}
+
+/// Refuses what cannot be judged.
+fn check(goal: &Goal<'_>, program: &Program<'_>) -> Result<(), ProveError> {
+    let (motions, times) = (program.motions.len(), program.times_min.len());
+    if motions == 0 {
+        return Err(ProveError::NoMotion);
+    }
+    if times != 0 && times != motions {
+        return Err(ProveError::Times { times, motions });
+    }
+    let (tools, changes) = (goal.tools.len(), program.changes.len());
+    if tools != changes + 1 || program.changes.last().is_some_and(|first| *first > motions) {
+        return Err(ProveError::Tools { tools, changes });
+    }
+    if goal.machined.is_empty() {
+        return Err(ProveError::NoFace);
+    }
+    if goal.looks.max_samples < LEAST_SAMPLES {
+        return Err(ProveError::Samples { got: goal.looks.max_samples });
+    }
+    Ok(())
 }
 
 /// Whether a coarse look says that the program cannot hold, by far.

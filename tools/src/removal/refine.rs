@@ -5,9 +5,9 @@
 //! limit: an eighth of a cell wide. Samples in their middles show what is there, and have cells of their own, whose bounds
 //! are 64 times as near.
 
-use super::body::Body;
 use super::cut::cut_by;
 use super::density::Hidden;
+use super::edges::Edges;
 use super::hidden::{Doubts, Wanted, doubts, judged};
 use super::job::{Cut, Job, JobError, Sample};
 use super::sampling::Patch;
@@ -81,9 +81,20 @@ pub fn refine(
     wanted: Wanted,
     most: usize,
 ) -> Result<Refined, JobError> {
+    refine_beside((surfaces, None), job, measured, wanted, most)
+}
+
+/// As [`refine`], with places beside outer edges told apart.
+pub(super) fn refine_beside(
+    (surfaces, edges): (&[&dyn Surface], Option<&Edges<'_>>),
+    job: &Job<'_>,
+    measured: &mut Measured,
+    wanted: Wanted,
+    most: usize,
+) -> Result<Refined, JobError> {
     let even = measured.samples.len();
     // Samples come and go, motions stay.
-    let ways = Ways::of(job.motions, &Body::all(job))?;
+    let ways = Ways::of_job(job)?;
     let mut out = Refined { hidden: Hidden { scallop_mm: 0.0, gouge_mm: 0.0 }, added: 0, left_out: 0 };
     // Bounds over all cells that have not been replaced by smaller ones.
     let (mut height, mut depth) = (0.0f64, 0.0f64);
@@ -93,7 +104,7 @@ pub fn refine(
         let here = (&measured.patches[from..], &measured.cuts[from..]);
         let room = most.saturating_sub(measured.samples.len() - even);
         let Doubts { height_mm, depth_mm, mut places } =
-            doubts(surfaces, (&Job { samples: part, ..*job }, &ways), here, wanted, room + 1)?;
+            doubts(surfaces, (&Job { samples: part, ..*job }, &ways, edges), here, wanted, room + 1)?;
         if places.is_empty() || round == ROUNDS {
             height = height.max(height_mm);
             depth = depth.max(depth_mm);
@@ -114,6 +125,9 @@ pub fn refine(
         measured.cuts.extend(cut_by(&Job { samples, ..*job }, &ways, &|_| ())?);
         let new = first..measured.samples.len();
         let gouge_mm = wanted.gouge_mm;
+        if let Some(edges) = edges {
+            edges.measure(&measured.samples[first..], &mut measured.cuts[first..], gouge_mm);
+        }
         let exceeds = |c: &Cut| c.standoff_mm > wanted.enough_mm || -c.standoff_mm > gouge_mm;
         if !all || measured.cuts[new].iter().any(exceeds) {
             // There are to be no more of them, or the verdict is known.

@@ -27,12 +27,19 @@ const CORNER: f64 = 0.707;
 /// higher one is taken, so that what is left of it adds to the mark.
 const HALVINGS: u32 = 12;
 
-/// A tool with teeth on the way of a program.
-pub(super) struct Teeth<'a> {
+/// The teeth of a tool.
+#[derive(Clone, Copy)]
+pub(super) struct Edge<'a> {
     pub cutter: &'a Cutter,
-    pub program: Program<'a>,
     /// Time from one tooth to the next, min.
     pub period_min: f64,
+}
+
+/// Tools with teeth on the way of a program.
+pub(super) struct Teeth<'a> {
+    /// In the order of the program.
+    pub tools: Vec<Edge<'a>>,
+    pub program: Program<'a>,
 }
 
 impl Teeth<'_> {
@@ -46,27 +53,28 @@ impl Teeth<'_> {
             return 0.0;
         };
         let motion = by.motion as usize;
+        let Edge { cutter, period_min } = self.tools[self.program.tool_of(motion)];
         let up = Line { origin: sample.point, direction: sample.normal };
         let top = sample.point + sample.normal.into_inner() * stock_mm;
         let height = |t: f64| {
             let pose = self.pose(motion, t);
-            match self.cutter.entry(&pose, &up) {
+            match cutter.entry(&pose, &up) {
                 Some(entry) if entry.at_mm < stock_mm => entry.at_mm,
                 // A tool that is above the layer is so the more the farther it is: the search must know where to go.
-                _ => stock_mm + self.cutter.distance(&pose, &top).max(0.0),
+                _ => stock_mm + cutter.distance(&pose, &top).max(0.0),
             }
         };
         let (begin, end) = (self.begin(motion), self.program.times_min[motion]);
         // The instant that left the standoff lies in the motion: a stretch that ends there falls, one that begins there rises.
-        let share = (INSTANT * self.period_min / (end - begin)).min(INSTANT);
+        let share = (INSTANT * period_min / (end - begin)).min(INSTANT);
         let lowest = minimum([begin, end], share, height);
         let instant =
             [begin, end].into_iter().fold(lowest.x, |t, u| if height(u) < height(t) { u } else { t });
-        let (mut low, mut high) = (instant - self.period_min, instant);
+        let (mut low, mut high) = (instant - period_min, instant);
         let mut worst = f64::INFINITY;
         for _ in 0..HALVINGS {
             let a = 0.5 * (low + high);
-            let (first, second) = (height(a), height(a + self.period_min));
+            let (first, second) = (height(a), height(a + period_min));
             // The worst phase leaves no more than the higher of the two, wherever the stretch lies.
             worst = worst.min(first.max(second));
             if first > second { low = a } else { high = a }

@@ -6,11 +6,12 @@
 //! the body past c by at most `swing |c - tip|`.
 
 use super::body::Body;
-use super::job::{JobError, Swept};
+use super::job::{Job, JobError, Swept};
 use super::piece::{Piece, moving, pieces};
 use super::target::Target;
 use crate::pose::Pose;
 use osculate_geom::{Box3, Point3, Unit3, Vec3};
+use std::ops::Range;
 
 /// Pieces in a leaf: few next to the hundred or so that come near a group of samples.
 const LEAF: usize = 4;
@@ -26,7 +27,7 @@ struct Node {
     /// Whether any of its motions is a rapid.
     rapid: bool,
     /// Range of `order` in a leaf.
-    leaf: Option<std::ops::Range<usize>>,
+    leaf: Option<Range<usize>>,
     /// The node that follows this one's whole subtree.
     next: usize,
 }
@@ -34,23 +35,62 @@ struct Node {
 /// All motions in pieces, and the tree over them.
 pub(super) struct Ways {
     pub pieces: Vec<Piece>,
-    pub tree: Tree,
+    /// The motions of each tool.
+    trees: Vec<Tree>,
 }
 
 impl Ways {
-    /// Of a tool, the cutter first.
-    pub fn of(motions: &[Swept], bodies: &[Body<'_>]) -> Result<Self, JobError> {
+    /// Of tools one after the other, which take over at the motions `firsts`; the bodies in their order, of each the cutter first.
+    pub fn of(
+        motions: &[Swept],
+        bodies: &[Body<'_>],
+        firsts: impl Iterator<Item = usize>,
+    ) -> Result<Self, JobError> {
         let reach =
             |body: &Body<'_>| (body.above_mm + body.cutter.length_mm()).hypot(body.cutter.radius_mm());
         let pieces = pieces(motions, bodies.iter().map(reach).fold(0.0, f64::max))?;
-        let radius_mm = bodies.first().map_or(0.0, |b| b.cutter.radius_mm());
-        let tree = Tree::new(motions, &pieces, ARM_RADII * radius_mm);
-        Ok(Self { pieces, tree })
+        let mut starts = vec![0];
+        for first in firsts {
+            if starts.last().is_some_and(|before| *before > first) {
+                return Err(JobError::Changes { tool: starts.len(), first });
+            }
+            starts.push(first);
+        }
+        let mut trees = Vec::with_capacity(starts.len());
+        for (tool, start) in starts.iter().enumerate() {
+            let own = bodies.partition_point(|b| b.tool < tool)..bodies.partition_point(|b| b.tool <= tool);
+            let end = starts.get(tool + 1).copied().unwrap_or(usize::MAX);
+            let at = |motion: usize| pieces.partition_point(|p| (p.motion as usize) < motion);
+            let radius_mm = bodies.get(own.start).map_or(0.0, |b| b.cutter.radius_mm());
+            trees.push(Tree::new(motions, &pieces, at(*start)..at(end), own, ARM_RADII * radius_mm));
+        }
+        Ok(Self { pieces, trees })
+    }
+
+    /// Of a job.
+    pub fn of_job(job: &Job<'_>) -> Result<Self, JobError> {
+        Self::of(job.motions, &Body::all(job), job.changes.iter().map(|c| c.first))
+    }
+
+    /// Calls `found` with every piece that may bring a body of its tool to the target, with the body and its place among `bodies`,
+    /// which are those of all tools.
+    pub fn near<'b>(
+        &self,
+        bodies: &[Body<'b>],
+        target: &Target,
+        which: Which,
+        mut found: impl FnMut(u32, &Body<'b>, usize),
+    ) {
+        for tree in &self.trees {
+            tree.near(bodies, target, which, &mut found);
+        }
     }
 }
 
-/// The tree, nodes in preorder.
-pub(super) struct Tree {
+/// The tree over the motions of a tool, nodes in preorder.
+struct Tree {
+    /// Its bodies among those of all tools.
+    own: Range<usize>,
     nodes: Vec<Node>,
     /// Indices of pieces, leaf by leaf.
     order: Vec<u32>,
@@ -69,15 +109,16 @@ struct Poses {
 pub(super) enum Which {
     /// Every one.
     All,
-    /// The first body's in feed motions.
+    /// The cutter's in feed motions.
     Cutting,
-    /// Rapids, and bodies other than the first in any motion; a leaf with one of them gives the others as well.
+    /// Rapids, and bodies other than the cutter in any motion; a leaf with one of them gives the others as well.
     Intruding,
 }
 
 impl Tree {
-    /// The tree; turning an axis counts as much as moving a tip by the turn times `arm_mm`.
-    fn new(motions: &[Swept], pieces: &[Piece], arm_mm: f64) -> Self {
+    /// The tree over a range of pieces; turning an axis counts as much as moving a tip by the turn times `arm_mm`.
+    fn new(motions: &[Swept], pieces: &[Piece], range: Range<usize>, own: Range<usize>, arm_mm: f64) -> Self {
+        let (first, pieces) = (range.start as u32, &pieces[range]);
         let ends: Vec<[Pose; 2]> =
             pieces.iter().map(|p| p.range.map(|t| moving(&motions[p.motion as usize], t).pose)).collect();
         let middle = |[a, b]: &[Pose; 2]| {
@@ -93,25 +134,27 @@ impl Tree {
         if !order.is_empty() {
             add(&mut nodes, &poses, &mut order, 0);
         }
-        Self { nodes, order }
+        order.iter_mut().for_each(|k| *k += first);
+        Self { own, nodes, order }
     }
 
     /// Calls `found` with every piece that may bring a body to the target, and with the body, leaf by leaf.
-    pub fn near<'b>(
+    fn near<'b>(
         &self,
         bodies: &[Body<'b>],
         target: &Target,
         which: Which,
-        mut found: impl FnMut(u32, &Body<'b>, usize),
+        found: &mut impl FnMut(u32, &Body<'b>, usize),
     ) {
         let mut k = 0;
         while let Some(node) = self.nodes.get(k) {
             let mut any = false;
-            for (index, body) in bodies.iter().enumerate() {
+            for index in self.own.clone() {
+                let body = &bodies[index];
                 let asked = match which {
                     Which::All => true,
-                    Which::Cutting => index == 0,
-                    Which::Intruding => index != 0 || node.rapid,
+                    Which::Cutting => body.cuts(),
+                    Which::Intruding => !body.cuts() || node.rapid,
                 };
                 if !asked || node.rejects(body, target) {
                     continue;
@@ -239,9 +282,11 @@ mod tests {
     fn what_comes_near_is_found() {
         let motions = passes(12);
         let (tool, holder) = (cutter(6.0, 1.0), cutter(20.0, 0.0));
-        let bodies =
-            [Body { cutter: &tool, above_mm: 0.0 }, Body { cutter: &holder, above_mm: tool.length_mm() }];
-        let Ways { pieces, tree } = Ways::of(&motions, &bodies).unwrap();
+        let bodies = [
+            Body { cutter: &tool, above_mm: 0.0, tool: 0 },
+            Body { cutter: &holder, above_mm: tool.length_mm(), tool: 0 },
+        ];
+        let ways = Ways::of(&motions, &bodies, std::iter::empty()).unwrap();
         let mut met = [0; 3];
         for k in 0..60 {
             let (x, y) = (f64::from(k * 7 % 13), f64::from(k * 5 % 12));
@@ -250,8 +295,8 @@ mod tests {
             let target = Target::upright(centre, &Vec3::new(0.3, 0.2, 0.1));
             for (w, which) in [Which::All, Which::Cutting, Which::Intruding].into_iter().enumerate() {
                 let mut found = Vec::new();
-                tree.near(&bodies, &target, which, |piece, _, index| found.push((piece, index)));
-                let every = pieces.iter().zip(0u32..).flat_map(|p| [(p, 0), (p, 1)]);
+                ways.near(&bodies, &target, which, |piece, _, index| found.push((piece, index)));
+                let every = ways.pieces.iter().zip(0u32..).flat_map(|p| [(p, 0), (p, 1)]);
                 for ((piece, p), index) in every {
                     let rapid = motions[piece.motion as usize].rapid;
                     let asked = match which {
@@ -281,10 +326,11 @@ mod tests {
     #[test]
     fn searches_of_long_paths_look_at_little() {
         let tool = cutter(6.0, 1.0);
-        let bodies = [Body { cutter: &tool, above_mm: 0.0 }];
+        let bodies = [Body { cutter: &tool, above_mm: 0.0, tool: 0 }];
         // The path is sixteen times as long, what is around the target the same.
         let looked_at = |count: u32| {
-            let Ways { tree, .. } = Ways::of(&passes(count), &bodies).unwrap();
+            let ways = Ways::of(&passes(count), &bodies, std::iter::empty()).unwrap();
+            let tree = &ways.trees[0];
             let widest = 0.26f64.atan2(1.0);
             assert!(tree.nodes.iter().all(|n| n.swing <= 1.1 * widest), "{}", tree.nodes[0].swing);
             let target = Target::upright(Point3::new(5.0, 5.0, 0.0), &Vec3::new(0.2, 0.2, 0.02));

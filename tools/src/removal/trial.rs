@@ -4,17 +4,19 @@ use super::boundary::sample_boundary;
 use super::crest::crests;
 use super::cut::cut;
 use super::density::{Density, Hidden};
-use super::goal::{Goal, GoalFace, GoalStock, Program};
+use super::edges::Edges;
+use super::goal::{Goal, GoalFace, GoalFixture, GoalStock, GoalTool, Program};
 use super::hidden::Wanted;
-use super::job::{Body, Cut, Job, JobError, Sample};
-use super::refine::{Measured, Refined, refine};
+use super::job::{Body, Change, Cut, Job, JobError, Sample};
+use super::refine::{Measured, Refined, refine_beside};
 use super::sampling::{Patch, Sampling, SamplingError, sample_surface};
-use super::stock::{BlankError, Stock, StockJob, Upper};
+use super::stock::{BlankError, Carved, Stock, StockJob, Upper};
 use super::tally::{Limits, Tally, TallyError, tally};
-use super::tooth::{Marks, Teeth};
+use super::tooth::{Edge, Marks, Teeth};
 use super::unreached::give_up;
 use super::verdict::StockFound;
 use osculate_geom::Surface;
+use std::sync::Arc;
 
 /// Samples across a strip that a ball of the cutter's radius leaves on a plane.
 const SAMPLES_ACROSS: f64 = 10.0;
@@ -39,6 +41,14 @@ pub enum ProveError {
     /// Nothing moves.
     #[error("the program has no motion: at least two positions are needed")]
     NoMotion,
+    /// Tools that are not those of the program.
+    #[error("{tools} tools for a program that changes them {changes} times")]
+    Tools {
+        /// Tools of the goal.
+        tools: usize,
+        /// Changes in the program.
+        changes: usize,
+    },
     /// Too few samples.
     #[error("max_samples = {got} is too few: {LEAST_SAMPLES} or more are needed")]
     Samples {
@@ -94,17 +104,31 @@ pub(super) struct Trial<'a> {
     pub faces: Vec<&'a GoalFace<'a>>,
     pub surfaces: Vec<&'a dyn Surface>,
     pub limits: Limits,
-    /// Width of a strip that a ball of the cutter's radius leaves on a plane, mm.
+    /// Width of a strip that a ball of the smallest cutter's radius leaves on a plane, mm.
     pub strip_mm: f64,
+    /// Where tools take over from the first.
+    changes: &'a [Change<'a>],
+}
+
+/// Where tools take over from the first.
+pub(super) fn changes_of<'a>(goal: &Goal<'a>, program: &Program<'_>) -> Vec<Change<'a>> {
+    let later = goal.tools.iter().skip(1);
+    let change = |(tool, first): (&GoalTool<'a>, &usize)| Change {
+        first: *first,
+        cutter: tool.cutter,
+        holder: tool.holder,
+    };
+    later.zip(program.changes).map(change).collect()
 }
 
 impl<'a> Trial<'a> {
-    pub fn new(goal: &'a Goal<'a>, program: Program<'a>) -> Self {
+    pub fn new(goal: &'a Goal<'a>, program: Program<'a>, changes: &'a [Change<'a>]) -> Self {
         let faces: Vec<&GoalFace<'_>> = goal.machined.iter().chain(&goal.checked).collect();
         let surfaces = faces.iter().map(|f| f.surface).collect();
         let limits = Limits::new(goal.limits.scallop_mm, goal.limits.gouge_mm);
-        let strip_mm = 2.0 * (2.0 * goal.limits.scallop_mm * goal.tool.cutter.radius_mm()).sqrt();
-        Self { goal, program, faces, surfaces, limits, strip_mm }
+        let smallest = goal.tools.iter().map(|t| t.cutter.radius_mm()).fold(f64::INFINITY, f64::min);
+        let strip_mm = 2.0 * (2.0 * goal.limits.scallop_mm * smallest).sqrt();
+        Self { goal, program, faces, surfaces, limits, strip_mm, changes }
     }
 
     pub fn is_machined(&self, face: usize) -> bool {
@@ -135,14 +159,15 @@ impl<'a> Trial<'a> {
     }
 
     pub fn job_without(&self) -> Job<'a> {
-        let tool = &self.goal.tool;
+        let tool = &self.goal.tools[0];
         Job {
             cutter: tool.cutter,
             holder: tool.holder,
+            changes: self.changes,
             motions: self.program.motions,
             samples: &[],
             stock_mm: self.goal.stock.layer_mm(),
-            depth_mm: tool.cutter.radius_mm(),
+            depth_mm: self.goal.tools.iter().map(|t| t.cutter.radius_mm()).fold(0.0, f64::max),
         }
     }
 
@@ -187,12 +212,42 @@ impl<'a> Trial<'a> {
             }
             patches.resize(samples.len(), None);
         }
-        samples.extend(self.goal.fixtures.iter().copied());
-        patches.resize(samples.len(), None);
         let density = density.ok_or(ProveError::NoFace)?;
-        let cuts = cut(&Job { samples: &samples, ..self.job_without() }, progress)?;
+        let mut cuts = cut(&Job { samples: &samples, ..self.job_without() }, progress)?;
+        self.edges(&samples, spacing).measure(&samples, &mut cuts, self.limits.gouge_mm);
+        for fixture in &self.goal.fixtures {
+            cuts.extend(self.met(fixture)?);
+            samples.extend(&fixture.samples);
+        }
+        patches.resize(samples.len(), None);
         let tally = self.tally(&samples, &cuts, &density)?;
         Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost })
+    }
+
+    /// The faces with their outer edges, found by samples so far apart.
+    fn edges(&self, samples: &[Sample], spacing: f64) -> Edges<'_> {
+        Edges::new(&self.surfaces, samples, CHECK_COARSER * spacing)
+    }
+
+    /// What motions take from a fixture while it is there.
+    fn met(&self, fixture: &GoalFixture) -> Result<Vec<Cut>, ProveError> {
+        let all = self.program.motions;
+        let end = fixture.motions.end.min(all.len());
+        let begin = fixture.motions.start.min(end);
+        let first = self.changes.partition_point(|c| c.first <= begin);
+        let later = self.changes[first..].iter().take_while(|c| c.first < end);
+        let changes: Vec<Change<'_>> = later.map(|c| Change { first: c.first - begin, ..*c }).collect();
+        let tool = &self.goal.tools[first];
+        let work = Job {
+            cutter: tool.cutter,
+            holder: tool.holder,
+            changes: &changes,
+            motions: &all[begin..end],
+            samples: &fixture.samples,
+            ..self.job_without()
+        };
+        let shift = u32::try_from(begin).unwrap_or(u32::MAX);
+        Ok(cut(&work, &|_| {})?.into_iter().map(|c| c.later(shift)).collect())
     }
 
     /// Whether a sample stands too high where the goal accepts an area that does.
@@ -225,9 +280,8 @@ impl<'a> Trial<'a> {
         Ok(crests(&self.surfaces, &job, &measured.cuts, self.strip_mm, self.limits.uncut_mm)?)
     }
 
-    /// Time from tooth to tooth, min, where it is known.
-    pub fn period_min(&self) -> Option<f64> {
-        let tool = &self.goal.tool;
+    /// Time from tooth to tooth of a tool, min, where it is known.
+    pub fn period_min(&self, tool: &GoalTool<'_>) -> Option<f64> {
         let per_min = tool.spindle_rpm? * f64::from(tool.teeth.unwrap_or(1));
         // The layers of a roughing stand higher than any mark, and are judged.
         let judged = !self.program.times_min.is_empty() && self.goal.roughing_mm.is_none();
@@ -235,32 +289,49 @@ impl<'a> Trial<'a> {
     }
 
     pub fn marks(&self, samples: &[Sample], cuts: &[Cut]) -> Marks {
-        let Some(period_min) = self.period_min() else {
+        let tools: Option<Vec<Edge<'_>>> = self
+            .goal
+            .tools
+            .iter()
+            .map(|t| Some(Edge { cutter: t.cutter, period_min: self.period_min(t)? }))
+            .collect();
+        let Some(tools) = tools else {
             return Marks { each: vec![0.0; samples.len()], known: false };
         };
-        let teeth = Teeth { cutter: self.goal.tool.cutter, program: self.program, period_min };
+        let teeth = Teeth { tools, program: self.program };
         let stock_mm = self.goal.stock.layer_mm();
         Marks { each: teeth.marks(samples, cuts, stock_mm), known: true }
     }
 
     /// Moves the tool through the declared raw material.
     pub fn carve(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<Option<StockFound>, ProveError> {
-        let GoalStock::Declared { blank, resolution, .. } = &self.goal.stock else { return Ok(None) };
+        let GoalStock::Declared { blank, resolution, from, .. } = &self.goal.stock else { return Ok(None) };
         let made = Stock::fill(blank, resolution)?;
         let mut stock = made.stock;
         let before = stock.volume();
-        let tool = &self.goal.tool;
-        let mut uppers = Vec::new();
-        let mut above_mm = tool.flutes.length_mm();
-        for (body, kind) in [(tool.shank, Body::Shank), (tool.holder, Body::Holder)] {
-            if let Some(body) = body {
-                uppers.push(Upper { body, above_mm, kind });
-                above_mm += body.length_mm();
+        let touch_mm = self.limits.collision_mm;
+        let (all, changes) = (self.program.motions, self.program.changes);
+        let mut carved = Carved::default();
+        for (k, tool) in self.goal.tools.iter().enumerate() {
+            let begin = if k == 0 { 0 } else { changes[k - 1] }.max(*from);
+            let end = changes.get(k).copied().unwrap_or(all.len());
+            if begin >= end {
+                continue;
             }
+            let mut uppers = Vec::new();
+            let mut above_mm = tool.flutes.length_mm();
+            for (body, kind) in [(tool.shank, Body::Shank), (tool.holder, Body::Holder)] {
+                if let Some(body) = body {
+                    uppers.push(Upper { body, above_mm, kind });
+                    above_mm += body.length_mm();
+                }
+            }
+            let work = StockJob { cutter: tool.flutes, uppers: &uppers, motions: &all[begin..end], touch_mm };
+            let share = |f: f64| {
+                (begin as f64 + f * (end - begin) as f64 - *from as f64) / (all.len() - from).max(1) as f64
+            };
+            carved.follow(stock.carve(&work, &|f| progress(share(f)))?, begin);
         }
-        let (motions, touch_mm) = (self.program.motions, self.limits.collision_mm);
-        let carved =
-            stock.carve(&StockJob { cutter: tool.flutes, uppers: &uppers, motions, touch_mm }, progress)?;
         Ok(Some(StockFound {
             cell_mm: stock.cell_mm(),
             coarsened_mm: made.coarsened,
@@ -269,6 +340,7 @@ impl<'a> Trial<'a> {
             before,
             left: stock.volume(),
             carved,
+            stock: Arc::new(stock),
         }))
     }
 
@@ -286,6 +358,8 @@ impl<'a> Trial<'a> {
         let max = self.goal.looks.max_samples;
         let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
         let lots = marks.lots();
+        let edges =
+            Edges::new(&self.surfaces, &look.measured.samples, CHECK_COARSER * look.density.spacing_mm);
         let Measured { samples, patches, cuts } = std::mem::take(&mut look.measured);
         let (mut all, mut more) = (Measured::default(), Measured::default());
         let mut in_order = Vec::with_capacity(samples.len());
@@ -309,7 +383,8 @@ impl<'a> Trial<'a> {
                 gouge_mm: less(self.limits.gouge_mm, blend_mm),
             };
             let room = most.saturating_sub(refined.added);
-            let found = refine(&self.surfaces, &self.job(&[]), &mut lot, wanted, room)?;
+            let found =
+                refine_beside((&self.surfaces, Some(&edges)), &self.job(&[]), &mut lot, wanted, room)?;
             let t = self.tally(&lot.samples, &lot.cuts, &look.density)?;
             highest = highest.max(t.scallop_max_mm + found.hidden.scallop_mm + most_mark);
             deepest = deepest.max(t.gouge_max_mm + found.hidden.gouge_mm);

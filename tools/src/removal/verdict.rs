@@ -4,9 +4,10 @@
 
 use super::density::Hidden;
 use super::job::{Cut, Sample};
-use super::stock::{Carved, Volume};
+use super::stock::{Carved, Stock, Volume};
 use super::tally::Tally;
 use std::fmt;
+use std::sync::Arc;
 
 /// The answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +58,8 @@ pub struct StockFound {
     pub left: Volume,
     /// What every block took, and what ran into material.
     pub carved: Carved,
+    /// The material that is left.
+    pub stock: Arc<Stock>,
 }
 
 /// The figures behind a verdict.

@@ -32,7 +32,7 @@ const DEPTH: f64 = 2.0;
 
 /// Compares `cut` with `steps` poses of each motion.
 fn check(cutter: &Cutter, motions: &[Swept], samples: &[Sample], steps: u32) -> Result<usize, TestCaseError> {
-    let job = Job { cutter, holder: None, motions, samples, stock_mm: STOCK, depth_mm: DEPTH };
+    let job = Job { cutter, holder: None, changes: &[], motions, samples, stock_mm: STOCK, depth_mm: DEPTH };
     let cuts = cut(&job, &|_| ()).expect("a good job");
     let mut touched = 0;
     for (s, c) in samples.iter().zip(&cuts) {

@@ -5,7 +5,8 @@ use osculate_tools::Cutter;
 use osculate_tools::removal::{Body, Cut, Job, JobError, Sample, Swept, cut};
 
 fn with_holder(cutter: &Cutter, holder: &Cutter, motions: &[Swept], samples: &[Sample]) -> Vec<Cut> {
-    let job = Job { cutter, holder: Some(holder), motions, samples, stock_mm: 0.3, depth_mm: 2.0 };
+    let job =
+        Job { cutter, holder: Some(holder), changes: &[], motions, samples, stock_mm: 0.3, depth_mm: 2.0 };
     cut(&job, &|_| ()).expect("a good job")
 }
 
@@ -121,8 +122,15 @@ fn impossible_jobs_are_refused() {
     let cutter = ball(6.0);
     let good = through(&[upright(0.0, 0.0, 0.0), upright(1.0, 0.0, 0.0)]);
     let s = [sample([0.0; 3], [0.0, 0.0, 1.0])];
-    let job =
-        Job { cutter: &cutter, holder: None, motions: &good, samples: &s, stock_mm: 0.5, depth_mm: 1.0 };
+    let job = Job {
+        cutter: &cutter,
+        holder: None,
+        changes: &[],
+        motions: &good,
+        samples: &s,
+        stock_mm: 0.5,
+        depth_mm: 1.0,
+    };
     let of = |job: Job<'_>| cut(&job, &|_| ()).unwrap_err();
     assert!(matches!(of(Job { stock_mm: f64::NAN, ..job }), JobError::Stock { .. }));
     assert!(matches!(of(Job { depth_mm: 0.0, ..job }), JobError::Depth { .. }));

@@ -68,6 +68,6 @@ pub fn through(poses: &[Pose]) -> Vec<Swept> {
 }
 
 pub fn run(cutter: &Cutter, motions: &[Swept], samples: &[Sample], stock_mm: f64) -> Vec<Cut> {
-    let job = Job { cutter, holder: None, motions, samples, stock_mm, depth_mm: 2.0 };
+    let job = Job { cutter, holder: None, changes: &[], motions, samples, stock_mm, depth_mm: 2.0 };
     cut(&job, &|_| ()).expect("a good job")
 }

@@ -16,7 +16,15 @@ fn square(side: f64) -> Plane {
 
 /// The highest standoff seen, and the bound on the highest there is.
 fn look(surface: &dyn Surface, sampling: &Sampling, cutter: &Cutter, motions: &[Swept]) -> [f64; 2] {
-    let job = Job { cutter, holder: None, motions, samples: &sampling.samples, stock_mm: 0.5, depth_mm: 1.0 };
+    let job = Job {
+        cutter,
+        holder: None,
+        changes: &[],
+        motions,
+        samples: &sampling.samples,
+        stock_mm: 0.5,
+        depth_mm: 1.0,
+    };
     let cuts: Vec<Cut> = cut(&job, &|_| ()).expect("a good job");
     let patches: Vec<Option<Patch>> = sampling.patches.iter().copied().map(Some).collect();
     let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
@@ -83,8 +91,15 @@ fn cusps_of_a_toroidal_end_on_a_cylinder() {
         .map(|k| (std::f64::consts::TAU * f64::from(k) / 15_000.0).sin_cos())
         .map(|(s, c)| sample([part * c, part * s, 2.5], [c, s, 0.0]))
         .collect();
-    let job =
-        Job { cutter: &cutter, holder: None, motions: &motions, samples: &row, stock_mm: 0.5, depth_mm: 1.0 };
+    let job = Job {
+        cutter: &cutter,
+        holder: None,
+        changes: &[],
+        motions: &motions,
+        samples: &row,
+        stock_mm: 0.5,
+        depth_mm: 1.0,
+    };
     let truth = cut(&job, &|_| ()).unwrap().iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
     for spacing in [0.3, 0.15] {
         let sampling = sample_surface(&surface, 0, spacing, 1_000_000).unwrap();
@@ -133,8 +148,15 @@ fn tips_of_trims_are_looked_at() {
     let way: f64 = edge.windows(2).map(|p| (p[1].point - p[0].point).norm()).fold(0.0, f64::max);
     assert!(way <= 0.1 + 1e-12 && edge.len() >= 160, "{way} {}", edge.len());
     let highest = |samples: &[Sample]| {
-        let job =
-            Job { cutter: &cutter, holder: None, motions: &motions, samples, stock_mm: 0.5, depth_mm: 1.0 };
+        let job = Job {
+            cutter: &cutter,
+            holder: None,
+            changes: &[],
+            motions: &motions,
+            samples,
+            stock_mm: 0.5,
+            depth_mm: 1.0,
+        };
         let cuts = cut(&job, &|_| ()).unwrap();
         cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max)
     };
@@ -151,7 +173,15 @@ fn refined(
     most: usize,
 ) -> (Measured, Refined) {
     let sampling = sample_surface(surface, 0, spacing, 1_000_000).expect("a good face");
-    let job = Job { cutter, holder: None, motions, samples: &sampling.samples, stock_mm: 0.5, depth_mm: 1.0 };
+    let job = Job {
+        cutter,
+        holder: None,
+        changes: &[],
+        motions,
+        samples: &sampling.samples,
+        stock_mm: 0.5,
+        depth_mm: 1.0,
+    };
     let patches = sampling.patches.iter().copied().map(Some).collect();
     let cuts = cut(&job, &|_| ()).expect("a good job");
     let mut measured = Measured { samples: sampling.samples.clone(), patches, cuts };
@@ -262,7 +292,7 @@ fn gouges_of_rapids_and_holders_are_found_on_check_faces() {
             sample.check_only = true;
         }
         let samples = &sampling.samples;
-        let job = Job { cutter, holder, motions, samples, stock_mm: 0.5, depth_mm: 1.0 };
+        let job = Job { cutter, holder, changes: &[], motions, samples, stock_mm: 0.5, depth_mm: 1.0 };
         let patches = sampling.patches.iter().copied().map(Some).collect();
         let mut measured = Measured { samples: samples.clone(), patches, cuts: cut(&job, &|_| ()).unwrap() };
         let deepest = |m: &Measured| m.cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max);

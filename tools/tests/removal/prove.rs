@@ -77,14 +77,14 @@ fn judged(asked: Asked) -> Result<Verdict, ProveError> {
         unseen: asked.unseen,
         fixtures: Vec::new(),
         // 1000 rpm and two teeth: 2000 a minute.
-        tool: GoalTool {
+        tools: vec![GoalTool {
             cutter: &cutter,
             flutes: &cutter,
             shank: None,
             holder: None,
             teeth: Some(2),
             spindle_rpm: Some(1000.0),
-        },
+        }],
         stock: GoalStock::Assumed { layer_mm: 0.5 },
         limits: GoalLimits {
             scallop_mm: asked.scallop_mm,
@@ -92,13 +92,13 @@ fn judged(asked: Asked) -> Result<Verdict, ProveError> {
             unreached_mm2: 0.0,
             at_samples: false,
         },
-        looks: Looks { spacing_mm: Some(0.05), max_samples: 100_000 },
+        looks: Looks { spacing_mm: Some(0.05), max_samples: 100_000, between: true },
         roughing_mm: None,
         control: GoalControl { words: String::new(), remarks: asked.remarks, blend_mm: asked.blend_mm },
     };
     let motions = raster(asked.z);
     let times_min = times(&motions, asked.feed_mm_min);
-    prove(&goal, Program { motions: &motions, times_min: &times_min }, &|_| ())
+    prove(&goal, Program { motions: &motions, times_min: &times_min, changes: &[] }, &|_| ())
 }
 
 /// Two circles of radius R at the distance of a tooth's feed f meet at `R - sqrt(R^2 - f^2/4)`. The search for the worst phase

@@ -67,6 +67,7 @@ fn crests_are_the_ridges_between_passes() {
         let job = |samples| Job {
             cutter: &cutter,
             holder: None,
+            changes: &[],
             motions: &motions,
             samples,
             stock_mm: 1.0,

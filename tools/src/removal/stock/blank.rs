@@ -28,6 +28,8 @@ pub enum Blank<'a> {
         /// Whether the triangles close and what they enclose is material as well.
         filled: bool,
     },
+    /// What was left of another stock, as finely as that was looked at.
+    Left(&'a Stock),
 }
 
 /// Raw material that is none.
@@ -90,6 +92,9 @@ impl Stock {
     /// # Errors
     /// [`BlankError`].
     pub fn fill(blank: &Blank<'_>, resolution: &Resolution) -> Result<Made, BlankError> {
+        if let Blank::Left(stock) = blank {
+            return Ok(Made { stock: (*stock).clone(), coarsened: None });
+        }
         let Resolution { cell_mm, tri, budget_bytes } = *resolution;
         if !(cell_mm.is_finite() && cell_mm > 0.0) {
             return Err(BlankError::Size { what: "the stock's cell, mm,", got: cell_mm });
@@ -120,6 +125,7 @@ impl Blank<'_> {
         Ok(match self {
             Self::Box(b) => *b,
             Self::Mesh(t) => Box3::around(t.iter().flatten()),
+            Self::Left(stock) => *stock.bounds(),
             Self::Layer { triangles, thickness_mm, .. } => {
                 if !(thickness_mm.is_finite() && *thickness_mm > 0.0) {
                     return Err(BlankError::Size { what: "the layer's thickness, mm,", got: *thickness_mm });
@@ -131,7 +137,7 @@ impl Blank<'_> {
 
     fn fill(&self, lattice: &Lattice, bounds: &Box3) -> Result<Vec<Tile>, BlankError> {
         let (triangles, grown, filled, layer) = match self {
-            Self::Box(_) => (&[][..], 0.0, false, None),
+            Self::Box(_) | Self::Left(_) => (&[][..], 0.0, false, None),
             Self::Mesh(t) => (*t, 0.0, true, None),
             Self::Layer { triangles, thickness_mm, filled } => {
                 (*triangles, *thickness_mm, *filled, Some(*thickness_mm))

@@ -21,11 +21,11 @@ impl Stock {
     /// # Errors
     /// [`JobError`] for numbers that are not finite and axes that turn over.
     pub fn carve(&mut self, job: &StockJob<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Carved, JobError> {
-        let mut bodies = vec![Moved { cutter: job.cutter, above_mm: 0.0 }];
-        bodies.extend(job.uppers.iter().map(|u| Moved { cutter: u.body, above_mm: u.above_mm }));
-        let Ways { pieces, tree } = Ways::of(job.motions, &bodies)?;
+        let mut bodies = vec![Moved { cutter: job.cutter, above_mm: 0.0, tool: 0 }];
+        bodies.extend(job.uppers.iter().map(|u| Moved { cutter: u.body, above_mm: u.above_mm, tool: 0 }));
+        let ways = Ways::of(job.motions, &bodies, std::iter::empty())?;
         let stray_mm = self.stray_mm();
-        let world = World { job, bodies, tree, pieces, stray_mm };
+        let world = World { job, bodies, ways, stray_mm };
         let all: usize = self.fields.iter().map(|f| f.tiles.len()).sum();
         let done = AtomicUsize::new(0);
         let share = 1.0 / self.fields.len() as f64;

@@ -21,12 +21,14 @@ mod blank;
 mod carve;
 mod glide;
 mod lattice;
+mod mesh;
 mod rays;
 mod report;
 mod stl;
 mod world;
 
 pub use blank::{Blank, BlankError, Made, Resolution};
+pub use mesh::Mesh;
 pub use report::{Carved, Collision, Volume, Work};
 pub use stl::{StlError, read_stl};
 pub use world::{StockJob, Upper};

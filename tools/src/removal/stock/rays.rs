@@ -87,9 +87,9 @@ impl<'a> Rays<'a> {
         }
         let world = self.world;
         let mut near: Vec<(u32, u8, u32)> = Vec::new();
-        world.tree.near(&world.bodies, &upright(&self.whole), Which::All, |k, _, body| {
+        world.ways.near(&world.bodies, &upright(&self.whole), Which::All, |k, _, body| {
             // Few bodies: cutter, shank, holder.
-            near.push((world.pieces[k as usize].motion, body as u8, k));
+            near.push((world.ways.pieces[k as usize].motion, body as u8, k));
         });
         // Within a motion, which may have several pieces, the cutter before what is above it.
         near.sort_unstable();
@@ -99,7 +99,7 @@ impl<'a> Rays<'a> {
                 break;
             }
             let mut bite = Bite::none(motion, body);
-            pieces.push(world.pieces[k as usize]);
+            pieces.push(world.ways.pieces[k as usize]);
             while let Some(piece) = pieces.pop() {
                 if self.pass(piece, &mut bite) {
                     let [first, second] = piece.halves();

@@ -68,6 +68,16 @@ pub struct Carved {
 }
 
 impl Carved {
+    /// Adds what a tool did whose motions begin at `first` of the whole path, after all before.
+    pub(crate) fn follow(&mut self, mut later: Self, first: usize) {
+        // Paths of more motions than are numbered were refused.
+        let by = first as u32;
+        later.work.iter_mut().for_each(|w| w.motion += by);
+        later.collisions.iter_mut().for_each(|c| c.motion += by);
+        self.work.append(&mut later.work);
+        self.collisions.append(&mut later.collisions);
+    }
+
     /// The whole volume that cutting motions took, mm3.
     #[must_use]
     pub fn volume_mm3(&self) -> f64 {

@@ -2,8 +2,7 @@
 
 use crate::cutter::Cutter;
 use crate::removal::body::Body as Moved;
-use crate::removal::piece::Piece;
-use crate::removal::tree::Tree;
+use crate::removal::tree::Ways;
 use crate::removal::{Body, Swept};
 
 /// A body above the cutter: a shank or a holder.
@@ -34,8 +33,7 @@ pub struct StockJob<'a> {
 pub(super) struct World<'a> {
     pub job: &'a StockJob<'a>,
     pub bodies: Vec<Moved<'a>>,
-    pub tree: Tree,
-    pub pieces: Vec<Piece>,
+    pub ways: Ways,
     /// How far the straight pieces of a turning motion may stray from it, mm.
     pub stray_mm: f64,
 }

@@ -1,0 +1,130 @@
+//! Places beside sharp outer edges, where a depth along one face's normal says nothing.
+//!
+//! A gouge is deeper than h where the tool takes a point of the part that is farther than h from all of its faces. Along the normal
+//! of a face this is read off by how far the tool goes beneath a sample, but for samples beside an outer edge: there the points
+//! beneath lie next to the other face as well. A tool that goes a thousandth too deep over a face takes nearly a tenth of a
+//! millimetre from the rim of the wall below it, as measured along the wall's normal, and no point of that is deeper than the
+//! thousandth. So such places are measured by the distance from the other face too. Distances are to points that were found on
+//! the other faces: they are never too small, and neither are depths. At inner and at smooth edges nothing changes.
+
+use super::job::{Cut, Sample};
+use osculate_geom::{Point3, Surface, Unit3, Uv};
+use std::collections::HashMap;
+
+/// What lies beneath is nearer to another face than this share of the depth that is asked for; at an inner edge it is as far.
+const NEARER: f64 = 0.999;
+/// Steps towards the nearest point of another face.
+const STEPS: usize = 8;
+/// Places along what was taken beneath a sample.
+const BENEATH: u32 = 8;
+/// Depths below this share of the limit are left as they seem.
+const DEEP: f64 = 0.25;
+/// Samples that are measured anew at most: beyond it a program is far off wherever it goes.
+const MOST: usize = 50_000;
+
+/// All faces of a goal, found by place.
+pub(super) struct Edges<'a> {
+    surfaces: &'a [&'a dyn Surface],
+    side_mm: f64,
+    /// Of each box of space the samples in it: face and place on it.
+    hints: HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>,
+}
+
+impl<'a> Edges<'a> {
+    /// Faces by number, with samples that are no farther apart than this.
+    pub fn new(surfaces: &'a [&'a dyn Surface], samples: &[Sample], apart_mm: f64) -> Self {
+        let mut out = Self { surfaces, side_mm: 2.0 * apart_mm, hints: HashMap::new() };
+        // Places on fixtures are on no face.
+        for s in samples.iter().filter(|s| (s.face as usize) < surfaces.len()) {
+            let key = out.key(&s.point);
+            out.hints.entry(key).or_default().push((s.face, s.uv, s.point));
+        }
+        out
+    }
+
+    fn key(&self, p: &Point3) -> [i64; 3] {
+        // Casting takes what is too far for a whole number to the last one.
+        [p.x, p.y, p.z].map(|x| (x / self.side_mm).floor() as i64)
+    }
+
+    /// Whether the point so far beneath a place of a face lies nearer than that to another face.
+    pub fn is_beside(&self, (place, normal): (&Point3, &Unit3), face: u32, depth_mm: f64) -> bool {
+        let beneath = place - normal.into_inner() * depth_mm;
+        self.distance_mm(&beneath, face, NEARER * depth_mm) < NEARER * depth_mm
+    }
+
+    /// The distance of a point from faces other than one of them, as far as it is found; looking ends where it is below `enough_mm`.
+    fn distance_mm(&self, q: &Point3, face: u32, enough_mm: f64) -> f64 {
+        let [x, y, z] = self.key(q);
+        // Of each face around, the nearest sample.
+        let mut near: Vec<(f64, u32, Uv)> = Vec::new();
+        for key in
+            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])))
+        {
+            for (other, at, point) in self.hints.get(&key).into_iter().flatten() {
+                if *other == face {
+                    continue;
+                }
+                let away = (point - q).norm();
+                match near.iter_mut().find(|n| n.1 == *other) {
+                    Some(n) if away < n.0 => *n = (away, *other, *at),
+                    Some(_) => {}
+                    None => near.push((away, *other, *at)),
+                }
+            }
+        }
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut least = f64::INFINITY;
+        for (away, other, at) in near {
+            least = least.min(away).min(nearest_mm(self.surfaces[other as usize], at, q));
+            if least < enough_mm {
+                break;
+            }
+        }
+        least
+    }
+
+    /// How deep the deepest point beneath a sample is that was taken, where the tool went so far along its normal.
+    fn depth_mm(&self, s: &Sample, along_mm: f64) -> f64 {
+        let each = (1..=BENEATH).map(|k| {
+            let t = along_mm * f64::from(k) / f64::from(BENEATH);
+            t.min(self.distance_mm(&(s.point - s.normal.into_inner() * t), s.face, 0.0))
+        });
+        each.fold(0.0, f64::max)
+    }
+
+    /// Measures anew what seems deeper than a share of a limit.
+    pub fn measure(&self, samples: &[Sample], cuts: &mut [Cut], limit_mm: f64) {
+        let deep = samples.iter().zip(cuts).filter(|(_, c)| -c.standoff_mm > DEEP * limit_mm);
+        for (s, c) in deep.take(MOST) {
+            let along_mm = limit_mm.min(-c.standoff_mm);
+            let own = (s.face as usize) < self.surfaces.len();
+            if own && self.is_beside((&s.point, &s.normal), s.face, along_mm) {
+                c.standoff_mm = -self.depth_mm(s, -c.standoff_mm);
+            }
+        }
+    }
+}
+
+/// The distance of a point from the place of a face that Newton's method comes to from a place near it; infinite where that is
+/// not on the face.
+fn nearest_mm(surface: &dyn Surface, from: Uv, q: &Point3) -> f64 {
+    let domain = surface.domain();
+    let mut at = from;
+    for _ in 0..STEPS {
+        let jet = surface.jet2(at);
+        let off = q - jet.point;
+        let (a, b, c) = (jet.du.norm_squared(), jet.du.dot(&jet.dv), jet.dv.norm_squared());
+        let (e, f) = (off.dot(&jet.du), off.dot(&jet.dv));
+        let det = a * c - b * b;
+        if det.is_nan() || det <= 0.0 {
+            break;
+        }
+        let next = domain.bring(Uv { u: at.u + (e * c - f * b) / det, v: at.v + (f * a - e * b) / det });
+        if next == at {
+            break;
+        }
+        at = next;
+    }
+    if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }
+}

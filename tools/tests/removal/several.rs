@@ -1,0 +1,266 @@
+//! Several tools one after the other: heights are the least of all, each tool has its own holder, and order counts for rapids.
+
+use crate::common::{ball, flat, sample, through, toroidal, upright};
+use osculate_geom::analytic::Plane;
+use osculate_geom::{Box3, Domain, Interval, Point3};
+use osculate_tools::removal::stock::{Blank, Resolution};
+use osculate_tools::removal::{
+    Answer, Change, Cut, Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Job, JobError, Looks,
+    Program, ProveError, Sample, Swept, Verdict, carve, cut, prove,
+};
+use osculate_tools::{Cutter, Pose};
+use proptest::prelude::*;
+
+/// Passes along x between two y, `step` apart, with the tip at a height.
+fn raster([from, to]: [f64; 2], step: f64, z: f64) -> Vec<Pose> {
+    let rows = ((to - from) / step).ceil() as usize;
+    (0..=rows)
+        .flat_map(|k| {
+            let y = (from + step * k as f64).min(to);
+            let ends = [upright(-8.0, y, z), upright(16.0, y, z)];
+            if k % 2 == 0 { ends } else { [ends[1], ends[0]] }
+        })
+        .collect()
+}
+
+fn samples() -> Vec<Sample> {
+    (0..400)
+        .map(|k| sample([0.4 * f64::from(k % 20), 0.37 * f64::from(k / 20), 0.0], [0.0, 0.0, 1.0]))
+        .collect()
+}
+
+/// What two tools leave, the second from motion `first` on.
+fn both(
+    tools: [(&Cutter, Option<&Cutter>); 2],
+    motions: &[Swept],
+    first: usize,
+    samples: &[Sample],
+) -> Result<Vec<Cut>, JobError> {
+    let [(cutter, holder), (next, other)] = tools;
+    let changes = [Change { first, cutter: next, holder: other }];
+    cut(&Job { cutter, holder, changes: &changes, motions, samples, stock_mm: 1.0, depth_mm: 2.0 }, &|_| ())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// Each sample is as high as the lower of what the tools leave alone, to the last bit.
+    #[test]
+    fn heights_are_the_least_of_both(
+        large in 5.0..20.0f64,
+        small in 1.0..6.0f64,
+        share in 0.2..0.9f64,
+        [near, far] in [0.3..2.0f64, 0.1..0.8f64],
+        lift in 0.0..0.2f64,
+    ) {
+        let (one, two) = (toroidal(large, 0.5 * share * large), ball(small));
+        let poses = [raster([-1.0, 4.0], near, lift), raster([3.0, 8.5], far, 0.0)];
+        let mut motions = through(&poses[0]);
+        let first = motions.len();
+        // Above everything from one to the other.
+        let [end, begin] = [*poses[0].last().unwrap(), poses[1][0]];
+        let up = |p: &Pose| upright(p.tip.x, p.tip.y, 30.0);
+        let over = [end, up(&end), up(&begin), begin];
+        motions.extend(through(&over));
+        motions.extend(through(&poses[1]));
+        let samples = samples();
+        let got = both([(&one, None), (&two, None)], &motions, first, &samples).unwrap();
+        let alone = |cutter: &Cutter, motions: &[Swept]| {
+            cut(&Job { cutter, holder: None, changes: &[], motions, samples: &samples, stock_mm: 1.0, depth_mm: 2.0 }, &|_| ()).unwrap()
+        };
+        let (a, b) = (alone(&one, &motions[..first]), alone(&two, &motions[first..]));
+        let mut by = [0; 2];
+        for ((got, a), b) in got.iter().zip(&a).zip(&b) {
+            prop_assert!((got.standoff_mm - a.standoff_mm.min(b.standoff_mm)).abs() < 1e-12, "{got:?} {a:?} {b:?}");
+            if let Some(cut) = got.by {
+                let tool = usize::from(cut.motion as usize >= first);
+                // Where both cut to the same height either may have done it.
+                let own = if tool == 0 { a } else { b };
+                prop_assert!((own.standoff_mm - got.standoff_mm).abs() < 1e-12);
+                by[tool] += 1;
+            }
+        }
+        prop_assert!(by[0] > 50 && by[1] > 50, "{by:?}");
+    }
+}
+
+/// Only the second tool has a holder, and it meets a face that only it comes near.
+#[test]
+fn each_tool_has_its_own_holder() {
+    let (long, short) = (flat(6.0), Cutter::cylinder(6.0, 4.0).unwrap());
+    let holder = Cutter::cylinder(30.0, 20.0).unwrap();
+    let floor = sample([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    // A wall beside, as high as the nose of the short tool's holder lies deep.
+    let top = sample([8.0, 0.0, 5.0], [0.0, 0.0, 1.0]);
+    let motions = through(&[upright(-9.0, 0.0, 0.0), upright(0.0, 0.0, 0.0), upright(1.0, 0.0, 0.0)]);
+    let of = |first: usize| {
+        both([(&long, None), (&short, Some(&holder))], &motions, first, &[floor, top]).unwrap()[1]
+    };
+    // Who makes both motions has the holder; who makes the last one alone too; who makes none has not.
+    for (first, meets) in [(0, true), (1, true), (2, false)] {
+        let got = of(first);
+        assert_eq!(got.holder.is_some(), meets, "{first}: {got:?}");
+    }
+}
+
+/// A rapid of the second tool through what only the first has left.
+#[test]
+fn a_rapid_meets_what_the_tool_before_left() {
+    let (one, two) = (ball(6.0), ball(4.0));
+    let here = sample([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    let down = |z: f64| through(&[upright(-5.0, 0.0, z), upright(5.0, 0.0, z)]);
+    let rapid = |z: f64| down(z).into_iter().map(|m| Swept { rapid: true, ..m });
+    let after = |cut: f64, quick: f64| {
+        let motions: Vec<Swept> = down(cut).into_iter().chain(rapid(quick)).collect();
+        both([(&one, None), (&two, None)], &motions, 1, &[here]).unwrap()[0]
+    };
+    assert!(after(0.2, 0.3).rapid.is_none());
+    let took = after(0.4, 0.3).rapid.expect("it meets 0.1 mm").removed_mm;
+    assert!((took - 0.1).abs() < 1e-9, "{took}");
+    let wrong = both([(&one, None), (&two, None)], &down(0.0), 0, &[here]);
+    assert!(wrong.is_ok());
+    let changes =
+        [Change { first: 1, cutter: &two, holder: None }, Change { first: 0, cutter: &two, holder: None }];
+    let motions = down(0.0);
+    let job = Job {
+        cutter: &one,
+        holder: None,
+        changes: &changes,
+        motions: &motions,
+        samples: &[here],
+        stock_mm: 1.0,
+        depth_mm: 2.0,
+    };
+    assert_eq!(cut(&job, &|_| ()), Err(JobError::Changes { tool: 2, first: 0 }));
+}
+
+/// Two tools on a plate: the face of it, the block that it is cut from, and the program.
+struct Plate {
+    tools: [Cutter; 2],
+    motions: Vec<Swept>,
+    times_min: Vec<f64>,
+    first: usize,
+}
+
+impl Plate {
+    fn new([one, two]: [[f64; 2]; 2]) -> Self {
+        let tools = [toroidal(6.0, 0.5), ball(4.0)];
+        let mut poses = raster(one, 4.0, 0.0);
+        let end = *poses.last().unwrap();
+        let second = raster(two, 0.1, 0.0);
+        poses.extend([upright(end.tip.x, end.tip.y, 40.0)]);
+        let mut motions = through(&poses);
+        let first = motions.len();
+        let begin = second[0];
+        motions.extend(through(&[poses[poses.len() - 1], upright(begin.tip.x, begin.tip.y, 40.0), begin]));
+        motions.extend(through(&second));
+        let mut clock = 0.0;
+        let times_min = motions
+            .iter()
+            .map(|m| {
+                clock += (m.to.tip - m.from.tip).norm() / 300.0;
+                clock
+            })
+            .collect();
+        Self { tools, motions, times_min, first }
+    }
+
+    fn judged(&self, changes: &[usize], from: usize, blank: Blank<'_>) -> Result<Verdict, ProveError> {
+        self.with(changes, from, blank, |goal, program| prove(goal, program, &|_| ()))
+    }
+
+    fn with<T>(
+        &self,
+        changes: &[usize],
+        from: usize,
+        blank: Blank<'_>,
+        ask: impl FnOnce(&Goal<'_>, Program<'_>) -> T,
+    ) -> T {
+        let i = Interval::new(0.0, 8.0);
+        let face = Plane::new(Domain { u: i, v: i });
+        let tool = |k: usize, rpm: f64| GoalTool {
+            cutter: &self.tools[k],
+            flutes: &self.tools[k],
+            shank: None,
+            holder: None,
+            teeth: Some(2),
+            spindle_rpm: Some(rpm),
+        };
+        let goal = Goal {
+            machined: vec![GoalFace { name: "F1", surface: &face, outlines: Vec::new(), part_of_it: None }],
+            checked: Vec::new(),
+            unseen: Vec::new(),
+            fixtures: Vec::new(),
+            tools: vec![tool(0, 3000.0), tool(1, 6000.0)],
+            stock: GoalStock::Declared {
+                blank,
+                resolution: Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 },
+                from,
+                layer_mm: 0.5,
+                words: "a plate",
+            },
+            limits: GoalLimits { scallop_mm: 0.01, gouge_mm: 0.005, unreached_mm2: 0.0, at_samples: false },
+            looks: Looks { spacing_mm: Some(0.1), max_samples: 100_000, between: true },
+            roughing_mm: None,
+            control: GoalControl::default(),
+        };
+        ask(&goal, Program { motions: &self.motions, times_min: &self.times_min, changes })
+    }
+}
+
+fn plate() -> Blank<'static> {
+    Blank::Box(Box3 { min: Point3::new(-6.0, -6.0, -3.0), max: Point3::new(14.0, 14.0, 2.0) })
+}
+
+/// Half of a plate by one tool and half by another holds; with a strip between them it does not.
+#[test]
+fn a_plate_is_finished_by_two_tools() {
+    let whole = Plate::new([[-2.0, 4.03], [5.0, 8.5]]);
+    let verdict = whole.judged(&[whole.first], 0, plate()).unwrap();
+    assert_eq!(verdict.answer(), Answer::Held, "{verdict}");
+    let text = verdict.to_string();
+    assert!(
+        text.contains("2 cutters one after the other") && text.contains("no holder declared of 1, 2"),
+        "{text}"
+    );
+    assert!(text.contains("2 teeth at 3000 rpm") && text.contains("2 teeth at 6000 rpm"), "{text}");
+    // The corner of the first is a quarter of the second's, and it turns half as fast.
+    let two_circles = |r: f64, f: f64| r - (r * r - 0.25 * f * f).sqrt();
+    let mark = verdict.figures().mark_max_mm.unwrap();
+    assert!(mark >= two_circles(2.0, 0.025) && mark < two_circles(0.5, 0.05) + 1e-5, "{mark}");
+
+    let apart = Plate::new([[-2.0, 2.0], [7.0, 8.5]]);
+    let verdict = apart.judged(&[apart.first], 0, plate()).unwrap();
+    assert_eq!(verdict.answer(), Answer::NotHeld);
+    assert!(verdict.why().iter().any(|w| w.contains("uncut area")), "{verdict}");
+
+    let none = whole.judged(&[], 0, plate());
+    assert_eq!(none.unwrap_err(), ProveError::Tools { tools: 2, changes: 0 });
+    let late = whole.judged(&[usize::MAX], 0, plate());
+    assert!(matches!(late, Err(ProveError::Tools { .. })));
+}
+
+/// Stock carried from one tool to the next is the stock that both go through.
+#[test]
+fn stock_is_carried_to_the_next_tool() {
+    let both = Plate::new([[-2.0, 4.03], [5.0, 8.5]]);
+    let whole = both.judged(&[both.first], 0, plate()).unwrap();
+    let whole = whole.figures().stock.as_ref().unwrap();
+    let first = Plate {
+        motions: both.motions[..both.first].to_vec(),
+        times_min: both.times_min[..both.first].to_vec(),
+        ..Plate::new([[-2.0, 4.03], [5.0, 8.5]])
+    };
+    // By itself the first leaves so much that nothing is looked at closer; what it leaves is known all the same.
+    assert!(first.judged(&[both.first], 0, plate()).unwrap().figures().stock.is_none());
+    let halfway = first
+        .with(&[both.first], 0, plate(), |goal, program| carve(goal, program, &|_| ()).unwrap().unwrap());
+    let carried = both.judged(&[both.first], both.first, Blank::Left(&halfway.stock)).unwrap();
+    let carried = carried.figures().stock.as_ref().unwrap();
+    assert_eq!(carried.stock, whole.stock);
+    assert_eq!(carried.before, halfway.left);
+    assert!(carried.carved.volume_mm3() > 1.0);
+    let sum = halfway.carved.volume_mm3() + carried.carved.volume_mm3();
+    assert!((sum - whole.carved.volume_mm3()).abs() < 1e-9 * sum);
+    // Motions and blocks are those of the whole program.
+    assert!(carried.carved.work.iter().all(|w| w.motion as usize >= both.first));
+}
