@@ -40,7 +40,7 @@ fn through(poses: &[Pose]) -> Vec<Swept> {
 }
 
 fn run(cutter: &Cutter, motions: &[Swept], samples: &[Sample]) -> Vec<Cut> {
-    let job = Job { cutter, holder: None, motions, samples, stock_mm: 1.0, depth_mm: 2.0 };
+    let job = Job { cutter, holder: None, changes: &[], motions, samples, stock_mm: 1.0, depth_mm: 2.0 };
     cut(&job, &|_| ()).expect("a good job")
 }
 

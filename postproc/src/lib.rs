@@ -24,7 +24,7 @@
 //! assert!((end.pose.tip - path.moves[1].pose.tip).norm() < 1e-3);
 //!
 //! // It runs with the job's tool in its offset; the job says no speed of the spindle.
-//! let tool = conduct::ExpectedTool { number: 1, length_mm: 80.0 };
+//! let tool = conduct::ExpectedTool::new(1, 80.0);
 //! let conduct = back.conduct(&conduct::Expected::new(tool, None, 0.01));
 //! assert_eq!(conduct.worst(), Some(conduct::Grade::Warning));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -44,6 +44,7 @@ mod part_turns;
 mod post;
 mod post_error;
 mod post_options;
+mod sections;
 mod sequence;
 mod setup;
 mod setup_comment;
@@ -66,6 +67,7 @@ pub use part_turns::{axis_turns, clamped_turns, first_in_range, free_turns, tilt
 pub use post::{PostReport, PostSummary, Posted, post, post_from, post_to};
 pub use post_error::PostError;
 pub use post_options::PostOptions;
+pub use sections::{PostedSections, Section, post_sections};
 pub use setup::{Setup, SetupError};
 pub use setup_comment::SetupCommentError;
 pub use solve_error::SolveError;

@@ -105,20 +105,29 @@ where
     PostError: From<S::Error>,
 {
     check(options)?;
+    let program = program_of(machine, options, comments(machine, setup, options));
+    let mut writer = Writer::new(options.dialect, &program)?;
+    let report = moves_from(source, machine, setup, (options, &program), &mut writer, sink)?;
+    writer.finish();
+    flush(&mut writer, sink)?;
+    Ok(report)
+}
+
+/// What stands around the moves of a program.
+pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec<String>) -> Program {
     let tcp = options.feed == FeedMode::Tcp;
-    let spindle_rpm = options.spindle_rpm;
     let planes = options.orientation == Orientation::Planes;
-    let program = Program {
+    Program {
         orientation: options.orientation,
         name: options.program_name.clone(),
-        comments: comments(machine, setup, (tcp, planes)),
+        comments,
         tcp: tcp && !planes,
         subprogram: options.subprogram,
         linuxcnc_tcp: machine.control().linuxcnc_tcp.clone(),
         number: options.program_number,
         tool_number: options.tool_number,
         work_offset: options.work_offset,
-        spindle_rpm,
+        spindle_rpm: options.spindle_rpm,
         coolant: options.coolant,
         feed_word: feed_word(options, machine),
         blend_mm: options.blend_mm,
@@ -129,10 +138,23 @@ where
         },
         linear_decimals: linear_decimals(machine, tcp),
         rotary_names: machine.rotary().iter().map(|p| rotary_name(machine, *p)).collect(),
-    };
-    let mut writer = Writer::new(options.dialect, &program)?;
+    }
+}
+
+/// Words the moves of a source, after what stands before them.
+pub(crate) fn moves_from<S: MoveSource>(
+    source: &S,
+    machine: &Machine,
+    setup: &Setup,
+    (options, program): (&PostOptions, &Program),
+    writer: &mut Writer<'_>,
+    sink: &mut dyn io::Write,
+) -> Result<PostReport, PostError>
+where
+    PostError: From<S::Error>,
+{
     let mut draft = Draft::new(machine, setup, options);
-    let solve = SolveOptions { tcp, ..options.solve };
+    let solve = SolveOptions { tcp: options.feed == FeedMode::Tcp, ..options.solve };
     let mut blocks = 0;
     let mut word = |draft: &mut Draft, writer: &mut Writer, block: &JointBlock, fastest: Option<f64>| {
         let Some(m) = draft.next(block, fastest)? else { return Ok(()) };
@@ -144,24 +166,22 @@ where
         let joints = machine.solve_from::<S, PostError>(source, setup, &solve)?;
         let times = fastest_durations_min(machine, &joints, tip_mm_min);
         for (block, time_min) in joints.blocks.iter().zip(times) {
-            word(&mut draft, &mut writer, block, Some(time_min))?;
+            word(&mut draft, writer, block, Some(time_min))?;
         }
         joints
     } else {
         machine.solve_pieces::<S, PostError>(source, setup, &solve, |piece| {
-            piece.iter().try_for_each(|block| word(&mut draft, &mut writer, block, None))
+            piece.iter().try_for_each(|block| word(&mut draft, writer, block, None))
         })?
     };
-    writer.finish();
-    flush(&mut writer, sink)?;
     let mut diagnostics = joints.diagnostics;
-    if spindle_rpm.is_none() {
+    if options.spindle_rpm.is_none() {
         diagnostics.push(Diagnostic::warning(
             "program",
             "no spindle speed is known: the program does not start the spindle",
         ));
     }
-    draft.report(&mut diagnostics, &program);
+    draft.report(&mut diagnostics, program);
     let s = joints.summary;
     let summary = PostSummary {
         blocks,
@@ -178,7 +198,7 @@ where
 /// Text is given to the sink when there is this much of it.
 const SINK_BYTES: usize = 1 << 16;
 
-fn flush(writer: &mut Writer, sink: &mut dyn io::Write) -> Result<(), PostError> {
+pub(crate) fn flush(writer: &mut Writer, sink: &mut dyn io::Write) -> Result<(), PostError> {
     sink.write_all(writer.text().as_bytes()).map_err(|e| PostError::Sink { kind: e.kind() })?;
     writer.clear();
     Ok(())
@@ -197,7 +217,8 @@ fn rotary_name(machine: &Machine, place: usize) -> RotaryName {
     RotaryName { letter: joint.letter.clone(), endless: joint.is_endless(), decimals: joint.decimals }
 }
 
-fn comments(machine: &Machine, setup: &Setup, (tcp, planes): (bool, bool)) -> Vec<String> {
+pub(crate) fn comments(machine: &Machine, setup: &Setup, options: &PostOptions) -> Vec<String> {
+    let (tcp, planes) = (options.feed == FeedMode::Tcp, options.orientation == Orientation::Planes);
     let t = setup.part_zero.translation.vector;
     let place = format!("X{:.4} Y{:.4} Z{:.4}", t.x + 0.0, t.y + 0.0, t.z + 0.0);
     let mut lines = vec![format!("machine {}", machine.name())];

@@ -24,6 +24,19 @@ pub enum PostError {
         /// What the sink says.
         kind: io::ErrorKind,
     },
+    /// Nothing to post.
+    #[error("there is no path to post")]
+    NoSection,
+    /// A section with what a program has once.
+    #[error(
+        "section {section}, {name}: dialect, feed mode, orientation and subprogram are the same in all of a program"
+    )]
+    Sections {
+        /// Which, from 1.
+        section: usize,
+        /// Its name.
+        name: String,
+    },
     /// An orientation that the feed mode does not allow.
     #[error("the tool's orientation as vectors or planes needs feed mode tcp: there X Y Z are the tip")]
     Orientation,

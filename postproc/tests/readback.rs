@@ -382,7 +382,7 @@ proptest! {
         let options = ReadOptions { strict, ..ReadOptions::default() };
         let text = format!("G90 G94 F100\nG0 X0 Y0 Z0 A0 C0\nG1 {text}");
         if let Ok(back) = read(&text, Dialect::ALL[which], &machine("trunnion-ac"), &Setup::default(), &options) {
-            let tool = ExpectedTool { number: 1, length_mm: 0.0 };
+            let tool = ExpectedTool::new(1, 0.0);
             let conduct = back.conduct(&Expected::new(tool, Some(8000.0), 0.01));
             // None of these programs starts the spindle as the job means it.
             prop_assert!(conduct.worst() == Some(Grade::Breaks) || back.blocks.iter().all(|b| b.rapid));

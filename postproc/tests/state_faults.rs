@@ -40,7 +40,7 @@ fn options(dialect: Dialect, feed: FeedMode) -> PostOptions {
 }
 
 fn expected() -> Expected {
-    let tool = ExpectedTool { number: 1, length_mm: 90.0 };
+    let tool = ExpectedTool::new(1, 90.0);
     Expected { coolant: Some(Coolant::Flood), ..Expected::new(tool, Some(8000.0), TOLERANCE_MM) }
 }
 
@@ -362,7 +362,7 @@ fn options_are_worded_and_read_back() {
         let text = post(&way(), &machine(dialect), &setup(), &options).expect("a path within limits").text;
         assert!(text.contains(&offset.words(dialect).expect("its own words")), "{text}");
         assert_eq!(text.contains("O0077"), dialect == Dialect::Fanuc);
-        let tool = ExpectedTool { number: 12, length_mm: 90.0 };
+        let tool = ExpectedTool::new(12, 90.0);
         let own = Expected { work_offset: Some(offset), ..Expected::new(tool, Some(6500.0), TOLERANCE_MM) };
         let back = go(&text, dialect);
         assert_eq!(back.conduct(&own).findings, []);

@@ -39,7 +39,7 @@ fn deeds(text: &str, dialect: Dialect) -> impl PartialEq + std::fmt::Debug + use
         back.moves.iter().map(|m| (m.pose, m.motion, m.time_min, m.tool, m.own_frame)).collect();
     let blocks: Vec<_> = back.blocks.iter().map(|b| (b.from, b.to, b.rapid, b.time_min)).collect();
     // A job that the program is not for, so that there is something to find.
-    let tool = ExpectedTool { number: 2, length_mm: 90.0 };
+    let tool = ExpectedTool::new(2, 90.0);
     let conduct = back.conduct(&Expected::new(tool, Some(9000.0), 0.02));
     assert!(conduct.findings.len() > 1, "{conduct:?}");
     let findings: Vec<_> = conduct.findings.iter().map(|f| (f.grade, f.what.clone())).collect();

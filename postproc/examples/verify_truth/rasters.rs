@@ -231,8 +231,15 @@ pub fn spacing() -> bool {
         let sampling = sample_surface(&surface, 0, spacing_mm, 1_000_000).expect("a good face");
         let samples = &sampling.samples;
         let cutter = ball(2.0 * tool);
-        let job =
-            Job { cutter: &cutter, holder: None, motions: &motions, samples, stock_mm: 0.5, depth_mm: 1.0 };
+        let job = Job {
+            cutter: &cutter,
+            holder: None,
+            changes: &[],
+            motions: &motions,
+            samples,
+            stock_mm: 0.5,
+            depth_mm: 1.0,
+        };
         let cuts = cut(&job, &|_| ()).expect("a good job");
         let seen = cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
         let patches: Vec<Option<osculate_tools::removal::Patch>> =

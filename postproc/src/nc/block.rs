@@ -147,6 +147,12 @@ pub enum WriteError {
         /// The dialect.
         dialect: &'static str,
     },
+    /// Several tools and a subprogram.
+    #[error("{dialect} programs of several tools are written as one: leave the subprogram out")]
+    Sections {
+        /// The dialect.
+        dialect: &'static str,
+    },
     /// No switch for tool-centre-point control.
     #[error(
         "the machine file has no control.linuxcnc_tcp (the words that switch its kinematics): add it or choose a feed \

@@ -13,7 +13,7 @@ use super::work_offset::WorkOffset;
 impl<S: Sink> Interpreter<'_, S> {
     fn switch(&mut self, on: bool) {
         if self.state.tcp != on {
-            self.state.switch_tcp(on, self.machine, self.setup);
+            self.state.switch_tcp(on, self.machine, &self.setup);
             self.tell(&Event::Halt);
         }
     }

@@ -23,6 +23,10 @@ impl<S: Sink> Interpreter<'_, S> {
         if let (true, Some(tool)) = (asked.change, self.selected) {
             let before = self.control.tool;
             self.control.change(tool);
+            if let Tool::Number(number) = tool {
+                let own = self.lengths.iter().find(|t| t.0 == number);
+                self.setup.gauge_length_mm = own.map_or(self.gauge_length_mm, |t| t.1);
+            }
             // Which edge is then in force is the machine's data.
             if self.dialect == Dialect::Sinumerik && before != tool {
                 self.control.length = Length::Unsaid;

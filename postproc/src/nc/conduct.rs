@@ -18,6 +18,18 @@ pub struct ExpectedTool {
     pub number: u32,
     /// Its length, mm: what a program that states the length itself (LinuxCNC's `G43.1`) is held against.
     pub length_mm: f64,
+    /// Its speed, where it is not that of the whole program.
+    pub spindle_rpm: Option<f64>,
+    /// Its coolant, where it is not that of the whole program.
+    pub coolant: Option<Coolant>,
+}
+
+impl ExpectedTool {
+    /// A tool with the speed and coolant of the whole program.
+    #[must_use]
+    pub const fn new(number: u32, length_mm: f64) -> Self {
+        Self { number, length_mm, spindle_rpm: None, coolant: None }
+    }
 }
 
 /// What the job means.
@@ -163,7 +175,8 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn spindle(&self, control: &Control, feed: Seen, found: &mut Found) {
-        let wanted = self.expected.spindle_rpm;
+        let own = self.expected.tools.iter().find(|t| control.tool == Tool::Number(t.number));
+        let wanted = own.and_then(|t| t.spindle_rpm).or(self.expected.spindle_rpm);
         let still = control.speed_rpm == Some(0.0);
         match control.spindle {
             Spindle::Clockwise if !still => {}
@@ -202,7 +215,7 @@ impl Judge<'_> {
             ),
             Some(_) => {}
         }
-        let wet = match self.expected.coolant {
+        let wet = match own.and_then(|t| t.coolant).or(self.expected.coolant) {
             None => true,
             Some(Coolant::Flood) => control.flood,
             Some(Coolant::Mist) => control.mist,

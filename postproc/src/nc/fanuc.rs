@@ -36,6 +36,12 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if program.has_z() {
         lines.line("G53 G0 Z0");
     }
+    call(program, work_offset.as_deref(), lines);
+    Ok(())
+}
+
+/// The tool into the spindle, which stands where the machine changes tools.
+fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("T{} M6", program.tool_number));
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
@@ -44,6 +50,14 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
     }
+}
+
+/// From what one program says to what the next one does with another tool.
+pub(super) fn next(before: &Program, program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
+    let work_offset = program.work_offset_words(Dialect::Fanuc)?;
+    leave(before, lines);
+    program.safe_comments().iter().for_each(|comment| lines.line(&format!("({comment})")));
+    call(program, work_offset.as_deref(), lines);
     Ok(())
 }
 
@@ -89,6 +103,13 @@ pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines
 }
 
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
+    leave(program, lines);
+    lines.line("M30");
+    lines.line("%");
+}
+
+/// Away from the part, with everything off.
+fn leave(program: &Program, lines: &mut Lines) {
     lines.line("G94");
     lines.line("G5.1 Q0");
     if program.coolant.is_some() {
@@ -102,6 +123,4 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
     if program.has_z() {
         lines.line("G53 G0 Z0");
     }
-    lines.line("M30");
-    lines.line("%");
 }

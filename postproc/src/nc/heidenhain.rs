@@ -46,10 +46,16 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     lines.line("FUNCTION RESET TCPM");
     lines.line("M126");
     work_offset.iter().for_each(|words| lines.line(words));
-    let speed = program.spindle_rpm.map_or(String::new(), |rpm| format!(" S{}", number::feed(rpm)));
     if program.has_z() {
         lines.line("L Z+0.0000 R0 FMAX M91");
     }
+    call(program, lines);
+    Ok(())
+}
+
+/// The tool into the spindle, which stands where the machine changes tools.
+fn call(program: &Program, lines: &mut Lines) {
+    let speed = program.spindle_rpm.map_or(String::new(), |rpm| format!(" S{}", number::feed(rpm)));
     lines.line(&format!("TOOL CALL {} Z{speed}", program.tool_number));
     if program.spindle_rpm.is_some() {
         lines.line("M3");
@@ -57,6 +63,17 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
     }
+}
+
+/// From what one program says to what the next one does with another tool.
+pub(super) fn next(before: &Program, program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
+    let work_offset = program.work_offset_words(Dialect::Heidenhain)?;
+    leave(before, lines);
+    program.safe_comments().iter().for_each(|comment| lines.line(&format!("; {comment}")));
+    if program.work_offset != before.work_offset {
+        work_offset.iter().for_each(|words| lines.line(words));
+    }
+    call(program, lines);
     Ok(())
 }
 
@@ -108,6 +125,13 @@ pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines
 }
 
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
+    leave(program, lines);
+    lines.line("M30");
+    lines.line(&format!("END PGM {} MM", program.safe_name()));
+}
+
+/// Away from the part, with everything off.
+fn leave(program: &Program, lines: &mut Lines) {
     if program.coolant.is_some() {
         lines.line("M9");
     }
@@ -119,6 +143,4 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
     if program.has_z() {
         lines.line("L Z+0.0000 R0 FMAX M91");
     }
-    lines.line("M30");
-    lines.line(&format!("END PGM {} MM", program.safe_name()));
 }

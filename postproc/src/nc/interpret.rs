@@ -28,7 +28,11 @@ const LISTED: usize = 10_000;
 pub(super) struct Interpreter<'a, S> {
     pub(super) dialect: Dialect,
     pub(super) machine: &'a Machine,
-    pub(super) setup: &'a Setup,
+    pub(super) setup: Setup,
+    /// Gauge lengths of tools by their numbers, mm; that of the setup for all others.
+    pub(super) lengths: Vec<(u32, f64)>,
+    /// The setup's own gauge length, mm.
+    pub(super) gauge_length_mm: f64,
     strict: bool,
     pub(super) state: State,
     pub sink: S,
@@ -51,7 +55,9 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         Self {
             dialect,
             machine: frame.machine,
-            setup: frame.setup,
+            setup: *frame.setup,
+            lengths: Vec::new(),
+            gauge_length_mm: frame.setup.gauge_length_mm,
             strict,
             state: State::new(),
             sink,
@@ -111,7 +117,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
     }
 
     pub(super) fn tell(&mut self, event: &Event<'_>) {
-        let frame = Frame { machine: self.machine, setup: self.setup };
+        let frame = Frame { machine: self.machine, setup: &self.setup };
         self.sink.take(frame, event);
     }
 
@@ -269,7 +275,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             }
             return Ok(());
         };
-        let joints = known.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
+        let joints = known.joints(self.machine, &self.setup).ok_or(ReadError::Flat { line })?;
         let rapid = match rapid {
             Some(rapid) => rapid,
             None => self.rapid(line)?,
@@ -393,7 +399,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
     /// A move along a way; nothing where it leads nowhere.
     fn moved(&mut self, line: usize, way: &Way, end: (JointValues, bool, bool)) -> Result<(), ReadError> {
         let (to, mut rapid, own_frame) = end;
-        let from = way.from.joints(self.machine, self.setup).ok_or(ReadError::Flat { line })?;
+        let from = way.from.joints(self.machine, &self.setup).ok_or(ReadError::Flat { line })?;
         let step = way.step();
         if step == Step::default() {
             return Ok(());

@@ -47,6 +47,12 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if program.has_z() {
         lines.line("G53 G0 Z0");
     }
+    call(program, work_offset.as_deref(), lines);
+    Ok(())
+}
+
+/// The tool into the spindle, which stands where the machine changes tools.
+fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("T{} M6", program.tool_number));
     lines.line(&format!("G43 H{}", program.tool_number));
     work_offset.iter().for_each(|words| lines.line(words));
@@ -56,6 +62,15 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
     }
+}
+
+/// From what one program says to what the next one does with another tool.
+pub(super) fn next(before: &Program, program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
+    let work_offset = program.work_offset_words(Dialect::LinuxCnc)?;
+    leave(before, lines);
+    program.safe_comments().iter().for_each(|comment| lines.line(&format!("({comment})")));
+    lines.line(&format!("G64 P{:.4}", program.blend_mm));
+    call(program, work_offset.as_deref(), lines);
     Ok(())
 }
 
@@ -75,6 +90,12 @@ pub(super) fn first(program: &Program, modal: &mut Modal, first: &NcMove, lines:
 }
 
 pub(super) fn tail(program: &Program, lines: &mut Lines) {
+    leave(program, lines);
+    lines.line("M30");
+}
+
+/// Away from the part, with everything off.
+fn leave(program: &Program, lines: &mut Lines) {
     let switch = program.linuxcnc_tcp.as_ref();
     lines.line("G94");
     if program.coolant.is_some() {
@@ -87,5 +108,4 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
     if program.has_z() {
         lines.line("G53 G0 Z0");
     }
-    lines.line("M30");
 }

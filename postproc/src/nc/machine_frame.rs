@@ -87,7 +87,7 @@ impl<S: Sink> Interpreter<'_, S> {
         targets: &[(usize, Option<f64>)],
         manner: (bool, &Asked),
     ) -> Result<(), ReadError> {
-        let (machine, setup) = (self.machine, self.setup);
+        let (machine, setup) = (self.machine, &self.setup);
         let before = self.state.known(machine);
         let from = before.and_then(|k| k.joints(machine, setup)).filter(|_| self.state.of_tip());
         let manner = (Some(manner.0), manner.1);

@@ -84,8 +84,10 @@ pub struct ReadBack {
     pub moves: Vec<ReadMove>,
     /// The blocks.
     pub blocks: Vec<ReadBlock>,
-    /// Spindle speed, where the text says one.
+    /// Spindle speed, where the text says one: the last.
     pub spindle_rpm: Option<f64>,
+    /// The speed at which each tool feeds first, by its number, in the order of the program; tools that feed without S have none.
+    pub speeds_rpm: Vec<(Option<u32>, f64)>,
     /// Findings, with line numbers.
     pub diagnostics: Vec<Diagnostic>,
     /// In which states of the control it moves.
@@ -141,9 +143,25 @@ pub fn read(
     setup: &Setup,
     options: &ReadOptions,
 ) -> Result<ReadBack, ReadError> {
+    read_tools(text, dialect, machine, (setup, &[]), options)
+}
+
+/// As [`read()`], of a program with several tools: the gauge lengths of those that have a number in the list are theirs, mm, and the setup's
+/// that of all others.
+///
+/// # Errors
+/// As [`read()`].
+pub fn read_tools(
+    text: &str,
+    dialect: Dialect,
+    machine: &Machine,
+    (setup, lengths_mm): (&Setup, &[(u32, f64)]),
+    options: &ReadOptions,
+) -> Result<ReadBack, ReadError> {
     let mut names = Names::new(dialect, machine);
     text.lines().for_each(|line| names.line(line));
     let mut reader = Reader::new(&names, machine, setup, options)?;
+    reader.control.lengths = lengths_mm.to_vec();
     for line in text.lines() {
         reader.line(line)?;
     }
@@ -283,6 +301,11 @@ impl Collect {
         for (_, pose) in &poses {
             tip_length_mm += (pose.tip - at).norm();
             at = pose.tip;
+        }
+        if let Some(rpm) = m.feed.and_then(|f| f.speed_rpm)
+            && !self.out.speeds_rpm.iter().any(|s| s.0 == m.tool)
+        {
+            self.out.speeds_rpm.push((m.tool, rpm));
         }
         let per_minute = m.feed.filter(|f| f.reading == FeedReading::PerMinute);
         let motion = match (m.rapid, per_minute) {

@@ -54,6 +54,12 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     lines.line("G17 G40 G64 G90 G94 G710");
     lines.line("TRAFOOF");
     retract(lines, program);
+    call(program, work_offset.as_deref(), lines);
+    Ok(())
+}
+
+/// The tool into the spindle, which stands where the machine changes tools.
+fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("T{}", program.tool_number));
     lines.line("M6");
     lines.line("D1");
@@ -64,6 +70,17 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
     }
+}
+
+/// From what one program says to what the next one does with another tool.
+pub(super) fn next(before: &Program, program: &Program, lines: &mut Lines) -> Result<(), WriteError> {
+    if before.subprogram || program.subprogram {
+        return Err(WriteError::Sections { dialect: "sinumerik" });
+    }
+    let work_offset = program.work_offset_words(Dialect::Sinumerik)?;
+    leave(before, lines);
+    program.safe_comments().iter().for_each(|line| lines.plain(&format!("; {line}")));
+    call(program, work_offset.as_deref(), lines);
     Ok(())
 }
 
@@ -124,6 +141,12 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 }
 
 fn end(program: &Program, lines: &mut Lines) {
+    leave(program, lines);
+    lines.line("M30");
+}
+
+/// Away from the part, with everything off.
+fn leave(program: &Program, lines: &mut Lines) {
     if program.feed_word == FeedWord::Inverse {
         lines.line("G94");
     }
@@ -136,7 +159,6 @@ fn end(program: &Program, lines: &mut Lines) {
     }
     lines.line("TRAFOOF");
     retract(lines, program);
-    lines.line("M30");
 }
 
 fn retract(lines: &mut Lines, program: &Program) {

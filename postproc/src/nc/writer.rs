@@ -45,6 +45,24 @@ impl<'a> Writer<'a> {
         })
     }
 
+    /// Goes on with another tool, as `program` has it: away from the part, the tool's call, and the next move leads from an unknown place.
+    ///
+    /// # Errors
+    /// Where the dialect cannot say it.
+    pub fn change(&mut self, program: &'a Program) -> Result<(), WriteError> {
+        let (before, lines) = (self.program, &mut self.lines);
+        match self.dialect {
+            Dialect::Sinumerik => sinumerik::next(before, program, lines)?,
+            Dialect::Heidenhain => heidenhain::next(before, program, lines)?,
+            Dialect::Fanuc => fanuc::next(before, program, lines)?,
+            Dialect::LinuxCnc => linuxcnc::next(before, program, lines)?,
+        }
+        self.program = program;
+        self.modal = Modal::new(program);
+        self.started = false;
+        Ok(())
+    }
+
     /// Words the next move; the first one leads from an unknown place.
     pub fn take(&mut self, m: &NcMove) {
         let (program, modal, lines) = (self.program, &mut self.modal, &mut self.lines);

@@ -99,7 +99,8 @@ fn verify(g: &Good, motions: &[Swept], cutter: &Cutter) -> Says {
     let surface = g.recipe.part.surface(1.0);
     let sampling = sample_surface(&*surface, 0, SPACING_MM, 100_000).expect("a good patch");
     let samples = &sampling.samples;
-    let job = Job { cutter, holder: None, motions, samples, stock_mm: STOCK_MM, depth_mm: DEPTH_MM };
+    let job =
+        Job { cutter, holder: None, changes: &[], motions, samples, stock_mm: STOCK_MM, depth_mm: DEPTH_MM };
     let Ok(cuts) = cut(&job, &|_| ()) else { return Says::Refused };
     let v = tally(samples, &cuts, &LIMITS, &sampling.density, cutter.radius_mm()).expect("good limits");
     if v.within { Says::Within } else { Says::NotWithin }
