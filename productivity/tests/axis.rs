@@ -82,7 +82,7 @@ proptest! {
             let points = passes.iter().flat_map(|p| p.points.windows(2));
             let motions: Vec<Swept> =
                 points.map(|w| Swept { from: w[0].pose, to: w[1].pose, rapid: false, block: 0 }).collect();
-            let job = Job { cutter: &cutter, holder: None, motions: &motions, samples: &samples, stock_mm: 1.0, depth_mm: 2.0 };
+            let job = Job { cutter: &cutter, holder: None, changes: &[], motions: &motions, samples: &samples, stock_mm: 1.0, depth_mm: 2.0 };
             cut(&job, &|_| {}).unwrap().iter().map(|c| c.standoff_mm).collect()
         };
         let before = heights(&passes);

@@ -51,7 +51,8 @@ fn boxed(low: [f64; 3], high: [f64; 3]) -> Box3 {
 /// Least and greatest height left along the normals of the face.
 fn left(face: &dyn Surface, cutter: &Cutter, motions: &[Swept]) -> [f64; 2] {
     let samples = sample_surface(face, 0, 0.3, 100_000).unwrap().samples;
-    let job = Job { cutter, holder: None, motions, samples: &samples, stock_mm: 8.0, depth_mm: 2.0 };
+    let job =
+        Job { cutter, holder: None, changes: &[], motions, samples: &samples, stock_mm: 8.0, depth_mm: 2.0 };
     let cuts = cut(&job, &|_| ()).unwrap();
     cuts.iter()
         .fold([f64::INFINITY, 0.0], |[lo, hi]: [f64; 2], c| [lo.min(c.standoff_mm), hi.max(c.standoff_mm)])

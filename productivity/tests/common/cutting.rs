@@ -27,7 +27,15 @@ pub fn verdict(
     spacing_mm: f64,
 ) -> Tally {
     let sampling = sample_surface(surface, 0, spacing_mm, 400_000).expect("a face");
-    let job = Job { cutter, holder: None, motions, samples: &sampling.samples, stock_mm: 1.0, depth_mm: 2.0 };
+    let job = Job {
+        cutter,
+        holder: None,
+        changes: &[],
+        motions,
+        samples: &sampling.samples,
+        stock_mm: 1.0,
+        depth_mm: 2.0,
+    };
     let cuts = cut(&job, &|_| ()).expect("a job");
     let limits = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm);
     tally(&sampling.samples, &cuts, &limits, &sampling.density, cutter.radius_mm()).expect("a verdict")
@@ -53,7 +61,15 @@ pub fn cusps(surface: &dyn Surface, motions: &[Swept], cutter: &Cutter, scallop_
             }
             ends.push(samples.len());
         }
-        let job = Job { cutter, holder: None, motions, samples: &samples, stock_mm: 1.0, depth_mm: 2.0 };
+        let job = Job {
+            cutter,
+            holder: None,
+            changes: &[],
+            motions,
+            samples: &samples,
+            stock_mm: 1.0,
+            depth_mm: 2.0,
+        };
         let cuts = cut(&job, &|_| ()).expect("a job");
         ends.windows(2)
             .flat_map(|w| peaks(&cuts[w[0]..w[1]].iter().map(|c| c.standoff_mm).collect::<Vec<_>>()))

@@ -18,8 +18,15 @@ pub fn left(faces: &[&dyn Surface], cutter: &Cutter, passes: &Passes) -> [f64; 2
         .flat_map(|p| p.points.windows(2))
         .map(|w| Swept { from: w[0].pose, to: w[1].pose, rapid: false, block: 0 })
         .collect();
-    let job =
-        Job { cutter, holder: None, motions: &motions, samples: &samples, stock_mm: 0.1, depth_mm: 0.1 };
+    let job = Job {
+        cutter,
+        holder: None,
+        changes: &[],
+        motions: &motions,
+        samples: &samples,
+        stock_mm: 0.1,
+        depth_mm: 0.1,
+    };
     let cuts = cut(&job, &|_| ()).unwrap();
     cuts.iter().fold([0.0, 0.0], |[lo, hi]: [f64; 2], c| [lo.min(c.standoff_mm), hi.max(c.standoff_mm)])
 }

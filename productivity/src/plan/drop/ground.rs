@@ -50,6 +50,8 @@ pub(super) enum Lines {
     Planes,
     /// Up and down the slope.
     Gradient,
+    /// At constant heights.
+    Waterlines,
 }
 
 impl Lines {
@@ -57,7 +59,7 @@ impl Lines {
     /// ground apart. Lines that come together leave peaks more pointed than planes do.
     const fn apart(self) -> [f64; 2] {
         match self {
-            Self::Planes => [0.5, 0.2],
+            Self::Planes | Self::Waterlines => [0.5, 0.2],
             Self::Gradient => [0.25, 0.12],
         }
     }
@@ -65,7 +67,7 @@ impl Lines {
     /// The share of the scallop up to which a measured place counts as done.
     pub(super) const fn met(self) -> f64 {
         match self {
-            Self::Planes => 0.5 * (1.0 + DESIGN),
+            Self::Planes | Self::Waterlines => 0.5 * (1.0 + DESIGN),
             Self::Gradient => 0.9,
         }
     }
@@ -75,7 +77,7 @@ impl Lines {
     /// lines turn beside a place, which leading order does not know.
     pub(super) const fn near(self) -> f64 {
         match self {
-            Self::Planes => 0.7,
+            Self::Planes | Self::Waterlines => 0.7,
             Self::Gradient => 0.0,
         }
     }
@@ -83,7 +85,7 @@ impl Lines {
     /// Most places to measure, over all faces.
     const fn most_judged(self) -> f64 {
         match self {
-            Self::Planes => MOST_PLACES,
+            Self::Planes | Self::Waterlines => MOST_PLACES,
             Self::Gradient => 3.0 * MOST_PLACES,
         }
     }
@@ -108,10 +110,17 @@ impl Ground<'_> {
         let task = self.task;
         let asked = |frame: &Frame| {
             let surface = task.faces[s.face as usize].surface;
-            want(surface, task.cutter, frame, s, [height_mm, spacing_mm])
+            want((surface, s), (task.cutter, frame), self.lines == Lines::Waterlines, [height_mm, spacing_mm])
         };
         match self.lines {
             Lines::Planes => asked(&self.frame),
+            Lines::Waterlines => {
+                let w = asked(&self.frame)?;
+                // Out of touch by less than anybody asks for: what rounding says of a wall is nothing.
+                let n = self.frame.along(&s.normal);
+                let by = 0.25 * task.tolerance.chord_mm / n[0].hypot(n[1]);
+                Ok(Want { at: [w.at[0] + by * n[0], w.at[1] + by * n[1]], ..w })
+            }
             Lines::Gradient => {
                 // Seen in a frame whose first direction goes down the slope.
                 let frame = Frame::new(task.axis, &s.normal);
@@ -157,6 +166,7 @@ pub(super) fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'stati
     let lines = match ground.lines {
         Lines::Planes => "isoplanar",
         Lines::Gradient => "gradient",
+        Lines::Waterlines => "waterline",
     };
     let text = format!("{} three-axis {lines} passes, {:.0} mm", out.passes.len(), out.length_mm());
     out.diagnostics.push(Diagnostic::note(name, text));
@@ -302,7 +312,7 @@ pub(super) fn asked(ground: &Ground<'_>) -> (Vec<Want>, Vec<(f64, &'static str)>
         .map(|k| ground.want(&ground.places[k], [height, ground.spacing]))
         .collect();
     let mut wants = Vec::with_capacity(all.len());
-    let mut areas = [0.0; 4];
+    let mut areas = [0.0; 5];
     for (s, w) in ground.places.iter().zip(all) {
         match w {
             Ok(w) => wants.push(w),
@@ -310,6 +320,7 @@ pub(super) fn asked(ground: &Ground<'_>) -> (Vec<Want>, Vec<(f64, &'static str)>
             Err(Lost::TightContour) => areas[1] += s.area_mm2,
             Err(Lost::TooHollow) => areas[2] += s.area_mm2,
             Err(Lost::NoTangent) => areas[3] += s.area_mm2,
+            Err(Lost::Flat) => areas[4] += s.area_mm2,
         }
     }
     let words = [
@@ -317,6 +328,7 @@ pub(super) fn asked(ground: &Ground<'_>) -> (Vec<Want>, Vec<(f64, &'static str)>
         "is too hollow for the tool: its contour lines bend tighter than the cutter",
         "is too hollow for the tool",
         "has no tangent plane",
+        "is flatter than 45 degrees",
     ];
     (wants, areas.into_iter().zip(words).collect())
 }

@@ -17,12 +17,15 @@ mod laid;
 mod layers;
 mod pieces;
 mod planes;
+mod rims;
 mod rounds;
 mod trace;
 mod wants;
+mod waterline;
 
 pub use gradient::gradient_3c;
 pub use ground::DropTask;
 pub use layers::z_level;
 pub use pieces::{RoughTask, Roughing, Sizes};
 pub use planes::drop_cutter;
+pub use waterline::waterline_3c;

@@ -106,6 +106,7 @@ fn measure(
     let job = Job {
         cutter: task.cutter,
         holder: None,
+        changes: &[],
         motions: &motions,
         samples: &samples,
         stock_mm: STOCK * limit,

@@ -6,12 +6,16 @@
 //! in it. Along the pass tau is free, so that the least over it counts.
 
 use super::frame::Frame;
-use osculate_geom::Surface;
+use osculate_geom::{Surface, Unit3, Uv};
 use osculate_tools::Cutter;
 use osculate_tools::removal::Sample;
 
 /// Below this cosine between normal and axis a place is a wall or an undercut: the side of the tool meets it, not its end.
 const STEEPEST: f64 = 0.02;
+/// What rounding makes of the normal of a wall along the axis.
+const UPRIGHT: f64 = 1e-9;
+/// Above this cosine between normal and axis waterlines lie further apart than is worth while: 45 degrees.
+const FLATTEST: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// A flat bottom over a slope rises by this part of the height at most, from rim to rim, for the ground to count as level.
 pub(super) const LEVEL: f64 = 0.1;
@@ -29,6 +33,10 @@ pub(super) struct Want {
     pub half: f64,
     /// The area that it stands for, mm2.
     pub area: f64,
+    /// The face's outer normal there.
+    pub normal: Unit3,
+    /// Its parameters.
+    pub uv: Uv,
 }
 
 /// Why a sample cannot be cut.
@@ -42,20 +50,26 @@ pub(super) enum Lost {
     TooHollow,
     /// It has no tangent plane.
     NoTangent,
+    /// It is flatter than waterlines are for.
+    Flat,
 }
 
 /// The position from which the tool touches a sample and how far off the level of a pass may be that leaves `height_mm`;
 /// samples stand `spacing_mm` apart.
+///
+/// Passes lie in planes along the feed; with `around` at constant heights, and how far off then is measured up the axis.
 pub(super) fn want(
-    surface: &dyn Surface,
-    cutter: &Cutter,
-    frame: &Frame,
-    s: &Sample,
+    (surface, s): (&dyn Surface, &Sample),
+    (cutter, frame): (&Cutter, &Frame),
+    around: bool,
     [height_mm, spacing_mm]: [f64; 2],
 ) -> Result<Want, Lost> {
     let n = frame.along(&s.normal);
-    if n[2] < STEEPEST {
+    if n[2] < if around { -UPRIGHT } else { STEEPEST } {
         return Err(Lost::Undercut);
+    }
+    if around && n[2] > FLATTEST {
+        return Err(Lost::Flat);
     }
     let sine = n[0].hypot(n[1]);
     let slope = sine.atan2(n[2]);
@@ -68,10 +82,12 @@ pub(super) fn want(
     // No tool leaves less than h further from its axis than where its lower side rises by h.
     let rise = height_mm.min(arc.radius_mm);
     let most = arc.centre_rho_mm.max(0.0) + (rise * (2.0 * arc.radius_mm - rise)).max(0.0).sqrt();
+    let wanted =
+        Want { at: [x, y], tip, reach: most, half: 0.0, area: s.area_mm2, normal: s.normal, uv: s.uv };
     if arc.centre_rho_mm > 0.0 && 2.0 * arc.centre_rho_mm * sine <= LEVEL * height_mm {
         // Level ground under a flat bottom: its middle comes down there, and its rim covers all around.
         let tip = z - (arc.centre_z_mm - arc.radius_mm);
-        return Ok(Want { at: [x, y], tip, reach: most, half: 0.5 * spacing_mm, area: s.area_mm2 });
+        return Ok(Want { tip, half: 0.5 * spacing_mm, ..wanted });
     }
     let forms = surface.jet2(s.uv).forms().map_err(|_| Lost::NoTangent)?;
     // In the tangent frame (down the slope, across it) the tool's curvatures are those of meridian and parallel.
@@ -108,8 +124,11 @@ pub(super) fn want(
         -meridian * parallel * q[1] / det,
         parallel * parallel * q[0] / det,
     ];
-    // The feed in the tangent plane: across e_y, and the direction next to it, which rises with e_y by the cosine.
-    let (feed, cosine) = if sine > 0.0 {
+    // The feed in the tangent plane: across e_y, and the direction next to it, which rises with e_y by the cosine. At constant
+    // height it is e, and what is next to it rises by the sine.
+    let (feed, cosine) = if around {
+        ([0.0, 1.0], sine)
+    } else if sine > 0.0 {
         // e_y in the frame (d, e) of the tangent plane; the feed is at right angles to it there.
         let e_y = [d[1], n[2] * d[0] - n[0] * d[2]];
         let length = e_y[0].hypot(e_y[1]);
@@ -125,7 +144,7 @@ pub(super) fn want(
     let reach = if across > 0.0 { cosine * (2.0 * height_mm / across).sqrt() } else { most };
     // Where the part is convex, positions stand further apart than the places that they belong to.
     let half = 0.5 * spacing_mm * (1.0 + cutter.radius_mm() * forms.principal().k_max.max(0.0));
-    Ok(Want { at, tip, reach: reach.min(most.max(height_mm)), half, area: s.area_mm2 })
+    Ok(Want { at, tip, reach: reach.min(most.max(height_mm)), half, ..wanted })
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
