@@ -58,17 +58,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         checked: Vec::new(),
         unseen: Vec::new(),
         fixtures: Vec::new(),
-        tool,
+        tools: vec![tool],
         stock: GoalStock::Assumed { layer_mm: 1.0 },
         limits: GoalLimits { scallop_mm, gouge_mm: 0.5 * scallop_mm, unreached_mm2: 0.0, at_samples: false },
-        looks: Looks { spacing_mm: None, max_samples: 200_000 },
+        looks: Looks { spacing_mm: None, max_samples: 200_000, between: true },
         roughing_mm: None,
         control: GoalControl::default(),
     };
     let enough = 1 + (10.0 / (0.9 * strip.width_mm)).ceil() as usize;
     for (passes, answer) in [(enough, Answer::Held), (enough - 2, Answer::NotHeld)] {
         let motions = path(passes)?;
-        let verdict = prove(&goal, Program { motions: &motions, times_min: &[] }, &|_| ())?;
+        let verdict = prove(&goal, Program { motions: &motions, times_min: &[], changes: &[] }, &|_| ())?;
         println!("{passes} passes\n{verdict}");
         assert_eq!(verdict.answer(), answer);
     }

@@ -39,6 +39,15 @@ impl Failure {
         }
     }
 
+    /// The failure of one operation of a list.
+    #[must_use]
+    pub fn in_operation(self, name: &str) -> Self {
+        match self {
+            Self::Job(text) => Self::Job(format!("operation {name}: {text}")),
+            other => other,
+        }
+    }
+
     /// The exit code.
     pub const fn code(&self) -> u8 {
         match self {

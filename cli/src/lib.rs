@@ -10,6 +10,9 @@
 //! that can be checked without the part is checked there, and the message of a [`Failure`] names line, key and remedy. `osculate
 //! keys` prints all keys; [`Job::schema`] is what it prints from.
 //!
+//! A whole part with several tools and setups is a list of operations, [`Operations`](job::Operations): [`work::operations`] reads its part, plans
+//! it and judges its programs as [`plan()`] and [`verify()`] do for a job.
+//!
 //! ## A part
 //!
 //! [`Part::of`] reads the part of a job: STEP, IGES, patches, point sections, or a built-in surface. It holds the faces to machine

@@ -28,8 +28,8 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
-        Verb::Verify { file, job, lenient, second_opinion, ply, blocks } => cmd::verify::run(
-            file,
+        Verb::Verify { files, job, lenient, second_opinion, ply, blocks } => cmd::verify::run(
+            files,
             job,
             &cmd::verify::Options {
                 lenient: *lenient,

@@ -28,6 +28,14 @@ pub trait Watch: Sync {
         false
     }
 
+    /// Something finished that is worth keeping where results go to, by its name: a run that was stopped goes on from there.
+    fn keep(&self, _name: &str, _bytes: &[u8]) {}
+
+    /// What an earlier run has kept under a name.
+    fn kept(&self, _name: &str) -> Option<Vec<u8>> {
+        None
+    }
+
     /// A file under a temporary name that must not stay where the run is stopped.
     fn temporary(&self, _file: &Path) {}
 

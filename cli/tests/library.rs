@@ -53,8 +53,8 @@ fn all_files_are_written_and_nothing_else_stays() {
     let folder = Scratch::new();
     plan.write(&folder.path("out/deep")).unwrap();
     for file in plan.files() {
-        let text = std::fs::read_to_string(folder.path("out/deep").join(&file.name)).unwrap();
-        assert_eq!(text, file.text, "{}", file.name);
+        let text = std::fs::read(folder.path("out/deep").join(&file.name)).unwrap();
+        assert_eq!(text, file.bytes, "{}", file.name);
     }
     assert_eq!(std::fs::read_dir(folder.path("out/deep")).unwrap().count(), plan.files().len());
     assert!(plan.report().contains("</html>"));

@@ -198,3 +198,9 @@ mod tests {
         assert!(manifest.contains("members"));
     }
 }
+
+/// A release program that cargo has built: below the target folder that it uses.
+pub fn built(root: &Path, name: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    root.join(target).join("release").join(name)
+}

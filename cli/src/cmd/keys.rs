@@ -2,18 +2,23 @@
 
 use crate::screen::render;
 use osculate::failure::{Done, Outcome};
-use osculate::job::{Job, reference};
+use osculate::job::{Job, Operations, reference};
 
 /// Runs the verb.
 pub fn run(template: bool, json: bool) -> Outcome {
+    let (one, list) = (&Job::schema().tables, &Operations::schema().tables);
     match (template, json) {
-        (true, false) => render::text(&reference::template(Job::schema())),
-        (false, false) => render::text(&reference::text(Job::schema())),
-        (true, true) => {
-            let text = reference::template(Job::schema());
-            render::json(&serde_json::json!({ "template": text }))?;
+        (true, false) => render::text(&reference::template(one)),
+        (false, false) => {
+            render::text(&reference::text(one));
+            render::text("\nA list of operations (format = 2) has these tables:\n");
+            render::text(&reference::text(list));
         }
-        (false, true) => render::json(&serde_json::json!({ "keys": reference::rows(Job::schema()) }))?,
+        (true, true) => render::json(&serde_json::json!({ "template": reference::template(one) }))?,
+        (false, true) => {
+            let (keys, operations) = (reference::rows(one), reference::rows(list));
+            render::json(&serde_json::json!({ "keys": keys, "operations": operations }))?;
+        }
     }
     Ok(Done::Yes)
 }

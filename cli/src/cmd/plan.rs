@@ -3,23 +3,36 @@
 use crate::cmd::verify::figures;
 use crate::screen::progress::SCREEN;
 use crate::screen::{cancel, output, render};
-use osculate::failure::{Done, Failure, Outcome};
-use osculate::job::Job;
+use osculate::failure::{Done, Failure, Outcome, read_text};
+use osculate::job::{Job, Operations};
 use osculate::words::{Table, findings, number};
 use osculate::work::choice;
+use osculate::work::operations;
 use osculate::work::plan::check;
+use osculate::work::summary::Summary;
 use osculate::{Part, Plan, Verified, plan};
 use std::io::IsTerminal;
 use std::path::Path;
 
+/// Operations that an earlier run of another list may have kept here.
+const MOST_KEPT: usize = 100;
+
 /// Runs the verb.
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     output::folder(out)?;
-    let job = Job::load(path)?;
-    check(&job)?;
-    let part = Part::watched(&job, &SCREEN)?;
-    SCREEN.saves_into(out);
-    let plan = plan(&part, &job, &SCREEN)?;
+    let text = read_text(path)?;
+    let plan = if Operations::are_in(&text) {
+        let list = Operations::from_toml(&text, path)?;
+        let (part, list) = operations::part(list, &SCREEN)?;
+        SCREEN.saves_into(out);
+        operations::plan(&part, &list, &SCREEN)?
+    } else {
+        let job = Job::from_toml(&text, path)?;
+        check(&job)?;
+        let part = Part::watched(&job, &SCREEN)?;
+        SCREEN.saves_into(out);
+        plan(&part, &job, &SCREEN)?
+    };
     write(&plan, out)?;
     if json {
         render::json(&plan.summary)?;
@@ -35,6 +48,9 @@ pub fn write(plan: &Plan, out: &Path) -> Result<(), Failure> {
     plan.write_watched(out, &SCREEN)?;
     // What an earlier run saved when it was stopped is out of date.
     let _ = std::fs::remove_file(out.join(cancel::PARTIAL));
+    for place in 0..plan.summary.operations.len().max(MOST_KEPT) {
+        let _ = std::fs::remove_file(out.join(operations::kept::name(place)));
+    }
     drop(whole);
     Ok(())
 }
@@ -44,9 +60,12 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     let (s, v) = (&plan.summary, &plan.verified);
     let mut t = Table::new(["plan", "", "unit"]);
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
-    row("tool", s.tool_words.clone(), "");
-    row("strategy", s.strategy.clone(), "");
-    row("lead, tilt", s.lean_words(), "deg");
+    let of_one = s.operations.is_empty();
+    if of_one {
+        row("tool", s.tool_words.clone(), "");
+        row("strategy", s.strategy.clone(), "");
+        row("lead, tilt", s.lean_words(), "deg");
+    }
     row("passes", s.passes.to_string(), "");
     row("CL points", s.points.to_string(), "");
     row("cutting length", format!("{:.1}", s.cutting_length_mm), "mm");
@@ -66,6 +85,7 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     if !s.compared.is_empty() {
         text.push_str(&format!("{}\n", choice::text_table(&s.compared)));
     }
+    text.push_str(&operations_table(s));
     text.push_str(&format!("{}\n", t.render()));
     if let Some(words) = s.joints.as_ref().and_then(|j| j.words()) {
         text.push_str(&format!("  {words}\n\n"));
@@ -96,6 +116,52 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     let files: Vec<String> = plan.files.iter().map(|f| out.join(&f.name).display().to_string()).collect();
     text.push_str(&format!("\n  {}\n\n", files.join(", ")));
     text
+}
+
+/// The operations of a list, and what they leave too high; nothing for a job of one.
+fn operations_table(s: &Summary) -> String {
+    if s.operations.is_empty() {
+        return String::new();
+    }
+    let mut t = Table::new([
+        "operation",
+        "setup",
+        "tool",
+        "passes",
+        "min",
+        "cut mm",
+        "air mm",
+        "stood mm",
+        "took mm3",
+        "uncut mm2",
+        "step",
+    ]);
+    let or_none = |x: Option<f64>, digits: usize| x.map_or_else(|| "-".to_owned(), |x| number(x, digits));
+    for o in &s.operations {
+        let f = &o.figures;
+        t.row([
+            o.name.clone(),
+            o.setup.clone(),
+            format!("T{} {}", o.tool_number, f.tool_words),
+            f.passes.to_string(),
+            format!("{:.2}", f.time_min),
+            format!("{:.0}", f.cutting_length_mm),
+            format!("{:.0}", f.air_length_mm),
+            or_none(o.standing_mm, 3),
+            or_none(o.removed_mm3, 5),
+            number(f.verification.uncut_area_mm2, 4),
+            f.verdict.answer.replace('_', " "),
+        ]);
+    }
+    let mut out = format!("{}\n", t.render());
+    if !s.left_standing.is_empty() {
+        let mut t = Table::left(["too high on", "mm2", "highest mm", "why, and what would do"]);
+        for l in &s.left_standing {
+            t.row([l.face.clone(), number(l.area_mm2, 4), number(l.highest_mm, 3), l.why.clone()]);
+        }
+        out += &format!("{}\n", t.render());
+    }
+    out
 }
 
 /// A verdict, in red where it is not held and a person looks.

@@ -4,17 +4,18 @@ use crate::screen::progress::SCREEN;
 use crate::screen::{output, render};
 use osculate::Part;
 use osculate::failure::{Done, Failure, Outcome, read_text};
-use osculate::job::Job;
+use osculate::job::{Job, Operations};
 use osculate::watch::Stage;
 use osculate::words::{self, Table, number};
 use osculate::work::check::{Checked, Source, check};
 use osculate::work::joints::JointFigures;
+use osculate::work::operations::{self, Text};
 use osculate::work::opinion::{self, SecondOpinion};
 use osculate::work::ply;
 use osculate::work::stock::StockSummary;
 use osculate::work::verify::{HistogramBin, VerdictKeys, Verification, Verified, WorstPlace};
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(Serialize)]
 struct Answer {
@@ -46,8 +47,16 @@ pub struct Options<'a> {
 }
 
 /// Runs the verb.
-pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> Outcome {
-    let job = Job::load(job_path)?;
+pub fn run(files: &[PathBuf], job_path: &Path, options: &Options<'_>, json: bool) -> Outcome {
+    let job_text = read_text(job_path)?;
+    if Operations::are_in(&job_text) {
+        return of_list(files, Operations::from_toml(&job_text, job_path)?, options, json);
+    }
+    let [file] = files else {
+        let text = format!("{} programs are given where the job has one operation: give one", files.len());
+        return Err(Failure::file(job_path, text));
+    };
+    let job = Job::from_toml(&job_text, job_path)?;
     if options.blocks.is_some() && job.stock().is_none() {
         let text = "--blocks tells what blocks take from raw material: give a [stock]";
         return Err(Failure::file(job_path, text));
@@ -74,6 +83,40 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
     if let (Some(path), Some(stock)) = (options.blocks, &v.stock) {
         output::write(path, stock.csv().as_bytes())?;
     }
+    let joints = read.motions.joints.as_ref().map(JointFigures::of);
+    answered((&v, wall_s), second, joints, json)
+}
+
+/// The verdict on the programs of a list of operations.
+fn of_list(files: &[PathBuf], list: Operations, options: &Options<'_>, json: bool) -> Outcome {
+    let refused = [("--second-opinion", options.second_opinion), ("--ply", options.ply.is_some())];
+    if let Some((name, _)) = refused.iter().find(|r| r.1) {
+        let text = format!("{name} is for programs of one tool; this job is a list of operations");
+        return Err(Failure::file(list.path(), text));
+    }
+    if options.blocks.is_some() && list.whole().stock().is_none() {
+        let text = "--blocks tells what blocks take from raw material: give a [stock]";
+        return Err(Failure::file(list.path(), text));
+    }
+    let texts = files.iter().map(|f| read_text(f)).collect::<Result<Vec<_>, _>>()?;
+    let (part, list) = operations::part(list, &SCREEN)?;
+    let given: Vec<Text<'_>> = files.iter().zip(&texts).map(|(file, text)| Text { file, text }).collect();
+    let stage = Stage::begin(&SCREEN, "verify");
+    let v = operations::verify(&part, &list, &given, options.lenient, &|f| stage.at(f))?;
+    let wall_s = stage.end();
+    if let (Some(path), Some(stock)) = (options.blocks, &v.stock) {
+        output::write(path, stock.csv().as_bytes())?;
+    }
+    answered((&v, wall_s), None, None, json)
+}
+
+/// What was found, as data or for a person.
+fn answered(
+    (v, wall_s): (&Verified, f64),
+    second: Option<SecondOpinion>,
+    joints: Option<JointFigures>,
+    json: bool,
+) -> Outcome {
     if json {
         render::json(&Answer {
             verification: v.summary.clone(),
@@ -82,12 +125,12 @@ pub fn run(file: &Path, job_path: &Path, options: &Options<'_>, json: bool) -> O
             worst: v.worst.clone(),
             confidence: v.summary.confidence(),
             histogram: v.histogram.clone(),
-            joints: read.motions.joints.as_ref().map(JointFigures::of),
+            joints,
             stock: v.stock.clone(),
             diagnostics: v.diagnostics.iter().map(ToString::to_string).collect(),
         })?;
     } else {
-        render::text(&told(&v, wall_s));
+        render::text(&told(v, wall_s));
         render::text(&second.as_ref().map_or_else(String::new, opinion_text));
     }
     Ok(if v.verdict.is_held() { Done::Yes } else { Done::NotWithinTolerance })

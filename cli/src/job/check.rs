@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::problem::{Places, full, shown};
-use crate::job::schema::{self, Key, Kind, Range, TOOLS};
+use crate::job::schema::{Key, Kind, Range, Schema};
 use crate::job::words::nearest;
 use std::path::Path;
 use toml::Spanned;
@@ -15,6 +15,7 @@ const SHOWN: usize = 40;
 struct Reader<'a> {
     text: &'a str,
     places: Places,
+    schema: &'a Schema,
 }
 
 /// What a value lacks: what was expected, and the nearest word.
@@ -27,12 +28,17 @@ struct Wrong {
 ///
 /// # Errors
 /// At the first key or value that cannot be meant.
-pub fn places(text: &str, path: &Path) -> Result<Places, Failure> {
-    let mut reader = Reader { text, places: Places::new(path) };
+pub fn places(text: &str, path: &Path, schema: &Schema) -> Result<Places, Failure> {
+    let mut reader = Reader { text, places: Places::new(path), schema };
     let top = DeTable::parse(text).map_err(|e| reader.syntax(&e))?;
     reader.table("", top.get_ref())?;
     reader.needed("", top.get_ref())?;
     Ok(reader.places)
+}
+
+/// The format that a job file says it has, where it says one.
+pub fn format(text: &str) -> Option<i64> {
+    DeTable::parse(text).ok()?.get_ref().get("format").and_then(|v| whole(v.get_ref()))
 }
 
 impl Reader<'_> {
@@ -56,9 +62,9 @@ impl Reader<'_> {
             let line = self.line(key.span().start);
             let key: &str = key.get_ref();
             self.places.keep(name, key, line);
-            if name.is_empty() && key == TOOLS {
-                self.tools(value)?;
-            } else if schema::tables_in(&kind).any(|t| t == key) {
+            if name.is_empty() && self.schema.is_list(key) {
+                self.list(key, value)?;
+            } else if self.schema.tables_in(&kind).contains(&key) {
                 match value.get_ref() {
                     DeValue::Table(t) => self.table(&full(name, key), t)?,
                     _ => {
@@ -66,7 +72,7 @@ impl Reader<'_> {
                         return Err(self.places.full(name, key, what, "a table".to_owned(), None));
                     }
                 }
-            } else if let Some(known) = schema::table(&kind).and_then(|t| t.key(key)) {
+            } else if let Some(known) = self.schema.key(&kind, key) {
                 check(&known.kind, value.get_ref()).map_err(|wrong| self.wrong(name, known, value, wrong))?;
             } else {
                 return Err(self.unknown(name, &kind, key));
@@ -75,46 +81,48 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn tools(&mut self, value: &Spanned<DeValue<'_>>) -> Result<(), Failure> {
-        let list = value.get_ref().as_array();
-        for (k, one) in list.into_iter().flatten().enumerate() {
-            let name = format!("{TOOLS}[{}]", k + 1);
+    fn list(&mut self, list: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Failure> {
+        let all = value.get_ref().as_array();
+        for (k, one) in all.into_iter().flatten().enumerate() {
+            let name = format!("{list}[{}]", k + 1);
             self.places.keep(&name, "", self.line(one.span().start));
-            let Some(table) = one.get_ref().as_table() else { return Err(self.no_tools()) };
+            let Some(table) = one.get_ref().as_table() else { return Err(self.no_list(list)) };
             self.table(&name, table)?;
         }
-        if list.is_some() { Ok(()) } else { Err(self.no_tools()) }
+        if all.is_some() { Ok(()) } else { Err(self.no_list(list)) }
     }
 
-    fn no_tools(&self) -> Failure {
-        let what = "tools is a list of tables: write [[tools]] above the keys of each";
-        self.places.full("", TOOLS, what, "a list of tables".to_owned(), None)
+    fn no_list(&self, list: &str) -> Failure {
+        let what = format!("{list} is a list of tables: write [[{list}]] above the keys of each");
+        self.places.full("", list, what, "a list of tables".to_owned(), None)
     }
 
     /// Keys that must be given, in the table and those in it.
     fn needed(&self, name: &str, table: &DeTable<'_>) -> Result<(), Failure> {
         let kind = plain(name);
         let has = |key: &str| table.contains_key(key);
-        for key in schema::table(&kind).into_iter().flat_map(|t| t.keys) {
+        for key in self.schema.keys(&kind) {
             if key.default.is_none() && !has(key.name) {
                 let what = format!("needs {}: {} ({})", key.name, key.kind.expects(), key.meaning);
                 return Err(self.places.full(name, "", what, key.kind.expects(), None));
             }
         }
-        for inner in schema::tables_in(&kind) {
+        for inner in self.schema.tables_in(&kind) {
             let path = full(name, inner);
             match table.get(inner).map(Spanned::get_ref) {
                 Some(DeValue::Table(t)) => self.needed(&path, t)?,
                 Some(DeValue::Array(all)) => {
                     for (k, one) in all.iter().enumerate() {
                         if let DeValue::Table(t) = one.get_ref() {
-                            self.needed(&format!("{TOOLS}[{}]", k + 1), t)?;
+                            self.needed(&format!("{inner}[{}]", k + 1), t)?;
                         }
                     }
                 }
-                _ if schema::table(&plain(&path)).is_some_and(|t| t.needed) => {
-                    let what = format!("needs a table [{path}]");
-                    return Err(self.places.full(name, "", what, format!("[{path}]"), None));
+                _ if self.schema.needs(&plain(&path)) => {
+                    let shown =
+                        if self.schema.is_list(&path) { format!("[[{path}]]") } else { format!("[{path}]") };
+                    let what = format!("needs a table {shown}");
+                    return Err(self.places.full(name, "", what, shown, None));
                 }
                 _ => {}
             }
@@ -123,15 +131,11 @@ impl Reader<'_> {
     }
 
     fn unknown(&self, name: &str, kind: &str, key: &str) -> Failure {
-        let here: Vec<&str> = schema::table(kind)
-            .into_iter()
-            .flat_map(|t| t.keys)
-            .map(|k| k.name)
-            .chain(schema::tables_in(kind))
-            .collect();
+        let here: Vec<&str> =
+            self.schema.keys(kind).map(|k| k.name).chain(self.schema.tables_in(kind)).collect();
         let place = if name.is_empty() { "a job".to_owned() } else { shown(name).trim_end().to_owned() };
         let takes = format!("{place} takes {}", here.join(", "));
-        let owner = crate::job::keys::TABLES.iter().find(|t| !t.name.is_empty() && t.key(key).is_some());
+        let owner = self.schema.tables.iter().find(|t| !t.name.is_empty() && t.key(key).is_some());
         let near = nearest(key, here.iter().copied());
         let what = match (near, owner) {
             (None, Some(t)) => format!("{key} is no key here, but one of [{}]; {takes}", t.name),
@@ -194,6 +198,7 @@ fn check(kind: &Kind, value: &DeValue<'_>) -> Result<(), Wrong> {
     let good = match kind {
         Kind::Number(r, _) => within(r, value),
         Kind::Whole(a, b) => whole(value).is_some_and(|x| (*a..=*b).contains(&x)),
+        Kind::Wholes(a, b) => each(value.as_array(), |v| whole(v).is_some_and(|x| (*a..=*b).contains(&x))),
         Kind::Flag => value.as_bool().is_some(),
         Kind::Sign => whole(value).is_some_and(|x| x.abs() == 1),
         Kind::NumberOr(r, ..) => within(r, value) || value.as_str().is_some_and(|w| words.contains(&w)),

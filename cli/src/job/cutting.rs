@@ -20,6 +20,9 @@ const MARK_SHARE: f64 = 0.5;
 
 /// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
 pub(super) fn layer_mm(raw: &Raw, tool: &Tool) -> f64 {
+    if let Some(standing) = raw.standing_mm {
+        return standing;
+    }
     if let Some(allowance) = raw.stock.as_ref().and_then(|s| s.allowance_mm.filter(|_| s.file.is_none())) {
         return allowance;
     }
@@ -48,7 +51,7 @@ pub(super) fn feed_mm_min(
     raw: &Raw,
     (tool, strategy): (&Tool, &Strategy),
 ) -> Result<f64, Failure> {
-    let c = &raw.cutting;
+    let c = tool.feeding();
     let mut feed = c.feed_mm_min.unwrap_or(FEED_MM_MIN);
     // The feed at which the marks of teeth take half of the scallop tolerance on a plane. Half is best where the feed is free: the
     // width of a strip goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97,

@@ -1,12 +1,13 @@
 //! All keys of a job file: what each takes, what holds where it is not given, and what it means.
 
-use crate::job::schema::{Key, Kind, Range, Table};
+use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey,
-    Method, Normals, StrategyWord, Tip, ToolKind, Turns,
+    Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_postproc::built_in_names;
 use osculate_postproc::nc::Dialect;
+use std::sync::LazyLock;
 
 const ANY: Range = Range { least: f64::NEG_INFINITY, most: f64::INFINITY, open: [false; 2] };
 const ABOVE: Range = Range { least: 0.0, most: 1e6, open: [true, false] };
@@ -45,11 +46,79 @@ fn dialects() -> Vec<&'static str> {
     Dialect::ALL.iter().map(|d| d.name()).collect()
 }
 
+/// What a job of one operation may hold.
+pub static ONE: LazyLock<Schema> =
+    LazyLock::new(|| Schema { tables: TABLES.to_vec(), lists: &[(TOOLS, "tool")] });
+
+/// What a list of operations may hold: the tables that it has in common with a job of one operation, and its own.
+pub static LIST: LazyLock<Schema> = LazyLock::new(|| {
+    let common = [
+        "part",
+        "part.ruled",
+        "part.ruled.c0",
+        "part.ruled.c1",
+        "tool",
+        "tool.holder",
+        "tolerance",
+        "cutting",
+    ];
+    let last = ["machine", "stock", "stock.cylinder", "setup", "verification"];
+    let of = |names: &[&str]| TABLES.iter().filter(|t| names.contains(&t.name)).copied().collect::<Vec<_>>();
+    let renamed = |from: &str, name: &'static str| {
+        TABLES
+            .iter()
+            .filter(|t| t.name == from)
+            .map(|t| Table { name, needed: false, ..*t })
+            .collect::<Vec<_>>()
+    };
+    let tables = [
+        OWN[..1].to_vec(),
+        of(&common),
+        renamed("cutting", "tool.cutting"),
+        of(&last),
+        OWN[1..].to_vec(),
+        renamed("strategy", "operation.strategy"),
+    ];
+    Schema {
+        tables: tables.concat(),
+        lists: &[("tool", "tool"), ("setup", "setup"), ("operation", "operation")],
+    }
+});
+
+/// The tables that only a list of operations has, and keys that tables have only there.
+#[rustfmt::skip]
+static OWN: &[Table] = &[
+    table("", true, "the file itself", &[
+        must("format", Kind::Whole(2, 2), "2", "format of the file: operations in their order"),
+    ]),
+    table("tool", false, "in a list of operations [[tool]] is a list", &[
+        may("name", Kind::Text, "by kind and sizes", "\"toroidal 6 r 1\"", "what people call it"),
+    ]),
+    table("setup", false, "in a list of operations [[setup]] is a list; one with all defaults where none is given", &[
+        may("name", Kind::Text, "op and its place times ten", "\"op10\"", "how operations name it, and its program"),
+        may("fixtures", Kind::Files, "none", "[\"vice.stl\"]", "what holds the part in it: STL meshes in the part's frame, mm"),
+        may("fixture_spacing_mm", MM, "1", "1", "distance of the places looked at on fixtures"),
+    ]),
+    table("operation", false, "what is done, one after the other, each from the material that the one before left", &[
+        may("name", Kind::Text, "by kind and place", "\"rough\"", "what people call it"),
+        may("setup", Kind::Text, "the first one", "\"op10\"", "in which setup"),
+        must("kind", Kind::Word(OperationWord::WORDS), "\"finish\"", "rough: in layers down to an allowance; finish: to tolerance; rest: where too much stands"),
+        may("tools", Kind::Wholes(1, 9999), "all tools", "[3, 4]", "numbers of tools; of several the fastest that holds is chosen"),
+        may("faces", Kind::Faces, "those of the part", "[\"F1\", \"F2\"]", "faces to machine"),
+        may("allowance_mm", MM_OR_ZERO, "rough: 0.5", "0.5", "what it leaves on the faces on purpose"),
+        may("stepdown_mm", MM, "rough: a quarter of the diameter", "3", "deepest cut along the axis"),
+        may("stepover_mm", MM, "rough: 0.4 of the diameter", "5", "distance of rows"),
+        may("overlap_mm", MM, "rest: a tenth of the diameter", "0.5", "how far passes go beyond what stands too high"),
+        may("scallop_mm", SMALL, "that of the job; rough: stepdown", "0.02", "highest material left standing, above the allowance"),
+        may("gouge_mm", SMALL, "that of the job; rough: a fifth of the allowance", "0.01", "deepest undercut, into the allowance of a roughing"),
+    ]),
+];
+
 /// The tables of a job file in the order of the reference.
 #[rustfmt::skip]
 pub static TABLES: &[Table] = &[
     table("", true, "the file itself", &[
-        must("format", Kind::Whole(1, 1), "1", "format of the file"),
+        must("format", Kind::Whole(1, 1), "1", "format of the file: one operation; 2 is a list of them"),
     ]),
     table("part", true, "the part and which of its faces: one of file, builtin and [part.ruled]", &[
         may("file", Kind::File, "", "\"part.step\"", "STEP, IGES, JSON, point sections or patches"),
@@ -97,10 +166,10 @@ pub static TABLES: &[Table] = &[
         may("tilt_deg", Kind::Number(TURN, "deg"), "0", "5", "turn of the leaning axis about the normal"),
         may("along", Kind::Word(AlongWord::WORDS), "auto", "\"u\"", "isoparametric, regions: the parameter along the passes"),
         may("axis", Kind::DirectionOr(AxisKey::WORDS), "\"feed\", or [0, 0, 1]", "\"field\"",
-            "\"feed\": it leans along the feed; \"field\": the same for passes to and fro; a direction: contour_2cl, gradient_3c, isoplanar_3c, z_level keep it"),
+            "\"feed\": it leans along the feed; \"field\": the same for passes to and fro; a direction: contour_2cl, gradient_3c, isoplanar_3c, waterline_3c, z_level keep it"),
         may("one_way", Kind::Flag, "false", "true", "axis = \"field\": neighbouring passes all run the same way"),
         may("climb", Kind::Word(ClimbWord::WORDS), "any", "\"climb\"",
-            "axis = \"field\": chips from thick to thin (M3: what is still to be cut on the right of the feed), or the other way"),
+            "waterline_3c, axis = \"field\": chips from thick to thin (M3: what is still to be cut on the right of the feed), or the other way"),
         may("feed_direction", Kind::Direction, "the longest side", "[1, 0, 0]", "gradient_3c, isoplanar_3c, z_level: way of the passes"),
         may("normal", Kind::Direction, "[0, 1, 0]", "[0, 1, 0]", "isoplanar: normal of the planes"),
         may("stepdown_mm", MM, "", "3", "z_level: deepest cut along the axis"),

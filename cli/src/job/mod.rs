@@ -6,6 +6,7 @@ pub mod control;
 mod cutting;
 pub mod flank;
 mod keys;
+mod operations;
 pub mod part;
 pub mod problem;
 mod raw;
@@ -23,6 +24,7 @@ use crate::failure::{Failure, read_text};
 pub use control::Control;
 use cutting::{feed_mm_min, feed_per_tooth_mm, layer_mm};
 pub use flank::Flank;
+pub use operations::{Clamping, Operation, Operations};
 use osculate_geom::{Axis, Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
 use osculate_productivity::plan::Tolerance;
@@ -36,7 +38,7 @@ use std::sync::Arc;
 pub use stock::{Blank, Fixture, Stock};
 pub use strategy::Strategy;
 pub use tool::Tool;
-pub use words::{Accept, Gouges, LeadKey, Normals, Turns};
+pub use words::{Accept, Gouges, LeadKey, Normals, OperationWord, Turns};
 
 /// Gouge and chord of a job that gives none, of the scallop.
 const SHARES: [f64; 2] = [0.5, 0.2];
@@ -62,8 +64,6 @@ struct Told {
     tolerance: Tolerance,
     unreached_mm2: f64,
     strategy: Strategy,
-    spindle_rpm: Option<f64>,
-    coolant: Option<Coolant>,
     control: Control,
     /// Whether the control is the job's own.
     names_machine: bool,
@@ -126,7 +126,7 @@ impl Contact {
 /// The tools, of which there is at least one.
 fn tools(places: &Places, raw: &Raw) -> Result<Vec<Tool>, Failure> {
     match (&raw.tool, raw.tools.as_deref()) {
-        (Some(one), None) => Ok(vec![Tool::of(places, "tool", one, 1)?]),
+        (Some(one), None) => Ok(vec![Tool::of(places, "tool", (one, 1), &raw.cutting)?]),
         (Some(_), Some(_)) => {
             Err(places.refuse("", schema::TOOLS, "has both [tool] and [[tools]]; keep one of them"))
         }
@@ -139,7 +139,7 @@ fn tools(places: &Places, raw: &Raw) -> Result<Vec<Tool>, Failure> {
             let made: Vec<Tool> = all
                 .iter()
                 .zip(1..)
-                .map(|(t, k)| Tool::of(places, &format!("{}[{k}]", schema::TOOLS), t, k))
+                .map(|(t, k)| Tool::of(places, &format!("{}[{k}]", schema::TOOLS), (t, k), &raw.cutting))
                 .collect::<Result<_, _>>()?;
             for (k, tool) in made.iter().enumerate() {
                 if made[..k].iter().any(|t| t.number() == tool.number()) {
@@ -189,8 +189,6 @@ impl Told {
             },
             unreached_mm2: t.unreached_mm2.unwrap_or(0.0),
             strategy,
-            spindle_rpm: raw.cutting.spindle_rpm,
-            coolant: raw.cutting.coolant.and_then(control::coolant),
             names_machine: machine.is_some(),
             work_offset,
             program_number: machine.and_then(|m| m.program_number),
@@ -216,9 +214,18 @@ impl Job {
     /// # Errors
     /// Names line, key, value and what was expected; everything that can be told without the part is.
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {
-        let places = check::places(text, path)?;
+        if check::format(text) == Some(Operations::FORMAT) {
+            let what = "format = 2 is a list of operations, which this verb does not take: plan, verify, check and post do";
+            return Err(Failure::file(path, what));
+        }
+        let places = check::places(text, path, &keys::ONE)?;
         let raw: Raw = toml::from_str(text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
-        Ok(Self { told: Arc::new(Told::of(places, &raw)?), hand: None })
+        Self::of(places, &raw)
+    }
+
+    /// The job of the tables of a file.
+    fn of(places: Places, raw: &Raw) -> Result<Self, Failure> {
+        Ok(Self { told: Arc::new(Told::of(places, raw)?), hand: None })
     }
 
     /// The job of a file.
@@ -253,8 +260,8 @@ impl Job {
 
     /// All tables and keys of job files: what the checks, the reference and the template are made of.
     #[must_use]
-    pub fn schema() -> &'static [schema::Table] {
-        keys::TABLES
+    pub fn schema() -> &'static schema::Schema {
+        &keys::ONE
     }
 
     /// A failure at a key of the file.
@@ -269,6 +276,13 @@ impl Job {
         (0..self.told.tools.len())
             .map(|hand| Self { told: Arc::clone(&self.told), hand: Some(hand) })
             .collect()
+    }
+
+    /// The job with the tool of this number in hand; the first where there is none.
+    #[must_use]
+    pub fn in_hand(&self, number: u32) -> Self {
+        let hand = self.told.tools.iter().position(|t| t.number() == number);
+        Self { told: Arc::clone(&self.told), hand }
     }
 
     /// The file it came from.
@@ -393,13 +407,13 @@ impl Job {
     /// The spindle speed.
     #[must_use]
     pub fn spindle_rpm(&self) -> Option<f64> {
-        self.told.spindle_rpm
+        self.tool().spindle_rpm()
     }
 
     /// The coolant.
     #[must_use]
     pub fn coolant(&self) -> Option<Coolant> {
-        self.told.coolant
+        self.tool().coolant()
     }
 
     /// Machine and control.

@@ -28,6 +28,8 @@ pub struct Problem {
 pub struct Places {
     path: PathBuf,
     lines: BTreeMap<String, usize>,
+    /// Tables that stand elsewhere in this file than their names say: by the name, where.
+    moved: Vec<(String, String)>,
 }
 
 /// The name of a key with that of its table.
@@ -41,17 +43,34 @@ pub fn full(table: &str, key: &str) -> String {
 
 /// A table as people write it.
 pub fn shown(table: &str) -> String {
-    let Some((number, rest)) = table.strip_prefix("tools[").and_then(|t| t.split_once(']')) else {
+    let Some((list, (number, rest))) = table.split_once('[').and_then(|(l, t)| Some((l, t.split_once(']')?)))
+    else {
         return if table.is_empty() { String::new() } else { format!("[{table}] ") };
     };
-    let rest = rest.strip_prefix('.').map(|r| format!("[tool.{r}] "));
-    format!("[[tools]] number {number}: {}", rest.unwrap_or_default())
+    let own = if list == "tools" { "tool" } else { list };
+    let rest = rest.strip_prefix('.').map(|r| format!("[{own}.{r}] "));
+    format!("[[{list}]] number {number}: {}", rest.unwrap_or_default())
 }
 
 impl Places {
     /// No places yet.
     pub fn new(path: &Path) -> Self {
-        Self { path: path.to_path_buf(), lines: BTreeMap::new() }
+        Self { path: path.to_path_buf(), lines: BTreeMap::new(), moved: Vec::new() }
+    }
+
+    /// The same file, with tables that are found elsewhere in it: by their names, where.
+    #[must_use]
+    pub fn with(&self, moved: Vec<(String, String)>) -> Self {
+        Self { moved, ..self.clone() }
+    }
+
+    /// Where a table stands in the file.
+    fn stands(&self, table: &str) -> String {
+        let found = self.moved.iter().find_map(|(name, at)| {
+            let rest = table.strip_prefix(name.as_str())?;
+            (rest.is_empty() || rest.starts_with('.')).then(|| format!("{at}{rest}"))
+        });
+        found.unwrap_or_else(|| table.to_owned())
     }
 
     /// The file.
@@ -66,7 +85,7 @@ impl Places {
 
     /// Whether a key is given.
     pub fn has(&self, table: &str, key: &str) -> bool {
-        self.lines.contains_key(&full(table, key))
+        self.lines.contains_key(&full(&self.stands(table), key))
     }
 
     /// A failure at a key, or at its table where the key is not given.
@@ -83,8 +102,16 @@ impl Places {
         expected: String,
         nearest: Option<&str>,
     ) -> Failure {
-        let line = self.lines.get(&full(table, key)).or_else(|| self.lines.get(table)).copied();
+        let stands = self.stands(table);
+        let table = stands.as_str();
+        let line = self.line(&full(table, key));
         self.at(line, &format!("{}{key}", shown(table)), format!("{}{what}", shown(table)), expected, nearest)
+    }
+
+    /// The line of a key, or else of the innermost table around it that is there.
+    fn line(&self, key: &str) -> Option<usize> {
+        let around = std::iter::successors(Some(key), |k| k.rsplit_once('.').map(|(table, _)| table));
+        around.into_iter().find_map(|k| self.lines.get(k)).copied()
     }
 
     /// A failure at a line.

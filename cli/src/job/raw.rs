@@ -2,13 +2,13 @@
 
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey,
-    Method, Normals, StrategyWord, Tip, ToolKind, Turns,
+    Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;
 
 /// A whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Raw {
     #[allow(dead_code)]
@@ -31,9 +31,12 @@ pub struct Raw {
     pub flank: Flank,
     #[serde(default)]
     pub verification: Verification,
+    /// How high material stands on the faces, where operations before have left it, mm.
+    #[serde(skip)]
+    pub standing_mm: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
     pub file: Option<String>,
@@ -75,14 +78,14 @@ pub struct Largest {
     pub largest: usize,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ruled {
     pub c0: Curve,
     pub c1: Curve,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Curve {
     pub degree: Option<usize>,
@@ -108,9 +111,12 @@ pub struct Tool {
     pub side_angle_deg: Option<f64>,
     pub teeth: Option<u32>,
     pub holder: Option<HolderSpec>,
+    /// In a list of operations only, as all that follows here.
+    pub name: Option<String>,
+    pub cutting: Option<Cutting>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {
     pub scallop_mm: f64,
@@ -119,7 +125,7 @@ pub struct Tolerance {
     pub unreached_mm2: Option<f64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Strategy {
     pub kind: StrategyWord,
@@ -142,7 +148,7 @@ pub struct Strategy {
     pub keep_off_mm: Option<f64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cutting {
     pub spindle_rpm: Option<f64>,
@@ -151,7 +157,7 @@ pub struct Cutting {
     pub coolant: Option<CoolantWord>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
     pub name: Option<String>,
@@ -163,7 +169,7 @@ pub struct Machine {
     pub program_number: Option<u32>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setup {
     pub part_zero_mm: Option<[f64; 3]>,
@@ -173,9 +179,13 @@ pub struct Setup {
     pub approach_mm: Option<f64>,
     pub hop_mm: Option<f64>,
     pub check_clearance_mm: Option<f64>,
+    /// In a list of operations only, as all that follows here.
+    pub name: Option<String>,
+    pub fixtures: Option<Vec<String>>,
+    pub fixture_spacing_mm: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     pub at: [f64; 2],
@@ -185,7 +195,7 @@ pub struct Contact {
     pub angle_deg: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stock {
     pub box_mm: Option<[f64; 6]>,
@@ -196,7 +206,7 @@ pub struct Stock {
     pub memory_mb: Option<f64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cylinder {
     pub axis: Option<[f64; 3]>,
@@ -204,14 +214,14 @@ pub struct Cylinder {
     pub z_mm: [f64; 2],
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fixture {
     pub files: Vec<String>,
     pub spacing_mm: Option<f64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Flank {
     pub at_u: Option<f64>,
@@ -231,10 +241,50 @@ pub struct Flank {
     pub ruled_tolerance_mm: Option<f64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Verification {
     pub spacing_mm: Option<f64>,
     pub max_samples: Option<usize>,
     pub accept: Option<Accept>,
+}
+
+/// A whole file of operations.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawList {
+    #[allow(dead_code)]
+    pub format: u32,
+    pub part: Part,
+    #[serde(default)]
+    pub tool: Vec<Tool>,
+    pub tolerance: Tolerance,
+    #[serde(default)]
+    pub cutting: Cutting,
+    pub machine: Option<Machine>,
+    #[serde(default)]
+    pub setup: Vec<Setup>,
+    pub stock: Option<Stock>,
+    #[serde(default)]
+    pub operation: Vec<Operation>,
+    #[serde(default)]
+    pub verification: Verification,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Operation {
+    pub name: Option<String>,
+    pub setup: Option<String>,
+    pub kind: OperationWord,
+    pub tools: Option<Vec<u32>>,
+    pub faces: Option<FaceChoice>,
+    pub allowance_mm: Option<f64>,
+    pub stepdown_mm: Option<f64>,
+    pub stepover_mm: Option<f64>,
+    pub overlap_mm: Option<f64>,
+    pub scallop_mm: Option<f64>,
+    pub gouge_mm: Option<f64>,
+    #[serde(default)]
+    pub strategy: Strategy,
 }

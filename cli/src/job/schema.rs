@@ -1,6 +1,5 @@
 //! What a key of a job file may be: the one source of checks, reference and template.
 
-use crate::job::keys::TABLES;
 use std::fmt;
 
 /// Numbers that a key takes.
@@ -45,6 +44,8 @@ pub enum Kind {
     Number(Range, &'static str),
     /// A whole number.
     Whole(i64, i64),
+    /// Whole numbers.
+    Wholes(i64, i64),
     /// 1 or -1.
     Sign,
     /// true or false.
@@ -101,6 +102,7 @@ impl Kind {
             Self::Number(r, unit) => with(r.to_string(), unit),
             Self::Whole(a, b) if a == b => format!("{a}: this version reads format = {a}"),
             Self::Whole(a, b) => format!("a whole number from {a} to {b}"),
+            Self::Wholes(a, b) => format!("a list of whole numbers from {a} to {b}"),
             Self::Sign => "1 or -1".to_owned(),
             Self::Flag => "true or false".to_owned(),
             Self::NumberOr(r, unit, w) => format!("{} or one of {}", with(r.to_string(), unit), list(w)),
@@ -164,28 +166,68 @@ impl Table {
     }
 }
 
-/// The list of tables that stands for several of `[tool]`.
+/// The list of tables that stands for several of `[tool]` in a job of one operation.
 pub const TOOLS: &str = "tools";
 
-/// The name of a table in the list, where those of `[[tools]]` are those of `[tool]`.
-fn listed(name: &str) -> String {
-    match name.strip_prefix(TOOLS) {
-        Some(rest) if rest.is_empty() || rest.starts_with('.') => format!("tool{rest}"),
-        _ => name.to_owned(),
+/// What a kind of job file may hold: its tables, and which of them stand in lists.
+#[derive(Debug)]
+pub struct Schema {
+    /// The tables in the order of the reference. The keys of one may stand in two of the same name.
+    pub tables: Vec<Table>,
+    /// Lists of tables, each with the name of the table that an entry is.
+    pub lists: &'static [(&'static str, &'static str)],
+}
+
+impl Schema {
+    /// The name of a table in a list as the schema has it.
+    fn listed(&self, name: &str) -> String {
+        let (head, rest) = name.split_at(name.find('.').unwrap_or(name.len()));
+        match self.lists.iter().find(|l| l.0 == head) {
+            Some((_, own)) => format!("{own}{rest}"),
+            None => name.to_owned(),
+        }
     }
-}
 
-/// The table of this name.
-#[must_use]
-pub fn table(name: &str) -> Option<&'static Table> {
-    let own = listed(name);
-    TABLES.iter().find(|t| t.name == own)
-}
+    /// The tables of this name.
+    fn named(&self, name: &str) -> impl Iterator<Item = &Table> {
+        let own = self.listed(name);
+        self.tables.iter().filter(move |t| t.name == own)
+    }
 
-/// Tables that stand directly in a table.
-pub fn tables_in(name: &str) -> impl Iterator<Item = &'static str> {
-    let prefix = if name.is_empty() { String::new() } else { format!("{}.", listed(name)) };
-    let own = TABLES.iter().filter_map(move |t| t.name.strip_prefix(prefix.as_str()));
-    let tools = name.is_empty().then_some(TOOLS);
-    own.filter(|n| !n.is_empty() && !n.contains('.')).chain(tools)
+    /// The keys of a table.
+    pub fn keys(&self, name: &str) -> impl Iterator<Item = &'static Key> {
+        self.named(name).flat_map(|t| t.keys)
+    }
+
+    /// A key of a table.
+    #[must_use]
+    pub fn key(&self, table: &str, key: &str) -> Option<&'static Key> {
+        self.keys(table).find(|k| k.name == key)
+    }
+
+    /// Whether every job has a table.
+    #[must_use]
+    pub fn needs(&self, name: &str) -> bool {
+        self.named(name).any(|t| t.needed)
+    }
+
+    /// Whether a name is that of a list of tables.
+    #[must_use]
+    pub fn is_list(&self, name: &str) -> bool {
+        self.lists.iter().any(|l| l.0 == name)
+    }
+
+    /// Tables and lists of tables that stand directly in a table.
+    pub fn tables_in(&self, name: &str) -> Vec<&'static str> {
+        let prefix = if name.is_empty() { String::new() } else { format!("{}.", self.listed(name)) };
+        let own = self.tables.iter().filter_map(|t| t.name.strip_prefix(prefix.as_str()));
+        let mut out: Vec<&'static str> = Vec::new();
+        let lists = self.lists.iter().filter(|_| name.is_empty()).map(|l| l.0);
+        for inner in own.filter(|n| !n.is_empty() && !n.contains('.')).chain(lists) {
+            if !out.contains(&inner) {
+                out.push(inner);
+            }
+        }
+        out
+    }
 }

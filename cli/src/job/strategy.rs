@@ -39,6 +39,8 @@ pub enum Drop {
     Planes,
     /// Up and down the slope.
     Gradient,
+    /// At constant heights.
+    Waterlines,
 }
 
 /// The sizes of a roughing.
@@ -104,6 +106,15 @@ impl Strategy {
         self.axis_field || (self.axis_open && self.lead == LeadKey::Auto && self.tilt_deg == 0.0)
     }
 
+    /// The axis that the tool keeps, where it keeps one.
+    #[must_use]
+    pub fn kept_axis(&self) -> Option<Unit3> {
+        use StrategyWord as W;
+        let keeps =
+            [W::Gradient3c, W::Isoplanar3c, W::Waterline3c, W::ZLevel, W::Contour2cl].contains(&self.word);
+        keeps.then_some(self.axis)
+    }
+
     /// Whether it is to be chosen.
     #[must_use]
     pub const fn is_open(&self) -> bool {
@@ -136,6 +147,7 @@ impl Strategy {
             StrategyWord::Contour2cl => Kind::Faces(plan::Strategy::Contour2cl { axis }),
             StrategyWord::Gradient3c => Kind::Drop(Drop::Gradient),
             StrategyWord::Isoplanar3c => Kind::Drop(Drop::Planes),
+            StrategyWord::Waterline3c => Kind::Drop(Drop::Waterlines),
             StrategyWord::ZLevel => Kind::Layers(layers(places, t)?),
             StrategyWord::Flank => Kind::Flank,
         };
@@ -170,7 +182,8 @@ impl Strategy {
         use StrategyWord as W;
         let is = |all: &[W]| all.contains(&self.word);
         let drops = is(&[W::Gradient3c, W::Isoplanar3c, W::ZLevel]);
-        let keeps_axis = drops || is(&[W::Contour2cl]);
+        let around = is(&[W::Waterline3c]);
+        let keeps_axis = self.kept_axis().is_some();
         let layers = is(&[W::ZLevel]);
         let lined = is(&[W::Isoparametric, W::Regions]);
         let rows = [
@@ -183,12 +196,13 @@ impl Strategy {
             ("ramp_deg", layers, "z_level"),
             ("lead_rate_deg_per_mm", !keeps_axis, "strategies that lean"),
             ("one_way", self.axis_field, "axis = \"field\""),
-            ("climb", self.axis_field, "axis = \"field\""),
+            ("climb", self.axis_field || around, "waterline_3c, and axis = \"field\""),
         ];
         let axis = match t.axis {
-            Some(AxisKey::Given(_)) => {
-                (keeps_axis || is(&[W::Auto]), "contour_2cl, gradient_3c, isoplanar_3c and z_level")
-            }
+            Some(AxisKey::Given(_)) => (
+                keeps_axis || is(&[W::Auto]),
+                "contour_2cl, gradient_3c, isoplanar_3c, waterline_3c and z_level",
+            ),
             Some(AxisKey::Feed | AxisKey::Field) => (!keeps_axis && !is(&[W::Flank]), "strategies that lean"),
             None => (true, ""),
         };

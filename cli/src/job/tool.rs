@@ -1,9 +1,11 @@
 //! A tool of a job: cutter, shank and holder made once, by the keys that go with its kind.
 
 use crate::failure::Failure;
+use crate::job::control;
 use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::words::ToolKind;
+use osculate_postproc::nc::Coolant;
 use osculate_tools::{Cutter, CutterSpec, HolderSpec};
 
 /// Length of a cutter that gives none, in diameters.
@@ -32,11 +34,18 @@ pub struct Tool {
     holder: Option<(HolderSpec, Cutter)>,
     teeth: Option<u32>,
     words: String,
+    feeding: raw::Cutting,
 }
 
 impl Tool {
     /// The tool of a table. `place` is its place in the list, from 1.
-    pub(super) fn of(places: &Places, table: &str, t: &raw::Tool, place: u32) -> Result<Self, Failure> {
+    /// Where its table says nothing of spindle and feed, `all` does.
+    pub(super) fn of(
+        places: &Places,
+        table: &str,
+        (t, place): (&raw::Tool, u32),
+        all: &raw::Cutting,
+    ) -> Result<Self, Failure> {
         let spec = spec(places, table, t)?;
         let cutter = Cutter::try_from(spec).map_err(|e| places.refuse(table, "", e))?;
         let (cutting, shank) = flutes(places, table, &cutter, t.flute_length_mm)?;
@@ -46,6 +55,7 @@ impl Tool {
             })?;
             Ok((h, made))
         });
+        let own = t.cutting.clone().unwrap_or_default();
         let corner = t.corner_radius_mm.filter(|_| t.kind != ToolKind::Ball).map(|r| format!(" r {r}"));
         Ok(Self {
             kind: t.kind,
@@ -56,7 +66,15 @@ impl Tool {
             shank,
             holder: holder.transpose()?,
             teeth: t.teeth,
-            words: format!("{} {}{}", t.kind.word(), t.diameter_mm, corner.unwrap_or_default()),
+            words: t.name.clone().unwrap_or_else(|| {
+                format!("{} {}{}", t.kind.word(), t.diameter_mm, corner.unwrap_or_default())
+            }),
+            feeding: raw::Cutting {
+                spindle_rpm: own.spindle_rpm.or(all.spindle_rpm),
+                feed_mm_min: own.feed_mm_min.or(all.feed_mm_min),
+                feed_per_tooth_mm: own.feed_per_tooth_mm.or(all.feed_per_tooth_mm),
+                coolant: own.coolant.or(all.coolant),
+            },
         })
     }
 
@@ -100,6 +118,23 @@ impl Tool {
     #[must_use]
     pub fn holder_spec(&self) -> Option<HolderSpec> {
         self.holder.map(|h| h.0)
+    }
+
+    /// Spindle and feed as given for it.
+    pub(super) const fn feeding(&self) -> &raw::Cutting {
+        &self.feeding
+    }
+
+    /// The spindle speed.
+    #[must_use]
+    pub const fn spindle_rpm(&self) -> Option<f64> {
+        self.feeding.spindle_rpm
+    }
+
+    /// The coolant.
+    #[must_use]
+    pub fn coolant(&self) -> Option<Coolant> {
+        self.feeding.coolant.and_then(control::coolant)
     }
 
     /// Number of teeth.

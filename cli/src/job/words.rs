@@ -86,10 +86,25 @@ words! {
         Gradient3c = "gradient_3c",
         /// In parallel planes, the axis kept.
         Isoplanar3c = "isoplanar_3c",
+        /// At constant heights around steep places, the axis kept.
+        Waterline3c = "waterline_3c",
         /// Roughing in layers.
         ZLevel = "z_level",
         /// The side of the cutter on a ruled face: the verb `flank`.
         Flank = "flank",
+    }
+}
+
+words! {
+    /// What an operation does.
+    OperationWord {
+        /// From raw material down to an allowance, in layers.
+        Rough = "rough",
+        /// Faces to their tolerance.
+        #[default]
+        Finish = "finish",
+        /// What stands above the tolerance after the operations before.
+        Rest = "rest",
     }
 }
 

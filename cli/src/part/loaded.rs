@@ -25,6 +25,7 @@ pub struct LoadedFace {
 }
 
 /// A part ready for work.
+#[derive(Clone)]
 pub struct Loaded {
     /// `step`, `iges`, `patches`, `sections`, `json` or `builtin`.
     pub format: &'static str,

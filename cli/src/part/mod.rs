@@ -122,6 +122,8 @@ pub struct Part {
     pub check: Vec<LoadedFace>,
     /// Faces that are not looked at.
     pub unseen: Vec<Unseen>,
+    /// Ids of faces of which nothing says on which side the material is.
+    pub open: Vec<String>,
     /// The check faces as hops see them, once they are asked for.
     pub walls: OnceLock<Arc<Walls>>,
     /// Wall time of reading it, s; zero where nobody measured it.
@@ -129,26 +131,50 @@ pub struct Part {
 }
 
 impl Part {
+    /// The same part as another job on it sees it: its own faces to machine, all others to be kept.
+    ///
+    /// # Errors
+    /// Where the job names a face that is not there.
+    pub fn seen_by(&self, job: &Job) -> Result<Self, Failure> {
+        let chosen = machined(job, &self.part)?;
+        sorted(job, self.part.clone(), chosen, self.open.clone())
+    }
+
     /// A failure with what was warned of when the part was read: it may be why.
     pub fn warned(&self, why: Failure) -> Failure {
         why.warned(&self.part.diagnostics)
     }
 }
 
+/// A face of a job where a key of `[part]` cannot be meant.
+fn in_part(job: &Job, e: &Failure) -> Failure {
+    Failure::file(job.path(), format!("[part] {}", e.message()))
+}
+
+/// The ids of the faces that a job works on.
+fn machined(job: &Job, part: &Loaded) -> Result<Vec<String>, Failure> {
+    let chosen = choose(part, job.part().faces(), "faces").map_err(|e| in_part(job, &e))?;
+    if chosen.is_empty() {
+        return Err(Failure::file(job.path(), "[part] faces chooses no face"));
+    }
+    Ok(chosen.into_iter().map(|f| f.id).collect())
+}
+
 /// The faces of a job, with their material sides settled.
 pub fn of_job(job: &Job) -> Result<Part, Failure> {
-    let here = |e: Failure| Failure::file(job.path(), format!("[part] {}", e.message()));
     let mut part = match job.part().source() {
         Source::File { path, unit_mm } => whole(from_file(path, *unit_mm)?)?,
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
-    let chosen = choose(&part, job.part().faces(), "faces").map_err(here)?;
-    if chosen.is_empty() {
-        return Err(Failure::file(job.path(), "[part] faces chooses no face"));
-    }
-    let chosen: Vec<String> = chosen.into_iter().map(|f| f.id).collect();
+    let chosen = machined(job, &part)?;
     let open: Vec<String> =
         sides::settle(job, &mut part, &chosen).into_iter().map(|k| part.faces[k].id.clone()).collect();
+    sorted(job, part, chosen, open)
+}
+
+/// The faces of a part with settled sides, those that a job works on before all others. Nothing says a side of the `open` ones.
+fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Result<Part, Failure> {
+    let here = |e: Failure| in_part(job, &e);
     if let Some(id) = chosen.iter().find(|id| open.contains(id)) {
         return Err(Failure::file(
             job.path(),
@@ -189,7 +215,7 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         unseen.push(Unseen::NoSide(no_side));
         check.retain(|f| !open.contains(&f.id));
     }
-    Ok(Part { part, faces, check, unseen, walls: OnceLock::new(), import_s: 0.0 })
+    Ok(Part { part, faces, check, unseen, open, walls: OnceLock::new(), import_s: 0.0 })
 }
 
 /// A face that two keys of a job name for different things.

@@ -78,8 +78,9 @@ pub enum Verb {
     Post(PostArgs),
     /// Material removal against the part: scallop, gouge, uncut area.
     Verify {
-        /// A CL file or an NC program.
-        file: PathBuf,
+        /// A CL file or an NC program; of a list of operations the program of each setup, in their order.
+        #[arg(required = true, num_args = 1..)]
+        files: Vec<PathBuf>,
         /// The job file: part, tool, tolerance and machine.
         #[arg(long)]
         job: PathBuf,

@@ -118,6 +118,23 @@ impl Watch for Screen {
         held(&self.folder).is_some()
     }
 
+    fn keep(&self, name: &str, bytes: &[u8]) {
+        let Some(folder) = held(&self.folder).clone() else { return };
+        let file = folder.join(name);
+        // A full disk ends the run when its results are written; until then it goes on without.
+        if files::write(&file, bytes, &SCREEN).is_ok() {
+            let words = format!(
+                "{} and those before it are there: the same command goes on from them",
+                file.display()
+            );
+            cancel::keep(Box::new(move || Ok(words)));
+        }
+    }
+
+    fn kept(&self, name: &str) -> Option<Vec<u8>> {
+        std::fs::read(held(&self.folder).clone()?.join(name)).ok()
+    }
+
     fn temporary(&self, file: &Path) {
         cancel::temporary(file);
     }

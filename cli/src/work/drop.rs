@@ -6,7 +6,7 @@ use crate::job::strategy::Drop;
 use crate::part::{self, LoadedFace, Part};
 use crate::work::budget;
 use osculate_geom::{Box3, Unit3, Vec3};
-use osculate_productivity::plan::{DropTask, Named, Passes, drop_cutter, gradient_3c};
+use osculate_productivity::plan::{DropTask, Milling, Named, Passes, drop_cutter, gradient_3c, waterline_3c};
 
 /// Passes over all faces of the job, with its check faces kept clear.
 pub fn passes(
@@ -28,8 +28,14 @@ pub fn passes(
     let plan = match kind {
         Drop::Planes => drop_cutter,
         Drop::Gradient => gradient_3c,
+        Drop::Waterlines => waterline_3c,
     };
-    plan(&task).map_err(|e| Failure::file(job.path(), e))
+    let mut found = plan(&task).map_err(|e| Failure::file(job.path(), e))?;
+    // Waterlines have material on the right.
+    if kind == Drop::Waterlines && job.strategy().senses.milling == Milling::Conventional {
+        found.passes.iter_mut().for_each(|p| p.points.reverse());
+    }
+    Ok(found)
 }
 
 /// The tool axis, and the way of the passes.

@@ -8,47 +8,114 @@ use crate::work::stock::{self, RawMaterial};
 use osculate_geom::{Offset, Surface};
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::Cutter;
-use osculate_tools::removal::{Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Looks, Sample};
+use osculate_tools::removal::stock::Stock;
+use osculate_tools::removal::{
+    Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Looks,
+};
+use std::sync::Arc;
 
 /// Most samples where the job does not say.
 const MAX_SAMPLES: usize = 1_000_000;
 
-/// What a goal looks at: made once for a job with its tool in hand.
-pub struct Aim<'a> {
-    job: &'a Job,
-    faces: &'a Part,
+/// Most samples of a step on the way to a part.
+const STEP_SAMPLES: usize = 400_000;
+
+/// A tool as a goal has it.
+struct Held {
     cutter: Cutter,
     flutes: Cutter,
     shank: Option<Cutter>,
     holder: Option<Cutter>,
+    teeth: Option<u32>,
+    spindle_rpm: Option<f64>,
+}
+
+impl Held {
+    fn of(job: &Job) -> Self {
+        let (flutes, shank) = job.flutes();
+        Self {
+            cutter: job.cutter(),
+            flutes,
+            shank,
+            holder: job.holder(),
+            teeth: job.tool().teeth(),
+            spindle_rpm: job.spindle_rpm(),
+        }
+    }
+}
+
+/// Raw material that operations before have left.
+pub struct Left {
+    /// What is left.
+    pub stock: Arc<Stock>,
+    /// Index of the first motion that goes through it.
+    pub from: usize,
+    /// In words.
+    pub words: String,
+}
+
+/// What a goal looks at: made once for a job with its tools.
+pub struct Aim<'a> {
+    job: &'a Job,
+    faces: &'a Part,
+    tools: Vec<Held>,
     /// Of a roughing, the faces to machine, outside by its allowance.
     offsets: Vec<Offset<TrimmedSurface>>,
     raw: Option<RawMaterial<'a>>,
-    fixtures: Vec<Sample>,
+    left: Option<Left>,
+    fixtures: Vec<GoalFixture>,
+    /// Whether this is a step on the way to the part.
+    step: bool,
 }
 
 impl<'a> Aim<'a> {
     /// Everything that the job's files say of it.
     pub fn of(job: &'a Job, faces: &'a Part) -> Result<Self, Failure> {
-        let (flutes, shank) = job.flutes();
-        let number = (faces.faces.len() + faces.check.len()) as u32;
+        let held = stock::fixtures(job, faces)?;
+        let fixtures = if held.is_empty() {
+            Vec::new()
+        } else {
+            vec![GoalFixture { samples: held, motions: 0..usize::MAX }]
+        };
+        Self::of_tools(job, faces, std::slice::from_ref(job), fixtures)
+    }
+
+    /// As [`of`](Self::of), of a program whose tools are those in hand in these jobs, in the order in which it calls them.
+    pub fn of_tools(
+        job: &'a Job,
+        faces: &'a Part,
+        tools: &[Job],
+        fixtures: Vec<GoalFixture>,
+    ) -> Result<Self, Failure> {
         Ok(Self {
             job,
             faces,
-            cutter: job.cutter(),
-            flutes,
-            shank,
-            holder: job.holder(),
+            tools: tools.iter().map(Held::of).collect(),
             offsets: rough::measured(job, faces)?,
             raw: RawMaterial::of(job, faces)?,
-            fixtures: stock::fixtures(job, number)?,
+            left: None,
+            fixtures,
+            step: false,
         })
     }
 
-    /// The goal, with the state of the control as a program has it.
-    pub fn goal(&self, control: GoalControl, spindle_rpm: Option<f64>) -> Goal<'_> {
+    /// The same from raw material that operations before have left.
+    #[must_use]
+    pub fn begun(self, left: Left) -> Self {
+        Self { left: Some(left), ..self }
+    }
+
+    /// The same for a step on the way to the part: it is looked at less closely, and not between the samples, as the part is.
+    #[must_use]
+    pub fn of_step(self) -> Self {
+        Self { step: true, ..self }
+    }
+
+    /// The goal, with the state of the control as a program has it, and the speed of each tool where it says one.
+    pub fn goal(&self, control: GoalControl, speeds_rpm: &[Option<f64>]) -> Goal<'_> {
         let job = self.job;
         let tolerance = job.tolerance();
+        let most = if self.step { STEP_SAMPLES } else { usize::MAX };
         let face = |k: usize, f: &'a LoadedFace| GoalFace {
             name: &f.id,
             surface: self.offsets.get(k).map_or(&*f.surface as &dyn Surface, |o| o),
@@ -63,33 +130,49 @@ impl<'a> Aim<'a> {
             self.faces.faces.iter().enumerate().map(|(k, f)| face(k, f)).collect();
         let checked = self.faces.check.iter().map(|f| face(usize::MAX, f)).collect();
         let layer_mm = job.layer_mm();
+        let declared = || self.raw.as_ref().map_or(GoalStock::Assumed { layer_mm }, |raw| raw.goal(layer_mm));
+        let speed = |k: usize| speeds_rpm.get(k).copied().flatten();
+        let tools = self.tools.iter().enumerate().map(|(k, t)| GoalTool {
+            cutter: &t.cutter,
+            flutes: &t.flutes,
+            shank: t.shank.as_ref(),
+            holder: t.holder.as_ref(),
+            teeth: t.teeth,
+            spindle_rpm: speed(k).or(t.spindle_rpm),
+        });
         Goal {
             machined,
             checked,
             unseen: self.faces.unseen.clone(),
             fixtures: self.fixtures.clone(),
-            tool: GoalTool {
-                cutter: &self.cutter,
-                flutes: &self.flutes,
-                shank: self.shank.as_ref(),
-                holder: self.holder.as_ref(),
-                teeth: job.tool().teeth(),
-                spindle_rpm: spindle_rpm.or(job.spindle_rpm()),
-            },
-            stock: self.raw.as_ref().map_or(GoalStock::Assumed { layer_mm }, |raw| raw.goal(layer_mm)),
+            tools: tools.collect(),
+            stock: self.left.as_ref().map_or_else(declared, |left| stock::goal_of_left(left, layer_mm)),
             limits: GoalLimits {
                 scallop_mm: tolerance.scallop_mm,
                 gouge_mm: tolerance.gouge_mm,
                 unreached_mm2: job.unreached_mm2(),
-                at_samples: job.verification().accept == Accept::Samples,
+                at_samples: self.step || job.verification().accept == Accept::Samples,
             },
             looks: Looks {
                 spacing_mm: job.verification().spacing_mm,
-                max_samples: job.verification().max_samples.unwrap_or(MAX_SAMPLES),
+                max_samples: job.verification().max_samples.unwrap_or(MAX_SAMPLES).min(most),
+                between: !self.step,
             },
             roughing_mm: job.strategy().layers().map(|l| l.allowance_mm),
             control,
         }
+    }
+
+    /// The faces that it is about.
+    #[must_use]
+    pub const fn faces(&self) -> &'a Part {
+        self.faces
+    }
+
+    /// The job that it is for.
+    #[must_use]
+    pub const fn job(&self) -> &'a Job {
+        self.job
     }
 
     /// The name of a face by its number in a goal; places on fixtures have none of their own.

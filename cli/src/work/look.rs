@@ -43,6 +43,7 @@ impl Look {
         let work = removal::Job {
             cutter: &cutter,
             holder: holder.as_ref(),
+            changes: &[],
             motions: &motions,
             samples: &samples,
             stock_mm: 5.0 * tolerance.scallop_mm,

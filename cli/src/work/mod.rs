@@ -14,6 +14,7 @@ pub mod joints;
 pub mod left_out;
 pub mod look;
 pub mod nc;
+pub mod operations;
 pub mod opinion;
 pub mod passes;
 pub mod plan;

@@ -78,6 +78,8 @@ pub struct Motions {
     pub joints: Option<JointDemand>,
     /// The spindle's speed, where the program says one.
     pub spindle_rpm: Option<f64>,
+    /// The tools in the order in which they move: the first motion of each, its number, and its speed where the program says one.
+    pub calls: Vec<Call>,
     /// Numbers of the tools that its feed moves are made with.
     pub tools: BTreeSet<u32>,
     /// The state of the control while it runs.
@@ -86,23 +88,57 @@ pub struct Motions {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+/// A tool that takes over in a program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Call {
+    /// Its first motion.
+    pub first: usize,
+    /// Its number, where the program says one.
+    pub number: Option<u32>,
+    /// Its speed.
+    pub spindle_rpm: Option<f64>,
+}
+
 impl Motions {
-    /// The motions as a verdict takes them.
+    /// The motions as a verdict takes them, all with one tool.
     pub fn reading(&self, source: &'static str) -> Reading<'_> {
         Reading {
             source,
-            program: Program { motions: &self.motions, times_min: &self.times_min },
+            program: Program { motions: &self.motions, times_min: &self.times_min, changes: &[] },
             control: self.control.clone(),
-            spindle_rpm: self.spindle_rpm,
+            speeds_rpm: vec![self.spindle_rpm],
         }
     }
 }
 
-/// The state of the control that a job means its programs to run in.
-fn expected(job: &Job, gauge_length_mm: f64) -> Expected {
-    let tool = ExpectedTool { number: job.tool().number(), length_mm: gauge_length_mm };
-    let (work_offset, coolant) = (work_offset(job), job.coolant());
-    Expected { work_offset, coolant, ..Expected::new(tool, job.spindle_rpm(), job.tolerance().gouge_mm) }
+/// From the spindle's nose to the tip of the tool in hand, mm.
+pub fn gauge_mm(job: &Job) -> f64 {
+    job.cutter().length_mm() + job.holder().map_or(0.0, |h| h.length_mm())
+}
+
+/// The state of the control that jobs mean their program to run in, each for the tool that it has in hand.
+fn expected(job: &Job, more: &[Job], gauge_length_mm: f64) -> Expected {
+    if let [] | [_] = more {
+        let tool = ExpectedTool::new(job.tool().number(), gauge_length_mm);
+        let (work_offset, coolant) = (work_offset(job), job.coolant());
+        return Expected {
+            work_offset,
+            coolant,
+            ..Expected::new(tool, job.spindle_rpm(), job.tolerance().gouge_mm)
+        };
+    }
+    let tools = more.iter().map(|one| ExpectedTool {
+        spindle_rpm: one.spindle_rpm(),
+        coolant: one.coolant(),
+        ..ExpectedTool::new(one.tool().number(), gauge_mm(one))
+    });
+    Expected {
+        tools: tools.collect(),
+        spindle_rpm: None,
+        work_offset: work_offset(job),
+        coolant: None,
+        tolerance_mm: job.tolerance().gouge_mm,
+    }
 }
 
 /// The work offset that a job names.
@@ -147,9 +183,25 @@ pub fn read_back(
     setup: &Setup,
     lenient: bool,
 ) -> Result<Motions, String> {
-    let expected = expected(job, setup.gauge_length_mm);
+    read_back_tools(text, (job, &[]), control, setup, lenient)
+}
+
+/// As [`read_back`], of a program that calls the tools in hand in the jobs that follow the first; where none follow, its own.
+pub fn read_back_tools(
+    text: &str,
+    (job, tools): (&Job, &[Job]),
+    control: &Control,
+    setup: &Setup,
+    lenient: bool,
+) -> Result<Motions, String> {
+    let expected = expected(job, tools, setup.gauge_length_mm);
     let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
-    let read = readback::read(text, control.dialect, &control.machine, setup, &options)
+    let lengths: Vec<(u32, f64)> = tools.iter().map(|one| (one.tool().number(), gauge_mm(one))).collect();
+    let length = |number: Option<u32>| {
+        let own = lengths.iter().find(|l| Some(l.0) == number);
+        own.map_or(setup.gauge_length_mm, |l| l.1)
+    };
+    let read = readback::read_tools(text, control.dialect, &control.machine, (setup, &lengths), &options)
         .map_err(|e| match e {
             ReadError::Word { line, word } => format!(
                 "line {line}: {word} is not interpreted and may change the tool's way; --lenient leaves such words out \
@@ -164,6 +216,7 @@ pub fn read_back(
         cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),
         joints: Some(read.joint_demand(&control.machine, job.feed_mm_min())),
         spindle_rpm: read.spindle_rpm,
+        calls: Vec::new(),
         tools: read
             .moves
             .iter()
@@ -174,10 +227,19 @@ pub fn read_back(
         diagnostics: read.diagnostics,
     };
     let mut clock = 0.0;
+    let mut at_work: Option<Option<u32>> = None;
     for w in read.moves.windows(2) {
         clock += w[1].time_min;
+        let mut from = w[0].pose;
+        if at_work != Some(w[1].tool) {
+            // The spindle stays where it was while the tool is changed.
+            from.tip += from.axis.into_inner() * (length(w[0].tool) - length(w[1].tool));
+            let speed = read.speeds_rpm.iter().find(|s| s.0 == w[1].tool).map(|s| s.1);
+            out.calls.push(Call { first: out.motions.len(), number: w[1].tool, spindle_rpm: speed });
+            at_work = Some(w[1].tool);
+        }
         out.motions.push(Swept {
-            from: w[0].pose,
+            from,
             to: w[1].pose,
             rapid: matches!(w[1].motion, Motion::Rapid),
             // Lines beyond 2^32 do not fit in memory.

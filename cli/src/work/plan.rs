@@ -10,6 +10,7 @@ use crate::watch::{Stage, Watch};
 use crate::work::axes::Fields;
 use crate::work::choice::{self, Choice, Row};
 use crate::work::joints::JointFigures;
+use crate::work::nc::Motions;
 use crate::work::passes::{self, Way};
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::summary::{Productivity, Summary};
@@ -18,6 +19,7 @@ use crate::work::{drop, ideal, left_out, rough};
 use osculate_geom::Diagnostic;
 use osculate_productivity::compare::Axes;
 use osculate_productivity::levels::{Totals, levels};
+use osculate_productivity::plan::Passes;
 use osculate_tools::Lean;
 use osculate_tools::removal::Verdict;
 use std::path::Path;
@@ -28,7 +30,21 @@ pub struct PlanFile {
     /// Name, without a folder.
     pub name: String,
     /// What stands in it.
-    pub text: String,
+    pub bytes: Vec<u8>,
+}
+
+impl PlanFile {
+    /// A file of text.
+    #[must_use]
+    pub fn of_text(name: impl Into<String>, text: String) -> Self {
+        Self { name: name.into(), bytes: text.into_bytes() }
+    }
+
+    /// What stands in it, where it is text.
+    #[must_use]
+    pub fn text(&self) -> Option<&str> {
+        std::str::from_utf8(&self.bytes).ok()
+    }
 }
 
 /// A plan with its program, what was proved of it, and the pages that a person looks at.
@@ -46,17 +62,17 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The file of this name.
+    /// The text file of this name.
     #[must_use]
     pub fn file(&self, name: &str) -> Option<&str> {
-        self.files.iter().find(|f| f.name == name).map(|f| f.text.as_str())
+        self.files.iter().find(|f| f.name == name).and_then(PlanFile::text)
     }
 
     /// The NC program, whatever its control calls its files.
     #[must_use]
     pub fn program(&self) -> &str {
         let program = self.files.iter().find(|f| f.name.starts_with("program."));
-        program.map_or("", |f| f.text.as_str())
+        program.and_then(PlanFile::text).unwrap_or_default()
     }
 
     /// What was proved of the program: the answer with its scope.
@@ -90,7 +106,7 @@ impl Plan {
     /// # Errors
     /// As [`write`](Self::write).
     pub fn write_watched(&self, folder: &Path, watch: &dyn Watch) -> Result<(), Failure> {
-        self.files.iter().try_for_each(|f| files::write(&folder.join(&f.name), f.text.as_bytes(), watch))
+        self.files.iter().try_for_each(|f| files::write(&folder.join(&f.name), &f.bytes, watch))
     }
 }
 
@@ -195,46 +211,12 @@ impl Proved<'_> {
             .chain(diagnostics)
             .chain(verified.diagnostics.iter().cloned())
             .collect();
-        let area_mm2: f64 = faces.faces.iter().map(part::area).sum();
-        let feed = job.feed_mm_min();
-        let left_mm2: f64 = planned.extras.left_out.iter().map(|f| f.area_mm2).sum();
-        let totals = Totals { area_mm2: area_mm2 - left_mm2, time_min: read.time_min };
-        let l = levels(&planned.passes.passes, feed, totals);
-        let found = if planned.local { planned.passes.inclination_rad() } else { None };
-        let mut summary = Summary {
-            format: 1,
-            strategy: planned.strategy.clone(),
-            tool: serde_json::to_value(job.cutter_spec()).map_err(Failure::job)?,
-            tool_words: job.tool_words(),
-            lead_deg: found.map_or(planned.lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
-            lead_range_deg: found.map(|[least, _, most]| [least, most].map(f64::to_degrees)),
-            tilt_deg: planned.lean.tilt_rad.to_degrees(),
-            machine: control.machine.name().to_owned(),
-            dialect: control.dialect_name.clone(),
-            feed: control.feed_name.clone(),
-            passes: planned.passes.passes.len(),
-            points: planned.linked.path.moves.len(),
-            cutting_length_mm: planned.linked.cutting_length_mm,
-            air_length_mm: planned.linked.air_length_mm,
-            time_min: read.time_min,
-            cutting_time_min: read.cutting_time_min,
-            joints: read.joints.as_ref().map(JointFigures::of),
-            area_mm2,
-            productivity_mm2_min: Productivity {
-                instantaneous_min: l.instantaneous_min,
-                instantaneous_max: l.instantaneous_max,
-                regional: l.regional,
-                global: l.global,
-            },
-            ideal,
-            verification: verified.summary.clone(),
-            verdict: VerdictKeys::of(&verified.verdict),
-            left_out: planned.extras.left_out.clone(),
-            worst: verified.worst.clone(),
-            wall_s,
-            compared,
-            diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
-        };
+        let times = Times::of(&read);
+        let mut summary = summary_of(job, faces, &planned, times, &verified)?;
+        summary.ideal = ideal;
+        summary.wall_s = wall_s;
+        summary.compared = compared;
+        summary.diagnostics = diagnostics.iter().map(ToString::to_string).collect();
         let story = Story {
             title: &title,
             job,
@@ -249,47 +231,158 @@ impl Proved<'_> {
         };
         let pages = fill::pages(&story, &|f| stage.at(f));
         let mut files = vec![
-            PlanFile { name: "path.cl".to_owned(), text: cl_text },
-            PlanFile { name: format!("program.{}", control.extension), text: program.text },
-            PlanFile { name: REPORT.to_owned(), text: pages.html },
-            PlanFile { name: "picture.svg".to_owned(), text: pages.svg },
-            PlanFile { name: "path.svg".to_owned(), text: pages.path_svg },
+            PlanFile::of_text("path.cl", cl_text),
+            PlanFile::of_text(format!("program.{}", control.extension), program.text),
+            PlanFile::of_text(REPORT, pages.html),
+            PlanFile::of_text("picture.svg", pages.svg),
+            PlanFile::of_text("path.svg", pages.path_svg),
         ];
         summary.wall_s.report = stage.end();
         let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
-        files.push(PlanFile { name: "summary.json".to_owned(), text });
+        files.push(PlanFile::of_text("summary.json", text));
         Ok(Plan { job: job.clone(), summary, verified, diagnostics, files })
     }
 }
 
+/// How long a program takes, and what it asks of the joints.
+pub struct Times {
+    /// All of it, min.
+    pub time_min: f64,
+    /// Its feed moves, min.
+    pub cutting_min: f64,
+    /// What the feed moves ask of the joints, where that is known.
+    pub joints: Option<JointFigures>,
+}
+
+impl Times {
+    fn of(read: &Motions) -> Self {
+        Self {
+            time_min: read.time_min,
+            cutting_min: read.cutting_time_min,
+            joints: read.joints.as_ref().map(JointFigures::of),
+        }
+    }
+}
+
+/// The figures of a plan; what it was chosen from, its ideal time, wall times and findings are to be added.
+///
+/// # Errors
+/// Where the tool cannot be told as data.
+pub fn summary_of(
+    job: &Job,
+    faces: &Part,
+    planned: &Planned<'_>,
+    times: Times,
+    verified: &Verified,
+) -> Result<Summary, Failure> {
+    let area_mm2: f64 = faces.faces.iter().map(part::area).sum();
+    let left_mm2: f64 = planned.extras.left_out.iter().map(|f| f.area_mm2).sum();
+    let totals = Totals { area_mm2: area_mm2 - left_mm2, time_min: times.time_min };
+    let l = levels(&planned.passes.passes, job.feed_mm_min(), totals);
+    let found = if planned.local { planned.passes.inclination_rad() } else { None };
+    let control = job.control();
+    Ok(Summary {
+        format: 1,
+        strategy: planned.strategy.clone(),
+        tool: serde_json::to_value(job.cutter_spec()).map_err(Failure::job)?,
+        tool_words: job.tool_words(),
+        lead_deg: found.map_or(planned.lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
+        lead_range_deg: found.map(|[least, _, most]| [least, most].map(f64::to_degrees)),
+        tilt_deg: planned.lean.tilt_rad.to_degrees(),
+        machine: control.machine.name().to_owned(),
+        dialect: control.dialect_name.clone(),
+        feed: control.feed_name.clone(),
+        passes: planned.passes.passes.len(),
+        points: planned.linked.path.moves.len(),
+        cutting_length_mm: planned.linked.cutting_length_mm,
+        air_length_mm: planned.linked.air_length_mm,
+        time_min: times.time_min,
+        cutting_time_min: times.cutting_min,
+        joints: times.joints,
+        area_mm2,
+        productivity_mm2_min: Productivity {
+            instantaneous_min: l.instantaneous_min,
+            instantaneous_max: l.instantaneous_max,
+            regional: l.regional,
+            global: l.global,
+        },
+        ideal: None,
+        verification: verified.summary.clone(),
+        verdict: VerdictKeys::of(&verified.verdict),
+        left_out: planned.extras.left_out.clone(),
+        worst: verified.worst.clone(),
+        wall_s: WallS::default(),
+        compared: Vec::new(),
+        diagnostics: Vec::new(),
+        left_standing: Vec::new(),
+        setups: Vec::new(),
+        operations: Vec::new(),
+    })
+}
+
+/// Passes before they are joined.
+pub struct Laid {
+    /// The passes.
+    pub passes: Passes,
+    /// Lead and tilt.
+    pub lean: Lean,
+    /// Whether the lead was found place by place.
+    pub local: bool,
+}
+
+impl Laid {
+    /// Passes by the strategy of a job that finishes.
+    ///
+    /// # Errors
+    /// Where the strategy is another, or no passes can be laid.
+    pub fn of(
+        job: &Job,
+        faces: &Part,
+        watch: &dyn Watch,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Self, Failure> {
+        let strategy = match &job.strategy().kind {
+            Kind::Faces(strategy) => strategy,
+            Kind::Drop(kind) => {
+                let passes = drop::passes(job, faces, *kind, progress)?;
+                return Ok(Self { passes, lean: Lean::default(), local: false });
+            }
+            Kind::Layers(_) | Kind::Auto | Kind::Flank => return Err(not_planned(job)),
+        };
+        let (passes, lean) = match strategy.fixed_axis() {
+            Some(_) => {
+                let fields = &Fields::default();
+                let way =
+                    Way { strategy, lean: Lean::default(), axes: Axes::Held, fields, share: 1.0, watch };
+                (passes::each_face(job, faces, &way, progress)?, Lean::default())
+            }
+            None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
+        };
+        let local = job.strategy().lead == LeadKey::Local || job.strategy().axis_field;
+        Ok(Self { passes, lean, local })
+    }
+
+    /// The passes joined, less what the job wants left out of them.
+    ///
+    /// # Errors
+    /// Where nothing remains.
+    pub fn linked(self, job: &Job, faces: &Part) -> Result<Planned<'static>, Failure> {
+        let Self { passes, lean, local } = self;
+        let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+        let strategy = job.strategy().name().to_owned();
+        Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
+    }
+}
+
 /// Passes and links by the job's strategy.
-fn planned(
+pub fn planned(
     job: &Job,
     faces: &Part,
     watch: &dyn Watch,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
-    let strategy = match &job.strategy().kind {
-        Kind::Faces(strategy) => strategy,
-        Kind::Drop(kind) => {
-            let passes = drop::passes(job, faces, *kind, progress)?;
-            let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
-            let (strategy, lean) = (job.strategy().name().to_owned(), Lean::default());
-            return Ok(Planned { passes, linked, strategy, lean, local: false, extras, with_strips: true });
-        }
-        Kind::Layers(layers) => return rough::planned(job, faces, layers, progress),
-        Kind::Auto | Kind::Flank => return Err(not_planned(job)),
-    };
-    let (passes, lean) = match strategy.fixed_axis() {
-        Some(_) => {
-            let fields = &Fields::default();
-            let way = Way { strategy, lean: Lean::default(), axes: Axes::Held, fields, share: 1.0, watch };
-            (passes::each_face(job, faces, &way, progress)?, Lean::default())
-        }
-        None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
-    };
-    let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
-    let strategy = strategy.name().to_owned();
-    let local = job.strategy().lead == LeadKey::Local || job.strategy().axis_field;
-    Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
+    match &job.strategy().kind {
+        Kind::Layers(layers) => rough::planned(job, faces, layers, progress),
+        _ => Laid::of(job, faces, watch, progress)?.linked(job, faces),
+    }
 }

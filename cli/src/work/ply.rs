@@ -40,6 +40,7 @@ pub fn bytes(job: &Job, faces: &Part, motions: &[Swept], spacing_mm: f64) -> Res
     let work = removal::Job {
         cutter: &cutter,
         holder: holder.as_ref(),
+        changes: &[],
         motions,
         samples: &samples,
         stock_mm: job.layer_mm(),

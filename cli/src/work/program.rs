@@ -140,7 +140,7 @@ impl Posted {
 const AXES: usize = 4000;
 
 /// Axes of the tool along the path, for a setup in which they look up.
-fn axes_of(planned: &Planned<'_>) -> Vec<Unit3> {
+pub fn axes_of(planned: &Planned<'_>) -> Vec<Unit3> {
     if !planned.extras.axes.is_empty() {
         return planned.extras.axes.clone();
     }

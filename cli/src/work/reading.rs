@@ -206,7 +206,7 @@ fn unit_hint(path: &Box3, reach: &Box3) -> &'static str {
 const SPAN: f64 = 8.0;
 
 /// Refuses a path that never comes near the part, a wrong unit or a wrong part zero, and tells one of another size.
-fn meet(file: &Path, motions: &[Swept], faces: &Part) -> Result<Option<Diagnostic>, Failure> {
+pub fn meet(file: &Path, motions: &[Swept], faces: &Part) -> Result<Option<Diagnostic>, Failure> {
     let mut path = Box3::empty();
     for m in motions.iter().filter(|m| !m.rapid) {
         path.add(&m.from.tip);

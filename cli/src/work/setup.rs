@@ -4,6 +4,7 @@ use crate::job::Control;
 use crate::job::Job;
 use crate::job::Turns;
 use crate::part::{self, Part};
+use crate::work::nc;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
 use osculate_postproc::{
@@ -26,7 +27,7 @@ pub struct Along<'a> {
 /// a path, with all of which in the range of the joints where any turn does that.
 pub fn of(job: &Job, faces: &Part, along: Option<Along<'_>>) -> (Setup, Vec<Diagnostic>) {
     let s = job.setup();
-    let gauge = job.cutter().length_mm() + job.holder().map_or(0.0, |h| h.length_mm());
+    let gauge = nc::gauge_mm(job);
     let (points, normals): (Vec<Point3>, Vec<Unit3>) = looks(faces).unzip();
     // A given turn leaves only the place to be found.
     let given = s.rotate_deg.map(|deg| {

@@ -3,9 +3,10 @@
 use crate::failure::{Failure, read};
 use crate::job::{Blank as Raw, Job};
 use crate::part::{self, Part};
+use crate::work::goal::Left;
 use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
-use osculate_tools::removal::stock::{Blank, Resolution, read_stl};
+use osculate_tools::removal::stock::{Blank, Resolution, Stock, read_stl};
 use osculate_tools::removal::{Body, GoalStock, Sample, StockFound, sample_triangles};
 use serde::Serialize;
 use std::path::Path;
@@ -87,9 +88,10 @@ fn mesh(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
     read_stl(&read(path)?).map_err(|e| Failure::file(path, e))
 }
 
-/// Places on the fixtures, as faces that carry no material, numbered from `face` on.
-pub fn fixtures(job: &Job, face: u32) -> Result<Vec<Sample>, Failure> {
+/// Places on the fixtures, as faces that carry no material, numbered after those of the part.
+pub fn fixtures(job: &Job, faces: &Part) -> Result<Vec<Sample>, Failure> {
     let Some(table) = job.fixture() else { return Ok(Vec::new()) };
+    let face = (faces.faces.len() + faces.check.len()) as u32;
     let mut out = Vec::new();
     for (k, file) in table.files.iter().enumerate() {
         out.extend(sample_triangles(&mesh(file)?, face + k as u32, table.spacing_mm));
@@ -139,7 +141,7 @@ pub fn corners(b: &Box3) -> String {
 }
 
 /// Tells raw material that does not hold the part: in another unit or another frame.
-fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
+pub fn holds(stock: &Box3, part: &Box3) -> Option<Diagnostic> {
     const INCH: f64 = 25.4;
     // A part may be as large as its raw material.
     let slack = 1e-3 * part.diagonal_mm();
@@ -173,6 +175,32 @@ pub fn bounds(job: &Job, faces: &Part) -> Result<Option<Box3>, Failure> {
         }
         Raw::Layer(thickness_mm) => around(faces).grown(*thickness_mm),
     }))
+}
+
+/// How far a ray from a point goes until it leaves a box, mm; zero from outside.
+fn leaves(b: &Box3, from: &Point3, along: &Unit3) -> f64 {
+    let each = (0..3).map(|k| match along[k] {
+        d if d > 0.0 => (b.max[k] - from[k]) / d,
+        d if d < 0.0 => (b.min[k] - from[k]) / d,
+        _ => f64::INFINITY,
+    });
+    each.fold(f64::INFINITY, f64::min).max(0.0)
+}
+
+/// As [`leaves`], of a round blank of a radius about an axis, between two places along it.
+fn round_leaves(axis: &Unit3, (radius, [low, high]): (f64, [f64; 2]), from: &Point3, along: &Unit3) -> f64 {
+    let (z, dz) = (from.coords.dot(axis), along.dot(axis));
+    let (p, d) = (from.coords - axis.into_inner() * z, along.into_inner() - axis.into_inner() * dz);
+    let ends = if dz > 0.0 {
+        (high - z) / dz
+    } else if dz < 0.0 {
+        (low - z) / dz
+    } else {
+        f64::INFINITY
+    };
+    let (a, b, c) = (d.norm_squared(), p.dot(&d), radius * radius - p.norm_squared());
+    let wall = if a > 0.0 { ((b * b + a * c).max(0.0).sqrt() - b) / a } else { f64::INFINITY };
+    ends.min(wall).max(0.0)
 }
 
 /// Raw material as the job declares it, ready to be filled.
@@ -222,6 +250,39 @@ impl<'a> RawMaterial<'a> {
         Ok(Some(Self { blank: &given.blank, triangles, resolution, words }))
     }
 
+    /// In words.
+    #[must_use]
+    pub fn words(&self) -> &str {
+        &self.words
+    }
+
+    /// How far it goes from a point within it along a direction at most, mm.
+    #[must_use]
+    pub fn beyond_mm(&self, from: &Point3, along: &Unit3) -> f64 {
+        match self.blank {
+            Raw::Layer(thickness_mm) => *thickness_mm,
+            Raw::Box(b) => leaves(b, from, along),
+            Raw::Cylinder { axis, diameter_mm, along_mm } => {
+                round_leaves(axis, (0.5 * diameter_mm, *along_mm), from, along)
+            }
+            Raw::File { layer_mm, .. } => {
+                let bounds = Box3::around(self.triangles.iter().flatten()).grown(layer_mm.unwrap_or(0.0));
+                leaves(&bounds, from, along)
+            }
+        }
+    }
+
+    /// It, filled.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn filled(&self) -> Result<Stock, Failure> {
+        let GoalStock::Declared { blank, resolution, .. } = self.goal(0.0) else {
+            return Err(Failure::job("no raw material is declared"));
+        };
+        Stock::fill(&blank, &resolution).map(|made| made.stock).map_err(Failure::job)
+    }
+
     /// The raw material of a goal, with the layer on the faces to machine as far as they are judged.
     pub fn goal(&self, layer_mm: f64) -> GoalStock<'_> {
         let layer = |thickness_mm: f64, filled: bool| Blank::Layer {
@@ -235,7 +296,20 @@ impl<'a> RawMaterial<'a> {
             Raw::Layer(thickness_mm) => layer(*thickness_mm, false),
             Raw::Cylinder { .. } | Raw::File { .. } => Blank::Mesh(&self.triangles),
         };
-        GoalStock::Declared { blank, resolution: self.resolution, layer_mm, words: &self.words }
+        GoalStock::Declared { blank, resolution: self.resolution, from: 0, layer_mm, words: &self.words }
+    }
+}
+
+/// Raw material that operations before have left, as a goal has it.
+pub fn goal_of_left(left: &Left, layer_mm: f64) -> GoalStock<'_> {
+    let stock = &*left.stock;
+    let resolution = Resolution { cell_mm: stock.cell_mm(), tri: true, budget_bytes: stock.bytes() };
+    GoalStock::Declared {
+        blank: Blank::Left(stock),
+        resolution,
+        from: left.from,
+        layer_mm,
+        words: &left.words,
     }
 }
 

@@ -5,6 +5,7 @@ use crate::work::choice::Row;
 use crate::work::extras::FaceLeftOut;
 use crate::work::ideal::IdealTime;
 use crate::work::joints::JointFigures;
+use crate::work::operations::standing::LeftStanding;
 use crate::work::program::WallS;
 use crate::work::verify::{VerdictKeys, Verification, WorstPlace};
 use serde::Serialize;
@@ -83,6 +84,58 @@ pub struct Summary {
     pub compared: Vec<Row>,
     /// Findings.
     pub diagnostics: Vec<String>,
+    /// Of a list of operations, what stands too high on the finished part, by face.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_standing: Vec<LeftStanding>,
+    /// Of a list of operations, how the part is held, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub setups: Vec<SetupSummary>,
+    /// Of a list of operations, each of them, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub operations: Vec<OperationSummary>,
+}
+
+/// A setup of a list of operations.
+#[derive(Debug, Serialize, Clone)]
+pub struct SetupSummary {
+    /// As operations name it.
+    pub name: String,
+    /// The file of its program.
+    pub program: String,
+    /// Time of its program, tool changes left out, min.
+    pub time_min: f64,
+    /// How the part is turned, about x, then y, then z.
+    pub rotate_deg: [f64; 3],
+    /// Where the part's origin sits from the table's reference point.
+    pub part_zero_mm: [f64; 3],
+}
+
+/// An operation of a list, with the keys that a plan of it alone has.
+#[derive(Debug, Serialize)]
+pub struct OperationSummary {
+    /// As people name it.
+    pub name: String,
+    /// What it does.
+    pub kind: &'static str,
+    /// Its setup.
+    pub setup: String,
+    /// The tool's number.
+    pub tool_number: u32,
+    /// How high material stood on its faces before, at most, mm; absent where no raw material is declared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standing_mm: Option<f64>,
+    /// Of rest, the area of its faces that stood too high before, mm2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub too_high_mm2: Option<f64>,
+    /// What it took of the raw material, mm3; absent where none is declared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub removed_mm3: Option<f64>,
+    /// What is left of it, mm3.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_mm3: Option<f64>,
+    /// Its figures.
+    #[serde(flatten)]
+    pub figures: Summary,
 }
 
 impl Summary {

@@ -149,8 +149,8 @@ pub struct Reading<'a> {
     pub program: Program<'a>,
     /// The state of the control.
     pub control: GoalControl,
-    /// The spindle's speed, where the program says one.
-    pub spindle_rpm: Option<f64>,
+    /// The speed of each tool that the program calls, where it says one.
+    pub speeds_rpm: Vec<Option<f64>>,
 }
 
 /// A verification with what the report needs.
@@ -176,8 +176,17 @@ pub fn run(
     reading: Reading<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verified, Failure> {
-    let aim = Aim::of(job, faces)?;
-    let goal = aim.goal(reading.control, reading.spindle_rpm);
+    judge(&Aim::of(job, faces)?, reading, progress)
+}
+
+/// As [`run`], of a goal that is made already.
+pub fn judge(
+    aim: &Aim<'_>,
+    reading: Reading<'_>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Verified, Failure> {
+    let (job, faces) = (aim.job(), aim.faces());
+    let goal = aim.goal(reading.control, &reading.speeds_rpm);
     let verdict = prove(&goal, reading.program, progress).map_err(|e| match e {
         ProveError::Blank(why) => Failure::file(job.path(), format!("[stock] {why}")),
         other => Failure::file(job.path(), other),

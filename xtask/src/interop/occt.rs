@@ -76,7 +76,7 @@ fn peer(root: &Path) -> Result<PathBuf, Failure> {
 }
 
 fn osculate(root: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(root.join("target/release/osculate"));
+    let mut command = Command::new(crate::cmd::built(root, "osculate"));
     command.current_dir(root).args(arguments);
     command
 }
@@ -96,7 +96,7 @@ fn rational_faces(root: &Path) -> Result<String, Failure> {
 fn time(root: &Path, python: &Path, file: &str) -> Result<(), Failure> {
     let example = ["build", "--release", "--quiet", "-p", "osculate-surfaces", "--example", "read_time"];
     start(cargo(root, &example))?;
-    let mut ours = Command::new(root.join("target/release/examples/read_time"));
+    let mut ours = Command::new(crate::cmd::built(root, "examples/read_time"));
     ours.current_dir(root).args([TIMES, file]);
     let mut theirs = Command::new(python);
     theirs.current_dir(root).args(["xtask/peers/occt.py", "--time", TIMES, file]);

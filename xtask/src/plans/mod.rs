@@ -218,7 +218,7 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
         Some(given) => given.into(),
         None => {
             crate::cmd::run(cargo(&root, &["build", "--release", "--locked", "-p", "osculate"]))?;
-            root.join("target/release/osculate")
+            crate::cmd::built(&root, "osculate")
         }
     };
     if options.speed {

@@ -1,9 +1,9 @@
 //! What verification measured of a contender.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What verification measured of a contender.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Measured {
     /// Highest material left, mm.
     pub scallop_max_mm: f64,

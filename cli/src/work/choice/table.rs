@@ -7,13 +7,13 @@ use crate::job::Job;
 use crate::report;
 use crate::words::Table;
 use osculate_productivity::compare::Axes;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Characters of a reason in the table; all of it is in the JSON.
 const WHY: usize = 90;
 
 /// What became of a candidate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Verified within tolerance; the first such row is the best.
@@ -29,7 +29,7 @@ pub enum Outcome {
 }
 
 /// One row.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Row {
     /// The tool in words.
     pub tool: String,
@@ -40,7 +40,7 @@ pub struct Row {
     /// Whether the lead was found place by place.
     pub local_lead: bool,
     /// Whether axes are measured from the `feed` or are a `field` in the part's frame.
-    pub axis: &'static str,
+    pub axis: String,
     /// Tilt.
     pub tilt_deg: f64,
     /// Leads looked at.
@@ -86,7 +86,7 @@ fn of_entry(jobs: &[Job], entry: &Entry, leads: usize) -> Row {
         strategy: candidates::words(&c.strategy),
         lead_deg: c.lean.lead_rad.to_degrees(),
         local_lead: c.axes == Axes::Local,
-        axis: if c.axes == Axes::Field { "field" } else { "feed" },
+        axis: if c.axes == Axes::Field { "field" } else { "feed" }.to_owned(),
         tilt_deg: c.lean.tilt_rad.to_degrees(),
         leads,
         pointwise_min: finite(entry.screened.pointwise_min),
@@ -152,7 +152,7 @@ fn cells(row: &Row) -> [String; 9] {
     [
         row.tool.clone(),
         row.strategy.clone(),
-        match row.axis {
+        match row.axis.as_str() {
             "feed" if row.local_lead => "local".to_owned(),
             "feed" => format!("{:.0}", row.lead_deg),
             field => field.to_owned(),

@@ -1,0 +1,491 @@
+//! A job of several operations: one after the other on the same part, each from the material that the one before left.
+//!
+//! Every operation is a job of its own, made of the tables that all have in common and of its own table, so that whatever
+//! plans or judges one job does an operation as well.
+
+use crate::failure::{Failure, beside, read_text};
+use crate::job::problem::Places;
+use crate::job::raw::{self, Raw, RawList};
+use crate::job::words::{AxisKey, Gouges, OperationWord, StrategyWord};
+use crate::job::{Job, SHARES, check, keys, schema};
+use crate::words::number;
+use std::path::Path;
+
+/// What a roughing leaves where nothing says it, mm.
+const ALLOWANCE_MM: f64 = 0.5;
+/// Its deepest cut and the distance of its rows, of the tool's diameter.
+const STEPDOWN: f64 = 0.25;
+const STEPOVER: f64 = 0.4;
+/// How far it may go into its allowance, and how far straight moves may be off, of the allowance.
+const INTO_ALLOWANCE: f64 = 0.2;
+const CHORD_OF_ALLOWANCE: f64 = 0.1;
+/// How far rest passes go beyond what stands too high, of the tool's diameter.
+const OVERLAP: f64 = 0.1;
+
+/// How the part is held for some of the operations.
+#[derive(Debug, Clone)]
+pub struct Clamping {
+    /// As operations name it.
+    pub name: String,
+    /// The whole part held so, with all tools.
+    pub job: Job,
+}
+
+/// One of the operations.
+#[derive(Debug, Clone)]
+pub struct Operation {
+    /// As people name it.
+    pub name: String,
+    /// What it does.
+    pub kind: OperationWord,
+    /// Which of the clampings it is in.
+    pub setup: usize,
+    /// How far rest passes go beyond what stands too high, mm.
+    pub overlap_mm: f64,
+    places: Places,
+    raw: Raw,
+}
+
+/// A job of several operations in which everything is checked.
+#[derive(Debug, Clone)]
+pub struct Operations {
+    text: String,
+    places: Places,
+    setups: Vec<Clamping>,
+    all: Vec<Operation>,
+    /// As the text names them.
+    files: Vec<String>,
+}
+
+impl Operation {
+    /// The job that is judged: raw material stands as the whole list says.
+    ///
+    /// # Errors
+    /// As [`Job::from_toml`].
+    pub fn judged(&self) -> Result<Job, Failure> {
+        Job::of(self.places.clone(), &self.raw)
+    }
+
+    /// The job that is planned. Passes of a finishing care for what stands on their faces, which is so high at most; where nothing
+    /// is said of it a layer is assumed. A roughing cares for the raw material.
+    ///
+    /// # Errors
+    /// As [`Job::from_toml`].
+    pub fn planned(&self, standing_mm: Option<f64>) -> Result<Job, Failure> {
+        if self.kind == OperationWord::Rough {
+            return self.judged();
+        }
+        Job::of(self.places.clone(), &Raw { standing_mm, stock: None, ..self.raw.clone() })
+    }
+
+    /// A failure at a key of its table.
+    #[must_use]
+    pub fn refuse(&self, key: &str, what: impl std::fmt::Display) -> Failure {
+        self.places.refuse("operation", key, what)
+    }
+}
+
+impl Operations {
+    /// The format of files that hold operations.
+    pub const FORMAT: i64 = 2;
+
+    /// Whether a text is a job of operations.
+    #[must_use]
+    pub fn are_in(text: &str) -> bool {
+        check::format(text) == Some(Self::FORMAT)
+    }
+
+    /// All tables and keys of lists of operations.
+    #[must_use]
+    pub fn schema() -> &'static schema::Schema {
+        &keys::LIST
+    }
+
+    /// The operations of a text. Files that it names are looked for beside `path`.
+    ///
+    /// # Errors
+    /// Names line, key, value and what was expected; everything that can be told without the part is.
+    pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {
+        let places = check::places(text, path, &keys::LIST)?;
+        let list: RawList =
+            toml::from_str(text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
+        Self::of(text, places, &list)
+    }
+
+    /// The same job with operations, as they stand in a job file, in place of none.
+    ///
+    /// # Errors
+    /// As [`Operations::from_toml`].
+    pub fn with(&self, operations: &str) -> Result<Self, Failure> {
+        Self::from_toml(&format!("{}\n{operations}", self.text.trim_end()), self.path())
+    }
+
+    /// The text that it was read from.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The files that it names, as the text has them.
+    #[must_use]
+    pub fn files(&self) -> &[String] {
+        &self.files
+    }
+
+    /// The text with the files that it names by their full paths, so that it means the same in another folder.
+    #[must_use]
+    pub fn text_anywhere(&self) -> String {
+        let mut out = self.text.clone();
+        for file in &self.files {
+            let full = beside(self.path(), file);
+            let full = std::fs::canonicalize(&full).unwrap_or(full).display().to_string();
+            let full = full.replace('\\', "\\\\").replace('"', "\\\"");
+            for quote in ['"', '\''] {
+                out = out.replace(&format!("{quote}{file}{quote}"), &format!("\"{full}\""));
+            }
+        }
+        out
+    }
+
+    /// The operations of a file.
+    ///
+    /// # Errors
+    /// As [`Operations::from_toml`].
+    pub fn load(path: &Path) -> Result<Self, Failure> {
+        Self::from_toml(&read_text(path)?, path)
+    }
+
+    fn of(text: &str, places: Places, list: &RawList) -> Result<Self, Failure> {
+        numbered(&places, list)?;
+        let names = setup_names(&places, list)?;
+        let setups = names.iter().enumerate().map(|(k, name)| clamping(&places, list, (k, name)));
+        let setups = setups.collect::<Result<Vec<_>, _>>()?;
+        let mut all: Vec<Operation> = Vec::with_capacity(list.operation.len());
+        for (k, own) in list.operation.iter().enumerate() {
+            let made = composed(&places, list, (k, own), &names)?;
+            if all.iter().any(|o| o.name == made.name) {
+                let what = format!("name = \"{}\" is that of an operation before it", made.name);
+                return Err(made.refuse("name", what));
+            }
+            if made.setup < all.last().map_or(0, |o| o.setup) {
+                let what = format!(
+                    "setup = \"{}\" comes after operations of a later one: the part is not put back; order the operations by setup",
+                    names[made.setup]
+                );
+                return Err(made.refuse("setup", what));
+            }
+            // Everything that can be told of it is told now.
+            made.judged()?;
+            all.push(made);
+        }
+        if let Some(first) = all.first().filter(|o| o.kind == OperationWord::Rest) {
+            let what = "kind = \"rest\" cuts what operations before it left: there is none";
+            return Err(first.refuse("kind", what));
+        }
+        let machine = list.machine.as_ref().and_then(|m| m.file.clone());
+        let of_setups = list.setup.iter().flat_map(|s| s.fixtures.iter().flatten().cloned());
+        let named = [list.part.file.clone(), list.stock.as_ref().and_then(|s| s.file.clone()), machine];
+        let mut files: Vec<String> = named.into_iter().flatten().chain(of_setups).collect();
+        files.sort();
+        files.dedup();
+        Ok(Self { text: text.to_owned(), places, setups, all, files })
+    }
+
+    /// The file it came from.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.places.path()
+    }
+
+    /// The job that the finished part is held against: all its faces, the tolerance of the whole.
+    #[must_use]
+    pub fn whole(&self) -> &Job {
+        &self.setups[0].job
+    }
+
+    /// How the part is held, in order.
+    #[must_use]
+    pub fn setups(&self) -> &[Clamping] {
+        &self.setups
+    }
+
+    /// The operations, in order.
+    #[must_use]
+    pub fn all(&self) -> &[Operation] {
+        &self.all
+    }
+}
+
+/// Refuses tools without a number or with one that another has, and a job without tools.
+fn numbered(places: &Places, list: &RawList) -> Result<(), Failure> {
+    if list.tool.is_empty() {
+        return Err(places.refuse("", "tool", "needs at least one [[tool]] with its number"));
+    }
+    for (k, tool) in list.tool.iter().enumerate() {
+        let table = format!("tool[{}]", k + 1);
+        let Some(n) = tool.number else {
+            return Err(places.refuse(&table, "", "needs number: programs call tools by it"));
+        };
+        if list.tool[..k].iter().any(|t| t.number == Some(n)) {
+            return Err(places.refuse(&table, "number", format!("number = {n} is that of a tool before it")));
+        }
+    }
+    Ok(())
+}
+
+/// The names of setups; one where none is given.
+fn setup_names(places: &Places, list: &RawList) -> Result<Vec<String>, Failure> {
+    let mut out: Vec<String> = Vec::new();
+    for (k, setup) in list.setup.iter().enumerate() {
+        let name = setup.name.clone().unwrap_or_else(|| usual_name(k));
+        let table = format!("setup[{}]", k + 1);
+        if out.contains(&name) {
+            return Err(places.refuse(
+                &table,
+                "name",
+                format!("name = \"{name}\" is that of a setup before it"),
+            ));
+        }
+        if !name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
+            let what = format!("name = \"{name}\" names a file too: letters, digits, - and _ only");
+            return Err(places.refuse(&table, "name", what));
+        }
+        out.push(name);
+    }
+    if out.is_empty() {
+        out.push(usual_name(0));
+    }
+    Ok(out)
+}
+
+fn usual_name(k: usize) -> String {
+    format!("op{}", 10 * (k + 1))
+}
+
+/// The whole part as a setup holds it, with all tools.
+fn clamping(places: &Places, list: &RawList, (k, name): (usize, &str)) -> Result<Clamping, Failure> {
+    let tools: Vec<usize> = (0..list.tool.len()).collect();
+    let mut raw = common(list, &tools);
+    let mut stand = moved(list, None, &tools);
+    if let Some(table) = list.setup.get(k) {
+        held(&mut raw, table);
+        stand.extend(["setup", "fixture"].map(|t| (t.to_owned(), format!("setup[{}]", k + 1))));
+    }
+    Ok(Clamping { name: name.to_owned(), job: Job::of(places.with(stand), &raw)? })
+}
+
+/// A job held as a setup says.
+fn held(raw: &mut Raw, table: &raw::Setup) {
+    raw.setup = raw::Setup { name: None, fixtures: None, fixture_spacing_mm: None, ..table.clone() };
+    if let Some(files) = table.fixtures.clone().filter(|f| !f.is_empty()) {
+        raw.fixture = Some(raw::Fixture { files, spacing_mm: table.fixture_spacing_mm });
+    }
+}
+
+/// Where the tables of an operation stand in the file: tool, setup and strategy of a job are those of lists here.
+fn moved(list: &RawList, operation: Option<usize>, tools: &[usize]) -> Vec<(String, String)> {
+    let mut out = Vec::new();
+    match tools {
+        [one] => out.push(("tool".to_owned(), format!("tool[{}]", one + 1))),
+        all => out.extend(
+            (1..)
+                .zip(all)
+                .map(|(place, k)| (format!("{}[{place}]", schema::TOOLS), format!("tool[{}]", k + 1))),
+        ),
+    }
+    if let Some(k) = operation {
+        let here = format!("operation[{}]", k + 1);
+        out.push(("strategy".to_owned(), format!("{here}.strategy")));
+        out.push(("operation".to_owned(), here));
+        let name = list.operation[k].setup.as_deref();
+        if let Some(s) = setup_of(list, name) {
+            out.push(("setup".to_owned(), format!("setup[{}]", s + 1)));
+            out.push(("fixture".to_owned(), format!("setup[{}]", s + 1)));
+        }
+    }
+    out
+}
+
+/// Which table of the list a setup is.
+fn setup_of(list: &RawList, name: Option<&str>) -> Option<usize> {
+    match name {
+        None => (!list.setup.is_empty()).then_some(0),
+        Some(name) => {
+            let own = |k: usize, s: &raw::Setup| s.name.clone().unwrap_or_else(|| usual_name(k));
+            list.setup.iter().enumerate().position(|(k, s)| own(k, s) == name)
+        }
+    }
+}
+
+fn all_tools(list: &RawList) -> Vec<usize> {
+    (0..list.tool.len()).collect()
+}
+
+/// What all operations have in common.
+fn common(list: &RawList, tools: &[usize]) -> Raw {
+    let chosen: Vec<raw::Tool> = tools.iter().map(|k| list.tool[*k].clone()).collect();
+    let (tool, tools) = match &chosen[..] {
+        [one] => (Some(one.clone()), None),
+        _ => (None, Some(chosen)),
+    };
+    Raw {
+        format: 1,
+        part: list.part.clone(),
+        tool,
+        tools,
+        tolerance: list.tolerance.clone(),
+        strategy: raw::Strategy::default(),
+        cutting: list.cutting.clone(),
+        machine: list.machine.clone(),
+        setup: raw::Setup::default(),
+        contact: None,
+        stock: list.stock.clone(),
+        fixture: None,
+        flank: raw::Flank::default(),
+        verification: list.verification.clone(),
+        standing_mm: None,
+    }
+}
+
+/// An operation as a job of its own.
+fn composed(
+    places: &Places,
+    list: &RawList,
+    (k, own): (usize, &raw::Operation),
+    setups: &[String],
+) -> Result<Operation, Failure> {
+    let here = format!("operation[{}]", k + 1);
+    let refuse = |key: &str, what: String| places.refuse(&here, key, what);
+    let tools = chosen_tools(list, own.tools.as_deref()).map_err(|what| refuse("tools", what))?;
+    let places = places.with(moved(list, Some(k), &tools));
+    let setup = match &own.setup {
+        None => 0,
+        Some(name) => setups.iter().position(|s| s == name).ok_or_else(|| {
+            let names: Vec<&str> = setups.iter().map(String::as_str).collect();
+            let near = crate::job::words::nearest(name, names.iter().copied());
+            let what = format!("setup = \"{name}\" is none of {}", names.join(", "));
+            places.full("operation", "setup", what, format!("one of {}", names.join(", ")), near)
+        })?,
+    };
+    let mut raw = common(list, &tools);
+    if let Some(faces) = &own.faces {
+        raw.part.faces = Some(faces.clone());
+    }
+    if let Some(table) = list.setup.get(setup) {
+        held(&mut raw, table);
+    }
+    raw.strategy = own.strategy.clone();
+    let diameter_mm = tools.iter().map(|k| list.tool[*k].diameter_mm).fold(0.0, f64::max);
+    match own.kind {
+        OperationWord::Rough => rough(&mut raw, own, diameter_mm).map_err(|(key, what)| refuse(key, what))?,
+        OperationWord::Finish | OperationWord::Rest => {
+            fine(&places, &mut raw, own).map_err(|(key, what)| refuse(key, what))?;
+        }
+    }
+    if own.kind != OperationWord::Rest && own.overlap_mm.is_some() {
+        return Err(refuse("overlap_mm", "overlap_mm is for kind = \"rest\": leave it out".to_owned()));
+    }
+    if own.kind == OperationWord::Rough && list.stock.is_none() {
+        let what = "kind = \"rough\" needs the raw material: add [stock] with box_mm, cylinder, file or allowance_mm";
+        return Err(refuse("kind", what.to_owned()));
+    }
+    if own.kind != OperationWord::Finish && tools.len() > 1 {
+        let what = format!(
+            "kind = \"{}\" takes one tool: tools = [{}]",
+            own.kind.word(),
+            list.tool[tools[0]].number.unwrap_or(1)
+        );
+        return Err(refuse("tools", what));
+    }
+    let smallest_mm = tools.iter().map(|k| list.tool[*k].diameter_mm).fold(f64::INFINITY, f64::min);
+    Ok(Operation {
+        name: own.name.clone().unwrap_or_else(|| format!("{} {}", own.kind.word(), k + 1)),
+        kind: own.kind,
+        setup,
+        overlap_mm: own.overlap_mm.unwrap_or(OVERLAP * smallest_mm),
+        places,
+        raw,
+    })
+}
+
+/// The places in the list of the tools that an operation names; all where it names none.
+fn chosen_tools(list: &RawList, named: Option<&[u32]>) -> Result<Vec<usize>, String> {
+    let numbers: Vec<u32> = list.tool.iter().filter_map(|t| t.number).collect();
+    let Some(named) = named else { return Ok(all_tools(list)) };
+    if named.is_empty() {
+        return Err(
+            "tools = []: the list of tools is empty; give at least one, or leave it out for all".to_owned()
+        );
+    }
+    let mut out = Vec::with_capacity(named.len());
+    for n in named {
+        let Some(k) = numbers.iter().position(|own| own == n) else {
+            let have: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+            return Err(format!("tools names {n}, but the tools are {}", have.join(", ")));
+        };
+        if out.contains(&k) {
+            return Err(format!("tools names {n} twice"));
+        }
+        out.push(k);
+    }
+    Ok(out)
+}
+
+/// A key with what is wrong about it.
+type Wrong = (&'static str, String);
+
+/// Roughing in layers, with sizes from the tool where nothing says them.
+fn rough(raw: &mut Raw, own: &raw::Operation, diameter_mm: f64) -> Result<(), Wrong> {
+    let s = &mut raw.strategy;
+    if !matches!(s.kind, StrategyWord::Auto | StrategyWord::ZLevel) {
+        return Err(("kind", format!("kind = \"rough\" goes in layers (z_level), not by {}", s.kind.word())));
+    }
+    s.kind = StrategyWord::ZLevel;
+    let stepdown = own.stepdown_mm.or(s.stepdown_mm).unwrap_or(STEPDOWN * diameter_mm);
+    let allowance = own.allowance_mm.or(s.allowance_mm).unwrap_or(ALLOWANCE_MM);
+    s.stepdown_mm = Some(stepdown);
+    s.stepover_mm = own.stepover_mm.or(s.stepover_mm).or(Some(STEPOVER * diameter_mm));
+    s.allowance_mm = Some(allowance);
+    let t = &mut raw.tolerance;
+    let gouge = t.gouge_mm.unwrap_or(SHARES[0] * t.scallop_mm);
+    t.chord_mm = Some(t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm).max(CHORD_OF_ALLOWANCE * allowance));
+    t.gouge_mm = Some(own.gouge_mm.unwrap_or_else(|| gouge.max(INTO_ALLOWANCE * allowance)));
+    t.scallop_mm = own.scallop_mm.unwrap_or(stepdown);
+    Ok(())
+}
+
+/// Finishing, and what is left of it.
+fn fine(places: &Places, raw: &mut Raw, own: &raw::Operation) -> Result<(), Wrong> {
+    if own.allowance_mm.is_some_and(|a| a > 0.0) {
+        let what = format!(
+            "allowance_mm = {}: only kind = \"rough\" leaves an allowance; a finishing brings faces to their tolerance",
+            number(own.allowance_mm.unwrap_or(0.0), 4)
+        );
+        return Err(("allowance_mm", what));
+    }
+    for (key, given) in [("stepdown_mm", own.stepdown_mm), ("stepover_mm", own.stepover_mm)] {
+        if given.is_some() {
+            return Err((key, format!("{key} is for kind = \"rough\": leave it out")));
+        }
+    }
+    let (s, t) = (&mut raw.strategy, &mut raw.tolerance);
+    if matches!(s.kind, StrategyWord::ZLevel | StrategyWord::Flank) {
+        return Err(("kind", format!("{} is no way of finishing here", s.kind.word())));
+    }
+    if s.kind == StrategyWord::Auto
+        && (own.kind == OperationWord::Rest || matches!(s.axis, Some(AxisKey::Given(_))))
+    {
+        s.kind = StrategyWord::Isoplanar3c;
+    }
+    // What a tool cannot reach without harm is for the next operation.
+    let drops =
+        matches!(s.kind, StrategyWord::Isoplanar3c | StrategyWord::Waterline3c | StrategyWord::Gradient3c);
+    if s.kind != StrategyWord::Auto && !drops && !places.has("strategy", "gouges") {
+        s.gouges = Gouges::LeaveOut;
+    }
+    // An operation that leaves more on purpose is no less exact.
+    t.gouge_mm = Some(own.gouge_mm.or(t.gouge_mm).unwrap_or(SHARES[0] * t.scallop_mm));
+    t.chord_mm = Some(t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm));
+    t.scallop_mm = own.scallop_mm.unwrap_or(t.scallop_mm);
+    Ok(())
+}

@@ -1,0 +1,132 @@
+//! The programs of a list of operations: one for each setup, with its tool changes.
+
+use crate::failure::Failure;
+use crate::job::{Job, Operations};
+use crate::part::Part;
+use crate::work::operations::course::{Course, Text};
+use crate::work::operations::step::Step;
+use crate::work::program::axes_of;
+use crate::work::setup::{self, Along};
+use crate::work::{budget, nc, passes};
+use osculate_geom::Diagnostic;
+use osculate_postproc::{Section, Setup, post_sections};
+use osculate_tools::cl::ClPath;
+use std::path::{Path, PathBuf};
+
+/// The program of a setup.
+pub struct Program {
+    /// Its file.
+    pub file: String,
+    /// What stands in it.
+    pub text: String,
+    /// Where the part sits.
+    pub setup: Setup,
+    /// Findings.
+    pub diagnostics: Vec<Diagnostic>,
+    path: PathBuf,
+}
+
+impl Program {
+    /// The program as it is read.
+    pub fn text(&self) -> Text<'_> {
+        Text { file: &self.path, text: &self.text }
+    }
+}
+
+/// The steps of a setup, by their places.
+fn of_setup(steps: &[Step<'_>], setup: usize) -> Vec<usize> {
+    (0..steps.len()).filter(|k| steps[*k].operation.setup == setup).collect()
+}
+
+/// Posts the steps of every setup.
+///
+/// # Errors
+/// Where nothing is done in a setup, or its paths cannot be posted.
+pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Vec<Program>, Failure> {
+    let setups = list.setups();
+    let mut out = Vec::with_capacity(setups.len());
+    for (k, held) in setups.iter().enumerate() {
+        let own = of_setup(steps, k);
+        if own.is_empty() {
+            let what = format!("setup {}: no operation has anything to do in it: leave it out", held.name);
+            return Err(Failure::file(list.path(), what));
+        }
+        let paths: Vec<ClPath> =
+            own.iter().map(|s| passes::cl_path(&steps[*s].job, &steps[*s].planned.linked)).collect();
+        let (place, notes) = placed(&held.job, part, (steps, &own), &paths);
+        let control = held.job.control();
+        let title = passes::title(&held.job);
+        // What a control may round off at corners counts for the whole program.
+        let blend_mm =
+            own.iter().map(|s| budget::solve(&steps[*s].job).tip_tol_mm).fold(f64::INFINITY, f64::min);
+        let sections: Vec<Section<'_>> = own
+            .iter()
+            .zip(&paths)
+            .map(|(s, path)| {
+                let Step { job, operation, .. } = &steps[*s];
+                let mut options = nc::job_options(job, control, &title);
+                options.program_number += k as u32;
+                options.blend_mm = blend_mm;
+                Section { name: operation.name.clone(), path, gauge_length_mm: nc::gauge_mm(job), options }
+            })
+            .collect();
+        let posted = post_sections(&sections, &control.machine, &place)
+            .map_err(|e| Failure::file(list.path(), format!("setup {}: {e}", held.name)))?;
+        let name = if setups.len() > 1 { format!("program-{}", held.name) } else { "program".to_owned() };
+        let file = format!("{name}.{}", control.extension);
+        let mut diagnostics = held.job.control_notes();
+        diagnostics.extend(notes);
+        diagnostics.extend(posted.diagnostics);
+        out.push(Program { path: PathBuf::from(&file), file, text: posted.text, setup: place, diagnostics });
+    }
+    Ok(out)
+}
+
+/// Where the part sits for all paths of a setup.
+fn placed(
+    held: &Job,
+    part: &Part,
+    (steps, own): (&[Step<'_>], &[usize]),
+    paths: &[ClPath],
+) -> (Setup, Vec<Diagnostic>) {
+    let moves = paths.iter().flat_map(|p| p.moves.iter().copied()).collect();
+    let all = ClPath { moves, ..paths[0].clone() };
+    let axes: Vec<_> = own.iter().flat_map(|s| axes_of(&steps[*s].planned)).collect();
+    // The longest tool needs the most of the travel.
+    let jobs = held.each_tool();
+    let longest = jobs.iter().max_by(|a, b| nc::gauge_mm(a).total_cmp(&nc::gauge_mm(b))).unwrap_or(held);
+    setup::of(longest, part, Some(Along { path: &all, axes: &axes }))
+}
+
+/// Where each step ends among the motions: programs of several sections say where one begins.
+///
+/// # Errors
+/// Where a program does not say it, which is a fault of the post.
+pub fn ends(course: &Course, programs: &[Program], steps: &[Step<'_>]) -> Result<Vec<usize>, Failure> {
+    let mut out = vec![0; steps.len()];
+    for (k, (program, range)) in programs.iter().zip(&course.setups).enumerate() {
+        let own = of_setup(steps, k);
+        for (j, s) in own.iter().enumerate() {
+            out[*s] = match own.get(j + 1) {
+                None => range.end,
+                Some(_) => {
+                    let line =
+                        heading(&program.text, j + 2).ok_or_else(|| no_heading(&program.path, j + 2))?;
+                    let inside = &course.motions[range.clone()];
+                    range.start + inside.partition_point(|m| (m.block as usize) < line)
+                }
+            };
+        }
+    }
+    Ok(out)
+}
+
+/// The line, from 1, in which a program says that a section begins.
+fn heading(text: &str, section: usize) -> Option<usize> {
+    let words = format!("operation {section}: ");
+    text.lines().position(|l| l.to_ascii_lowercase().contains(&words)).map(|k| k + 1)
+}
+
+fn no_heading(file: &Path, section: usize) -> Failure {
+    Failure::file(file, format!("does not say where operation {section} begins"))
+}

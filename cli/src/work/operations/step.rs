@@ -1,0 +1,192 @@
+//! One operation planned: from what those before it left to its path.
+
+use crate::failure::Failure;
+use crate::job::{Job, Operation, OperationWord};
+use crate::part::{LoadedFace, Part};
+use crate::watch::{Stage, Watch};
+use crate::words::number;
+use crate::work::choice::{self, Choice, Row};
+use crate::work::operations::behind::Behind;
+use crate::work::operations::kept::Kept;
+use crate::work::plan::{Laid, planned};
+use crate::work::program::{Planned, WallS};
+use crate::work::stock::RawMaterial;
+use osculate_geom::Diagnostic;
+use osculate_productivity::plan::{Rest, rest_of};
+use std::sync::OnceLock;
+
+/// An operation that is planned.
+pub struct Step<'a> {
+    /// The operation.
+    pub operation: &'a Operation,
+    /// Its job with the tool in hand, as it was planned.
+    pub job: Job,
+    /// The part with its own faces to machine.
+    pub part: Part,
+    /// Its passes and path.
+    pub planned: Planned<'static>,
+    /// What it was chosen from.
+    pub compared: Vec<Row>,
+    /// How high material stood on its faces, mm, where raw material is declared.
+    pub standing_mm: Option<f64>,
+    /// Of rest, the area that stood too high, mm2.
+    pub too_high_mm2: Option<f64>,
+    /// Wall time of planning, s.
+    pub plan_s: f64,
+}
+
+impl<'a> Step<'a> {
+    /// As it is kept for a run that goes on.
+    pub fn kept(&self, key: u64) -> Kept {
+        let mut kept = Kept::of(key, self.job.tool().number(), &self.planned);
+        (kept.standing_mm, kept.too_high_mm2) = (self.standing_mm, self.too_high_mm2);
+        kept.plan_s = self.plan_s;
+        kept.compared.clone_from(&self.compared);
+        kept
+    }
+
+    /// As it was kept.
+    ///
+    /// # Errors
+    /// Where the operation is none of the part.
+    pub fn of_kept(operation: &'a Operation, whole: &Part, kept: Kept) -> Result<Self, Failure> {
+        let job = operation.planned(kept.standing_mm)?;
+        let job = if job.tools().len() > 1 { job.in_hand(kept.tool) } else { job };
+        Ok(Self {
+            operation,
+            job,
+            part: whole.seen_by(&operation.judged()?)?,
+            planned: kept.planned(),
+            standing_mm: kept.standing_mm,
+            too_high_mm2: kept.too_high_mm2,
+            plan_s: kept.plan_s,
+            compared: kept.compared,
+        })
+    }
+}
+
+/// What became of an operation.
+pub enum Planning<'a> {
+    /// It has a path.
+    Path(Box<Step<'a>>),
+    /// There is nothing for it to do.
+    Nothing(Diagnostic),
+}
+
+/// Plans an operation.
+///
+/// # Errors
+/// Where it has no passes.
+pub fn plan<'a>(
+    operation: &'a Operation,
+    whole: &Part,
+    (behind, raw): (&Behind, Option<&RawMaterial<'_>>),
+    watch: &dyn Watch,
+) -> Result<Planning<'a>, Failure> {
+    let here = |why: Failure| why.in_operation(&operation.name);
+    let stage = Stage::begin(watch, "plan");
+    let job = operation.judged()?;
+    let part = whole.seen_by(&job)?;
+    let standing_mm = raw.map(|raw| behind.standing_mm(&job, &part, raw)).transpose()?;
+    let job = operation.planned(standing_mm)?;
+    let (mut job, mut too_high_mm2, mut compared) = (job, None, Vec::new());
+    let progress = |f: f64| stage.at(f);
+    let planned = match operation.kind {
+        OperationWord::Rough => planned(&job, &part, watch, &progress).map_err(here)?,
+        OperationWord::Rest => {
+            let high = behind.too_high(&job, &part, operation.overlap_mm)?;
+            if high.places.is_empty() {
+                let text =
+                    format!("{}: nothing stands above its tolerance: it has nothing to do", operation.name);
+                return Ok(Planning::Nothing(Diagnostic::note("rest", text)));
+            }
+            too_high_mm2 = Some(high.area_mm2);
+            let mut laid = laid(&job, &part, watch, &progress).map_err(here)?;
+            let rest =
+                Rest { places: &high.places, overlap_mm: operation.overlap_mm, hop_mm: job.setup().hop_mm };
+            laid.passes.passes = rest_of(&laid.passes.passes, &rest).map_err(Failure::job).map_err(here)?;
+            if laid.passes.passes.is_empty() {
+                let text = format!(
+                    "{}: {} mm2 stand above the tolerance, and no pass of {} goes there",
+                    operation.name,
+                    number(high.area_mm2, 4),
+                    job.tool_words()
+                );
+                return Ok(Planning::Nothing(Diagnostic::warning("rest", text)));
+            }
+            laid.linked(&job, &part).map_err(here)?
+        }
+        OperationWord::Finish if job.is_open() => {
+            let mut choice = Choice::screen(&job, &part).map_err(here)?;
+            let settled =
+                choice::settle(&mut choice, 1, watch, &mut WallS::default(), &progress).map_err(here)?;
+            compared = choice.rows();
+            let mut planned = settled.planned;
+            planned.extras.diagnostics.push(Diagnostic::note("auto", choice.story()));
+            job = settled.job;
+            planned
+        }
+        OperationWord::Finish => {
+            laid(&job, &part, watch, &progress).map_err(here)?.linked(&job, &part).map_err(here)?
+        }
+    };
+    let plan_s = stage.end();
+    Ok(Planning::Path(Box::new(Step {
+        operation,
+        job,
+        part,
+        planned,
+        compared,
+        standing_mm,
+        too_high_mm2,
+        plan_s,
+    })))
+}
+
+/// Passes over all faces of an operation; where they cannot be laid over all, over each on which they can.
+fn laid(job: &Job, part: &Part, watch: &dyn Watch, progress: &(dyn Fn(f64) + Sync)) -> Result<Laid, Failure> {
+    let all = match Laid::of(job, part, watch, progress) {
+        Err(why) if part.faces.len() > 1 => why,
+        other => return other,
+    };
+    let mut out: Option<Laid> = None;
+    let mut without = Vec::new();
+    for (k, face) in part.faces.iter().enumerate() {
+        match Laid::of(job, &alone(part, k), watch, &|_| {}) {
+            Ok(one) => match &mut out {
+                Some(all) => {
+                    all.passes.passes.extend(one.passes.passes);
+                    all.passes.diagnostics.extend(one.passes.diagnostics);
+                }
+                None => out = Some(one),
+            },
+            Err(why) => without.push((face.id.clone(), why)),
+        }
+        progress(k as f64 / part.faces.len() as f64);
+    }
+    let Some(mut out) = out else { return Err(all) };
+    for (id, why) in without {
+        let text = format!(
+            "no passes of {} on it, which is left to other operations: {}",
+            job.tool_words(),
+            why.message()
+        );
+        out.passes.diagnostics.push(Diagnostic::warning(id, text));
+    }
+    Ok(out)
+}
+
+/// The part with one of its faces to machine and the others to be kept.
+fn alone(part: &Part, k: usize) -> Part {
+    let others = part.faces.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, f)| f);
+    let check: Vec<LoadedFace> = others.chain(&part.check).cloned().collect();
+    Part {
+        part: part.part.clone(),
+        faces: vec![part.faces[k].clone()],
+        check,
+        unseen: part.unseen.clone(),
+        open: part.open.clone(),
+        walls: OnceLock::new(),
+        import_s: 0.0,
+    }
+}

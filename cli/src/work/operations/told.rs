@@ -1,0 +1,259 @@
+//! What is told of a list of operations: figures of each and of the whole, report, pictures, programs, and the material left.
+
+use crate::failure::Failure;
+use crate::job::Operations;
+use crate::part::Part;
+use crate::report::fill;
+use crate::report::{Column, Table};
+use crate::watch::{Stage, Watch};
+use crate::words::number;
+use crate::work::extras::Extras;
+use crate::work::nc::{self, Motions};
+use crate::work::operations::Judged;
+use crate::work::operations::course::Course;
+use crate::work::operations::posted::Program;
+use crate::work::operations::standing;
+use crate::work::operations::step::Step;
+use crate::work::passes;
+use crate::work::plan::{Plan, PlanFile, Times, summary_of};
+use crate::work::program::{Planned, WallS};
+use crate::work::summary::{OperationSummary, SetupSummary, Summary};
+use crate::work::verify::Verified;
+use osculate_geom::Diagnostic;
+use osculate_postproc::nc::Dialect;
+use osculate_productivity::plan::{Linked, Passes};
+use osculate_tools::Lean;
+use std::fmt::Write;
+
+/// Cubes along the longest side of meshes of what is left.
+const CUBES: usize = 160;
+
+/// Everything that is known of a list of operations.
+pub struct Known<'a> {
+    /// The list.
+    pub list: &'a Operations,
+    /// The part with all faces to machine.
+    pub part: &'a Part,
+    /// The operations that have a path.
+    pub steps: Vec<Step<'a>>,
+    /// The program of each setup.
+    pub programs: Vec<Program>,
+    /// What they do.
+    pub course: Course,
+    /// Where each operation ends in it.
+    pub ends: Vec<usize>,
+    /// The verdict on each, with what it left.
+    pub judged: Vec<Judged>,
+    /// The verdict on the finished part.
+    pub whole: Verified,
+    /// Findings of the list.
+    pub notes: Vec<Diagnostic>,
+    /// Wall time by stage.
+    pub wall_s: WallS,
+}
+
+/// Files, figures and pages.
+///
+/// # Errors
+/// Where figures or paths cannot be written as text.
+pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
+    let Known { list, part, steps, programs, course, ends, judged, whole, notes, mut wall_s } = known;
+    let stage = Stage::begin(watch, "report");
+    let mut operations = Vec::with_capacity(steps.len());
+    for (k, (step, judged)) in steps.iter().zip(&judged).enumerate() {
+        let begin = if k == 0 { 0 } else { ends[k - 1] };
+        operations.push(operation(list, step, judged, times(&course, begin, ends[k]))?);
+    }
+    let merged = merged(&steps);
+    let all = Times {
+        time_min: course.setup_min.iter().sum(),
+        cutting_min: operations.iter().map(|o| o.figures.cutting_time_min).sum(),
+        joints: None,
+    };
+    let job = list.whole();
+    let mut summary = summary_of(job, part, &merged, all, &whole)?;
+    summary.format = 2;
+    summary.setups = setups(list, &programs, &course);
+    let mut diagnostics: Vec<Diagnostic> = part.part.diagnostics.clone();
+    diagnostics.extend(notes);
+    for step in &steps {
+        let own = step.planned.passes.diagnostics.iter().chain(&step.planned.extras.diagnostics);
+        diagnostics.extend(own.map(|d| {
+            let message = format!("{}: {}", step.operation.name, d.message);
+            Diagnostic { message, ..d.clone() }
+        }));
+    }
+    diagnostics.extend(programs.iter().flat_map(|p| p.diagnostics.iter().cloned()));
+    diagnostics.extend(course.diagnostics.iter().cloned());
+    diagnostics.extend(whole.diagnostics.iter().cloned());
+    summary.diagnostics = diagnostics.iter().map(ToString::to_string).collect();
+    summary.left_standing = standing::left(list, part, &steps, &whole);
+    let mut tables = vec![table(&operations)];
+    if !summary.left_standing.is_empty() {
+        tables.push(standing::table(&summary.left_standing));
+    }
+    let extras = Extras { tables, ..Extras::default() };
+    summary.operations = operations;
+    let read = motions(course);
+    let title = passes::title(job);
+    let story = fill::Story {
+        title: &title,
+        job,
+        faces: part,
+        passes: &merged.passes,
+        linked: &merged.linked,
+        verified: &whole,
+        summary: &summary,
+        diagnostics: &diagnostics,
+        time_by_move: &read,
+        extras: &extras,
+    };
+    let pages = fill::pages(&story, &|f| stage.at(f));
+    let mut files = Vec::new();
+    for (k, step) in steps.iter().enumerate() {
+        let cl = passes::cl_path(&step.job, &step.planned.linked);
+        let text = nc::cl_text(&cl, &step.operation.name).map_err(Failure::job)?;
+        files.push(PlanFile::of_text(format!("path-{}.cl", k + 1), text));
+    }
+    for (k, left) in judged.iter().enumerate().filter_map(|(k, j)| Some((k, j.left.as_ref()?))) {
+        let mesh = left.mesh(CUBES);
+        files.push(PlanFile { name: format!("stock-{}.stl", k + 1), bytes: mesh.stl() });
+        files.push(PlanFile { name: format!("stock-{}.ply", k + 1), bytes: mesh.ply() });
+    }
+    files.push(PlanFile::of_text("job.resolved.toml", list.text_anywhere()));
+    if let Some(text) = tool_table(list) {
+        files.push(PlanFile::of_text("tool.tbl", text));
+    }
+    files.extend(programs.into_iter().map(|p| PlanFile::of_text(p.file, p.text)));
+    files.push(PlanFile::of_text("report.html", pages.html));
+    files.push(PlanFile::of_text("picture.svg", pages.svg));
+    files.push(PlanFile::of_text("path.svg", pages.path_svg));
+    wall_s.report = stage.end();
+    summary.wall_s = wall_s;
+    let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
+    files.push(PlanFile::of_text("summary.json", text));
+    Ok(Plan { job: job.clone(), summary, verified: whole, diagnostics, files })
+}
+
+/// Times of a stretch of the motions.
+fn times(course: &Course, begin: usize, end: usize) -> Times {
+    let at = |k: usize| if k == 0 { 0.0 } else { course.times_min[k - 1] };
+    let feeds = (begin..end).filter(|k| !course.motions[*k].rapid);
+    Times { time_min: at(end) - at(begin), cutting_min: feeds.map(|k| at(k + 1) - at(k)).sum(), joints: None }
+}
+
+fn operation(
+    list: &Operations,
+    step: &Step<'_>,
+    judged: &Judged,
+    times: Times,
+) -> Result<OperationSummary, Failure> {
+    let mut figures = summary_of(&step.job, &step.part, &step.planned, times, &judged.verified)?;
+    figures.compared = step.compared.clone();
+    figures.wall_s.plan = step.plan_s;
+    Ok(OperationSummary {
+        name: step.operation.name.clone(),
+        kind: step.operation.kind.word(),
+        setup: list.setups()[step.operation.setup].name.clone(),
+        tool_number: step.job.tool().number(),
+        standing_mm: step.standing_mm,
+        too_high_mm2: step.too_high_mm2,
+        removed_mm3: judged.stock.as_ref().map(|s| s.removed_mm3),
+        left_mm3: judged.stock.as_ref().map(|s| s.left_mm3),
+        figures,
+    })
+}
+
+fn setups(list: &Operations, programs: &[Program], course: &Course) -> Vec<SetupSummary> {
+    let all = list.setups().iter().zip(programs).zip(&course.setup_min);
+    all.map(|((held, program), time_min)| {
+        let t = program.setup.part_zero.translation.vector;
+        SetupSummary {
+            name: held.name.clone(),
+            program: program.file.clone(),
+            time_min: *time_min,
+            rotate_deg: program.setup.turn_rad().map(f64::to_degrees),
+            part_zero_mm: [t.x, t.y, t.z],
+        }
+    })
+    .collect()
+}
+
+/// The plans of all operations as one, for pictures.
+fn merged(steps: &[Step<'_>]) -> Planned<'static> {
+    let (mut passes, mut linked) = (Passes::default(), Linked::default());
+    let mut extras = Extras::default();
+    let mut names: Vec<&str> = Vec::new();
+    for step in steps {
+        let before = passes.passes.len() as u32;
+        let own = &step.planned;
+        passes.passes.extend(own.passes.passes.iter().cloned());
+        linked.path.moves.extend(own.linked.path.moves.iter().copied());
+        linked.pass_of_move.extend(own.linked.pass_of_move.iter().map(|p| p.map(|p| p + before)));
+        linked.cutting_length_mm += own.linked.cutting_length_mm;
+        linked.air_length_mm += own.linked.air_length_mm;
+        extras.left_out.clear();
+        if names.last() != Some(&own.strategy.as_str()) {
+            names.push(&own.strategy);
+        }
+    }
+    let strategy = names.join(", ");
+    Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: true }
+}
+
+/// The motions as reports take them.
+fn motions(course: Course) -> Motions {
+    let time_min = course.setup_min.iter().sum();
+    Motions { motions: course.motions, times_min: course.times_min, time_min, ..Motions::default() }
+}
+
+/// The operations with the figures that one compares.
+fn table(operations: &[OperationSummary]) -> Table {
+    let names = [
+        "operation",
+        "setup",
+        "tool",
+        "strategy",
+        "time min",
+        "cut mm",
+        "air mm",
+        "area mm2",
+        "uncut mm2",
+        "verdict",
+    ];
+    let row = |o: &OperationSummary| {
+        let f: &Summary = &o.figures;
+        vec![
+            o.name.clone(),
+            o.setup.clone(),
+            format!("T{} {}", o.tool_number, f.tool_words),
+            f.strategy.clone(),
+            format!("{:.2}", f.time_min),
+            format!("{:.0}", f.cutting_length_mm),
+            format!("{:.0}", f.air_length_mm),
+            format!("{:.1}", f.area_mm2),
+            number(f.verification.uncut_area_mm2, 4),
+            f.verdict.answer.replace('_', " "),
+        ]
+    };
+    Table {
+        caption: "Operations, each judged after all before it".to_owned(),
+        columns: names.map(|n| Column { name: n.to_owned(), ..Column::default() }).to_vec(),
+        rows: operations.iter().map(row).collect(),
+    }
+}
+
+/// The tool table of a LinuxCNC control.
+fn tool_table(list: &Operations) -> Option<String> {
+    let job = list.whole();
+    if job.control().dialect != Dialect::LinuxCnc {
+        return None;
+    }
+    let mut out = String::new();
+    for one in job.each_tool() {
+        let n = one.tool().number();
+        let (length, diameter) = (nc::gauge_mm(&one), 2.0 * one.cutter().radius_mm());
+        let _ = writeln!(out, "T{n} P{n} Z{length:.4} D{diameter:.4} ;{}", one.tool_words());
+    }
+    Some(out)
+}
