@@ -201,6 +201,7 @@ fn roughing_keeps_its_allowance() {
         clearance_mm: 5.0,
         approach_mm: 1.0,
         hop_mm: 0.125,
+        contacts: true,
         layer_mm: 0.0,
         cutter: TOROIDAL.cutter(),
         holder: None,

@@ -23,6 +23,7 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         clearance_mm: 5.0,
         approach_mm: 1.0,
         hop_mm: 1.0,
+        contacts: true,
         layer_mm: 0.0,
         cutter: *cutter,
         holder: None,

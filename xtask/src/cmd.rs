@@ -178,6 +178,12 @@ pub fn write(to: &Path, text: &str) -> Result<(), Failure> {
     made.and_then(|()| std::fs::write(to, text)).map_err(|why| Failure::Write { path: to.to_path_buf(), why })
 }
 
+/// A release program that cargo has built: below the target folder that it uses.
+pub fn built(root: &Path, name: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    root.join(target).join("release").join(name)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -197,10 +203,4 @@ mod tests {
         let manifest = std::fs::read_to_string(root().unwrap().join("Cargo.toml")).unwrap();
         assert!(manifest.contains("members"));
     }
-}
-
-/// A release program that cargo has built: below the target folder that it uses.
-pub fn built(root: &Path, name: &str) -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    root.join(target).join("release").join(name)
 }

@@ -1,6 +1,7 @@
 //! The keys and values of a job file held against the schema, each with its line.
 
 use crate::failure::Failure;
+use crate::job::keys::{LIST, ONE};
 use crate::job::problem::{Places, full, shown};
 use crate::job::schema::{Key, Kind, Range, Schema};
 use crate::job::words::nearest;
@@ -36,14 +37,21 @@ pub fn places(text: &str, path: &Path, schema: &Schema) -> Result<Places, Failur
     Ok(reader.places)
 }
 
-/// The format that a job file says it has, where it says one.
-pub fn format(text: &str) -> Option<i64> {
-    DeTable::parse(text).ok()?.get_ref().get("format").and_then(|v| whole(v.get_ref()))
+/// The format that a job file says it has, where it says one, and the line that says so.
+pub fn format(text: &str) -> Option<(i64, usize)> {
+    let top = DeTable::parse(text).ok()?;
+    let said = top.get_ref().get("format")?;
+    Some((whole(said.get_ref())?, line(text, said.span().start)))
+}
+
+/// The line of a place of a text.
+fn line(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
 }
 
 impl Reader<'_> {
     fn line(&self, at: usize) -> usize {
-        1 + self.text.bytes().take(at).filter(|b| *b == b'\n').count()
+        line(self.text, at)
     }
 
     fn syntax(&self, e: &toml::de::Error) -> Failure {
@@ -137,7 +145,16 @@ impl Reader<'_> {
         let takes = format!("{place} takes {}", here.join(", "));
         let owner = self.schema.tables.iter().find(|t| !t.name.is_empty() && t.key(key).is_some());
         let near = nearest(key, here.iter().copied());
+        let other = if self.schema.format == 1 { &*LIST } else { &*ONE };
+        let there = other.key(kind, key).is_some() || other.tables_in(kind).contains(&key);
         let what = match (near, owner) {
+            _ if there => {
+                let formats = [self.schema.format, other.format];
+                format!(
+                    "{key} is no key here with format = {}, but with format = {}; {takes}",
+                    formats[0], formats[1]
+                )
+            }
             (None, Some(t)) => format!("{key} is no key here, but one of [{}]; {takes}", t.name),
             _ => format!("{key} is no key here; {takes}"),
         };

@@ -48,7 +48,7 @@ fn dialects() -> Vec<&'static str> {
 
 /// What a job of one operation may hold.
 pub static ONE: LazyLock<Schema> =
-    LazyLock::new(|| Schema { tables: TABLES.to_vec(), lists: &[(TOOLS, "tool")] });
+    LazyLock::new(|| Schema { format: 1, tables: TABLES.to_vec(), lists: &[(TOOLS, "tool")] });
 
 /// What a list of operations may hold: the tables that it has in common with a job of one operation, and its own.
 pub static LIST: LazyLock<Schema> = LazyLock::new(|| {
@@ -80,6 +80,7 @@ pub static LIST: LazyLock<Schema> = LazyLock::new(|| {
         renamed("strategy", "operation.strategy"),
     ];
     Schema {
+        format: 2,
         tables: tables.concat(),
         lists: &[("tool", "tool"), ("setup", "setup"), ("operation", "operation")],
     }

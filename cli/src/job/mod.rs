@@ -214,9 +214,10 @@ impl Job {
     /// # Errors
     /// Names line, key, value and what was expected; everything that can be told without the part is.
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {
-        if check::format(text) == Some(Operations::FORMAT) {
-            let what = "format = 2 is a list of operations, which this verb does not take: plan, verify, check and post do";
-            return Err(Failure::file(path, what));
+        if let Some((Operations::FORMAT, line)) = check::format(text) {
+            let what =
+                "format = 2 must be 1 here: a list of operations is taken by plan, verify, check and post";
+            return Err(Failure::file(path, format!("line {line}: {what}")));
         }
         let places = check::places(text, path, &keys::ONE)?;
         let raw: Raw = toml::from_str(text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;

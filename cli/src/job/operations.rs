@@ -92,7 +92,7 @@ impl Operations {
     /// Whether a text is a job of operations.
     #[must_use]
     pub fn are_in(text: &str) -> bool {
-        check::format(text) == Some(Self::FORMAT)
+        check::format(text).is_some_and(|(format, _)| format == Self::FORMAT)
     }
 
     /// All tables and keys of lists of operations.

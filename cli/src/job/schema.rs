@@ -172,6 +172,8 @@ pub const TOOLS: &str = "tools";
 /// What a kind of job file may hold: its tables, and which of them stand in lists.
 #[derive(Debug)]
 pub struct Schema {
+    /// The format of the files that it is of.
+    pub format: i64,
     /// The tables in the order of the reference. The keys of one may stand in two of the same name.
     pub tables: Vec<Table>,
     /// Lists of tables, each with the name of the table that an entry is.

@@ -4,7 +4,7 @@ use crate::job::problem::full;
 use crate::job::schema::Kind;
 use crate::job::{
     Job, check,
-    keys::{ONE, TABLES},
+    keys::{LIST, ONE, TABLES},
     raw, reference, schema,
 };
 use std::path::Path;
@@ -24,7 +24,7 @@ fn fields<T: serde::de::DeserializeOwned>() -> Vec<String> {
     text.split('`').skip(3).step_by(2).map(ToOwned::to_owned).collect()
 }
 
-/// What serde accepts, table by table.
+/// What serde accepts, table by table: each format of job files has its own schema, what they share is read by one type.
 fn accepted() -> Vec<(&'static str, Vec<String>)> {
     vec![
         ("", fields::<raw::Raw>()),
@@ -45,21 +45,31 @@ fn accepted() -> Vec<(&'static str, Vec<String>)> {
         ("fixture", fields::<raw::Fixture>()),
         ("flank", fields::<raw::Flank>()),
         ("verification", fields::<raw::Verification>()),
+        ("operation", fields::<raw::Operation>()),
     ]
 }
 
 #[test]
 fn what_serde_accepts_and_what_the_schema_lists_are_the_same() {
     let all = accepted();
-    assert_eq!(all.len(), TABLES.len());
+    assert_eq!(all.len(), TABLES.len() + 1);
     for (name, mut fields) in all {
-        let mut listed: Vec<String> =
-            ONE.keys(name).map(|k| k.name).chain(ONE.tables_in(name)).map(ToOwned::to_owned).collect();
+        let of = |schema: &schema::Schema| -> Vec<String> {
+            schema.keys(name).map(|k| k.name).chain(schema.tables_in(name)).map(ToOwned::to_owned).collect()
+        };
+        // The file itself is read by a type for each format.
+        let mut listed = if name.is_empty() { of(&ONE) } else { [of(&ONE), of(&LIST)].concat() };
         assert!(!fields.is_empty());
         fields.sort();
         listed.sort();
+        listed.dedup();
         assert_eq!(fields, listed, "[{name}]");
     }
+    let mut top = fields::<raw::RawList>();
+    let mut listed: Vec<&str> = LIST.keys("").map(|k| k.name).chain(LIST.tables_in("")).collect();
+    top.sort();
+    listed.sort_unstable();
+    assert_eq!(top, listed);
 }
 
 /// A text in which one key stands with its example, and whatever its table needs beside it.

@@ -1,6 +1,7 @@
 //! Passes over the faces of a job by one strategy, joined to a path.
 
 use crate::failure::Failure;
+use crate::job::strategy::{Drop, Kind};
 use crate::job::{Job, LeadKey};
 use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
@@ -40,6 +41,7 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
         clearance_mm: job.setup().clearance_mm,
         approach_mm: job.setup().approach_mm,
         hop_mm: job.setup().hop_mm,
+        contacts: !matches!(job.strategy().kind, Kind::Drop(Drop::Waterlines)),
         layer_mm: job.layer_mm(),
         cutter: *cutter,
         holder: job.holder(),

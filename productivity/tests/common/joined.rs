@@ -19,6 +19,7 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         clearance_mm: 5.0,
         approach_mm: 2.0,
         hop_mm: 0.25,
+        contacts: true,
         layer_mm: 0.0,
         cutter: *cutter,
         holder: None,

@@ -30,6 +30,7 @@
 //! let job = Job {
 //!     cutter: &cutter,
 //!     holder: None,
+//!     changes: &[],
 //!     motions: &motions,
 //!     samples: &sampling.samples,
 //!     stock_mm: 0.5,

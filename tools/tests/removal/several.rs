@@ -145,7 +145,7 @@ impl Plate {
     fn new([one, two]: [[f64; 2]; 2]) -> Self {
         let tools = [toroidal(6.0, 0.5), ball(4.0)];
         let mut poses = raster(one, 4.0, 0.0);
-        let end = *poses.last().unwrap();
+        let end = poses[poses.len() - 1];
         let second = raster(two, 0.1, 0.0);
         poses.extend([upright(end.tip.x, end.tip.y, 40.0)]);
         let mut motions = through(&poses);

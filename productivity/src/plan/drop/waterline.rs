@@ -210,24 +210,22 @@ fn free_way(rim: &Rim, k: usize) -> [f64; 2] {
     [(a[1] - b[1]) / long, (b[0] - a[0]) / long]
 }
 
-/// The tool over a place at a height: it touches there what the nearest want sees; where nothing is wanted, a wall.
+/// The tool over a place at a height. It touches what is across the rim, as steep there as the nearest want is; where nothing is
+/// wanted, a wall.
 fn point(ground: &Ground<'_>, ([x, y], z): ([f64; 2], f64), out: [f64; 2], want: Option<&Want>) -> CcPoint {
     let (frame, cutter) = (&ground.frame, ground.task.cutter);
-    let axis = frame.axis;
-    let tip = frame.point([x, y, z]);
-    let pose = Pose { tip, axis };
-    let Some(w) = want else {
-        let away = frame.point([out[0], out[1], 0.0]).coords;
-        let normal = Unit3::try_new(away, 0.5).unwrap_or(axis);
-        let point = tip + axis.into_inner() * cutter.corner_mm() - away * cutter.radius_mm();
-        return CcPoint { uv: osculate_geom::uv(0.0, 0.0), point, normal, pose, width_mm: f64::NAN };
-    };
-    let [a, b, c] = frame.along(&w.normal);
-    let sine = a.hypot(b);
-    let arc = cutter.touching(sine.atan2(c));
-    let rho = (arc.centre_rho_mm + arc.radius_mm * sine) / sine;
-    let touch = frame.point([x - rho * a, y - rho * b, z + arc.centre_z_mm - arc.radius_mm * c]);
-    CcPoint { uv: w.uv, point: touch, normal: w.normal, pose, width_mm: 2.0 * w.reach / sine }
+    let pose = Pose { tip: frame.point([x, y, z]), axis: frame.axis };
+    let rise = want.map_or(0.0, |w| frame.along(&w.normal)[2]);
+    let sine = ((1.0 - rise) * (1.0 + rise)).sqrt();
+    let away = frame.point([out[0] * sine, out[1] * sine, rise]).coords;
+    let normal = Unit3::try_new(away, 0.5).unwrap_or(frame.axis);
+    let arc = cutter.touching(sine.atan2(rise));
+    let rho = arc.centre_rho_mm + arc.radius_mm * sine;
+    let height = z + arc.centre_z_mm - arc.radius_mm * rise;
+    let point = frame.point([x - rho * out[0], y - rho * out[1], height]);
+    let width_mm = want.map_or(f64::NAN, |w| 2.0 * w.reach / sine);
+    let uv = want.map_or(osculate_geom::uv(0.0, 0.0), |w| w.uv);
+    CcPoint { uv, point, normal, pose, width_mm }
 }
 
 /// Leaves out points that the chord over them passes within a tolerance.

@@ -26,6 +26,9 @@ pub struct Links {
     pub approach_mm: f64,
     /// The least lift of a hop; one that is not clear is doubled until it is, up to `approach_mm`.
     pub hop_mm: f64,
+    /// Whether the tool touches the part where passes say it does: those along waterlines know the height of the tool, and of
+    /// what it touches the slope nearby only.
+    pub contacts: bool,
     /// Material that may stand on the faces yet: rapids do not go into it.
     pub layer_mm: f64,
     /// The cutter.
@@ -278,7 +281,8 @@ fn near(links: &Links, from: &CcPoint, to: &CcPoint) -> bool {
 pub fn link(passes: &[Pass], links: &Links, walls: &Walls) -> Linked {
     let centre = links.obstacles.centre();
     let radius = 0.5 * links.obstacles.diagonal_mm() + links.clearance_mm;
-    let cloud = Cloud::of(passes, NEAR_POINTS * links.cutter.radius_mm(), walls.ground());
+    let touched = if links.contacts { passes } else { &[] };
+    let cloud = Cloud::of(touched, NEAR_POINTS * links.cutter.radius_mm(), walls.ground());
     let mut b = Builder { links, walls, cloud, out: Linked::default(), centre, radius };
     let mut last: Option<CcPoint> = None;
     for (k, pass) in passes.iter().enumerate() {
@@ -304,197 +308,4 @@ pub fn link(passes: &[Pass], links: &Links, walls: &Walls) -> Linked {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-    use crate::plan::Named;
-    use osculate_geom::analytic::Line;
-    use osculate_geom::{Extruded, Interval, uv};
-    use osculate_tools::CutterSpec;
-    use osculate_tools::sweep::{LinearMotion, SweptMotion};
-
-    const TROUGH_MM: f64 = 4.0;
-    const BALL_MM: f64 = 3.0;
-
-    /// A pass along y on the wall of a half round trough about the y axis, `angle` from its bottom; the ball stands upright.
-    fn pass(angle: f64, back: bool) -> Pass {
-        let normal = Unit3::new_normalize(Vec3::new(-angle.sin(), 0.0, angle.cos()));
-        let at = |k: u32| {
-            let y = if back { f64::from(8 - k) } else { f64::from(k) };
-            let point = Point3::new(0.0, y, 0.0) - normal.into_inner() * TROUGH_MM;
-            let tip = point + (normal.into_inner() - Vec3::z()) * BALL_MM;
-            let pose = Pose { tip, axis: Vec3::z_axis() };
-            CcPoint { uv: uv(angle, y), point, normal, pose, width_mm: 1.0 }
-        };
-        Pass { points: (0..=8).map(at).collect(), closed: false }
-    }
-
-    #[test]
-    fn a_hop_does_not_go_into_the_wall_across() {
-        let cutter =
-            Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * BALL_MM, length_mm: 30.0 }).unwrap();
-        let obstacles = Box3 { min: Point3::new(-4.0, 0.0, -4.0), max: Point3::new(4.0, 8.0, 0.0) };
-        // Twice what there is room for between ball and wall.
-        let links = Links {
-            obstacles,
-            clearance_mm: 5.0,
-            approach_mm: 4.0 * (TROUGH_MM - BALL_MM),
-            hop_mm: 4.0 * (TROUGH_MM - BALL_MM),
-            layer_mm: 0.0,
-            cutter,
-            holder: None,
-            feed_mm_min: 1000.0,
-            plunge_mm_min: 500.0,
-        };
-        let passes: Vec<Pass> =
-            (-18..=18).map(|k| pass(f64::from(k) * 5.0f64.to_radians(), k % 2 == 0)).collect();
-        let linked = link(&passes, &links, &Walls::default());
-        for w in linked.path.moves.windows(2) {
-            let motion = LinearMotion { from: w[0].pose, to: w[1].pose };
-            for k in 0..=20 {
-                let centre = motion.at(f64::from(k) / 20.0).unwrap().pose.tip + Vec3::z() * BALL_MM;
-                // Below the rim the wall is as far off the axis everywhere, above it the rim is nearest.
-                let gap = if centre.z < 0.0 {
-                    TROUGH_MM - centre.x.hypot(centre.z)
-                } else {
-                    (TROUGH_MM - centre.x.abs()).hypot(centre.z)
-                };
-                assert!(gap >= BALL_MM - 1e-9, "{centre}");
-            }
-        }
-        // All the same passes are joined by hops: nothing goes up to the sphere but at both ends.
-        let rapid = linked.path.moves.iter().filter(|m| m.motion == Motion::Rapid).count();
-        assert_eq!(rapid, 5);
-    }
-
-    /// Passes along y, `apart` from each other, over the plane z = 0 with a ball that stands upright.
-    fn over_plane(apart: f64, radius: f64) -> Vec<Pass> {
-        let one = |x: f64, back: bool| {
-            let at = |k: u32| {
-                let y = if back { f64::from(8 - k) } else { f64::from(k) };
-                let point = Point3::new(x, y, 0.0);
-                let pose = Pose { tip: point, axis: Vec3::z_axis() };
-                CcPoint { uv: uv(x, y), point, normal: Vec3::z_axis(), pose, width_mm: radius }
-            };
-            Pass { points: (0..=8).map(at).collect(), closed: false }
-        };
-        (0..3).map(|k| one((f64::from(k) - 0.5) * apart, k % 2 == 1)).collect()
-    }
-
-    #[test]
-    fn a_hop_rises_by_no_more_than_is_clear() {
-        let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 30.0 }).unwrap();
-        let links = |hop_mm: f64| Links {
-            obstacles: Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
-            clearance_mm: 5.0,
-            approach_mm: 2.0,
-            hop_mm,
-            layer_mm: 0.0,
-            cutter,
-            holder: None,
-            feed_mm_min: 1000.0,
-            plunge_mm_min: 500.0,
-        };
-        // Of the hop from the first pass to the second.
-        let top = |linked: &Linked| {
-            let moves = linked.path.moves.iter().zip(&linked.pass_of_move);
-            let hop = moves.skip_while(|m| *m.1 != Some(0)).take_while(|m| *m.1 != Some(1));
-            hop.filter(|m| m.1.is_none()).map(|(m, _)| m.pose.tip.z).fold(0.0, f64::max)
-        };
-        let flat = over_plane(4.0, 3.0);
-        let low = link(&flat, &links(0.125), &Walls::default());
-        let high = link(&flat, &links(2.0), &Walls::default());
-        assert_eq!([top(&low), top(&high)], [0.125, 2.0]);
-        // Two hops, up and down by so much less each.
-        assert!((high.air_length_mm - low.air_length_mm - 4.0 * 1.875).abs() < 1e-12);
-        // A rib along the middle of the first hop, machined by a later pass: half of the lift must be spare.
-        for (rib, lift) in [(0.1, 0.25), (0.2, 0.5), (0.4, 1.0), (0.7, 2.0)] {
-            let mut passes = over_plane(4.0, 3.0);
-            for p in &mut passes[2].points {
-                p.point = Point3::new(0.0, p.point.y, rib);
-            }
-            let linked = link(&passes[..3], &links(0.125), &Walls::default());
-            assert_eq!(top(&linked), lift, "{rib}");
-        }
-    }
-
-    #[test]
-    fn a_hop_keeps_off_a_wall_that_is_not_machined() {
-        const RADIUS: f64 = 6.0;
-        const APART: f64 = 8.8;
-        let passes = over_plane(APART, RADIUS);
-        let links = Links {
-            obstacles: Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
-            clearance_mm: 5.0,
-            approach_mm: 1.2,
-            hop_mm: 1.2,
-            layer_mm: 0.0,
-            cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 })
-                .unwrap(),
-            holder: None,
-            feed_mm_min: 1000.0,
-            plunge_mm_min: 500.0,
-        };
-        // A thin wall on the plane x = 0, between the first two passes.
-        let joined = |height: f64, clearance: f64| {
-            let foot = Line::new(Point3::origin(), Vec3::y(), Interval::new(-2.0, 10.0)).unwrap();
-            let wall = Extruded::new(foot, Vec3::z(), Interval::new(0.0, height)).unwrap();
-            let named = Named { face: "wall", surface: &wall };
-            link(&passes, &links, &Walls::of(&[named], clearance, 0.0).unwrap())
-        };
-        // How far the ball's surface is off the wall at the nearest, in the closed form.
-        let gap = |linked: &Linked, height: f64| {
-            let motions = linked.path.moves.windows(2);
-            let motions = motions.map(|w| LinearMotion { from: w[0].pose, to: w[1].pose });
-            let at = motions.flat_map(|m| (0..=40).map(move |k| m.at(f64::from(k) / 40.0).unwrap().pose.tip));
-            at.map(|tip| {
-                let c = tip + Vec3::z() * RADIUS;
-                let nearest = Point3::new(0.0, c.y.clamp(-2.0, 10.0), c.z.clamp(0.0, height));
-                (c - nearest).norm() - RADIUS
-            })
-            .fold(f64::INFINITY, f64::min)
-        };
-        let rapid = |linked: &Linked| linked.path.moves.iter().filter(|m| m.motion == Motion::Rapid).count();
-        let hops = link(&passes, &links, &Walls::default());
-        // A wall higher than the hop: a hop that does not see it goes into it, one that does is none. The hop from the second
-        // pass to the third stays.
-        assert!(gap(&hops, 1.5) < -0.29, "{}", gap(&hops, 1.5));
-        let seen = joined(1.5, 0.5);
-        let at_passes = (0.5 * APART).hypot(RADIUS - 1.5) - RADIUS;
-        assert!(gap(&seen, 1.5) >= at_passes - 1e-9 && rapid(&seen) > rapid(&hops), "{}", gap(&seen, 1.5));
-        assert_eq!(
-            seen.path.moves.iter().rev().take(20).collect::<Vec<_>>(),
-            hops.path.moves.iter().rev().take(20).collect::<Vec<_>>()
-        );
-        // One that leaves 0.3 mm is passed over with a clearance of 0.2, not of 0.5.
-        assert_eq!(joined(0.9, 0.2), hops);
-        assert!((gap(&hops, 0.9) - 0.3).abs() < 1e-9);
-        assert_eq!(rapid(&joined(0.9, 0.5)), rapid(&seen));
-    }
-
-    #[test]
-    fn a_holder_keeps_off_a_wall_too() {
-        let passes = over_plane(6.0, 4.0);
-        let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 10.0 }).unwrap();
-        let with = |holder: Option<Cutter>| Links {
-            obstacles: Box3 { min: Point3::new(-3.0, 0.0, 0.0), max: Point3::new(9.0, 12.2, 20.0) },
-            clearance_mm: 5.0,
-            approach_mm: 1.2,
-            hop_mm: 1.2,
-            layer_mm: 0.0,
-            cutter: ball,
-            holder,
-            feed_mm_min: 1000.0,
-            plunge_mm_min: 500.0,
-        };
-        // A post above the cutter's length, behind the middle between the ends of the first two passes: 5.05 mm off their axes, and
-        // 4.2 mm off that of a tool half way between.
-        let foot = Line::new(Point3::new(0.0, 12.2, 12.0), Vec3::x(), Interval::new(-0.2, 0.2)).unwrap();
-        let post = Extruded::new(foot, Vec3::z(), Interval::new(0.0, 8.0)).unwrap();
-        let walls = Walls::of(&[Named { face: "post", surface: &post }], 0.5, 0.0).unwrap();
-        let without = link(&passes, &with(None), &walls);
-        assert_eq!(without, link(&passes, &with(None), &Walls::default()));
-        let holder = Some(Cutter::cylinder(9.0, 30.0).unwrap());
-        assert_eq!(link(&passes, &with(holder), &Walls::default()), without);
-        assert_ne!(link(&passes, &with(holder), &walls), without);
-    }
-}
+mod tests;
