@@ -36,6 +36,8 @@ const MOST_SEEDS: f64 = 1e6;
 const MOST_PLACES: f64 = 3e5;
 /// A face may have this many of either, however small it is.
 const FEWEST: usize = 200;
+/// Chords between seeds on a rim may be off one of the tool's radius by this part of the chord tolerance.
+const RIM_SAGITTA: f64 = 0.1;
 /// Lines along each parameter on whose ends the rim of a face is seeded: fewest and most.
 const RIM_LINES: [f64; 2] = [20.0, 2000.0];
 /// The share of the tolerance that passes are laid out for: the rest is for what the leading order neglects.
@@ -213,8 +215,8 @@ pub(super) fn seeds(
     let radius = task.cutter.radius_mm();
     let all: f64 = areas.iter().sum();
     let (mut seeds, mut spacing): (Vec<Seed>, f64) = (Vec::new(), 0.0);
-    // Between seeds on an edge the tool sinks by the sagitta of its radius.
-    let along_rim = (SEEDS * radius).min((2.0 * radius * task.tolerance.gouge_mm).sqrt());
+    // Between seeds on an edge the tool sinks by the sagitta of its radius; in a bore hardly wider than it is it is kept off by that.
+    let along_rim = (SEEDS * radius).min((8.0 * radius * RIM_SAGITTA * task.tolerance.chord_mm).sqrt());
     for (k, surface) in surfaces.iter().enumerate() {
         let sampling = sampled((task, surfaces, areas), k, SEEDS * radius, [MOST_SEEDS, all])?;
         spacing = spacing.max(sampling.density.spacing_mm);

@@ -436,3 +436,7 @@ fn update(h: &mut [[f64; 2]; 2], d: [f64; 2], y: [f64; 2]) {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
