@@ -307,15 +307,17 @@
     // ---- tool -----------------------------------------------------------------------------------------------------
 
     const tool = new THREE.Group();
+    const inHand = head.tools.map(() => new THREE.Group());
+    for (const one of inHand) tool.add(one);
     const pieceColours = { cutter: "#d6ab45", shank: "#b3bbc5", holder: "#69747f" };
-    head.tool.forEach((piece, number) => {
+    head.tools.forEach(({ pieces }, which) => pieces.forEach((piece, number) => {
       const material = new THREE.MeshLambertMaterial({ color: pieceColours[piece.kind], side: THREE.DoubleSide });
       if (piece.kind !== "cutter") {
         material.transparent = true;
         material.opacity = piece.kind === "holder" ? 0.55 : 0.85;
       }
       // Where the next piece stands on this one, the lid would flicker through its floor.
-      const outline = number + 1 < head.tool.length ? piece.outline.slice(0, -1) : piece.outline;
+      const outline = number + 1 < pieces.length ? piece.outline.slice(0, -1) : piece.outline;
       // The lathe smooths its normals along the outline: it gets one run at a time, cut at the sharp edges.
       let run = [outline[0]];
       for (let i = 1; i < outline.length; i++) {
@@ -326,31 +328,34 @@
           (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
         ));
         if (!c || turn > 0.5) {
-          tool.add(new THREE.Mesh(new THREE.LatheGeometry(run.map(([r, z]) => new THREE.Vector2(r, z)), 64), material));
+          inHand[which].add(new THREE.Mesh(new THREE.LatheGeometry(run.map(([r, z]) => new THREE.Vector2(r, z)), 64), material));
           run = [b];
         }
       }
-    });
+    }));
     scene.add(tool);
 
-    const poses = new Float32Array(block, head.poses.at, 8 * head.poses.count);
+    const perPose = head.poses.numbers;
+    const poses = new Float32Array(block, head.poses.at, perPose * head.poses.count);
     const slider = $("pose");
     const upright = new THREE.Vector3(0, 1, 0);
     let passNow = -1;
 
     function showPose(index) {
       if (head.poses.count === 0) return;
-      const [x, y, z, i, j, k, time, pass] = poses.subarray(8 * index, 8 * index + 8);
+      const [x, y, z, i, j, k, time, pass, which] = poses.subarray(perPose * index, perPose * (index + 1));
+      inHand.forEach((one, number) => { one.visible = number === which; });
       tool.position.set(x, y, z);
       const axis = new THREE.Vector3(i, j, k).normalize();
       tool.quaternion.setFromUnitVectors(upright, axis);
       passNow = pass;
       const tilt = (Math.acos(Math.min(Math.max(axis.z, -1), 1)) * 180) / Math.PI;
       const words = [
-        pass >= 0 ? `pass ${pass + 1} of ${path.counts.length}` : "between passes",
         `tip ${fixed(x, 2)}, ${fixed(y, 2)}, ${fixed(z, 2)} mm`,
         `axis ${fixed(tilt, 1)}\u00b0 from z`,
       ];
+      if (pass >= 0) words.unshift(`pass ${pass + 1} of ${path.counts.length}`);
+      if (head.tools.length > 1) words.unshift(head.tools[which].label);
       if (Number.isFinite(time)) words.unshift(`${fixed(time, 2)} min`);
       $("pose-words").textContent = words.join("  \u00b7  ");
       limitPath();
@@ -360,7 +365,7 @@
     // The last pass begun up to a pose: between passes that is the one before.
     const begun = new Int32Array(head.poses.count);
     for (let i = 0, last = -1; i < begun.length; i++) {
-      last = Math.max(last, poses[8 * i + 7]);
+      last = Math.max(last, poses[perPose * i + 7]);
       begun[i] = last;
     }
 

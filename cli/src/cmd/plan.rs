@@ -150,7 +150,7 @@ fn operations_table(s: &Summary) -> String {
             or_none(o.standing_mm, 3),
             or_none(o.removed_mm3, 5),
             number(f.verification.uncut_area_mm2, 4),
-            f.verdict.answer.replace('_', " "),
+            o.step.to_owned(),
         ]);
     }
     let mut out = format!("{}\n", t.render());

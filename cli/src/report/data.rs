@@ -25,8 +25,8 @@ pub struct Report {
     pub path_points: PathPoints,
     /// What lies between the passes: approaches, links and rapids.
     pub links: Vec<Link>,
-    /// The tool, where there is one to show.
-    pub tool: Option<Tool>,
+    /// The tools, where there are some to show, in the order in which they are in hand.
+    pub tools: Vec<Tool>,
     /// Where the tool goes, in order; thinned by the caller to what an animation needs (6000 poses are plenty).
     pub poses: Vec<ToolPose>,
     /// How the deviation is spread.
@@ -166,7 +166,7 @@ pub struct Link {
 /// The tool as a body of revolution about its axis, tip at the origin, spindle upwards.
 #[derive(Clone, Debug, Default)]
 pub struct Tool {
-    /// How people call it: "toroidal D20 r2".
+    /// How people call it: "toroidal D20 r2"; of several with what it is used for.
     pub label: String,
     /// Outer diameter, mm.
     pub diameter_mm: f64,
@@ -203,6 +203,8 @@ pub struct ToolPose {
     pub time_min: f32,
     /// The pass being cut, counted from 0; `None` between passes.
     pub pass: Option<u32>,
+    /// Which of the tools is in hand.
+    pub tool: u32,
 }
 
 /// How the deviation is spread: bin `i` reaches from `edges_mm[i]` to `edges_mm[i + 1]`.

@@ -47,6 +47,8 @@ pub struct Story<'a> {
     pub diagnostics: &'a [Diagnostic],
     /// The program read back.
     pub time_by_move: &'a Motions,
+    /// The tools in hand, each with the first of those motions that it makes.
+    pub hands: Vec<(usize, Tool)>,
     /// What this report shows beside what every report shows.
     pub extras: &'a Extras<'a>,
 }
@@ -113,7 +115,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         passes: passes(story.passes),
         path_points: PathPoints::Contact,
         links: links(story.linked),
-        tool: tool(story.job),
+        tools: story.hands.iter().map(|h| h.1.clone()).collect(),
         poses: poses(story),
         histogram: Histogram {
             edges_mm: histogram_edges(story),
@@ -250,7 +252,8 @@ fn links(linked: &Linked) -> Vec<Link> {
 /// Turn of a drawn tool's outline from point to point, rad: a hundredth of a millimetre on the large arc of a barrel.
 const OUTLINE_TURN_RAD: f64 = 0.03;
 
-fn tool(job: &Job) -> Option<Tool> {
+/// The tool of a job as it is drawn.
+pub fn tool(job: &Job) -> Tool {
     let c = job.cutter();
     let kind = if !c.is_end_mill() {
         job.tool().kind().word().to_owned()
@@ -261,7 +264,7 @@ fn tool(job: &Job) -> Option<Tool> {
     } else {
         format!("toroidal r{}", c.corner_mm())
     };
-    Some(Tool {
+    Tool {
         label: format!("{kind} D{}", 2.0 * c.radius_mm()),
         diameter_mm: 2.0 * c.radius_mm(),
         corner_radius_mm: c.corner_mm(),
@@ -272,7 +275,7 @@ fn tool(job: &Job) -> Option<Tool> {
             .holder_spec()
             .map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
         meridian_mm: if c.is_end_mill() { Vec::new() } else { c.outline_mm(OUTLINE_TURN_RAD) },
-    })
+    }
 }
 
 /// Poses of the program as read back, with their time; the pass is found by the CL path's own poses only where the
@@ -290,6 +293,7 @@ fn poses(story: &Story<'_>) -> Vec<ToolPose> {
                 axis: [m.to.axis.x as f32, m.to.axis.y as f32, m.to.axis.z as f32],
                 time_min: read.times_min[k] as f32,
                 pass: None,
+                tool: story.hands.partition_point(|h| h.0 <= k).saturating_sub(1) as u32,
             }
         })
         .collect()

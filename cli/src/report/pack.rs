@@ -11,6 +11,8 @@ use serde_json::{Value, json};
 
 /// More path points than this are thinned: beyond it lines differ by less than a pixel and the file only grows.
 const PATH_POINTS: usize = 120_000;
+/// Numbers of a pose: tip, axis, time, pass, tool.
+const POSE_NUMBERS: usize = 9;
 
 /// The block and its head.
 pub struct Packed {
@@ -154,16 +156,14 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
         .filter(|p| finite(&p.tip_mm) && finite(&p.axis))
         .flat_map(|p| {
             let ([x, y, z], [i, j, k]) = (p.tip_mm, p.axis);
-            [x, y, z, i, j, k, p.time_min, p.pass.map_or(-1.0, |n| n as f32)]
+            [x, y, z, i, j, k, p.time_min, p.pass.map_or(-1.0, |n| n as f32), p.tool as f32]
         })
         .collect();
-    if poses.len() / 8 < report.poses.len() {
-        notes.push(format!(
-            "{} tool poses are not finite and not shown.",
-            report.poses.len() - poses.len() / 8
-        ));
+    let pose_count = poses.len() / POSE_NUMBERS;
+    if pose_count < report.poses.len() {
+        let hidden = report.poses.len() - pose_count;
+        notes.push(format!("{hidden} tool poses are not finite and not shown."));
     }
-    let pose_count = poses.len() / 8;
     let poses_at = out.floats(poses.into_iter());
     let head = json!({
         "lo": steps.lo,
@@ -172,7 +172,7 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
         "faces": heads,
         "path": path,
         "links": links,
-        "poses": {"at": poses_at, "count": pose_count},
+        "poses": {"at": poses_at, "count": pose_count, "numbers": POSE_NUMBERS},
     });
     Packed { bytes: out.bytes, head, notes }
 }

@@ -4,7 +4,7 @@
 //! report says is escaped; the data block is base64 and the JSON head has no `<`.
 
 use super::chart;
-use super::data::{Outcome, Report, Table, Verdict};
+use super::data::{Outcome, Report, Table, Tool, Verdict};
 use super::legend::{Limits, Scale, UNKNOWN};
 use super::mesh::{Clean, clean};
 use super::pack::pack;
@@ -40,7 +40,7 @@ pub fn html(report: &Report) -> String {
     head["deviation"] = scale_json(&scales.deviation);
     head["width"] = scales.width.as_ref().map_or(Value::Null, scale_json);
     head["scalars"] = scales.scalars.iter().map(|s| s.as_ref().map_or(Value::Null, scale_json)).collect();
-    head["tool"] = tool_json(report);
+    head["tools"] = report.tools.iter().map(tool_json).collect();
 
     let mut out = String::with_capacity(packed.bytes.len() * 4 / 3 + THREE.len() + 400_000);
     let _ = write!(
@@ -116,14 +116,17 @@ fn scale_json(scale: &Scale) -> Value {
     json!({"name": scale.name, "unit": scale.unit, "stops": stops})
 }
 
-fn tool_json(report: &Report) -> Value {
-    let pieces = report.tool.as_ref().map(outlines).unwrap_or_default();
+fn tool_json(tool: &Tool) -> Value {
     let kind = |piece| match piece {
         Piece::Cutter => "cutter",
         Piece::Shank => "shank",
         Piece::Holder => "holder",
     };
-    pieces.into_iter().map(|(piece, outline)| json!({"kind": kind(piece), "outline": outline})).collect()
+    let pieces: Vec<Value> = outlines(tool)
+        .into_iter()
+        .map(|(piece, outline)| json!({"kind": kind(piece), "outline": outline}))
+        .collect();
+    json!({"label": tool.label, "pieces": pieces})
 }
 
 fn verdict(out: &mut String, v: &Verdict) {

@@ -156,7 +156,11 @@ fn caption(report: &Report, [shown, passes]: [usize; 2]) -> String {
         let drawn = if (1..passes).contains(&shown) { format!("{shown} of ") } else { String::new() };
         words.push(format!("{drawn}{passes} passes"));
     }
-    words.extend(report.tool.as_ref().map(|tool| tool.label.clone()));
+    match &report.tools[..] {
+        [] => {}
+        [one] => words.push(one.label.clone()),
+        several => words.push(format!("{} operations", several.len())),
+    }
     words.join(", ")
 }
 

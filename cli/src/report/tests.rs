@@ -39,6 +39,7 @@ fn sheet(n: u32) -> Report {
         axis: [0.1, 0.0, 0.995],
         time_min: k as f32,
         pass: Some(k),
+        tool: 0,
     };
     Report {
         title: "Sheet".into(),
@@ -46,13 +47,13 @@ fn sheet(n: u32) -> Report {
         scalars: vec![Scalar { name: "curvature".into(), unit: "1/mm".into() }],
         passes: (0..30).map(pass).collect(),
         links: vec![Link { points_mm: vec![[0.0; 3], [0.0, 0.0, 20.0]], rapid: true }],
-        tool: Some(Tool {
+        tools: vec![Tool {
             label: "ball D10".into(),
             diameter_mm: 10.0,
             corner_radius_mm: 5.0,
             length_mm: 40.0,
             ..Tool::default()
-        }),
+        }],
         poses: (0..30).map(pose).collect(),
         verdict: Verdict {
             outcome: Outcome::Within,
@@ -197,7 +198,7 @@ fn names_cannot_break_out() {
         columns: vec![Column { name: evil.into(), unit: evil.into() }],
         rows: vec![vec![evil.into()]],
     }];
-    if let Some(tool) = &mut report.tool {
+    if let Some(tool) = report.tools.first_mut() {
         tool.label = evil.into();
     }
     let page = html(&report);

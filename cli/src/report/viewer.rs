@@ -60,7 +60,7 @@ pub fn viewer(out: &mut String, report: &Report, faces: &[Clean], scales: &Scale
     } else {
         segment(out, ["path", "Path", which], &path[..1], "off");
     }
-    let has_tool = report.tool.is_some() && !report.poses.is_empty();
+    let has_tool = !report.tools.is_empty() && !report.poses.is_empty();
     let checks = [
         ("show-links", "Links", false, !report.links.is_empty()),
         ("show-tool", "Tool", has_tool, has_tool),

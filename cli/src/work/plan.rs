@@ -227,6 +227,7 @@ impl Proved<'_> {
             summary: &summary,
             diagnostics: &diagnostics,
             time_by_move: &read,
+            hands: vec![(0, fill::tool(job))],
             extras: &planned.extras,
         };
         let pages = fill::pages(&story, &|f| stage.at(f));

@@ -133,6 +133,8 @@ pub struct OperationSummary {
     /// What is left of it, mm3.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_mm3: Option<f64>,
+    /// In a word what became of its faces: held, leaves some (later operations may take it), not held (something is harmed), not shown.
+    pub step: &'static str,
     /// Its figures.
     #[serde(flatten)]
     pub figures: Summary,

@@ -9,26 +9,44 @@ use super::verdict::{Answer, Figures, ScopeRow};
 /// Sums that exceed a limit by less than this are the limit, rounded.
 const SAME: f64 = 1.0 + 1e-9;
 
+/// What is more than its limit, in words.
+fn over(what: &str, is: f64, limit: f64, unit: &str) -> Option<String> {
+    (is > limit).then(|| format!("{what} {is:.4} {unit} where {limit} {unit} are accepted"))
+}
+
 impl Trial<'_> {
     /// What fails at the samples, in words.
     pub fn failings(&self, t: &Tally, height_mm: f64) -> Vec<String> {
+        let mut why = self.harms(t);
         let (l, limits) = (&self.limits, &self.goal.limits);
-        let mut why = Vec::new();
-        let mut over = |what: &str, is: f64, limit: f64, unit: &str| {
-            if is > limit {
-                why.push(format!("{what} {is:.4} {unit} where {limit} {unit} are accepted"));
-            }
-        };
-        over("a gouge of", t.gouge_max_mm, l.gouge_mm, "mm");
-        over("the holder takes", t.holder_max_mm, l.collision_mm, "mm");
-        over("a rapid move takes", t.rapid_max_mm, l.collision_mm, "mm");
-        over("uncut area of", t.uncut_area_mm2, limits.unreached_mm2, "mm2");
+        why.extend(over("uncut area of", t.uncut_area_mm2, limits.unreached_mm2, "mm2"));
         if height_mm > t.scallop_max_mm && height_mm > l.scallop_mm {
-            over("a scallop with its tooth mark of", height_mm, l.scallop_mm, "mm");
+            why.extend(over("a scallop with its tooth mark of", height_mm, l.scallop_mm, "mm"));
         } else {
-            over("a scallop of", t.scallop_max_mm, l.scallop_mm, "mm");
+            why.extend(over("a scallop of", t.scallop_max_mm, l.scallop_mm, "mm"));
         }
         why
+    }
+
+    /// What was taken that should stand, or touched that should not be, in words.
+    fn harms(&self, t: &Tally) -> Vec<String> {
+        let l = &self.limits;
+        let all = [
+            over("a gouge of", t.gouge_max_mm, l.gouge_mm, "mm"),
+            over("the holder takes", t.holder_max_mm, l.collision_mm, "mm"),
+            over("a rapid move takes", t.rapid_max_mm, l.collision_mm, "mm"),
+        ];
+        all.into_iter().flatten().collect()
+    }
+
+    /// Whether all that fails is what is left standing.
+    pub fn leaves_only(&self, f: &Figures) -> bool {
+        let collides = f.stock.as_ref().is_some_and(|s| !s.carved.collisions.is_empty());
+        let breaks = self.goal.control.remarks.iter().any(|r| r.gravity == Gravity::Breaks);
+        !collides
+            && !breaks
+            && self.harms(&f.tally).is_empty()
+            && !self.failings(&f.tally, f.height_max_mm).is_empty()
     }
 
     /// The answer, and why it is not held.

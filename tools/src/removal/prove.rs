@@ -96,6 +96,7 @@ pub fn prove(
         why,
         remarks,
         scope: trial.scope(&figures),
+        leaves_only: trial.leaves_only(&figures),
         figures,
         samples,
         cuts,

@@ -96,6 +96,8 @@ pub struct Verdict {
     /// Limits that are met at the samples are enough.
     pub(super) at_samples: bool,
     pub(super) why: Vec<String>,
+    /// All that fails is what is left standing.
+    pub(super) leaves_only: bool,
     pub(super) remarks: Vec<String>,
     pub(super) scope: Vec<ScopeRow>,
     pub(super) figures: Figures,
@@ -120,6 +122,12 @@ impl Verdict {
     #[must_use]
     pub fn why(&self) -> &[String] {
         &self.why
+    }
+
+    /// Whether all that fails is what is left standing: nothing is harmed, and what comes later may take it.
+    #[must_use]
+    pub const fn leaves_only(&self) -> bool {
+        self.leaves_only
     }
 
     /// What is to be told of the state of the control, whatever the answer.

@@ -37,7 +37,7 @@ pub fn placed(report: &Report, share: Option<f64>) -> Option<Placed> {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     };
     let x = unit(cross(aside, axis));
-    let outlines = outlines(report.tool.as_ref()?);
+    let outlines = outlines(report.tools.get(pose.tool as usize)?);
     Some(Placed { tip: pose.tip_mm.map(f64::from), frame: [x, cross(axis, x), axis], outlines })
 }
 

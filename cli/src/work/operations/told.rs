@@ -23,6 +23,7 @@ use osculate_geom::Diagnostic;
 use osculate_postproc::nc::Dialect;
 use osculate_productivity::plan::{Linked, Passes};
 use osculate_tools::Lean;
+use osculate_tools::removal::Answer;
 use std::fmt::Write;
 
 /// Cubes along the longest side of meshes of what is left.
@@ -64,6 +65,13 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         let begin = if k == 0 { 0 } else { ends[k - 1] };
         operations.push(operation(list, step, judged, times(&course, begin, ends[k]))?);
     }
+    let begins = (0..steps.len()).map(|k| if k == 0 { 0 } else { ends[k - 1] });
+    let hands = steps.iter().zip(begins).map(|(step, begin)| {
+        let mut tool = fill::tool(&step.job);
+        tool.label = format!("{}: T{} {}", step.operation.name, step.job.tool().number(), tool.label);
+        (begin, tool)
+    });
+    let hands = hands.collect();
     let merged = merged(&steps);
     let all = Times {
         time_min: course.setup_min.iter().sum(),
@@ -94,6 +102,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     }
     let extras = Extras { tables, ..Extras::default() };
     summary.operations = operations;
+    summary.wall_s = wall_s;
     let read = motions(course);
     let title = passes::title(job);
     let story = fill::Story {
@@ -106,6 +115,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         summary: &summary,
         diagnostics: &diagnostics,
         time_by_move: &read,
+        hands,
         extras: &extras,
     };
     let pages = fill::pages(&story, &|f| stage.at(f));
@@ -160,6 +170,12 @@ fn operation(
         too_high_mm2: step.too_high_mm2,
         removed_mm3: judged.stock.as_ref().map(|s| s.removed_mm3),
         left_mm3: judged.stock.as_ref().map(|s| s.left_mm3),
+        step: match judged.verified.verdict.answer() {
+            Answer::Held => "held",
+            Answer::NotHeld if judged.verified.verdict.leaves_only() => "leaves some",
+            Answer::NotHeld => "NOT held",
+            Answer::NotShown => "not shown",
+        },
         figures,
     })
 }
@@ -219,7 +235,7 @@ fn table(operations: &[OperationSummary]) -> Table {
         "air mm",
         "area mm2",
         "uncut mm2",
-        "verdict",
+        "step",
     ];
     let row = |o: &OperationSummary| {
         let f: &Summary = &o.figures;
@@ -233,7 +249,7 @@ fn table(operations: &[OperationSummary]) -> Table {
             format!("{:.0}", f.air_length_mm),
             format!("{:.1}", f.area_mm2),
             number(f.verification.uncut_area_mm2, 4),
-            f.verdict.answer.replace('_', " "),
+            o.step.to_owned(),
         ]
     };
     Table {
