@@ -16,6 +16,7 @@ use crate::point::{Axis, Point3, Unit3, Uv, Vec3};
 use crate::series::Series;
 use crate::surface::Surface;
 use crate::taylor::Taylor;
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use std::f64::consts::TAU;
 
 /// Why a curve sweeps no surface.
@@ -69,6 +70,14 @@ pub struct TurnAxis {
 }
 
 impl TurnAxis {
+    /// The rigid motion that turns by an angle about the axis.
+    #[must_use]
+    pub fn turn(&self, angle_rad: f64) -> Isometry3<f64> {
+        let rotation = UnitQuaternion::from_axis_angle(&self.direction, angle_rad);
+        let shift = self.origin.coords - rotation * self.origin.coords;
+        Isometry3::from_parts(Translation3::from(shift), rotation)
+    }
+
     /// The parts of a vector along the axis, across it, and turned by 90 degrees about it.
     fn parts(&self, w: &Vec3) -> [Vec3; 3] {
         let z = self.direction.into_inner();

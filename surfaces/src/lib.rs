@@ -32,6 +32,7 @@ pub mod lines;
 mod mesh;
 mod part;
 pub mod patches;
+pub mod pattern;
 pub mod sections;
 pub mod sides;
 pub mod step;

@@ -72,7 +72,9 @@ impl Reader<'_> {
             self.places.keep(name, key, line);
             if name.is_empty() && self.schema.is_list(key) {
                 self.list(key, value)?;
-            } else if self.schema.tables_in(&kind).contains(&key) {
+            } else if self.schema.tables_in(&kind).contains(&key)
+                && (value.get_ref().is_table() || self.schema.key(&kind, key).is_none())
+            {
                 match value.get_ref() {
                     DeValue::Table(t) => self.table(&full(name, key), t)?,
                     _ => {
@@ -214,7 +216,7 @@ fn check(kind: &Kind, value: &DeValue<'_>) -> Result<(), Wrong> {
     let words = kind.words();
     let good = match kind {
         Kind::Number(r, _) => within(r, value),
-        Kind::Whole(a, b) => whole(value).is_some_and(|x| (*a..=*b).contains(&x)),
+        Kind::Whole(a, b) | Kind::WholeOrTable(a, b) => whole(value).is_some_and(|x| (*a..=*b).contains(&x)),
         Kind::Wholes(a, b) => each(value.as_array(), |v| whole(v).is_some_and(|x| (*a..=*b).contains(&x))),
         Kind::Flag => value.as_bool().is_some(),
         Kind::Sign => whole(value).is_some_and(|x| x.abs() == 1),

@@ -17,6 +17,9 @@ const FAR: Range = Range { least: -1e6, most: 1e6, open: [false; 2] };
 const LEAN: Range = Range { least: -90.0, most: 90.0, open: [true; 2] };
 const TURN: Range = Range { least: -360.0, most: 360.0, open: [false; 2] };
 
+/// Places of a circle: more are no part of a machine.
+const MOST_PLACES: i64 = 1000;
+
 const MM: Kind = Kind::Number(ABOVE, "mm");
 const MM_OR_ZERO: Kind = Kind::Number(NOT_BELOW, "mm");
 const SMALL: Kind = Kind::Number(FINE, "mm");
@@ -106,12 +109,19 @@ static OWN: &[Table] = &[
         must("kind", Kind::Word(OperationWord::WORDS), "\"finish\"", "rough: in layers down to an allowance; finish: to tolerance; rest: where too much stands"),
         may("tools", Kind::Wholes(1, 9999), "all tools", "[3, 4]", "numbers of tools; of several the fastest that holds is chosen"),
         may("faces", Kind::Faces, "those of the part", "[\"F1\", \"F2\"]", "faces to machine"),
+        may("repeat", Kind::WholeOrTable(2, MOST_PLACES), "planned where its faces are, once", "6",
+            "equal places in a circle: planned at its faces, and repeated by turning about an axis of the part"),
         may("allowance_mm", MM_OR_ZERO, "rough: 0.5", "0.5", "what it leaves on the faces on purpose"),
         may("stepdown_mm", MM, "rough: a quarter of the diameter", "3", "deepest cut along the axis"),
         may("stepover_mm", MM, "rough: 0.4 of the diameter", "5", "distance of rows"),
         may("overlap_mm", MM, "rest: a tenth of the diameter", "0.5", "how far passes go beyond what stands too high"),
         may("scallop_mm", SMALL, "that of the job; rough: stepdown", "0.02", "highest material left standing, above the allowance"),
         may("gouge_mm", SMALL, "that of the job; rough: a fifth of the allowance", "0.01", "deepest undercut, into the allowance of a roughing"),
+    ]),
+    table("operation.repeat", false, "equal places in a circle about an axis that the part does not show by itself", &[
+        may("axis", Kind::Direction, "[0, 0, 1]", "[0, 0, 1]", "direction of the axis"),
+        may("at_mm", TRIPLE, "[0, 0, 0]", "[0, 0, 0]", "a point of it"),
+        must("count", Kind::Whole(2, MOST_PLACES), "6", "how many places, that of its faces counted"),
     ]),
 ];
 

@@ -6,8 +6,9 @@
 use crate::failure::{Failure, beside, read_text};
 use crate::job::problem::Places;
 use crate::job::raw::{self, Raw, RawList};
+use crate::job::repeat::Repeat;
 use crate::job::words::{AxisKey, Gouges, OperationWord, StrategyWord};
-use crate::job::{Job, SHARES, check, keys, schema};
+use crate::job::{Job, SHARES, check, keys, repeat, schema};
 use crate::words::number;
 use std::path::Path;
 
@@ -42,6 +43,8 @@ pub struct Operation {
     pub setup: usize,
     /// How far rest passes go beyond what stands too high, mm.
     pub overlap_mm: f64,
+    /// Equal places in which it is done.
+    pub repeat: Option<Repeat>,
     places: Places,
     raw: Raw,
 }
@@ -403,6 +406,7 @@ fn composed(
         kind: own.kind,
         setup,
         overlap_mm: own.overlap_mm.unwrap_or(OVERLAP * smallest_mm),
+        repeat: own.repeat.map(Repeat::of),
         places,
         raw,
     })
@@ -439,6 +443,9 @@ fn rough(raw: &mut Raw, own: &raw::Operation, diameter_mm: f64) -> Result<(), Wr
     let s = &mut raw.strategy;
     if !matches!(s.kind, StrategyWord::Auto | StrategyWord::ZLevel) {
         return Err(("kind", format!("kind = \"rough\" goes in layers (z_level), not by {}", s.kind.word())));
+    }
+    if own.repeat.is_some() {
+        return Err(("repeat", repeat::OF_ROUGHING.to_owned()));
     }
     s.kind = StrategyWord::ZLevel;
     let stepdown = own.stepdown_mm.or(s.stepdown_mm).unwrap_or(STEPDOWN * diameter_mm);

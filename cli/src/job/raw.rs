@@ -271,6 +271,22 @@ pub struct RawList {
     pub verification: Verification,
 }
 
+/// Equal places in a circle: a number of them, or with the axis.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+pub enum Repeat {
+    Count(usize),
+    Circle(Circle),
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Circle {
+    pub axis: Option<[f64; 3]>,
+    pub at_mm: Option<[f64; 3]>,
+    pub count: usize,
+}
+
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Operation {
@@ -279,6 +295,7 @@ pub struct Operation {
     pub kind: OperationWord,
     pub tools: Option<Vec<u32>>,
     pub faces: Option<FaceChoice>,
+    pub repeat: Option<Repeat>,
     pub allowance_mm: Option<f64>,
     pub stepdown_mm: Option<f64>,
     pub stepover_mm: Option<f64>,

@@ -44,6 +44,8 @@ pub enum Kind {
     Number(Range, &'static str),
     /// A whole number.
     Whole(i64, i64),
+    /// A whole number, or the table of the same name.
+    WholeOrTable(i64, i64),
     /// Whole numbers.
     Wholes(i64, i64),
     /// 1 or -1.
@@ -102,6 +104,7 @@ impl Kind {
             Self::Number(r, unit) => with(r.to_string(), unit),
             Self::Whole(a, b) if a == b => format!("{a}: this version reads format = {a}"),
             Self::Whole(a, b) => format!("a whole number from {a} to {b}"),
+            Self::WholeOrTable(a, b) => format!("a whole number from {a} to {b}, or a table with the number as count"),
             Self::Wholes(a, b) => format!("a list of whole numbers from {a} to {b}"),
             Self::Sign => "1 or -1".to_owned(),
             Self::Flag => "true or false".to_owned(),

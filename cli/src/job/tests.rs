@@ -46,13 +46,14 @@ fn accepted() -> Vec<(&'static str, Vec<String>)> {
         ("flank", fields::<raw::Flank>()),
         ("verification", fields::<raw::Verification>()),
         ("operation", fields::<raw::Operation>()),
+        ("operation.repeat", fields::<raw::Circle>()),
     ]
 }
 
 #[test]
 fn what_serde_accepts_and_what_the_schema_lists_are_the_same() {
     let all = accepted();
-    assert_eq!(all.len(), TABLES.len() + 1);
+    assert_eq!(all.len(), TABLES.len() + 2);
     for (name, mut fields) in all {
         let of = |schema: &schema::Schema| -> Vec<String> {
             schema.keys(name).map(|k| k.name).chain(schema.tables_in(name)).map(ToOwned::to_owned).collect()

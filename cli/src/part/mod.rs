@@ -2,8 +2,10 @@
 
 mod loaded;
 mod sides;
+mod turned;
 
 pub use loaded::{Loaded, LoadedFace};
+pub use turned::{TurnedFaces, turned};
 
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
@@ -138,6 +140,14 @@ impl Part {
     pub fn seen_by(&self, job: &Job) -> Result<Self, Failure> {
         let chosen = machined(job, &self.part)?;
         sorted(job, self.part.clone(), chosen, self.open.clone())
+    }
+
+    /// The same part with these faces to machine, as a job on others of its faces sees it.
+    ///
+    /// # Errors
+    /// Where the job has one of them for something else.
+    pub fn with_faces(&self, job: &Job, ids: Vec<String>) -> Result<Self, Failure> {
+        sorted(job, self.part.clone(), ids, self.open.clone())
     }
 
     /// A failure with what was warned of when the part was read: it may be why.

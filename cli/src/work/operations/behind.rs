@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{Part, area};
 use crate::work::stock::RawMaterial;
-use osculate_geom::Point3;
+use osculate_geom::{Point3, Unit3};
 use osculate_productivity::plan::Linked;
 use osculate_tools::Cutter;
 use osculate_tools::cl::Motion;
@@ -135,9 +135,13 @@ impl Behind {
 
     /// How high material stands on the faces to machine, mm: at most, where the tool comes along an axis that it keeps and as seen along it;
     /// else on all but a fiftieth of their area, along the normals.
-    pub fn standing_mm(&self, job: &Job, part: &Part, raw: &RawMaterial<'_>) -> Result<f64, Failure> {
+    pub fn standing_mm(
+        &self,
+        axis: Option<Unit3>,
+        part: &Part,
+        raw: &RawMaterial<'_>,
+    ) -> Result<f64, Failure> {
         let mut samples = samples(part, 0.0, PLACES)?;
-        let axis = job.strategy().kept_axis();
         if let Some(axis) = axis {
             samples.retain(|s| s.normal.dot(&axis) > SEEN);
             samples.iter_mut().for_each(|s| s.normal = axis);

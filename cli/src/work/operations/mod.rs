@@ -5,6 +5,7 @@ mod behind;
 mod course;
 mod derive;
 pub mod kept;
+mod passages;
 mod posted;
 mod sense;
 pub mod standing;

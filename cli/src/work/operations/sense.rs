@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::job::{Blank, Job, OperationWord, Operations};
 use crate::part::{self, Part};
 use crate::words::number;
+use crate::work::operations::passages::Passages;
 use crate::work::stock;
 use osculate_geom::{Point3, Unit3};
 
@@ -27,7 +28,7 @@ pub fn check(list: &Operations, part: &Part) -> Result<(), Failure> {
 fn finished(list: &Operations, part: &Part) -> Result<(), Failure> {
     let mut finished: Vec<String> = Vec::new();
     for operation in list.all() {
-        let own = part.seen_by(&operation.judged()?).map_err(|why| why.in_operation(&operation.name))?;
+        let own = Passages::of(operation, &operation.judged()?, part)?.into_all();
         if operation.kind != OperationWord::Rough {
             finished.extend(own.faces.into_iter().map(|f| f.id));
         }

@@ -54,7 +54,7 @@ pub fn left(list: &Operations, part: &Part, steps: &[Step<'_>], whole: &Verified
             .filter(|s| s.job.strategy().layers().is_none() && s.part.faces.iter().any(|f| f.id == face.id))
             .collect();
         let tool_mm = on_it.iter().map(|s| smallest(&s.job)).fold(f64::INFINITY, f64::min);
-        let axes: Option<Vec<Unit3>> = on_it.iter().map(|s| s.job.strategy().kept_axis()).collect();
+        let axes: Option<Vec<Unit3>> = on_it.iter().map(|s| s.kept_axis).collect();
         let mut seen = Seen {
             area_mm2: 0.0,
             hollow_mm2: 0.0,

@@ -8,10 +8,11 @@ use crate::words::number;
 use crate::work::choice::{self, Choice, Row};
 use crate::work::operations::behind::Behind;
 use crate::work::operations::kept::Kept;
+use crate::work::operations::passages::Passages;
 use crate::work::plan::{Laid, planned};
 use crate::work::program::{Planned, WallS};
 use crate::work::stock::RawMaterial;
-use osculate_geom::Diagnostic;
+use osculate_geom::{Diagnostic, Unit3};
 use osculate_productivity::plan::{Rest, rest_of};
 use std::sync::OnceLock;
 
@@ -21,8 +22,10 @@ pub struct Step<'a> {
     pub operation: &'a Operation,
     /// Its job with the tool in hand, as it was planned.
     pub job: Job,
-    /// The part with its own faces to machine.
+    /// The part with its own faces to machine, those of all places where it is repeated.
     pub part: Part,
+    /// The axis that its tool keeps, where it keeps one in all places.
+    pub kept_axis: Option<Unit3>,
     /// Its passes and path.
     pub planned: Planned<'static>,
     /// What it was chosen from.
@@ -52,10 +55,12 @@ impl<'a> Step<'a> {
     pub fn of_kept(operation: &'a Operation, whole: &Part, kept: Kept) -> Result<Self, Failure> {
         let job = operation.planned(kept.standing_mm)?;
         let job = if job.tools().len() > 1 { job.in_hand(kept.tool) } else { job };
+        let places = Passages::of(operation, &operation.judged()?, whole)?;
         Ok(Self {
             operation,
+            kept_axis: places.kept_axis(&job),
             job,
-            part: whole.seen_by(&operation.judged()?)?,
+            part: places.into_all(),
             planned: kept.planned(),
             standing_mm: kept.standing_mm,
             too_high_mm2: kept.too_high_mm2,
@@ -86,22 +91,23 @@ pub fn plan<'a>(
     let here = |why: Failure| why.in_operation(&operation.name);
     let stage = Stage::begin(watch, "plan");
     let job = operation.judged()?;
-    let part = whole.seen_by(&job)?;
-    let standing_mm = raw.map(|raw| behind.standing_mm(&job, &part, raw)).transpose()?;
+    let places = Passages::of(operation, &job, whole)?;
+    let part = places.first();
+    let standing_mm = raw.map(|raw| places.standing_mm(behind, &job, raw)).transpose()?;
     let job = operation.planned(standing_mm)?;
     let (mut job, mut too_high_mm2, mut compared) = (job, None, Vec::new());
     let progress = |f: f64| stage.at(f);
     let planned = match operation.kind {
-        OperationWord::Rough => planned(&job, &part, watch, &progress).map_err(here)?,
+        OperationWord::Rough => planned(&job, part, watch, &progress).map_err(here)?,
         OperationWord::Rest => {
-            let high = behind.too_high(&job, &part, operation.overlap_mm)?;
+            let high = places.too_high(behind, &job, operation.overlap_mm)?;
             if high.places.is_empty() {
                 let text =
                     format!("{}: nothing stands above its tolerance: it has nothing to do", operation.name);
                 return Ok(Planning::Nothing(Diagnostic::note("rest", text)));
             }
             too_high_mm2 = Some(high.area_mm2);
-            let mut laid = laid(&job, &part, watch, &progress).map_err(here)?;
+            let mut laid = laid(&job, part, watch, &progress).map_err(here)?;
             let rest =
                 Rest { places: &high.places, overlap_mm: operation.overlap_mm, hop_mm: job.setup().hop_mm };
             laid.passes.passes = rest_of(&laid.passes.passes, &rest).map_err(Failure::job).map_err(here)?;
@@ -114,10 +120,10 @@ pub fn plan<'a>(
                 );
                 return Ok(Planning::Nothing(Diagnostic::warning("rest", text)));
             }
-            laid.linked(&job, &part).map_err(here)?
+            laid.linked(&job, part).map_err(here)?
         }
         OperationWord::Finish if job.is_open() => {
-            let mut choice = Choice::screen(&job, &part).map_err(here)?;
+            let mut choice = Choice::screen(&job, part).map_err(here)?;
             let settled =
                 choice::settle(&mut choice, 1, watch, &mut WallS::default(), &progress).map_err(here)?;
             compared = choice.rows();
@@ -127,14 +133,16 @@ pub fn plan<'a>(
             planned
         }
         OperationWord::Finish => {
-            laid(&job, &part, watch, &progress).map_err(here)?.linked(&job, &part).map_err(here)?
+            laid(&job, part, watch, &progress).map_err(here)?.linked(&job, part).map_err(here)?
         }
     };
+    let planned = places.repeat(&job, planned).map_err(here)?;
     let plan_s = stage.end();
     Ok(Planning::Path(Box::new(Step {
         operation,
+        kept_axis: places.kept_axis(&job),
         job,
-        part,
+        part: places.into_all(),
         planned,
         compared,
         standing_mm,
