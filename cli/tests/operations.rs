@@ -267,13 +267,23 @@ fn what_cannot_be_meant_is_refused_at_once() {
     refused(&LIST.replace("format = 2", "format = 3"), &["format = 3 must be"]);
 }
 
+/// Five operations; the fourth looks for what is left at so many places that there is time to stop it.
+fn five() -> String {
+    let half = "kind = \"finish\"\nscallop_mm = 0.3\n";
+    let one = |name: &str, keys: &str| format!("[[operation]]\nname = \"{name}\"\ntools = [7]\n{keys}\n");
+    let along = "strategy = { kind = \"isoplanar_3c\" }";
+    LIST.replace("kind = \"finish\"\n", half)
+        + &one("again", &format!("kind = \"finish\"\nscallop_mm = 0.2\n{along}"))
+        + &one("rest", "kind = \"rest\"\noverlap_mm = 0.02")
+        + &one("last", &format!("kind = \"finish\"\n{along}"))
+}
+
 #[cfg(unix)]
 #[test]
 fn a_run_that_was_stopped_goes_on_with_what_it_kept() {
     use std::process::{Command, Stdio};
     let scratch = Scratch::new();
-    // Looked at so closely that there is time to stop it.
-    let job = scratch.write("job.toml", &LIST.replace("spacing_mm = 0.1", "spacing_mm = 0.012"));
+    let job = scratch.write("job.toml", &five());
     let args = |out: &str| ["plan".into(), job.clone(), "--out".into(), scratch.path(out), "--json".into()];
     let child = Command::new(env!("CARGO_BIN_EXE_osculate"))
         .args(args("out"))
@@ -281,35 +291,51 @@ fn a_run_that_was_stopped_goes_on_with_what_it_kept() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let kept = [1, 2].map(|k| scratch.path(&format!("out/operation-{k}.kept")));
+    let kept = [1, 2, 3].map(|k| scratch.path(&format!("out/operation-{k}.kept")));
     let begun = std::time::Instant::now();
-    while !kept[1].exists() {
+    while !kept[2].exists() {
         assert!(begun.elapsed().as_secs() < 60, "nothing is kept");
-        std::thread::sleep(std::time::Duration::from_millis(5));
+        std::thread::sleep(std::time::Duration::from_millis(2));
     }
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let done = child.wait_with_output().unwrap();
     let said = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(1), "{said}");
     assert!(said.contains("the same command goes on from them"), "{said}");
-    let mut left: Vec<_> =
-        std::fs::read_dir(scratch.path("out")).unwrap().map(|e| e.unwrap().file_name()).collect();
-    left.sort();
-    assert_eq!(left, ["operation-1.kept", "operation-2.kept"]);
-    // A word of the first one is changed: what is kept is taken, as the answer shows.
-    let text = std::fs::read_to_string(&kept[0]).unwrap();
-    std::fs::write(&kept[0], text.replace("\"strategy\":\"z_level\"", "\"strategy\":\"as kept\"")).unwrap();
+    // Three operations are there, whole; of the fourth and of results there is nothing.
+    let there = || {
+        let all = std::fs::read_dir(scratch.path("out")).unwrap();
+        let mut names: Vec<_> = all.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(there(), ["operation-1.kept", "operation-2.kept", "operation-3.kept"]);
+    // A word of each is changed: what is kept is taken, as the answer shows, and the others are planned.
+    let texts = kept.each_ref().map(|k| std::fs::read_to_string(k).unwrap());
+    for (k, text) in kept.iter().zip(&texts) {
+        let v: Value = serde_json::from_str(text).unwrap();
+        let word = format!("\"strategy\":{}", v["strategy"]);
+        assert!(text.contains(&word));
+        std::fs::write(k, text.replacen(&word, "\"strategy\":\"as kept\"", 1)).unwrap();
+    }
     let again = osculate(&args("out")).json();
-    assert_eq!(again["operations"][0]["strategy"], "as kept");
-    assert!(!kept[0].exists() && !kept[1].exists());
+    let all = again["operations"].as_array().unwrap();
+    let taken: Vec<bool> = all.iter().map(|o| o["strategy"] == "as kept").collect();
+    assert_eq!(taken, [true, true, true, false, false]);
+    assert!(there().iter().all(|name| !name.ends_with(".kept")), "{:?}", there());
     let clean = osculate(&args("clean")).json();
     assert_eq!(again["verdict"], clean["verdict"]);
-    for name in ["program.ngc", "path-1.cl", "path-2.cl", "stock-2.stl", "tool.tbl", "job.resolved.toml"] {
+    assert_eq!(clean["verdict"]["answer"], "held", "{}", clean["verdict"]);
+    let paths = [1, 2, 3, 4, 5].map(|k| format!("path-{k}.cl"));
+    let others = ["program.ngc", "stock-3.ply", "stock-5.stl", "tool.tbl", "job.resolved.toml"];
+    for name in paths.iter().map(String::as_str).chain(others) {
         let [a, b] = ["out", "clean"].map(|f| std::fs::read(scratch.path(f).join(name)).unwrap());
         assert!(a == b, "{name}");
     }
-    // Of another job nothing is taken.
-    std::fs::write(&kept[0], text).unwrap();
-    std::fs::write(&job, LIST.replace("allowance_mm = 0.4", "allowance_mm = 0.5")).unwrap();
+    // Half of a file is none, and of another job nothing is taken.
+    std::fs::write(&kept[0], &texts[0][..texts[0].len() / 2]).unwrap();
+    std::fs::write(&job, LIST).unwrap();
+    assert_eq!(osculate(&args("out")).json()["operations"][0]["strategy"], "z_level");
+    std::fs::write(&kept[0], texts[0].replace("\"z_level\"", "\"as kept\"")).unwrap();
     assert_eq!(osculate(&args("out")).json()["operations"][0]["strategy"], "z_level");
 }

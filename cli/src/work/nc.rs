@@ -38,8 +38,8 @@ pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
 }
 
 /// CL data as text.
-pub fn cl_text(path: &ClPath, part_name: &str) -> Result<String, String> {
-    let options = ClWriteOptions { part_name: part_name.to_owned(), ..ClWriteOptions::default() };
+pub fn cl_text(path: &ClPath, tool_number: u32, part_name: &str) -> Result<String, String> {
+    let options = ClWriteOptions { part_name: part_name.to_owned(), tool_number };
     cldata::write(path, &options).map_err(|e| e.to_string())
 }
 

@@ -192,9 +192,10 @@ pub fn each_face(
         if way.watch.wants_partial() && k + 1 < n {
             let empty = cl_path(job, &Linked::default());
             let (done, links, name) = (out.passes.clone(), links(job, faces, cutter), title(job));
+            let tool = job.tool().number();
             let walls = walls(job, faces)?;
             let text = move || {
-                nc::cl_text(&ClPath { moves: link(&done, &links, &walls).path.moves, ..empty }, &name)
+                nc::cl_text(&ClPath { moves: link(&done, &links, &walls).path.moves, ..empty }, tool, &name)
             };
             way.watch.partial(Box::new(text), format!("the passes of {} of {n} faces", k + 1));
         }

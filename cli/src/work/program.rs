@@ -81,7 +81,7 @@ impl Posted {
         let along = Along { path: &cl, axes: &axes_of(planned) };
         let (base, mut setup_notes) = setup::of(job, faces, Some(along));
         let title = passes::title(job);
-        let cl_text = nc::cl_text(&cl, &title).map_err(Failure::job)?;
+        let cl_text = nc::cl_text(&cl, job.tool().number(), &title).map_err(Failure::job)?;
         if watch.wants_partial() {
             let text = cl_text.clone();
             watch.partial(Box::new(move || Ok(text)), "the whole path".to_owned());

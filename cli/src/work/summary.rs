@@ -5,6 +5,7 @@ use crate::work::choice::Row;
 use crate::work::extras::FaceLeftOut;
 use crate::work::ideal::IdealTime;
 use crate::work::joints::JointFigures;
+use crate::work::operations::behind::OnFace;
 use crate::work::operations::standing::LeftStanding;
 use crate::work::program::WallS;
 use crate::work::verify::{VerdictKeys, Verification, WorstPlace};
@@ -127,6 +128,9 @@ pub struct OperationSummary {
     /// Of rest, the area of its faces that stood too high before, mm2.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub too_high_mm2: Option<f64>,
+    /// What stood on each of its faces before and after, by the paths; empty where no raw material is declared.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub on_faces: Vec<OnFace>,
     /// What it took of the raw material, mm3; absent where none is declared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_mm3: Option<f64>,

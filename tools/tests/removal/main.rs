@@ -5,6 +5,7 @@ mod closed_forms;
 mod collisions;
 mod common;
 mod edges;
+mod frozen;
 mod gouges;
 mod hidden;
 mod prove;

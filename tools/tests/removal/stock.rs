@@ -31,20 +31,22 @@ fn carve(stock: &mut Stock, cutter: &Cutter, motions: &[Swept]) -> Carved {
 }
 
 /// Within 0.1 percent.
-fn close(got: f64, want: f64) {
+fn close(what: &str, got: f64, want: f64) {
     assert!(
         (got - want).abs() < 1e-3 * want,
-        "{got} mm3, the closed form says {want}: {:.3} %",
+        "{what}: {got} mm3, the closed form says {want}: {:.3} %",
         100.0 * (got / want - 1.0)
     );
 }
 
 #[test]
-fn volumes_of_slots_pockets_and_a_sphere() {
-    for case in cases() {
+fn volumes_of_slots_pockets_holes_and_faces() {
+    let all = cases();
+    assert!(all.len() > 12);
+    for case in all {
         let mut stock = block(case.size_mm, case.cell_mm);
         let carved = carve(&mut stock, &case.cutter, &case.motions);
-        close(carved.volume_mm3(), case.volume_mm3);
+        close(case.name, carved.volume_mm3(), case.volume_mm3);
         let spread = stock.volume().spread_mm3;
         assert!(spread < 2e-3 * carved.volume_mm3(), "{}: {spread}", case.name);
     }
@@ -158,7 +160,7 @@ fn what_must_not_meet_material() {
     // A rapid through material.
     let fast = run(3.0, true);
     assert!(fast.work.is_empty() && fast.collisions[0].rapid && fast.collisions[0].body == Body::Cutter);
-    close(fast.collisions[0].volume_mm3, 3.0 * (6.0 * 20.0 + 0.5 * PI * 9.0));
+    close("rapid", fast.collisions[0].volume_mm3, 3.0 * (6.0 * 20.0 + 0.5 * PI * 9.0));
 }
 
 fn cube(at: [f64; 3], side: f64) -> Vec<[Point3; 3]> {
@@ -177,18 +179,18 @@ fn meshes_as_raw_material() {
     // Two cubes that overlap in a corner of 2 x 2 x 2.
     let mut two = cube([0.0; 3], 5.0);
     two.extend(cube([3.0; 3], 5.0));
-    close(of(&Blank::Mesh(&two)).unwrap().stock.volume().mm3, 250.0 - 8.0);
+    close("two cubes", of(&Blank::Mesh(&two)).unwrap().stock.volume().mm3, 250.0 - 8.0);
     // A layer around a square, open: two plates, half cylinders at the sides, a ball in all at the corners.
     let square = &cube([0.0; 3], 6.0)[..2];
     let r = 1.5;
     let want = 36.0 * 2.0 * r + 12.0 * PI * r * r + 4.0 / 3.0 * PI * r * r * r;
     let layer = Blank::Layer { triangles: square, thickness_mm: r, filled: false };
-    close(of(&layer).unwrap().stock.volume().mm3, want);
+    close("layer", of(&layer).unwrap().stock.volume().mm3, want);
     // And around a cube that is filled: Steiner's formula.
     let one = cube([0.0; 3], 6.0);
     let want = 216.0 + 216.0 * r + 18.0 * PI * r * r + 4.0 / 3.0 * PI * r * r * r;
     let filled = Blank::Layer { triangles: &one, thickness_mm: r, filled: true };
-    close(of(&filled).unwrap().stock.volume().mm3, want);
+    close("filled", of(&filled).unwrap().stock.volume().mm3, want);
     // A mesh with a hole.
     assert!(matches!(of(&Blank::Mesh(&one[1..])), Err(BlankError::Open { .. })));
     assert!(matches!(of(&Blank::Mesh(&[])), Err(BlankError::Empty(_))));

@@ -20,13 +20,32 @@ const PACKAGES: [&str; 2] = ["linuxcnc-uspace", "libboost-python1.74.0"];
 
 /// The worst of one program.
 #[derive(Default)]
-struct Worst {
-    tip_mm: f64,
-    axis_deg: f64,
-    points: usize,
+pub(super) struct Worst {
+    pub tip_mm: f64,
+    pub axis_deg: f64,
+    pub points: usize,
 }
 
-pub fn run() -> Result<(), Failure> {
+impl Worst {
+    /// Whether all is near enough.
+    pub fn fine(&self) -> bool {
+        self.points > 0 && self.tip_mm <= TIP_MM && self.axis_deg <= AXIS_DEG
+    }
+}
+
+/// LinuxCNC, ready to be asked.
+pub(super) struct Witness {
+    pub root: PathBuf,
+    /// The packages' files.
+    pub unpacked: PathBuf,
+    /// The program that calls its kinematics.
+    pub kins: PathBuf,
+    /// Where files for it and from it lie.
+    pub work: PathBuf,
+}
+
+/// Compares the programs of the example.
+pub(super) fn run() -> Result<Witness, Failure> {
     let root = cmd::root()?;
     let work = root.join("target/interop");
     let unpacked = unpack(&work)?;
@@ -37,6 +56,7 @@ pub fn run() -> Result<(), Failure> {
     write.arg(&programs);
     cmd::run(write)?;
     prepare(&root, &programs)?;
+    cmd::write(&programs.join("tool.tbl"), "T1 P1 Z0 D4\n")?;
     let mut names: Vec<PathBuf> = list(&programs)?;
     names.retain(|p| p.extension().is_some_and(|e| e == "ngc") && p.with_extension("cl").exists());
     names.sort();
@@ -45,7 +65,7 @@ pub fn run() -> Result<(), Failure> {
     for program in &names {
         let moves = interpret(&unpacked, &programs, program)?;
         let worst = compare(&unpacked, &kins, program, &moves)?;
-        let fine = worst.tip_mm <= TIP_MM && worst.axis_deg <= AXIS_DEG;
+        let fine = worst.fine();
         bad += usize::from(!fine);
         let name = program.file_stem().unwrap_or_default().to_string_lossy();
         let verdict = if fine { "" } else { "  OFF" };
@@ -60,7 +80,7 @@ pub fn run() -> Result<(), Failure> {
         "{} programs: the interpreter accepts them, the kinematics give back every CL point",
         names.len()
     );
-    Ok(())
+    Ok(Witness { root, unpacked, kins, work })
 }
 
 fn list(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
@@ -99,48 +119,97 @@ fn build_kins(root: &Path, work: &Path) -> Result<PathBuf, Failure> {
     Ok(kins)
 }
 
-/// What a configured machine has beside a program: a tool table, and the words that switch its kinematics.
-fn prepare(root: &Path, programs: &Path) -> Result<(), Failure> {
+/// What a configured machine has beside a program: the words that switch its kinematics.
+pub(super) fn prepare(root: &Path, programs: &Path) -> Result<(), Failure> {
     let ini = root.join("xtask/interop/switch.ini");
     let text = std::fs::read_to_string(&ini).map_err(|why| Failure::Read { path: ini, why })?;
     write(&programs.join("switch.ini"), &text)?;
-    write(&programs.join("tool.tbl"), "T1 P1 Z0 D4\n")?;
     for name in ["switch_on", "switch_off"] {
         write(&programs.join(format!("{name}.ngc")), &format!("o<{name}>sub\no<{name}>endsub\nM2\n"))?;
     }
     Ok(())
 }
 
-/// The canonical moves of a program: x y z a b c.
-fn interpret(unpacked: &Path, folder: &Path, program: &Path) -> Result<Vec<[f64; 6]>, Failure> {
+/// What the interpreter says to a program in a folder with `switch.ini` and `tool.tbl`: canonical calls.
+pub(super) fn canonical(unpacked: &Path, folder: &Path, program: &Path) -> Result<String, Failure> {
     let libraries = format!("{0}/usr/lib:{0}/usr/lib/x86_64-linux-gnu", unpacked.display());
     let mut rs274 = Command::new(unpacked.join("usr/bin/rs274"));
     rs274.current_dir(folder).env("LD_LIBRARY_PATH", libraries);
     rs274.args(["-i", "switch.ini", "-g", "-n", "2", "-t", "tool.tbl"]).arg(program);
-    let text = cmd::output_quietly(rs274)?;
-    let mut moves = Vec::new();
-    for line in text.lines() {
-        let Some((_, call)) = line.split_once("STRAIGHT_") else { continue };
-        let Some((_, numbers)) = call.split_once('(') else { continue };
-        let numbers: Vec<f64> = numbers
-            .trim_end()
-            .trim_end_matches(')')
-            .split(',')
-            .filter_map(|n| n.trim().parse().ok())
-            .collect();
-        if let Ok(numbers) = <[f64; 6]>::try_from(numbers) {
-            moves.push(numbers);
-        }
-    }
-    Ok(moves)
+    cmd::output_quietly(rs274)
 }
 
-/// Runs numbers through the kinematics.
-fn through(kins: &Path, module: &Path, way: &str, rows: &[[f64; 6]]) -> Result<Vec<[f64; 6]>, Failure> {
+/// Name and numbers of a canonical call.
+pub(super) fn call(line: &str) -> Option<(&str, Vec<f64>)> {
+    let (head, rest) = line.split_once('(')?;
+    let numbers = rest.trim_end().trim_end_matches(')').split([',', ' ']);
+    Some((head.split_whitespace().last()?, numbers.filter_map(|n| n.parse().ok()).collect()))
+}
+
+/// A canonical move: x y z a b c.
+pub(super) fn straight(name: &str, numbers: &[f64]) -> Option<[f64; 6]> {
+    numbers.try_into().ok().filter(|_| name.starts_with("STRAIGHT_"))
+}
+
+/// The canonical moves of a program.
+fn interpret(unpacked: &Path, folder: &Path, program: &Path) -> Result<Vec<[f64; 6]>, Failure> {
+    let text = canonical(unpacked, folder, program)?;
+    Ok(text.lines().filter_map(call).filter_map(|(name, numbers)| straight(name, &numbers)).collect())
+}
+
+/// A machine of LinuxCNC with a tilting table: its kinematics with a tool in the spindle.
+pub(super) struct Kins {
+    /// The program that calls a module.
+    program: PathBuf,
+    module: PathBuf,
+    /// The joint that tilts: A is 3, B is 4.
+    second: usize,
+    /// Whether the words of a program are joints.
+    joints: bool,
+    /// The tool length offset in force, mm.
+    pub length_mm: f64,
+}
+
+impl Kins {
+    /// Of `xyzac` or `xyzbc`, whose modules lie below `unpacked`.
+    pub fn new((program, unpacked): (&Path, &Path), kind: &str, joints: bool) -> Self {
+        let module = unpacked.join(format!("usr/lib/linuxcnc/modules/{kind}-trt-kins.so"));
+        let second = if kind == "xyzbc" { 4 } else { 3 };
+        Self { program: program.to_path_buf(), module, second, joints, length_mm: 0.0 }
+    }
+
+    /// Where the tip is in the part after each move: the control adds the length in force to z.
+    fn poses(&self, moves: &[[f64; 6]]) -> Result<Vec<[f64; 6]>, Failure> {
+        let long = |m: &[f64; 6]| [m[0], m[1], m[2] + self.length_mm, m[3], m[4], m[5]];
+        let moves: Vec<[f64; 6]> = moves.iter().map(long).collect();
+        // Joints are X Y Z, the tilt, C; the canonical numbers have all of A B C.
+        let as_joints = |m: &[f64; 6]| [m[0], m[1], m[2], m[self.second], m[5], 0.0];
+        let joints = if self.joints {
+            moves.iter().map(as_joints).collect()
+        } else {
+            self.through("inverse", &moves)?
+        };
+        let mut poses = self.through("forward", &joints)?;
+        poses.iter_mut().for_each(|p| p[2] -= self.length_mm);
+        Ok(poses)
+    }
+
+    /// Runs numbers through the kinematics.
+    fn through(&self, way: &str, rows: &[[f64; 6]]) -> Result<Vec<[f64; 6]>, Failure> {
+        through(&self.program, &self.module, (way, self.length_mm), rows)
+    }
+}
+
+fn through(
+    kins: &Path,
+    module: &Path,
+    (way, length_mm): (&str, f64),
+    rows: &[[f64; 6]],
+) -> Result<Vec<[f64; 6]>, Failure> {
     let line = |r: &[f64; 6]| r.map(|v| v.to_string()).join(" ") + "\n";
     let input: String = rows.iter().map(line).collect();
     let mut run = Command::new(kins);
-    run.arg(module).arg(way);
+    run.arg(module).arg(way).arg(length_mm.to_string());
     let text = cmd::output_of(run, &input)?;
     let row = |l: &str| {
         let n: Vec<f64> = l.split_whitespace().filter_map(|w| w.parse().ok()).collect();
@@ -151,24 +220,27 @@ fn through(kins: &Path, module: &Path, way: &str, rows: &[[f64; 6]]) -> Result<V
 
 fn compare(unpacked: &Path, kins: &Path, program: &Path, moves: &[[f64; 6]]) -> Result<Worst, Failure> {
     let name = program.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let second = if name.starts_with("xyzbc") { 4 } else { 3 };
-    let kind = if second == 4 { "xyzbc" } else { "xyzac" };
-    let module = unpacked.join(format!("usr/lib/linuxcnc/modules/{kind}-trt-kins.so"));
-    // Joints are X Y Z, the tilt, C; the canonical numbers have all of A B C.
-    let as_joints = |m: &[f64; 6]| [m[0], m[1], m[2], m[second], m[5], 0.0];
-    let joints: Vec<[f64; 6]> = if name.contains("-joint-") {
-        moves.iter().map(as_joints).collect()
-    } else {
-        through(kins, &module, "inverse", moves)?
-    };
-    let poses = through(kins, &module, "forward", &joints)?;
+    let kind = if name.starts_with("xyzbc") { "xyzbc" } else { "xyzac" };
     let cl = program.with_extension("cl");
     let text = std::fs::read_to_string(&cl).map_err(|why| Failure::Read { path: cl, why })?;
+    let row = |line: &str| -> Vec<f64> { line.split_whitespace().filter_map(|w| w.parse().ok()).collect() };
+    let points: Vec<Vec<f64>> = text.lines().map(row).collect();
+    Kins::new((kins, unpacked), kind, name.contains("-joint-")).meets(moves, &points)
+}
+
+impl Kins {
+    /// How far the moves of a program stay off CL points, x y z i j k each, that they are to come to in order.
+    pub fn meets(&self, moves: &[[f64; 6]], points: &[Vec<f64>]) -> Result<Worst, Failure> {
+        let poses = self.poses(moves)?;
+        Ok(met(&poses, points, self.second))
+    }
+}
+
+fn met(poses: &[[f64; 6]], points: &[Vec<f64>], second: usize) -> Worst {
     let mut worst = Worst::default();
     let mut at = 0;
-    for line in text.lines() {
-        let want: Vec<f64> = line.split_whitespace().filter_map(|w| w.parse().ok()).collect();
-        let off = |p: &[f64; 6]| (tip_off(p, &want), axis_off(&axis(p, second), &want[3..]));
+    for want in points {
+        let off = |p: &[f64; 6]| (tip_off(p, want), axis_off(&axis(p, second), &want[3..]));
         // The first pose from here on that is near enough; else the nearest one says by how much it is not.
         let near = poses[at..].iter().position(|p| {
             let (tip, turn) = off(p);
@@ -188,7 +260,7 @@ fn compare(unpacked: &Path, kins: &Path, program: &Path, moves: &[[f64; 6]]) -> 
         worst.axis_deg = worst.axis_deg.max(turn);
         worst.points += 1;
     }
-    Ok(worst)
+    worst
 }
 
 fn tip_off(pose: &[f64; 6], want: &[f64]) -> f64 {
@@ -216,7 +288,7 @@ fn axis_off(axis: &[f64; 3], want: &[f64]) -> f64 {
 }
 
 /// pygcode parses every line of every program.
-fn pygcode(work: &Path, programs: &[PathBuf]) -> Result<(), Failure> {
+pub(super) fn pygcode(work: &Path, programs: &[PathBuf]) -> Result<(), Failure> {
     let folder = work.join("pygcode");
     if !folder.join("pygcode").exists() {
         let mut install = Command::new("python3");

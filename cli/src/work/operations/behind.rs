@@ -12,6 +12,7 @@ use osculate_tools::removal::stock::{Stock, StockJob, Upper};
 use osculate_tools::removal::{
     self, Body, Change, Limits, Sample, Swept, cut, sample_boundary, sample_surface,
 };
+use serde::Serialize;
 
 /// Places at which it is looked how high material stands on the faces of an operation.
 const PLACES: f64 = 8000.0;
@@ -46,6 +47,32 @@ pub struct TooHigh {
     pub places: Vec<Point3>,
     /// The area that they stand for, mm2.
     pub area_mm2: f64,
+}
+
+/// What stands on a face above it.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct Standing {
+    /// The highest along its normals, mm.
+    pub highest_mm: f64,
+    /// The area on which more stands than the finished part may have, mm2.
+    pub too_high_mm2: f64,
+}
+
+/// What an operation makes of what stands on a face.
+#[derive(Debug, Clone, Serialize)]
+pub struct OnFace {
+    /// The face.
+    pub face: String,
+    /// Before it.
+    pub before: Standing,
+    /// After it.
+    pub after: Standing,
+}
+
+/// What stands before and after, by the faces to machine of a part.
+pub fn on_faces(part: &Part, before: Vec<Standing>, after: Vec<Standing>) -> Vec<OnFace> {
+    let both = part.faces.iter().zip(before.into_iter().zip(after));
+    both.map(|(face, (before, after))| OnFace { face: face.id.clone(), before, after }).collect()
 }
 
 /// Places on the faces to machine of a part, so far apart or `most` of them.
@@ -159,6 +186,25 @@ impl Behind {
             tail <= 0.0
         });
         Ok(found.map_or(LEAST_MM, |f| f.0.max(LEAST_MM)))
+    }
+
+    /// What stands on each face to machine of a part, and where it is higher than a limit: at some thousand places.
+    pub fn stands(
+        &self,
+        part: &Part,
+        raw: &RawMaterial<'_>,
+        limit_mm: f64,
+    ) -> Result<Vec<Standing>, Failure> {
+        let samples = samples(part, 0.0, PLACES)?;
+        let beyond: Vec<f64> = samples.iter().map(|s| raw.beyond_mm(&s.point, &s.normal)).collect();
+        let heights = self.heights_mm(&samples, beyond.iter().copied().fold(LEAST_MM, f64::max))?;
+        let mut out = vec![Standing::default(); part.faces.len()];
+        for ((s, height), beyond) in samples.iter().zip(heights).zip(beyond) {
+            let (on, height_mm) = (&mut out[s.face as usize], height.min(beyond));
+            on.highest_mm = on.highest_mm.max(height_mm);
+            on.too_high_mm2 += if height_mm > limit_mm { s.area_mm2 } else { 0.0 };
+        }
+        Ok(out)
     }
 
     /// Where material stands above the scallop of a job.

@@ -1,7 +1,7 @@
 //! A list of operations from the part to its programs: each planned on what those before it left, all of a setup in one program, every
 //! operation and the finished part judged from the texts.
 
-mod behind;
+pub mod behind;
 mod course;
 mod derive;
 pub mod kept;
@@ -58,7 +58,13 @@ pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, F
         match planning {
             Planning::Path(mut step) => {
                 watch.keep(&kept::name(place), &step.kept(key).bytes());
+                let stands = |behind: &behind::Behind| {
+                    let limit_mm = list.whole().tolerance().scallop_mm;
+                    raw.as_ref().map_or(Ok(Vec::new()), |raw| behind.stands(&step.part, raw, limit_mm))
+                };
+                let before = stands(&behind)?;
                 let slowed = behind.take(&step.job, &mut step.planned.linked)?;
+                step.on_faces = behind::on_faces(&step.part, before, stands(&behind)?);
                 if slowed > 0 {
                     let text = format!(
                         "{}: {slowed} rapid moves would go through material and are made at feed",

@@ -6,7 +6,7 @@ use crate::part::{LoadedFace, Part};
 use crate::watch::{Stage, Watch};
 use crate::words::number;
 use crate::work::choice::{self, Choice, Row};
-use crate::work::operations::behind::Behind;
+use crate::work::operations::behind::{Behind, OnFace};
 use crate::work::operations::kept::Kept;
 use crate::work::operations::passages::Passages;
 use crate::work::plan::{Laid, planned};
@@ -34,6 +34,8 @@ pub struct Step<'a> {
     pub standing_mm: Option<f64>,
     /// Of rest, the area that stood too high, mm2.
     pub too_high_mm2: Option<f64>,
+    /// What stood on its faces before, and stands after.
+    pub on_faces: Vec<OnFace>,
     /// Wall time of planning, s.
     pub plan_s: f64,
 }
@@ -64,6 +66,7 @@ impl<'a> Step<'a> {
             planned: kept.planned(),
             standing_mm: kept.standing_mm,
             too_high_mm2: kept.too_high_mm2,
+            on_faces: Vec::new(),
             plan_s: kept.plan_s,
             compared: kept.compared,
         })
@@ -147,6 +150,7 @@ pub fn plan<'a>(
         compared,
         standing_mm,
         too_high_mm2,
+        on_faces: Vec::new(),
         plan_s,
     })))
 }

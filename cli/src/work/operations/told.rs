@@ -122,7 +122,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let mut files = Vec::new();
     for (k, step) in steps.iter().enumerate() {
         let cl = passes::cl_path(&step.job, &step.planned.linked);
-        let text = nc::cl_text(&cl, &step.operation.name).map_err(Failure::job)?;
+        let text = nc::cl_text(&cl, step.job.tool().number(), &step.operation.name).map_err(Failure::job)?;
         files.push(PlanFile::of_text(format!("path-{}.cl", k + 1), text));
     }
     for (k, left) in judged.iter().enumerate().filter_map(|(k, j)| Some((k, j.left.as_ref()?))) {
@@ -168,6 +168,7 @@ fn operation(
         tool_number: step.job.tool().number(),
         standing_mm: step.standing_mm,
         too_high_mm2: step.too_high_mm2,
+        on_faces: step.on_faces.clone(),
         removed_mm3: judged.stock.as_ref().map(|s| s.removed_mm3),
         left_mm3: judged.stock.as_ref().map(|s| s.left_mm3),
         step: match judged.verified.verdict.answer() {

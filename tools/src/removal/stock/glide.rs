@@ -32,6 +32,9 @@ const MOST_STILL: u32 = 40;
 const MOST_NEWTON: u32 = 8;
 /// Steps along a ray: quadratic at a crossing, halving where it grazes.
 const MOST_STEPS: u32 = 50;
+/// Steps after which one from within is not followed by another: a crossing of smooth walls takes three or four. Within, no least x
+/// is looked for, so that beside an edge the tangent is that of one wall, and steps may come closer by a fifth only.
+const MOST_BOLD: u32 = 10;
 
 /// The body over the piece, for rays along one axis.
 pub(super) struct Glide<'a> {
@@ -174,7 +177,7 @@ impl<'a> Glide<'a> {
                 _ if by_x > 0.0 => x + 0.5,
                 _ => 0.5 - x,
             };
-            if distance <= enough || by_x.abs() * room <= FLAT_MM {
+            if distance <= enough {
                 return here.lowest(self);
             }
             let bend = here.second(&here.rate, &here.rate);
@@ -182,11 +185,19 @@ impl<'a> Glide<'a> {
             if 0.5 * by_x * by_x <= FLAT_MM * bend {
                 return here.lowest(self);
             }
-            let side = Some(Side { x, distance, by_x, by_s: here.by_s });
+            let side = Side { x, distance, by_x, by_s: here.by_s };
+            if by_x.abs() * room <= FLAT_MM {
+                // Across an edge neither side's slope is that of f.
+                return match (&left, &right) {
+                    (Some(left), _) if by_x > 0.0 => Self::between(left, &side),
+                    (_, Some(right)) if by_x <= 0.0 => Self::between(&side, right),
+                    _ => here.lowest(self),
+                };
+            }
             if by_x > 0.0 {
-                right = side;
+                right = Some(side);
             } else {
-                left = side;
+                left = Some(side);
             }
             let lo = left.map_or(-0.5, |i| i.x);
             let hi = right.map_or(0.5, |i| i.x);
@@ -280,13 +291,14 @@ impl<'a> Glide<'a> {
         // The last place that is clear, where a bold step was taken from it.
         let mut clear = None;
         let mut bold = true;
-        for _ in 0..MOST_STEPS {
+        for step in 0..MOST_STEPS {
             let (sure, plain) = (self.skew - sign * here.slope, -sign * here.slope);
             let above = here.value - LEVEL_MM;
             let room = (end - s).abs();
-            let misses = if above > 0.0 { sure <= 0.0 || above > sure * room } else { plain <= 0.0 };
+            let slow = bold && step >= MOST_BOLD && above <= 0.0;
+            let misses = slow || if above > 0.0 { sure <= 0.0 || above > sure * room } else { plain <= 0.0 };
             if misses {
-                // There, or a bold step has passed by what is covered.
+                // There, or a bold step has passed by what is covered, or lies in it and comes back too slowly.
                 (s, here) = clear.take()?;
                 bold = false;
                 continue;

@@ -1,0 +1,156 @@
+//! Rest in a fillet: roughed with 12, finished with 8, rest with 4 and 2 mm, and what stands in it before and after each.
+//!
+//! The part is a floor and a wall of 10 degrees draft with a fillet of 2.2 mm between them, the same all along y. A ball of radius R
+//! that touches both planes leaves more the larger it is: its centre and that of the fillet are on the same line out of the corner.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+use common::{Scratch, osculate};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+const FILLET_MM: f64 = 2.2;
+const DRAFT_DEG: f64 = 10.0;
+const LONG_MM: f64 = 4.0;
+/// Of the finished part, and of the rest with 4 mm, which leaves work for that with 2 mm.
+const SCALLOP_MM: f64 = 0.03;
+const COARSE_MM: f64 = 0.1;
+/// A rest goes where more stands than this share of its scallop: the other part is for the marks of teeth.
+const MARKS: f64 = 0.85;
+
+/// Half the angle between wall and floor.
+fn half_rad() -> f64 {
+    0.5 * (90.0 + DRAFT_DEG).to_radians()
+}
+
+/// Wall, fillet and floor as the JSON of faces.
+fn trough() -> String {
+    let face = |id: &str, across: &[[f64; 2]], middle: f64| {
+        let degree = across.len() - 1;
+        let knots = [vec![0.0; degree + 1], vec![1.0; degree + 1]].concat();
+        let poles: Vec<_> = across.iter().map(|[x, z]| json!([[x, 0.0, z], [x, LONG_MM, z]])).collect();
+        let weights: Vec<_> =
+            (0..=degree).map(|k| if degree == 2 && k == 1 { [middle; 2] } else { [1.0; 2] }).collect();
+        json!({ "id": id, "kind": "bspline", "oriented": true, "side": "along", "surface": { "nurbs": {
+            "degree": [degree, 1], "knots": [knots, [0.0, 0.0, 1.0, 1.0]], "poles_mm": poles, "weights": weights,
+            "side": "along" } } })
+    };
+    let (s, c) = DRAFT_DEG.to_radians().sin_cos();
+    let wall = |along: f64| [-along * s, along * c];
+    let tangent = FILLET_MM / half_rad().tan();
+    let floor = [tangent, 0.0];
+    let faces = [
+        face("wall", &[wall(6.0), wall(tangent)], 1.0),
+        face("fillet", &[wall(tangent), [0.0, 0.0], floor], half_rad().sin()),
+        face("floor", &[floor, [8.0, 0.0]], 1.0),
+    ];
+    json!({ "format": 1, "faces": faces }).to_string()
+}
+
+fn job() -> String {
+    let tool = |(kind, diameter): &(&str, u32)| {
+        format!(
+            "[[tool]]\nnumber = {diameter}\nkind = \"{kind}\"\ndiameter_mm = {diameter}\nlength_mm = 30\nteeth = 2\n\
+             cutting = {{ spindle_rpm = 12000, feed_mm_min = 1200 }}\n"
+        )
+    };
+    let tools: String = [("flat", 12), ("ball", 8), ("ball", 4), ("ball", 2)].iter().map(tool).collect();
+    let own = |name: &str, keys: &str| {
+        let strategy = "strategy = { kind = \"isoplanar_3c\", feed_direction = [0, 1, 0] }";
+        format!("[[operation]]\nname = \"{name}\"\n{keys}\n{strategy}\n")
+    };
+    format!(
+        "format = 2\n[part]\nfile = \"trough.json\"\nfaces = \"all\"\n\
+         [stock]\nbox_mm = [-3, 0, -2, 8, {LONG_MM}, 6]\ncell_mm = 0.25\n\
+         [tolerance]\nscallop_mm = {SCALLOP_MM}\ngouge_mm = 0.02\n\
+         [verification]\nspacing_mm = 0.08\naccept = \"samples\"\n\
+         [machine]\nname = \"trunnion-ac\"\ndialect = \"linuxcnc\"\n{tools}\
+         [[operation]]\nname = \"rough\"\nkind = \"rough\"\ntools = [12]\nallowance_mm = 0.4\n"
+    ) + &own("finish", "kind = \"finish\"\ntools = [8]")
+        + &own("rest 4", &format!("kind = \"rest\"\ntools = [4]\nscallop_mm = {COARSE_MM}"))
+        + &own("rest 2", "kind = \"rest\"\ntools = [2]")
+}
+
+/// What a ball leaves that stays off wall and floor by the same, looked at along the profile: the highest in the fillet along its
+/// normals, and the width over the fillet and over all three faces that is above a limit, mm.
+fn closed_form(ball_mm: f64, off_mm: f64, limit_mm: f64) -> (f64, [f64; 2]) {
+    let half = half_rad();
+    // From the corner on along the line between both centres.
+    let (fillet, ball) = (FILLET_MM / half.sin(), (ball_mm + off_mm) / half.sin());
+    let (mut highest, mut width) = (0.0f64, 0.0);
+    let n = 20_000;
+    let step = (PI - 2.0 * half) / f64::from(n);
+    for k in 0..n {
+        // Off the line, seen from the fillet's centre; along the normal to where the ball begins.
+        let a = half - 0.5 * PI + (f64::from(k) + 0.5) * step;
+        let from = [fillet - FILLET_MM * a.cos() - ball, FILLET_MM * a.sin()];
+        let along = from[0] * a.cos() - from[1] * a.sin();
+        let high = -along - (along * along - from[0].hypot(from[1]).powi(2) + ball_mm * ball_mm).sqrt();
+        highest = highest.max(high);
+        width += if high > limit_mm { FILLET_MM * step } else { 0.0 };
+    }
+    // Over a plane it is a circle, off the plane in its middle: too high nearer to the corner than this.
+    let below = ball_mm - (limit_mm - off_mm);
+    let reach = (ball_mm * ball_mm - below * below).max(0.0).sqrt();
+    let plane = ((ball_mm + off_mm - FILLET_MM) / half.tan() - reach).max(0.0);
+    (highest, [width, width + 2.0 * plane])
+}
+
+fn number(v: &Value) -> f64 {
+    v.as_f64().unwrap_or_else(|| panic!("{v} is no number"))
+}
+
+#[test]
+fn a_fillet_is_cleared_by_smaller_and_smaller_balls() {
+    let scratch = Scratch::new();
+    scratch.write("trough.json", &trough());
+    let job = scratch.write("job.toml", &job());
+    let run =
+        osculate(&["plan", job.to_str().unwrap(), "--out", scratch.path("out").to_str().unwrap(), "--json"]);
+    let v = run.json();
+    assert_eq!((run.code, &v["verdict"]["answer"]), (0, &"held".into()), "{}", v["verdict"]);
+    let all = v["operations"].as_array().unwrap();
+    let names: Vec<_> = all.iter().map(|o| o["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["rough", "finish", "rest 4", "rest 2"]);
+    // What stands on a face before or after an operation: the highest, and the area that is too high for the finished part.
+    let on = |operation: usize, when: &str, face: &str| {
+        let faces = all[operation]["on_faces"].as_array().unwrap();
+        let found = &faces.iter().find(|f| f["face"] == face).unwrap()[when];
+        ["highest_mm", "too_high_mm2"].map(|key| number(&found[key]))
+    };
+    // What one leaves is what the next finds.
+    for face in ["wall", "fillet", "floor"] {
+        (1..4).for_each(|k| assert_eq!(on(k, "before", face), on(k - 1, "after", face)));
+    }
+    // The block is 6 mm high; the roughing leaves its allowance at least.
+    assert!(on(0, "before", "fillet")[0] > 4.0 && on(0, "after", "floor")[0] > 0.39);
+    // The ball of 8 mm leaves what it does not come into. Its passes may stay off both planes by the scallop, not more.
+    let (least, [_, from]) = closed_form(4.0, 0.0, SCALLOP_MM);
+    let (most, [fillet, to]) = closed_form(4.0, SCALLOP_MM, SCALLOP_MM);
+    let [high, area] = on(1, "after", "fillet");
+    assert!(high > least - 1e-3 && high < most, "{least} {high} {most}");
+    assert!((area - fillet * LONG_MM).abs() < 0.01 * area, "{area} {}", fillet * LONG_MM);
+    let whole = on(1, "after", "wall")[1] + area + on(1, "after", "floor")[1];
+    assert!(0.99 * from * LONG_MM < whole && whole < 1.01 * to * LONG_MM, "{from} {} {to}", whole / LONG_MM);
+    // That of 4 mm begins with it, goes everywhere, and leaves its own coarse cusps: less in the fillet, to which it nearly fits.
+    let limit = MARKS * COARSE_MM;
+    let [(_, [_, from]), (_, [_, to])] = [0.0, SCALLOP_MM].map(|off| closed_form(4.0, off, limit));
+    let first = number(&all[2]["too_high_mm2"]);
+    assert!(0.99 * from * LONG_MM < first && first < 1.01 * to * LONG_MM, "{from} {} {to}", first / LONG_MM);
+    assert!(on(2, "after", "fillet")[0] < SCALLOP_MM);
+    let [cusp, left] = on(2, "after", "floor");
+    assert!(cusp > 1.5 * SCALLOP_MM && cusp <= COARSE_MM && left > 0.0, "{cusp} {left}");
+    // That of 2 mm has these only, and nothing is left.
+    let second = number(&all[3]["too_high_mm2"]);
+    assert!(second > 0.9 * left && second < 0.5 * first, "{second} {left} {first}");
+    for face in ["wall", "fillet", "floor"] {
+        let [high, area] = on(3, "after", face);
+        assert!(high <= SCALLOP_MM && area == 0.0, "{face}: {high} {area}");
+    }
+    assert!(v.get("left_standing").is_none());
+    let most = number(&v["verification"]["scallop_max_mm"]);
+    assert!(most <= SCALLOP_MM, "{most}");
+    // Where it is steep, rest has only a part of the passes of a finishing.
+    let lengths: Vec<f64> = all.iter().map(|o| number(&o["cutting_length_mm"])).collect();
+    assert!(lengths[3] < 0.5 * lengths[2], "{lengths:?}");
+}
