@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Line, Plane};
-use osculate_geom::{Domain, Extruded, Interval, Point3, Vec3, uv};
+use osculate_geom::{Domain, Extruded, Interval, Point3, Surface, Vec3, uv};
 use osculate_productivity::plan::{CcPoint, Guard, LeaveOutError, Named, Pass, Passes, Tolerance, leave_out};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 
@@ -156,5 +156,35 @@ fn faces_to_machine_are_no_prey_either_and_closed_passes_open() {
         assert!([first, last].iter().all(|p| off(p) < RADIUS + ENDS));
         let steps = p.points.windows(2).map(|w| (w[1].point - w[0].point).norm());
         assert!(steps.fold(0.0, f64::max) < 0.07 * AROUND * 1.001);
+    }
+}
+
+#[test]
+fn passes_along_a_rim_remain() {
+    // The side of a block, x = 0, up to its top, z = 0, which is not machined: passes of a ball along the rim, on it, above and below.
+    // The samples of the top that lie on the rim lie on the side too.
+    let cutter = ball();
+    let line = |way: Vec3| Line::new(Point3::origin(), way, Interval::new(0.0, SIDE)).unwrap();
+    let face = |a: Vec3, b: Vec3| Extruded::new(line(a), b, Interval::new(0.0, SIDE)).unwrap();
+    let (side, top) = (face(Vec3::z() * -1.0, Vec3::y()), face(Vec3::y(), Vec3::x() * -1.0));
+    let out = Vec3::x_axis();
+    for (face, normal) in [(&side, out), (&top, Vec3::z_axis())] {
+        let found = face.jet2(uv(1.0, 1.0)).normal().unwrap();
+        assert!(found.dot(&normal) > 0.999, "{found:?}");
+    }
+    let (faces, check) = ([Named { face: "side", surface: &side }], [Named { face: "top", surface: &top }]);
+    let guard = guard(&faces, &check, &cutter);
+    let at = |y: f64, z: f64, deep: f64| {
+        let point = Point3::new(0.0, y, z);
+        let pose = Pose { tip: point - out.into_inner() * deep, axis: out };
+        CcPoint { uv: uv(-z, y), point, normal: out, pose, width_mm: 2.0 * APART }
+    };
+    for z in [0.2, 0.0, -0.004, -0.01, -0.05, -0.3, -1.0] {
+        let touched = |deep: f64| {
+            let pass = Pass { points: vec![at(1.0, z, deep), at(SIDE - 1.0, z, deep)], closed: false };
+            leave_out(&Passes { passes: vec![pass], diagnostics: Vec::new() }, &guard).unwrap().touched
+        };
+        // Chords and words take a fifth of the gouge; what is deeper than the gouge goes, rim or not.
+        assert_eq!([touched(0.0), touched(0.2 * GOUGE), touched(4.0 * GOUGE)], [0, 0, 1], "at z = {z}");
     }
 }

@@ -122,6 +122,19 @@ fn the_picture_is_well_formed_in_every_view() {
     }
 }
 
+/// A tool that is away for a change is shown where it comes back: the picture is that of the next pose among the passes.
+#[test]
+fn the_picture_has_no_room_for_the_way_to_a_tool_change() {
+    let view = View { tool_at: Some(15.0 / 29.0), ..View::default() };
+    let mut away = sheet(20);
+    away.poses[15].tip_mm = [1400.0, -2200.0, 1500.0];
+    let mut back = sheet(20);
+    back.poses[15] = back.poses[16];
+    let picture = svg(&away, &view);
+    assert_eq!(picture, svg(&back, &view));
+    assert_ne!(picture, svg(&sheet(20), &view));
+}
+
 /// 2 * 250^2 triangles, whose colours change from facet to facet as much as scallops can make them.
 #[test]
 fn the_picture_stays_small() {

@@ -5,7 +5,7 @@
 //! balls far off are passed over. A stretch that goes too deep is left out as far as the tool is deeper than half of
 //! what is accepted on either side. What remains is the same motion as before, less these stretches.
 //!
-//! *Limits.* Depth is measured at samples along their normals, as verification does. Between samples the tool may be a little
+//! *Limits.* Depth is measured at samples along their normals, as verification does, but for those beside sharp outer edges. Between samples the tool may be a little
 //! deeper, and moves between passes are not looked at: verification has the last word.
 //! A stretch is left out, never machined in another way: leads are chosen before.
 
@@ -13,8 +13,9 @@ use super::samples::{Wanted, samples};
 use super::stations::{pieces, stations};
 use super::{CcPoint, Named, Pass, Passes, Tolerance};
 use crate::axis::sunk;
+use osculate_geom::Surface;
 use osculate_tools::reach::Obstacles;
-use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept};
+use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept, beside_edges};
 use osculate_tools::{Cutter, Pose};
 use rayon::prelude::*;
 
@@ -114,12 +115,18 @@ struct Points {
     sunk: [Obstacles; 2],
 }
 
+/// Samples sunk into their faces.
+fn obstacles<'s>(samples: impl Iterator<Item = &'s Sample>, by_mm: f64) -> Obstacles {
+    // Samples have finite coordinates, and there are far fewer than an index can hold.
+    Obstacles::new(samples.map(|s| sunk(s, by_mm))).unwrap_or_default()
+}
+
 impl Points {
-    fn new(samples: &[Sample], gouge_mm: f64, aside_mm: f64) -> Self {
-        // Samples have finite coordinates, and there are far fewer than an index can hold.
-        let by = |mm: f64| Obstacles::new(samples.iter().map(|s| sunk(s, mm))).unwrap_or_default();
-        let deep = |share: f64| by(share * gouge_mm + aside_mm);
-        Self { at: by(0.0), sunk: [deep(ACCEPTED), deep(RELEASE)] }
+    /// `beside`: samples beside sharp outer edges, beneath which nothing lies as deep as is accepted. A tool on the next face goes
+    /// along them without harm.
+    fn new(samples: &[Sample], beside: &[bool], deep_mm: [f64; 2]) -> Self {
+        let inner = || samples.iter().zip(beside).filter(|(_, beside)| !**beside).map(|(s, _)| s);
+        Self { at: obstacles(samples.iter(), 0.0), sunk: deep_mm.map(|mm| obstacles(inner(), mm)) }
     }
 }
 
@@ -159,8 +166,21 @@ impl<'a> Watch<'a> {
         let (check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
         let keep_mm = (keep > 0.0).then(|| keep + ADDED * apart.max(check_apart));
         let aside_mm = (ASIDE * gouge_mm).min(guard.tolerance.chord_mm);
-        let points = |samples: &[Sample], gouge_mm: f64| Points::new(samples, gouge_mm, aside_mm);
-        let (faces, check) = (points(&faces, gouge_mm), points(&check, BESIDE * gouge_mm));
+        let deep_mm = |gouge_mm: f64| [ACCEPTED, RELEASE].map(|share| share * gouge_mm + aside_mm);
+        let (own_mm, others_mm) = (deep_mm(gouge_mm), deep_mm(BESIDE * gouge_mm));
+        // All faces together, those to machine first.
+        let surfaces: Vec<&dyn Surface> = guard.faces.iter().chain(guard.check).map(|f| f.surface).collect();
+        let first = guard.faces.len() as u32;
+        let all: Vec<Sample> = faces
+            .iter()
+            .copied()
+            .chain(check.iter().map(|s| Sample { face: s.face + first, ..*s }))
+            .collect();
+        let accepted_mm = |s: &Sample| if s.face < first { own_mm[0] } else { others_mm[0] };
+        let beside = beside_edges(&surfaces, &all, apart.max(check_apart), accepted_mm);
+        let (of_faces, of_check) = beside.split_at(faces.len());
+        let faces = Points::new(&faces, of_faces, own_mm);
+        let check = Points::new(&check, of_check, others_mm);
         Ok(Self { guard, faces, check, apart_mm: APART * check_apart, aside_mm, keep_mm })
     }
 

@@ -9,6 +9,7 @@
 
 use super::job::{Cut, Sample};
 use osculate_geom::{Point3, Surface, Unit3, Uv};
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// What lies beneath is nearer to another face than this share of the depth that is asked for; at an inner edge it is as far.
@@ -21,6 +22,20 @@ const BENEATH: u32 = 8;
 const DEEP: f64 = 0.25;
 /// Samples that are measured anew at most: beyond it a program is far off wherever it goes.
 const MOST: usize = 50_000;
+
+/// Which samples lie beside a sharp outer edge: what lies so far beneath them, along their normals, is nearer to another of the faces,
+/// so that a tool there takes nothing that deep, whatever its depth along the normal. Samples name their faces by number, and are no
+/// farther apart than `apart_mm`.
+#[must_use]
+pub fn beside_edges(
+    surfaces: &[&dyn Surface],
+    samples: &[Sample],
+    apart_mm: f64,
+    depth_mm: impl Fn(&Sample) -> f64 + Sync,
+) -> Vec<bool> {
+    let edges = Edges::new(surfaces, samples, apart_mm);
+    samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
+}
 
 /// All faces of a goal, found by place.
 pub(super) struct Edges<'a> {

@@ -75,6 +75,7 @@ pub use crest::crests;
 pub use cut::cut;
 pub use density::{Density, Hidden};
 pub use digs::DIVISIONS;
+pub use edges::beside_edges;
 pub use goal::{
     Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Gravity, Looks, Program,
     Remark, Unseen,

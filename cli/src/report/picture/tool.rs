@@ -1,7 +1,7 @@
 //! The tool at one pose, as facets of the static picture.
 
 use super::super::data::Report;
-use super::super::pack::finite;
+use super::super::pack::{Bounds, finite};
 use super::super::project::{Camera, DepthMap, dot, unit};
 use super::super::tool_body::{Piece, outlines};
 use super::paint::{Facet, shaded};
@@ -26,11 +26,21 @@ pub struct Placed {
     outlines: Vec<(Piece, Vec<[f64; 2]>)>,
 }
 
-/// The tool of `report` at a share of its path from 0 to 1; `None` without tool, pose or share.
+/// The tool of `report` at a share of its path from 0 to 1, or at the next pose after it that is among the passes: where tools are
+/// changed the picture would have to hold the way there. `None` without tool, pose or share.
 pub fn placed(report: &Report, share: Option<f64>) -> Option<Placed> {
     let share = share.filter(|s| s.is_finite())?;
     let poses: Vec<_> = report.poses.iter().filter(|p| finite(&p.tip_mm) && finite(&p.axis)).collect();
-    let pose = poses.get((share.clamp(0.0, 1.0) * poses.len().saturating_sub(1) as f64).round() as usize)?;
+    let first = (share.clamp(0.0, 1.0) * poses.len().saturating_sub(1) as f64).round() as usize;
+    // A tip is no farther off its contact than the tool is wide.
+    let wide = report.tools.iter().map(|t| t.diameter_mm as f32).fold(0.0, f32::max);
+    let room = Bounds::of(report.passes.iter().flat_map(|p| &p.points_mm));
+    let is_in = |tip: &[f32; 3]| {
+        let inside = |b: &Bounds, i: usize| (b.lo[i] - wide..=b.hi[i] + wide).contains(&tip[i]);
+        room.as_ref().is_none_or(|b| (0..3).all(|i| inside(b, i)))
+    };
+    let pose =
+        poses.iter().cycle().skip(first).take(poses.len()).find(|p| is_in(&p.tip_mm)).or(poses.get(first))?;
     let axis = unit(pose.axis.map(f64::from));
     let aside = if axis[0].abs() < 0.8 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let cross = |a: [f64; 3], b: [f64; 3]| {
