@@ -202,6 +202,7 @@ fn roughing_keeps_its_allowance() {
         approach_mm: 1.0,
         hop_mm: 0.125,
         contacts: true,
+        dropped: false,
         layer_mm: 0.0,
         cutter: TOROIDAL.cutter(),
         holder: None,

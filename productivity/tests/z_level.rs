@@ -24,6 +24,7 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         approach_mm: 1.0,
         hop_mm: 1.0,
         contacts: true,
+        dropped: false,
         layer_mm: 0.0,
         cutter: *cutter,
         holder: None,

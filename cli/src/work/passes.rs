@@ -42,6 +42,7 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
         approach_mm: job.setup().approach_mm,
         hop_mm: job.setup().hop_mm,
         contacts: !matches!(job.strategy().kind, Kind::Drop(Drop::Waterlines)),
+        dropped: matches!(job.strategy().kind, Kind::Drop(_)),
         layer_mm: job.layer_mm(),
         cutter: *cutter,
         holder: job.holder(),

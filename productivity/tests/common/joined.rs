@@ -20,6 +20,7 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         approach_mm: 2.0,
         hop_mm: 0.25,
         contacts: true,
+        dropped: false,
         layer_mm: 0.0,
         cutter: *cutter,
         holder: None,

@@ -29,6 +29,9 @@ pub struct Links {
     /// Whether the tool touches the part where passes say it does: those along waterlines know the height of the tool, and of
     /// what it touches the slope nearby only.
     pub contacts: bool,
+    /// Whether the tool keeps its axis and stands nowhere lower than all faces let it: then nothing is in its way straight up, whereas
+    /// points of the faces may miss an edge that it would meet on a way aside.
+    pub dropped: bool,
     /// Material that may stand on the faces yet: rapids do not go into it.
     pub layer_mm: f64,
     /// The cutter.
@@ -187,21 +190,29 @@ impl Builder<'_> {
         let highest = self.links.approach_mm;
         let mut low = self.links.hop_mm.min(highest);
         while low > 0.0 && low < highest {
-            for along in ALONG {
-                let hop = |mm: f64| [from, to].map(|p| lifted(p, mm, along));
+            for along in self.ways() {
+                let hop = |mm: f64| [from, to].map(|p| lifted(p, mm, *along));
                 if clear(&hop(low)) && clear(&hop((1.0 - SPARE) * low)) {
                     return Some(hop(low));
                 }
             }
             low *= 2.0;
         }
-        ALONG.iter().map(|along| [from, to].map(|p| lifted(p, highest, *along))).find(clear)
+        self.ways().iter().map(|along| [from, to].map(|p| lifted(p, highest, *along))).find(clear)
+    }
+
+    /// The ways in which hops leave a contact.
+    fn ways(&self) -> &'static [f64] {
+        if self.links.dropped { &ALONG[ALONG.len() - 1..] } else { &ALONG }
     }
 
     /// Where the tool is off a contact by the approach distance. One that leans far over would rub along the face if it left along
     /// its axis alone: it leaves along the normal too, as far as there is most room.
     fn off(&self, p: &CcPoint) -> Pose {
         let straight = p.pose.retracted(self.links.approach_mm);
+        if self.links.dropped {
+            return straight;
+        }
         let most = self.links.approach_mm * p.pose.axis.angle(&p.normal).sin();
         let kept = self.kept([p.pose, p.pose]);
         let aside =
