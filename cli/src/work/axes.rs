@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
+use crate::job::strategy::Kind;
 use crate::part::{self, LoadedFace, Part};
 use crate::work::setup;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv, Vec3};
@@ -120,7 +121,8 @@ impl Fields {
         let around = self.around.get_or_init(Surroundings::default);
         // What is possible is the same for all directions: those that are likely to be asked for next are found with it.
         let lines = [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) });
-        let wanted = if direction(strategy).is_empty() { vec![*strategy] } else { lines.to_vec() };
+        let one = direction(strategy).is_empty() || matches!(&job.strategy().kind, Kind::Faces(s) if !direction(s).is_empty());
+        let wanted = if one { vec![*strategy] } else { lines.to_vec() };
         let feeds: Vec<_> = wanted.iter().map(feed_of).collect();
         let feeds: Vec<&Feed<'_>> = feeds.iter().map(|f| f as &Feed<'_>).collect();
         let told = found(job, faces, (face, around), (tolerance, &feeds))?;

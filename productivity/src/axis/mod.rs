@@ -5,6 +5,7 @@
 //! [`osculate_tools::reach`] and the machine's [`Joints`] leave possible.
 
 mod around;
+mod dump;
 mod field;
 mod find;
 mod joints;
@@ -13,6 +14,7 @@ mod pace;
 mod rim;
 mod search;
 mod settle;
+mod strips;
 
 pub(crate) use around::sunk;
 pub use around::{Around, Surroundings};

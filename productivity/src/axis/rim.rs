@@ -17,7 +17,7 @@ const MOST_RAD: f64 = 0.26;
 /// The first lean that is asked where none is the least, quotient of those asked, and halvings between the last two.
 const FIRST_RAD: f64 = 0.004;
 const STEP: f64 = 1.6;
-const HALVINGS: u32 = 5;
+const HALVINGS: u32 = 7;
 
 /// The least leans at a place.
 pub(super) struct Rim {
@@ -28,6 +28,16 @@ pub(super) struct Rim {
     between_rad: f64,
     /// By the way; infinite where no lean that was asked is possible.
     least_rad: [f64; WAYS],
+}
+
+/// Where an axis leans.
+#[derive(Clone, Copy)]
+pub(super) struct Spot {
+    /// The ways next to it, and where it is between them.
+    pub ways: [usize; 2],
+    pub share: f64,
+    /// How far it leans, rad.
+    pub lean_rad: f64,
 }
 
 impl Rim {
@@ -53,7 +63,7 @@ impl Rim {
     }
 
     /// The axis that leans so far in one of the ways.
-    fn axis(&self, way: usize, lean_rad: f64) -> Unit3 {
+    pub fn axis(&self, way: usize, lean_rad: f64) -> Unit3 {
         let (half, k) = (way / (2 * QUARTER), way % (2 * QUARTER));
         let share = (k % QUARTER) as f64 / QUARTER as f64;
         let [from, to] = if k < QUARTER { [0.0, self.between_rad] } else { [self.between_rad, PI] };
@@ -62,12 +72,11 @@ impl Rim {
         Unit3::new_normalize(self.normal.into_inner() * cos + (self.x * c + self.y * s) * sin)
     }
 
-    /// How much further an axis leans than it must, rad, as far as the ways next to it say: the least and the most; None where it leans
-    /// further than was asked.
-    pub fn margin_rad(&self, axis: &Unit3) -> Option<[f64; 2]> {
+    /// Where an axis leans: between which ways, and how far; None where it leans further than was asked.
+    pub fn spot(&self, axis: &Unit3) -> Option<Spot> {
         let (a, b) = (axis.dot(&self.x), axis.dot(&self.y));
-        let lean = a.hypot(b).atan2(axis.dot(&self.normal));
-        if lean > MOST_RAD {
+        let lean_rad = a.hypot(b).atan2(axis.dot(&self.normal));
+        if lean_rad > MOST_RAD {
             return None;
         }
         let turn = b.atan2(a).rem_euclid(2.0 * PI);
@@ -80,15 +89,33 @@ impl Rim {
         };
         let x = share.min(1.0) * QUARTER as f64;
         // A whole number of ways, less than their count.
-        let k = (quarter * QUARTER + x.floor() as usize) % WAYS;
-        let f = x.fract();
-        let ends = [self.least_rad[k], self.least_rad[(k + 1) % WAYS]];
+        let way = (quarter * QUARTER + x.floor() as usize) % WAYS;
+        Some(Spot { ways: [way, (way + 1) % WAYS], share: x.fract(), lean_rad })
+    }
+
+    /// How much further an axis leans than it must, rad, as far as the ways next to it say: the least and the most.
+    pub fn margin_rad(&self, spot: &Spot) -> [f64; 2] {
+        let ends = spot.ways.map(|k| self.least_rad[k]);
         let least = if ends.iter().all(|e| e.is_finite()) {
-            ends[0] + (ends[1] - ends[0]) * f
+            self.between(spot)
         } else {
             f64::INFINITY
         };
-        Some([lean - least, lean - ends[0].min(ends[1])])
+        [spot.lean_rad - least, spot.lean_rad - ends[0].min(ends[1])]
+    }
+
+    /// The least lean between two ways by the cubic through the four around, or the line through two where not all are there.
+    fn between(&self, spot: &Spot) -> f64 {
+        let [b, c] = spot.ways.map(|k| self.least_rad[k]);
+        let [a, d] = [spot.ways[0] + WAYS - 1, spot.ways[1] + 1].map(|k| self.least_rad[k % WAYS]);
+        let f = spot.share;
+        let line = b + (c - b) * f;
+        if !(a.is_finite() && d.is_finite()) {
+            return line;
+        }
+        // Of the parabolas through the two and one neighbour the mean: the cubic of Lagrange.
+        let bend = ((a - 2.0 * b + c) * (2.0 - f) + (b - 2.0 * c + d) * (1.0 + f)) / 3.0;
+        line - 0.5 * f * (1.0 - f) * bend
     }
 
     /// Whether no lean that was asked is possible.
@@ -100,6 +127,11 @@ impl Rim {
     pub fn axes(&self, more_rad: f64) -> impl Iterator<Item = (usize, Unit3)> + '_ {
         let found = self.least_rad.iter().enumerate().filter(|(_, l)| l.is_finite());
         found.map(move |(k, l)| (k, self.axis(k, (l + more_rad).min(MOST_RAD))))
+    }
+
+    /// The least lean in a way, rad; infinite where there is none.
+    pub const fn least_rad(&self, way: usize) -> f64 {
+        self.least_rad[way]
     }
 
     /// The ways that are asked.

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 /// Rounds of looking and moving.
 const ROUNDS: u32 = 30;
 /// Rings around an axis that is not clear, rad: the spacing of directions and what is finer.
-const RINGS: [f64; 7] = [0.005, 0.01, 0.02, 0.04, 0.08, 0.12, 0.16];
+const RINGS: [f64; 9] = [0.001, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.12, 0.16];
 /// Axes on a ring.
 const AROUND: usize = 12;
 /// Poles move further than they must by this part, so that rounds end.
@@ -49,7 +49,8 @@ impl Asked {
             return true;
         }
         if self.known.is_none_or(|(from, _)| from.angle(axis) > KNOWN) {
-            self.known = Some((*axis, nearest_clear(axis, held, &is_clear)));
+            let raised = if super::dump::knob("K_RAISE", 1.0) > 0.0 { raised(&self.normal, axis, held, &is_clear) } else { None };
+            self.known = Some((*axis, raised.or_else(|| nearest_clear(axis, held, &is_clear))));
         }
         false
     }
@@ -125,6 +126,17 @@ pub(super) fn settle(
             all[k] = place;
         }
         let count = short.iter().flatten().count();
+        if let (Ok(path), 0 | 2 | 10 | 30) = (std::env::var("AXIS_DUMP"), round) {
+            use std::io::Write;
+            let mut out = std::fs::File::create(format!("{path}.short{round}")).unwrap();
+            for (k, s) in asked.iter().zip(&short) {
+                let Some(s) = s else { continue };
+                let a = field.at(s.at).0;
+                let to = all[*k].near();
+                let _ = writeln!(out, "{:.4} {:.4} lean {:.3} to {:.3} by {:.3} inside {}", s.at.u, s.at.v, a.angle(&all[*k].normal).to_degrees(), to.map_or(0.0, |t| t.angle(&all[*k].normal).to_degrees()), to.map_or(0.0, |t| t.angle(&a).to_degrees()), face.contains(s.at));
+            }
+        }
+        if std::env::var("AXIS_QUICK").is_ok() { eprintln!("T: settle round {round} asked {} short {count}", asked.len()); }
         if asked.len() == all.len() && count < best.0 {
             best = (count, field.spline.poles.clone());
         }
@@ -159,22 +171,56 @@ fn move_poles<'a>(field: &mut AxisField, short: impl Iterator<Item = &'a Short>)
     }
     for (pole, (sum, all)) in field.spline.poles.iter_mut().zip(sums) {
         if all > 0.0 {
-            let moved = *pole + sum / all * (1.0 + BEYOND);
+            let moved = *pole + sum / all.max(super::dump::knob("K_DEN", 0.44)) * (1.0 + BEYOND);
             *pole = moved / moved.norm().max(f64::MIN_POSITIVE);
         }
     }
+}
+
+/// Leans that are tried beyond an axis', rad.
+const RAISES: [f64; 7] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032];
+
+/// The axis that leans the least further the same way and is clear.
+fn raised(normal: &Unit3, axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) -> bool) -> Option<Unit3> {
+    let away = Unit3::try_new(axis.into_inner() - normal.into_inner() * normal.dot(axis), 1e-6)?;
+    let lean = normal.angle(axis);
+    if lean > 0.2 { return None; }
+    let at = |more: f64| {
+        let (s, c) = (lean + more).sin_cos();
+        held(Unit3::new_normalize(normal.into_inner() * c + away.into_inner() * s))
+    };
+    let mut bad = 0.0;
+    for more in RAISES {
+        if clear(&at(more)) {
+            let mut good = more;
+            for _ in 0..4 {
+                let middle = 0.5 * (bad + good);
+                if clear(&at(middle)) { good = middle } else { bad = middle }
+            }
+            return Some(at(good));
+        }
+        bad = more;
+    }
+    None
 }
 
 /// The nearest clear axis on rings around one.
 fn nearest_clear(axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) -> bool) -> Option<Unit3> {
     let x = any_perpendicular(axis);
     let y = axis.cross(&x);
-    RINGS.iter().find_map(|ring| {
+    let found = RINGS.iter().find_map(|ring| {
         (0..AROUND)
             .map(|k| {
                 let (s, c) = (2.0 * PI * k as f64 / AROUND as f64).sin_cos();
                 held(Unit3::new_normalize(axis.into_inner() + (x.into_inner() * c + y * s) * ring.tan()))
             })
             .find(|a| clear(a))
-    })
+    })?;
+    if super::dump::knob("K_BISECT", 1.0) <= 0.0 { return Some(found); }
+    let (mut bad, mut good) = (*axis, found);
+    for _ in 0..7 {
+        let middle = held(Unit3::new_normalize(bad.into_inner() + good.into_inner()));
+        if clear(&middle) { good = middle } else { bad = middle }
+    }
+    Some(good)
 }
