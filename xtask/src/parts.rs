@@ -1,7 +1,7 @@
 //! `cargo xtask parts`: docs/parts.md, whole parts from the block to finished: every example that is a list of operations, planned and
 //! verified by the release program, with what each operation takes.
 //!
-//! The verdict of `plan` is held against that of `verify` on the programs that it wrote, byte for byte. Results stay below `target/parts`.
+//! The verdict of `plan` is held against that of `verify` on the programs that it wrote. Results stay below `target/parts`.
 
 use crate::cmd::{Failure, built, cargo, root, write};
 use crate::measured::{self, Measured};
@@ -33,7 +33,7 @@ impl<'a> Options<'a> {
 }
 
 const HEAD: &str = "# Whole parts from the block to finished\n\nMade by `cargo xtask parts`: every example that is a list of operations, by `osculate plan JOB --out DIR`, and its programs \
-judged again by `osculate verify`, which must say the same to the byte. *Uncut* is what an operation leaves higher than the finished part may have on the faces that it is for; \
+judged again by `osculate verify`, which must say the same. *Uncut* is what an operation leaves higher than the finished part may have on the faces that it is for; \
 *stood* how high material stood on them before it. Minutes are those of the machine, wall and CPU seconds those of the program, on two cores.\n";
 
 /// Plans and verifies every whole part whose name has the text in it, and writes the page.
@@ -118,7 +118,7 @@ fn one(name: &str, program: &Path, root: &Path) -> Result<(String, bool), Failur
     verify.arg("verify").args(&programs).arg("--job").arg(&job).arg("--json");
     let said = verify.output().map_err(|why| Failure::Start { line: format!("verify {name}"), why })?;
     let again: Value = serde_json::from_slice(&said.stdout).map_err(answer)?;
-    let same = again["verdict"].to_string() == s["verdict"].to_string();
+    let same = again["verdict"] == s["verdict"];
     let picture = format!("part-{name}.svg");
     let to = root.join("docs/figures").join(&picture);
     std::fs::copy(out.join("picture.svg"), &to).map_err(|why| Failure::Write { path: to, why })?;
