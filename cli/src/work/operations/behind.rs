@@ -13,6 +13,7 @@ use osculate_tools::removal::{
     self, Body, Change, Limits, Sample, Swept, cut, sample_boundary, sample_surface,
 };
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Places at which it is looked how high material stands on the faces of an operation.
 const PLACES: f64 = 8000.0;
@@ -101,6 +102,11 @@ impl Behind {
     pub fn new(raw: Option<&RawMaterial<'_>>) -> Result<Self, Failure> {
         let stock = raw.map(RawMaterial::filled).transpose()?;
         Ok(Self { stock, ..Self::default() })
+    }
+
+    /// Points of the surface of the raw material that is left, where some is declared.
+    pub fn left(&self) -> Option<Arc<[Point3]>> {
+        self.stock.as_ref().map(|stock| stock.ends().into())
     }
 
     /// Goes on with an operation. Its rapid moves that would go through material are made at the feed of plunges; how many they are
