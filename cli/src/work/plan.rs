@@ -239,6 +239,8 @@ impl Proved<'_> {
             PlanFile::of_text("path.svg", pages.path_svg),
         ];
         summary.wall_s.report = stage.end();
+        let w = summary.wall_s;
+        summary.wall_s.total = w.import + w.plan + w.post + w.verify + w.ideal + w.report;
         let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
         files.push(PlanFile::of_text("summary.json", text));
         Ok(Plan { job: job.clone(), summary, verified, diagnostics, files })

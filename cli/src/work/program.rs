@@ -19,10 +19,12 @@ use serde::Serialize;
 /// Seconds of wall time by stage.
 #[derive(Debug, Default, Serialize, Clone, Copy)]
 pub struct WallS {
-    /// Reading the part.
+    /// Reading the part, and telling what of the job cannot be meant for it.
     pub import: f64,
     /// Planning.
     pub plan: f64,
+    /// Of a list of operations, what each leaves to the next: raw material, and what stands on the faces.
+    pub between: f64,
     /// Posting.
     pub post: f64,
     /// Verification.
@@ -31,6 +33,8 @@ pub struct WallS {
     pub ideal: f64,
     /// Pages and pictures.
     pub report: f64,
+    /// All of it, but for writing the files.
+    pub total: f64,
 }
 
 /// A plan before it is posted.

@@ -11,6 +11,7 @@ use super::job::{Cut, Sample};
 use osculate_geom::{Point3, Surface, Unit3, Uv};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// What lies beneath is nearer to another face than this share of the depth that is asked for; at an inner edge it is as far.
 const NEARER: f64 = 0.999;
@@ -41,24 +42,33 @@ pub fn beside_edges(
     samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
 }
 
+/// Of each box of space the samples in it: face and place on it.
+type Hints = HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>;
+
 /// All faces of a goal, found by place.
 pub(super) struct Edges<'a> {
     surfaces: &'a [&'a dyn Surface],
+    samples: &'a [Sample],
     side_mm: f64,
-    /// Of each box of space the samples in it: face and place on it.
-    hints: HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>,
+    /// Made when they are first asked for: where nothing is deep, nobody asks.
+    hints: OnceLock<Hints>,
 }
 
 impl<'a> Edges<'a> {
     /// Faces by number, with samples that are no farther apart than this.
-    pub fn new(surfaces: &'a [&'a dyn Surface], samples: &[Sample], apart_mm: f64) -> Self {
-        let mut out = Self { surfaces, side_mm: 2.0 * apart_mm, hints: HashMap::new() };
-        // Places on fixtures are on no face.
-        for s in samples.iter().filter(|s| (s.face as usize) < surfaces.len()) {
-            let key = out.key(&s.point);
-            out.hints.entry(key).or_default().push((s.face, s.uv, s.point));
-        }
-        out
+    pub const fn new(surfaces: &'a [&'a dyn Surface], samples: &'a [Sample], apart_mm: f64) -> Self {
+        Self { surfaces, samples, side_mm: 2.0 * apart_mm, hints: OnceLock::new() }
+    }
+
+    fn hints(&self) -> &Hints {
+        self.hints.get_or_init(|| {
+            let mut out = Hints::new();
+            // Places on fixtures are on no face.
+            for s in self.samples.iter().filter(|s| (s.face as usize) < self.surfaces.len()) {
+                out.entry(self.key(&s.point)).or_default().push((s.face, s.uv, s.point));
+            }
+            out
+        })
     }
 
     fn key(&self, p: &Point3) -> [i64; 3] {
@@ -75,12 +85,13 @@ impl<'a> Edges<'a> {
     /// The distance of a point from faces other than one of them, as far as it is found; looking ends where it is below `enough_mm`.
     fn distance_mm(&self, q: &Point3, face: u32, enough_mm: f64) -> f64 {
         let [x, y, z] = self.key(q);
+        let hints = self.hints();
         // Of each face around, the nearest sample.
         let mut near: Vec<(f64, u32, Uv)> = Vec::new();
         for key in
             (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])))
         {
-            for (other, at, point) in self.hints.get(&key).into_iter().flatten() {
+            for (other, at, point) in hints.get(&key).into_iter().flatten() {
                 if *other == face {
                     continue;
                 }
