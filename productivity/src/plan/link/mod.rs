@@ -177,3 +177,6 @@ pub fn link_stretches(passes: &[Pass], skipped: &[Vec<CcPoint>], links: &Links, 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod order_tests;

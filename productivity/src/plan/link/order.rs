@@ -1,6 +1,6 @@
 //! The order in which passes are cut, and from which end each: that of the least time of the moves between them.
 //!
-//! Times are those of ways that nothing stands in: along the surface at feed, or off it, across in rapid and down again. From the first
+//! Times are those of ways that nothing stands in: along the surface at feed, or off it, across in rapid and down again. From one
 //! pass on always that follows which is reached soonest; this order and the one that passes come in are then made shorter by turning
 //! stretches of the order around and by moving a few passes elsewhere (`improve`), and the shorter one counts. A closed pass may begin
 //! anywhere. Where chips are wished for, or what stands above is to be cut first, passes that lie beside each other stay in their order.
@@ -11,7 +11,7 @@ use super::rates::Step;
 use super::ways::Finder;
 use super::{Links, STRAIGHT, Walls, contacts};
 use crate::plan::{CcPoint, Pass, Stretches};
-use osculate_geom::{Point3, Unit3};
+use osculate_geom::{Point3, Unit3, Vec3};
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 
@@ -177,15 +177,23 @@ impl<'a> Ends<'a> {
         (0..self.passes()).filter_map(|k| self.entered(self.first[k])).collect()
     }
 
-    /// From the first pass on always that which is reached soonest, of those that need not wait for another.
-    fn soonest(&self, waits: &[Vec<u32>]) -> Vec<Placed> {
+    /// The end that is farthest from the middle of all.
+    fn farthest(&self) -> u32 {
+        let middle = self.ends.iter().fold(Vec3::zeros(), |sum, e| sum + e.tip.coords) / self.ends.len().max(1) as f64;
+        let far = |k: u32| (self.ends[k as usize].tip.coords - middle).norm();
+        let all = (0..self.ends.len() as u32).filter(|k| self.entered(*k).is_some());
+        all.reduce(|a, b| if far(b) > far(a) { b } else { a }).unwrap_or(0)
+    }
+
+    /// From an end on always that which is reached soonest, of those that need not wait for another.
+    fn soonest(&self, begin: u32, waits: &[Vec<u32>]) -> Vec<Placed> {
         let mut places = Places::new(&self.ends.iter().map(|e| e.tip).collect::<Vec<_>>());
         let mut waiting = vec![0u32; self.passes()];
         waits.iter().flatten().for_each(|k| waiting[*k as usize] += 1);
         let mut out: Vec<Placed> = Vec::with_capacity(self.passes());
         while out.len() < self.passes() {
             let next = match out.last() {
-                None => self.entered(0),
+                None => self.entered(begin),
                 Some(last) => {
                     let mut cost = |end: u32| {
                         let may =
@@ -271,8 +279,9 @@ pub fn ordered(stretches: &Stretches, links: &Links, walls: &Walls, freedom: Fre
     let mut least = ends.whole_min(&order);
     let mut from = order.clone();
     for _ in 0..ROUNDS {
-        let mut orders = vec![from, ends.soonest(&waits)];
+        let mut orders = vec![from, ends.soonest(0, &waits)];
         if !freedom.in_turn {
+            orders.push(ends.soonest(ends.farthest(), &waits));
             orders.par_iter_mut().for_each(|order| improve(&ends, order));
         }
         // Of equal ones the first: passes stay as they come where that is as good.
@@ -297,7 +306,9 @@ pub fn ordered(stretches: &Stretches, links: &Links, walls: &Walls, freedom: Fre
         let next = order.get(k + 1);
         let turned = !pass.closed && ends.of[placed.enter as usize].1 > 0;
         out.passes.push(if pass.closed {
-            begun(pass, &ends, (last, next.map(|n| ends.ends[n.enter as usize])))
+            // A closed pass that follows begins where this one ends.
+            let open = next.filter(|n| !known[n.pass as usize].closed);
+            begun(pass, &ends, (last, open.map(|n| ends.ends[n.enter as usize])))
         } else {
             let mut points = pass.points.clone();
             if turned {
