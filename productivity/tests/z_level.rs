@@ -4,7 +4,7 @@
 
 use osculate_geom::analytic::{Paraboloid, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Surface, Vec3};
-use osculate_productivity::plan::{Links, Named, PlanError, RoughTask, Roughing, Sizes, z_level};
+use osculate_productivity::plan::{Links, Named, PlanError, Rates, RoughTask, Roughing, Sizes, z_level};
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
 use osculate_tools::{Cutter, CutterSpec};
@@ -26,6 +26,8 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         contacts: true,
         dropped: false,
         layer_mm: 0.0,
+        dip_mm: 0.0,
+        rates: Rates::default(),
         cutter: *cutter,
         holder: None,
         feed_mm_min: 1000.0,

@@ -19,7 +19,7 @@ use crate::work::{drop, ideal, left_out, rough};
 use osculate_geom::Diagnostic;
 use osculate_productivity::compare::Axes;
 use osculate_productivity::levels::{Totals, levels};
-use osculate_productivity::plan::Passes;
+use osculate_productivity::plan::{CcPoint, Passes};
 use osculate_tools::Lean;
 use osculate_tools::removal::Verdict;
 use std::path::Path;
@@ -245,6 +245,8 @@ impl Proved<'_> {
             PlanFile::of_text("path.svg", pages.path_svg),
         ];
         summary.wall_s.report = stage.end();
+        let w = summary.wall_s;
+        summary.wall_s.total = w.import + w.plan + w.post + w.verify + w.ideal + w.report;
         let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
         files.push(PlanFile::of_text("summary.json", text));
         Ok(Plan { job: job.clone(), summary, verified, diagnostics, files })
@@ -331,6 +333,8 @@ pub fn summary_of(
 pub struct Laid {
     /// The passes.
     pub passes: Passes,
+    /// After each what was taken out of the pass that it is of, up to the next; none where nothing was.
+    pub skipped: Vec<Vec<CcPoint>>,
     /// Lead and tilt.
     pub lean: Lean,
     /// Whether the lead was found place by place.
@@ -352,7 +356,7 @@ impl Laid {
             Kind::Faces(strategy) => strategy,
             Kind::Drop(kind) => {
                 let passes = drop::passes(job, faces, *kind, progress)?;
-                return Ok(Self { passes, lean: Lean::default(), local: false });
+                return Ok(Self { passes, skipped: Vec::new(), lean: Lean::default(), local: false });
             }
             Kind::Layers(_) | Kind::Auto | Kind::Flank => return Err(not_planned(job)),
         };
@@ -366,7 +370,7 @@ impl Laid {
             None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
         };
         let local = job.strategy().lead == LeadKey::Local || job.strategy().axis_field;
-        Ok(Self { passes, lean, local })
+        Ok(Self { passes, skipped: Vec::new(), lean, local })
     }
 
     /// The passes joined, less what the job wants left out of them.
@@ -374,10 +378,11 @@ impl Laid {
     /// # Errors
     /// Where nothing remains.
     pub fn linked(self, job: &Job, faces: &Part) -> Result<Planned<'static>, Failure> {
-        let Self { passes, lean, local } = self;
-        let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+        let Self { passes, skipped, lean, local } = self;
+        let left_out::Joined { passes, skipped, linked, extras } =
+            left_out::linked(job, faces, (passes, skipped))?;
         let strategy = job.strategy().name().to_owned();
-        Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
+        Ok(Planned { passes, skipped, linked, strategy, lean, local, extras, with_strips: true })
     }
 }
 

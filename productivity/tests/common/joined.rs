@@ -1,7 +1,7 @@
 //! Passes over one face, joined to a path around the face's box.
 
 use osculate_geom::{Box3, Surface};
-use osculate_productivity::plan::{Links, Pass, Walls, link};
+use osculate_productivity::plan::{Links, Pass, Rates, Walls, link};
 use osculate_tools::Cutter;
 use osculate_tools::cl::ClPath;
 
@@ -22,6 +22,8 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         contacts: true,
         dropped: false,
         layer_mm: 0.0,
+        dip_mm: 0.0,
+        rates: Rates::default(),
         cutter: *cutter,
         holder: None,
         feed_mm_min: 1000.0,
