@@ -121,7 +121,8 @@ impl Fields {
         let around = self.around.get_or_init(Surroundings::default);
         // What is possible is the same for all directions: those that are likely to be asked for next are found with it.
         let lines = [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) });
-        let one = direction(strategy).is_empty() || matches!(&job.strategy().kind, Kind::Faces(s) if !direction(s).is_empty());
+        let given = matches!(&job.strategy().kind, Kind::Faces(s) if !direction(s).is_empty());
+        let one = given || direction(strategy).is_empty();
         let wanted = if one { vec![*strategy] } else { lines.to_vec() };
         let feeds: Vec<_> = wanted.iter().map(feed_of).collect();
         let feeds: Vec<&Feed<'_>> = feeds.iter().map(|f| f as &Feed<'_>).collect();

@@ -154,12 +154,6 @@ pub fn prove(
     watch: &dyn Watch,
 ) -> Result<Plan, Failure> {
     let posted = Posted::of(job, faces, &planned, &mut wall_s, watch)?;
-    if std::env::var("AXIS_QUICK").is_ok() {
-        let look = crate::work::look::Look::at(job, faces, &planned.linked)?;
-        println!("QUICK cut {:.3} tot {:.3} len {:.0} air {:.0} pass {} plan {:.1} look g {:.4} left {:.4} joints {}", posted.read.cutting_time_min, posted.time_min(), planned.linked.cutting_length_mm, planned.linked.air_length_mm, planned.passes.passes.len(), wall_s.plan, look.gouge_mm, look.left_mm, "");
-        for d in &planned.passes.diagnostics { println!("  {d}"); }
-        std::process::exit(0);
-    }
     let verified = posted.verify(job, faces, &mut wall_s, watch)?;
     Proved { planned, posted, verified, compared: Vec::new() }.told(job, faces, wall_s, watch)
 }

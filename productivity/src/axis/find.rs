@@ -7,8 +7,6 @@ use super::lattice::{Feed, Lattice, Node};
 use super::rim::Rim;
 use super::search::{Asked, Possible, Search};
 use super::settle::settle;
-use super::dump::knob;
-use super::strips::{Strips, Wanted};
 use crate::plan::extended::Extended;
 use crate::width::WIDEST;
 use osculate_geom::{Point3, Surface, Unit3, Uv};
@@ -142,9 +140,7 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         }
         Bits::of(all.len(), |k| bits.contains(k) && travels(place, &all[k]))
     };
-    let t0 = std::time::Instant::now();
     let reached = reach.map(&on_face);
-    eprintln!("T: map {:.2} obstacles {} nodes {}", t0.elapsed().as_secs_f64(), obstacles.len(), on_face.len());
     let mut reached = on_face.iter().zip(reached).map(|(place, bits)| left(place, bits));
     let mut bits: Vec<Option<Bits>> =
         places.iter().map(|p| p.as_ref().and_then(|_| reached.next())).collect();
@@ -170,7 +166,6 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         let jet = face.jet2(node.at);
         Rim::of(&reach, place, [jet.du, jet.dv], wish.lean_rad[0])
     };
-    let t0 = std::time::Instant::now();
     let possible: Vec<Possible> = lattice
         .nodes
         .par_iter()
@@ -185,7 +180,6 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
             _ => Possible::default(),
         })
         .collect();
-    eprintln!("T: rims {:.2}", t0.elapsed().as_secs_f64());
     let asked = Asked {
         cutter,
         scallop_mm: wish.scallop_mm,
@@ -218,51 +212,21 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         })
         .collect::<Vec<_>>();
     let area_mm2 = lattice.nodes.iter().map(|n| n.area_mm2).sum();
-    let lattices: Vec<Lattice> = wish.feeds.iter().map(|feed| lattice.along(&face, *feed)).collect();
-    let t0 = std::time::Instant::now();
-    let wanted = Wanted { cutter, scallop_mm: wish.scallop_mm, widest_mm };
-    let by_node: Vec<Vec<Option<Strips>>> = (0..lattice.nodes.len())
-        .into_par_iter()
-        .map(|k| {
-            let frames: Vec<_> = lattices.iter().map(|l| l.nodes[k].frame.as_ref().map(|(_, frame)| frame)).collect();
-            match possible[k].rim() {
-                Some(rim) if knob("K_STRIPS", 1.0) > 0.0 => Strips::of(&face, &lattice.nodes[k], rim, &frames, wanted),
-                _ => frames.iter().map(|_| None).collect(),
-            }
-        })
-        .collect();
-    let mut strips: Vec<Vec<Option<Strips>>> = lattices.iter().map(|_| Vec::new()).collect();
-    for node in by_node {
-        for (all, own) in strips.iter_mut().zip(node) {
-            all.push(own);
-        }
-    }
-    eprintln!("T: strips {:.2}", t0.elapsed().as_secs_f64());
-    let one = |(lattice, strips): (&Lattice, &Vec<Option<Strips>>)| {
-        let t0 = std::time::Instant::now();
-        let search = Search::new(&asked, lattice, &possible, strips);
-        let axes = search.best();
+    let one = |feed: &&Feed<'_>| {
+        let lattice = lattice.along(&face, *feed);
+        let axes = Search::new(&asked, &lattice, &possible).best();
         let axes = axes.ok_or(NoField::Nowhere { places: on_face.len() })?;
-        eprintln!("T: search {:.2}", t0.elapsed().as_secs_f64());
-        let t0 = std::time::Instant::now();
         let mut spline = lattice.spline.clone();
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
         let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
-        for _ in 0..knob("K_SHARPEN", 0.0) as usize {
-            let now: Vec<_> = lattice.nodes.iter().map(|n| field.at(n.at).0).collect();
-            for (k, pole) in field.spline.poles.iter_mut().enumerate() { *pole += axes[k].into_inner() - now[k].into_inner(); }
-        }
-        let before = field.clone();
         let unsettled = settle(
             &mut field,
             (&face, rough.then_some(look_mm)),
             (&between, wish.scallop_mm),
             (&clear, &held),
         );
-        eprintln!("T: settle {:.2}", t0.elapsed().as_secs_f64());
-        super::dump::dump(&face, &asked, lattice, &possible, (&axes, &field, &before), &search, &places);
         let unreached = unreached.clone();
         Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, between.len()] })
     };
-    lattices.par_iter().zip(&strips).map(one).collect()
+    wish.feeds.par_iter().map(one).collect()
 }

@@ -149,7 +149,7 @@ impl Lattice {
                     frame: None,
                     stood: surface.contains(surface.inner(at)),
                     area_mm2: if inside { share * whole } else { 0.0 },
-                    weight_mm2: { let b = super::dump::knob("K_BEYOND", BEYOND); whole * if inside { share.max(b) } else { b } },
+                    weight_mm2: whole * if inside { share.max(BEYOND) } else { BEYOND },
                 }
             })
             .collect();

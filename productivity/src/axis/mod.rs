@@ -5,7 +5,6 @@
 //! [`osculate_tools::reach`] and the machine's [`Joints`] leave possible.
 
 mod around;
-mod dump;
 mod field;
 mod find;
 mod joints;
@@ -14,7 +13,6 @@ mod pace;
 mod rim;
 mod search;
 mod settle;
-mod strips;
 
 pub(crate) use around::sunk;
 pub use around::{Around, Surroundings};

@@ -96,11 +96,7 @@ impl Rim {
     /// How much further an axis leans than it must, rad, as far as the ways next to it say: the least and the most.
     pub fn margin_rad(&self, spot: &Spot) -> [f64; 2] {
         let ends = spot.ways.map(|k| self.least_rad[k]);
-        let least = if ends.iter().all(|e| e.is_finite()) {
-            self.between(spot)
-        } else {
-            f64::INFINITY
-        };
+        let least = if ends.iter().all(|e| e.is_finite()) { self.between(spot) } else { f64::INFINITY };
         [spot.lean_rad - least, spot.lean_rad - ends[0].min(ends[1])]
     }
 

@@ -8,8 +8,6 @@
 use super::joints::Joints;
 use super::lattice::{Edge, Lattice, Node};
 use super::rim::Rim;
-use super::strips::Strips;
-use super::dump::knob;
 use crate::width::planar_width_mm;
 use osculate_geom::{Unit3, Vec3, any_perpendicular};
 use osculate_tools::reach::{Bits, Directions, Place};
@@ -25,8 +23,9 @@ const AT_RIM: f64 = 0.03;
 /// over what it is, up to so many times, more than by one over its width.
 const NARROW: f64 = 6.0;
 const NARROWEST: f64 = 4.0;
-/// Length of a step of the rim next to the normal, rad.
-const MARGIN_RAD: f64 = 0.004;
+/// Length of a step of the rim next to the normal, rad: tuned on a toroidal end on the third surface of [M86] and on a propeller's blade,
+/// where a strip is widest with the least lean and a quarter of a degree more takes a third of it.
+const MARGIN_RAD: f64 = 0.002;
 /// Share of the whole time that a turn by a radian over a square face costs beyond what the joints take.
 const TURN: f64 = 0.1;
 /// Ways of the contact on the tool from node to node, of its core and squared, go free up to here: they turn with the face. Beyond that
@@ -80,8 +79,6 @@ impl Possible {
         Self { depths: depths(directions, bits), rim }
     }
 
-    pub fn rim(&self) -> Option<&Rim> { self.rim.as_ref() }
-    pub fn depths(&self) -> &[u8] { &self.depths }
     /// Whether axes next to the normal are told apart.
     pub const fn has_rim(&self) -> bool {
         self.rim.is_some()
@@ -94,9 +91,8 @@ impl Possible {
 
     /// How far from the rim an axis is, in steps of it; zero where it is not possible.
     fn depth(&self, directions: &Directions, axis: &Unit3, clear: &dyn Fn(&Unit3) -> bool) -> f64 {
-        let margin_rad = knob("K_MARGIN", MARGIN_RAD);
         match self.rim.as_ref().and_then(|rim| Some(rim.margin_rad(&rim.spot(axis)?))) {
-            Some([least, _]) if least >= 0.0 => (1.0 + least / margin_rad).min(f64::from(RIM)),
+            Some([least, _]) if least >= 0.0 => (1.0 + least / MARGIN_RAD).min(f64::from(RIM)),
             // Between two ways the least lean may be far less than both say.
             Some([_, most]) if most > 0.0 && clear(axis) => 1.0,
             Some(_) => 0.0,
@@ -125,10 +121,6 @@ pub(super) struct Search<'a> {
     asked: &'a Asked<'a>,
     lattice: &'a Lattice,
     possible: &'a [Possible],
-    strips: &'a [Option<Strips>],
-    at_rim: f64,
-    offers: bool,
-    no_late: bool,
     /// Time that a turn costs, by the square of its angle, min.
     turn_min: f64,
     /// How many times as much turns and swings cost now.
@@ -140,7 +132,7 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(asked: &'a Asked<'a>, lattice: &'a Lattice, possible: &'a [Possible], strips: &'a [Option<Strips>]) -> Self {
+    pub fn new(asked: &'a Asked<'a>, lattice: &'a Lattice, possible: &'a [Possible]) -> Self {
         let widths: Vec<f64> = lattice
             .nodes
             .iter()
@@ -149,22 +141,21 @@ impl<'a> Search<'a> {
             .collect();
         let width_mm = widths.iter().sum::<f64>() / widths.len().max(1) as f64;
         let area: f64 = lattice.nodes.iter().map(|n| n.area_mm2).sum();
-        let turn_min = knob("K_TURN", TURN) * area / (width_mm * asked.feed_mm_min);
+        let turn_min = TURN * area / (width_mm * asked.feed_mm_min);
         let widest = |(node, possible): (&Node, &Possible)| {
             let ways = possible.rim.iter().flat_map(|rim| rim.axes(MARGIN_RAD));
             ways.map(|(_, axis)| self::width_mm(asked, node, &axis)).max_by(f64::total_cmp)
         };
         let widest: Vec<Option<f64>> = lattice.nodes.par_iter().zip(possible).map(widest).collect();
-        let widest: Vec<Option<f64>> = widest.into_iter().zip(strips).map(|(w, s)| s.as_ref().map_or(w, |s| Some(s.widest_mm()))).collect();
         let on_face = lattice.nodes.iter().zip(&widest).filter(|(n, _)| n.area_mm2 > 0.0);
         let mut usual: Vec<f64> = on_face.filter_map(|(_, w)| *w).collect();
         usual.sort_by(f64::total_cmp);
         let usual_mm = usual.get(usual.len() / 2).copied().unwrap_or(width_mm);
         let widest_mm = widest.into_iter().map(|w| w.unwrap_or(usual_mm)).collect();
-        Self { asked, lattice, possible, strips, turn_min, stiffness: 1.0, width_mm, widest_mm, at_rim: knob("K_ATRIM", AT_RIM), no_late: knob("K_NOLATE", 0.0) > 0.0, offers: knob("K_OFFERS", 1.0) > 0.0 }
+        Self { asked, lattice, possible, turn_min, stiffness: 1.0, width_mm, widest_mm }
     }
 
-    pub fn depth(&self, node: usize, axis: &Unit3) -> f64 {
+    fn depth(&self, node: usize, axis: &Unit3) -> f64 {
         let n = &self.lattice.nodes[node];
         let clear = |a: &Unit3| {
             n.normal.is_some_and(|normal| (self.asked.clear)(&Place { point: n.point, normal }, a))
@@ -180,7 +171,7 @@ impl<'a> Search<'a> {
         }
         let all = self.asked.directions.all();
         let far = |a: &&Unit3| possible.rim.as_ref().is_none_or(|rim| rim.spot(a).is_none());
-        let ways = possible.rim.iter().flat_map(|rim| rim.axes(knob("K_MARGIN", MARGIN_RAD)));
+        let ways = possible.rim.iter().flat_map(|rim| rim.axes(MARGIN_RAD));
         let next = ways.map(|(_, a)| a).filter(|a| self.asked.joints.reaches(a));
         let set = possible.depths.iter().zip(all).filter(|(d, _)| **d > 0).map(|(_, a)| a).filter(far);
         let found = set.copied().chain(next).fold((f64::NEG_INFINITY, *axis), |best, a| {
@@ -190,14 +181,7 @@ impl<'a> Search<'a> {
         found.1
     }
 
-    /// Width of the strip at a node with an axis, mm.
-    pub fn width_mm(&self, k: usize, axis: &Unit3) -> f64 {
-        let known = self.strips[k].as_ref().zip(self.possible[k].rim.as_ref());
-        let width = known.and_then(|(strips, rim)| strips.width_mm(rim, &rim.spot(axis)?));
-        width.unwrap_or_else(|| width_mm(self.asked, &self.lattice.nodes[k], axis))
-    }
-
-    pub fn node_min(&self, k: usize, axis: &Unit3) -> f64 {
+    fn node_min(&self, k: usize, axis: &Unit3) -> f64 {
         let node = &self.lattice.nodes[k];
         let possible = &self.possible[k];
         if possible.is_free() {
@@ -207,15 +191,15 @@ impl<'a> Search<'a> {
         if depth <= 0.0 || (possible.rim.is_some() && !self.asked.joints.reaches(axis)) {
             return f64::INFINITY;
         }
-        let width = self.width_mm(k, axis);
+        let width = width_mm(self.asked, node, axis);
         let time = node.weight_mm2 / (width * self.asked.feed_mm_min)
             * (self.widest_mm[k] / width).min(NARROWEST).powf(NARROW);
-        time * (1.0 + self.at_rim * (f64::from(RIM) - depth))
+        time * (1.0 + AT_RIM * (f64::from(RIM) - depth))
     }
 
     /// What it costs that the contact lies on another side of the tool at the next node: the tool moves on by so much more, and where
     /// the lean passes through none it cannot at all.
-    pub fn swing_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
+    fn swing_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
         let core_mm = self.asked.cutter.core_mm();
         let [n, m] = edge.ends.map(|k| self.lattice.nodes[k].normal);
         let (Some(n), Some(m)) = (n, m) else { return 0.0 };
@@ -227,7 +211,7 @@ impl<'a> Search<'a> {
         SWING * core_mm * beyond * beyond * edge.across_mm / (self.width_mm * self.asked.feed_mm_min)
     }
 
-    pub fn edge_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
+    fn edge_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
         let ratio = (edge.across_mm / edge.length_mm.max(f64::MIN_POSITIVE)).min(LONGEST);
         let angle = a.angle(b);
         let smooth = self.stiffness * (self.turn_min * ratio * angle * angle + self.swing_min(edge, a, b));
@@ -236,7 +220,7 @@ impl<'a> Search<'a> {
         }
         let feed_min = edge.length_mm / self.asked.feed_mm_min;
         let late = self.asked.joints.turn_s(a, b) / 60.0 - feed_min;
-        if late <= 0.0 || self.no_late {
+        if late <= 0.0 {
             return smooth;
         }
         // No more than what a rewind may take: an axis out of reach is refused by the node.
@@ -287,11 +271,13 @@ impl<'a> Search<'a> {
             if let Some(mean) = Unit3::try_new(mean, 1e-9) {
                 offer(mean);
             }
-            if let Some(rim) = &self.possible[k].rim && let Some(spot) = rim.spot(&own) && self.offers {
+            if let Some(rim) = &self.possible[k].rim
+                && let Some(spot) = rim.spot(&own)
+            {
                 for way in spot.ways {
                     let least = rim.least_rad(way);
                     if least.is_finite() {
-                        offer(rim.axis(way, least + knob("K_MARGIN", MARGIN_RAD)));
+                        offer(rim.axis(way, least + MARGIN_RAD));
                         offer(rim.axis(way, least));
                     }
                 }

@@ -16,8 +16,12 @@ const ROUNDS: u32 = 30;
 const RINGS: [f64; 9] = [0.001, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.12, 0.16];
 /// Axes on a ring.
 const AROUND: usize = 12;
+/// Halvings between an axis that is not clear and one on a ring that is.
+const HALVINGS: u32 = 8;
 /// Poles move further than they must by this part, so that rounds end.
 const BEYOND: f64 = 0.25;
+/// A pole whose places weigh less in it than one in the middle of its piece does moves by less than these lack: others move it too.
+const LEAST_WEIGHT: f64 = 0.44;
 
 /// An axis that was found for a place counts until the field has turned so far there, rad.
 const KNOWN: f64 = 0.02;
@@ -49,8 +53,8 @@ impl Asked {
             return true;
         }
         if self.known.is_none_or(|(from, _)| from.angle(axis) > KNOWN) {
-            let raised = if super::dump::knob("K_RAISE", 1.0) > 0.0 { raised(&self.normal, axis, held, &is_clear) } else { None };
-            self.known = Some((*axis, raised.or_else(|| nearest_clear(axis, held, &is_clear))));
+            let next = raised(&self.normal, axis, held, &is_clear);
+            self.known = Some((*axis, next.or_else(|| nearest_clear(axis, held, &is_clear))));
         }
         false
     }
@@ -126,17 +130,6 @@ pub(super) fn settle(
             all[k] = place;
         }
         let count = short.iter().flatten().count();
-        if let (Ok(path), 0 | 2 | 10 | 30) = (std::env::var("AXIS_DUMP"), round) {
-            use std::io::Write;
-            let mut out = std::fs::File::create(format!("{path}.short{round}")).unwrap();
-            for (k, s) in asked.iter().zip(&short) {
-                let Some(s) = s else { continue };
-                let a = field.at(s.at).0;
-                let to = all[*k].near();
-                let _ = writeln!(out, "{:.4} {:.4} lean {:.3} to {:.3} by {:.3} inside {}", s.at.u, s.at.v, a.angle(&all[*k].normal).to_degrees(), to.map_or(0.0, |t| t.angle(&all[*k].normal).to_degrees()), to.map_or(0.0, |t| t.angle(&a).to_degrees()), face.contains(s.at));
-            }
-        }
-        if std::env::var("AXIS_QUICK").is_ok() { eprintln!("T: settle round {round} asked {} short {count}", asked.len()); }
         if asked.len() == all.len() && count < best.0 {
             best = (count, field.spline.poles.clone());
         }
@@ -171,20 +164,23 @@ fn move_poles<'a>(field: &mut AxisField, short: impl Iterator<Item = &'a Short>)
     }
     for (pole, (sum, all)) in field.spline.poles.iter_mut().zip(sums) {
         if all > 0.0 {
-            let moved = *pole + sum / all.max(super::dump::knob("K_DEN", 0.44)) * (1.0 + BEYOND);
+            let moved = *pole + sum / all.max(LEAST_WEIGHT) * (1.0 + BEYOND);
             *pole = moved / moved.norm().max(f64::MIN_POSITIVE);
         }
     }
 }
 
-/// Leans that are tried beyond an axis', rad.
+/// Leans that are tried beyond an axis' that is no further from the normal than that, rad.
+const LEANS: f64 = 0.2;
 const RAISES: [f64; 7] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032];
 
 /// The axis that leans the least further the same way and is clear.
 fn raised(normal: &Unit3, axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) -> bool) -> Option<Unit3> {
     let away = Unit3::try_new(axis.into_inner() - normal.into_inner() * normal.dot(axis), 1e-6)?;
     let lean = normal.angle(axis);
-    if lean > 0.2 { return None; }
+    if lean > LEANS {
+        return None;
+    }
     let at = |more: f64| {
         let (s, c) = (lean + more).sin_cos();
         held(Unit3::new_normalize(normal.into_inner() * c + away.into_inner() * s))
@@ -193,7 +189,7 @@ fn raised(normal: &Unit3, axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) 
     for more in RAISES {
         if clear(&at(more)) {
             let mut good = more;
-            for _ in 0..4 {
+            for _ in 0..HALVINGS / 2 {
                 let middle = 0.5 * (bad + good);
                 if clear(&at(middle)) { good = middle } else { bad = middle }
             }
@@ -216,9 +212,8 @@ fn nearest_clear(axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) -> bool) 
             })
             .find(|a| clear(a))
     })?;
-    if super::dump::knob("K_BISECT", 1.0) <= 0.0 { return Some(found); }
     let (mut bad, mut good) = (*axis, found);
-    for _ in 0..7 {
+    for _ in 0..HALVINGS {
         let middle = held(Unit3::new_normalize(bad.into_inner() + good.into_inner()));
         if clear(&middle) { good = middle } else { bad = middle }
     }
