@@ -226,7 +226,8 @@ impl<'a> Finder<'a> {
                 let clear = |mm: f64| kept.room(&way(mm)).is_some_and(|r| r >= 1.0);
                 if clear(lift) && (lift >= highest || clear((1.0 - SPARE) * lift)) {
                     let way = way(lift);
-                    return Some(if lift > 0.0 { self.through(&way, k) } else { self.direct(&way[..1], to) });
+                    let on = if lift > 0.0 { &way[..] } else { &[from.pose, to.pose][..] };
+                    return Some(if is_graze { self.grazing(on) } else { self.through(on, k) });
                 }
                 if lift == 0.0 {
                     break;
@@ -239,10 +240,11 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// At feed to a contact.
-    fn direct(&self, from: &[Pose], to: &CcPoint) -> Way {
+    /// Straight along the surface: the tool cuts there, across the passes, where teeth mark the crests between them more than those of
+    /// the passes do; it goes no faster than into material.
+    fn grazing(&self, poses: &[Pose]) -> Way {
         let mut way = Way { clear: true, ..Way::default() };
-        from.iter().for_each(|from| self.fed(&mut way, (from, &to.pose), self.links.feed_mm_min));
+        poses.windows(2).for_each(|w| self.fed(&mut way, (&w[0], &w[1]), self.links.plunge_mm_min));
         way
     }
 
