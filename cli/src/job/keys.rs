@@ -111,7 +111,7 @@ static OWN: &[Table] = &[
         may("faces", Kind::Faces, "those of the part", "[\"F1\", \"F2\"]", "faces to machine"),
         may("repeat", Kind::WholeOrTable(2, MOST_PLACES), "planned where its faces are, once", "6",
             "equal places in a circle: planned at its faces, and repeated by turning about an axis of the part"),
-        may("allowance_mm", MM_OR_ZERO, "rough: 0.5", "0.5", "what it leaves on the faces on purpose"),
+        may("allowance_mm", MM_OR_ZERO, "rough: 0.5; others: 0", "0.5", "what it leaves on the faces on purpose, for later operations: it is judged against that"),
         may("stepdown_mm", MM, "rough: a quarter of the diameter", "3", "deepest cut along the axis"),
         may("stepover_mm", MM, "rough: 0.4 of the diameter", "5", "distance of rows"),
         may("overlap_mm", MM, "rest: a tenth of the diameter", "0.5", "how far passes go beyond what stands too high"),
@@ -158,9 +158,10 @@ pub static TABLES: &[Table] = &[
         may("side_angle_deg", Kind::Number(LEAN, "deg"), "0", "5", "apt: opening of the side"),
         may("teeth", Kind::Whole(1, 1000), "", "4", "number of teeth, for feed_per_tooth_mm"),
     ]),
-    table("tool.holder", false, "a cylinder above the cutter", &[
-        must("diameter_mm", MM, "40", "diameter"),
+    table("tool.holder", false, "a cylinder or cone above the cutter; holder = [{ ... }, { ... }] are several, from the nose upwards", &[
+        must("diameter_mm", MM, "40", "diameter, at the lower end"),
         must("length_mm", MM, "60", "length"),
+        may("upper_diameter_mm", MM, "diameter_mm", "50", "diameter at the upper end of a cone"),
     ]),
     table("tolerance", true, "what must hold", &[
         must("scallop_mm", SMALL, "0.01", "highest material left standing"),

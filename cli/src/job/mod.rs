@@ -29,7 +29,7 @@ pub use operations::{Clamping, Operation, Operations};
 use osculate_geom::{Axis, Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
 use osculate_productivity::plan::Tolerance;
-use osculate_tools::{Cutter, CutterSpec, Lean};
+use osculate_tools::{Cutter, CutterSpec, Holder, Lean};
 pub use part::{FaceChoice, Part, Source};
 use problem::Places;
 use raw::Raw;
@@ -65,6 +65,7 @@ struct Told {
     layers_mm: Vec<f64>,
     tolerance: Tolerance,
     unreached_mm2: f64,
+    leaves_mm: f64,
     strategy: Strategy,
     control: Control,
     /// Whether the control is the job's own.
@@ -190,6 +191,7 @@ impl Told {
                 chord_mm: t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm),
             },
             unreached_mm2: t.unreached_mm2.unwrap_or(0.0),
+            leaves_mm: raw.leaves_mm,
             strategy,
             names_machine: machine.is_some(),
             work_offset,
@@ -336,9 +338,9 @@ impl Job {
         self.tool().flutes()
     }
 
-    /// The holder as a cylinder.
+    /// The holder.
     #[must_use]
-    pub fn holder(&self) -> Option<Cutter> {
+    pub fn holder(&self) -> Option<&Holder> {
         self.tool().holder()
     }
 
@@ -352,6 +354,12 @@ impl Job {
     #[must_use]
     pub fn unreached_mm2(&self) -> f64 {
         self.told.unreached_mm2
+    }
+
+    /// What a finishing leaves on its faces on purpose, mm: its faces are those moved out by that.
+    #[must_use]
+    pub fn leaves_mm(&self) -> f64 {
+        self.told.leaves_mm
     }
 
     /// How to cut.

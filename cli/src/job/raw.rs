@@ -34,6 +34,9 @@ pub struct Raw {
     /// How high material stands on the faces, where operations before have left it, mm.
     #[serde(skip)]
     pub standing_mm: Option<f64>,
+    /// What a finishing leaves on the faces on purpose, mm.
+    #[serde(skip)]
+    pub leaves_mm: f64,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -110,10 +113,28 @@ pub struct Tool {
     pub bottom_angle_deg: Option<f64>,
     pub side_angle_deg: Option<f64>,
     pub teeth: Option<u32>,
-    pub holder: Option<HolderSpec>,
+    pub holder: Option<Holder>,
     /// In a list of operations only, as all that follows here.
     pub name: Option<String>,
     pub cutting: Option<Cutting>,
+}
+
+/// A holder: one section, or several from the nose upwards.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub enum Holder {
+    One(HolderSpec),
+    Several(Vec<HolderSpec>),
+}
+
+impl Holder {
+    /// Its sections, from the nose upwards.
+    pub fn sections(&self) -> Vec<HolderSpec> {
+        match self {
+            Self::One(section) => vec![*section],
+            Self::Several(sections) => sections.clone(),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Deserialize)]

@@ -1,5 +1,6 @@
 //! Parts as commands see them: faces with names, from a file or built in.
 
+mod fingerprint;
 mod loaded;
 mod sides;
 mod turned;
@@ -10,12 +11,17 @@ pub use turned::{TurnedFaces, turned};
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
+use crate::words::number;
+use osculate_geom::offset::clear_range;
 use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::removal::Unseen;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
+
+/// Places along each span at which it is looked how hollow a face is.
+const PER_SPAN: usize = 8;
 
 fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
     let surface = TrimmedSurface::new(b.surface, &[], Side::Along).map_err(Failure::job)?;
@@ -148,6 +154,29 @@ impl Part {
     /// Where the job has one of them for something else.
     pub fn with_faces(&self, job: &Job, ids: Vec<String>) -> Result<Self, Failure> {
         sorted(job, self.part.clone(), ids, self.open.clone())
+    }
+
+    /// The same part with its faces to machine moved out by a layer, mm, which is left on them on purpose.
+    ///
+    /// # Errors
+    /// Where a face is too hollow for that: with the layer that would do.
+    pub fn under_layer(mut self, layer_mm: f64) -> Result<Self, String> {
+        for face in &mut self.faces {
+            let range = clear_range(&*face.surface, PER_SPAN);
+            if layer_mm >= range.outward_mm {
+                return Err(format!(
+                    "{} is hollow to a radius of {} mm, so that a layer of {layer_mm} mm has no surface there: leave less on it, or \
+                     leave it to a later operation",
+                    face.id,
+                    number(range.outward_mm, 4)
+                ));
+            }
+            face.surface = Arc::new(face.surface.moved_out(layer_mm).map_err(|e| e.to_string())?);
+            // What is on the file's own surface is not on the layer.
+            face.spline = None;
+        }
+        self.walls = OnceLock::new();
+        Ok(self)
     }
 
     /// A failure with what was warned of when the part was read: it may be why.

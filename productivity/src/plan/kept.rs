@@ -3,7 +3,7 @@
 use super::around::Cloud;
 use super::walls::Walls;
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
-use osculate_tools::{Cutter, Pose};
+use osculate_tools::{Cutter, Holder, Pose};
 
 /// The tool may lie by this part of its radius deeper in the points on its way than at the contacts: chords between points
 /// of a bent pass, and rounding.
@@ -36,25 +36,21 @@ pub(super) struct Kept<'a> {
 impl<'a> Kept<'a> {
     /// A cutter, and a holder where it ends, on ways that begin and end at poses, kept off points of passes and walls.
     pub fn new(
-        bodies: impl Iterator<Item = &'a Cutter>,
+        (cutter, holder): (&'a Cutter, Option<&'a Holder>),
         ends: [Pose; 2],
         (cloud, walls): (&'a Cloud, &'a Walls),
     ) -> Self {
-        let (mut up_mm, mut radius_mm) = (0.0, 0.0f64);
-        let mut kept = Self { cloud, walls, slack_mm: 0.0, step_mm: 0.0, bodies: Vec::new() };
-        for body in bodies {
-            if kept.bodies.is_empty() {
-                radius_mm = body.radius_mm();
-                kept.slack_mm = SLACK * radius_mm;
-            }
+        let slack_mm = SLACK * cutter.radius_mm();
+        let kept = |body: &'a Cutter, up_mm: f64| {
             let ends = ends.map(|p| p.retracted(up_mm));
             let deepest = ends.iter().map(|p| cloud.depth_mm(body, p)).fold(0.0, f64::max);
             let nearest_mm = walls.nearest(body, &ends);
-            kept.bodies.push(KeptBody { body, up_mm, limit_mm: deepest + kept.slack_mm, nearest_mm });
-            up_mm += body.length_mm();
-        }
-        kept.step_mm = STEP * radius_mm;
-        kept
+            KeptBody { body, up_mm, limit_mm: deepest + slack_mm, nearest_mm }
+        };
+        let sections = holder.map(Holder::sections).unwrap_or_default();
+        let above = sections.iter().map(|s| kept(&s.body, cutter.length_mm() + s.above_mm));
+        let bodies = std::iter::once(kept(cutter, 0.0)).chain(above).collect();
+        Self { cloud, walls, slack_mm, step_mm: STEP * cutter.radius_mm(), bodies }
     }
 
     /// What the tool keeps from walls at a pose, of what it should; None where it goes into the part or may touch a wall.

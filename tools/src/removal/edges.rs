@@ -80,6 +80,20 @@ impl<'a> Edges<'a> {
 
     /// The distance of a point from faces other than one of them, as far as it is found; looking ends where it is below `enough_mm`.
     fn distance_mm(&self, q: &Point3, face: u32, enough_mm: f64) -> f64 {
+        let mut near = self.around(q, face);
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut least = f64::INFINITY;
+        for (away, other, at) in near {
+            least = least.min(away).min(nearest_mm(self.surfaces[other as usize], at, q));
+            if least < enough_mm {
+                break;
+            }
+        }
+        least
+    }
+
+    /// Of each face around a point but one, the nearest sample: its distance, its face, its place.
+    fn around(&self, q: &Point3, face: u32) -> Vec<(f64, u32, Uv)> {
         let [x, y, z] = self.key(q);
         let hints = self.hints();
         // Of each face around, the nearest sample.
@@ -99,15 +113,19 @@ impl<'a> Edges<'a> {
                 }
             }
         }
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut least = f64::INFINITY;
-        for (away, other, at) in near {
-            least = least.min(away).min(nearest_mm(self.surfaces[other as usize], at, q));
-            if least < enough_mm {
-                break;
-            }
-        }
-        least
+        near
+    }
+
+    /// Whether a sample lies within a range of depths beneath another of the first so many faces, as places of faces that are moved out do
+    /// beside inner edges: no surface of what is left goes through it. What lies deeper is on the far side of a wall.
+    pub fn is_beneath(&self, s: &Sample, faces: usize, [least_mm, most_mm]: [f64; 2]) -> bool {
+        self.around(&s.point, s.face).into_iter().filter(|near| (near.1 as usize) < faces).any(|(_, face, at)| {
+            let surface = self.surfaces[face as usize];
+            let foot = nearest(surface, at, &s.point);
+            let jet = surface.jet2(foot);
+            let beneath = |normal: Unit3| (least_mm..most_mm).contains(&(jet.point - s.point).dot(&normal));
+            surface.contains(foot) && jet.normal().is_ok_and(beneath)
+        })
     }
 
     /// How deep the deepest point beneath a sample is that was taken, where the tool went so far along its normal.
@@ -135,6 +153,12 @@ impl<'a> Edges<'a> {
 /// The distance of a point from the place of a face that Newton's method comes to from a place near it; infinite where that is
 /// not on the face.
 fn nearest_mm(surface: &dyn Surface, from: Uv, q: &Point3) -> f64 {
+    let at = nearest(surface, from, q);
+    if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }
+}
+
+/// The place of a face that Newton's method comes to from a place near it, on its way to the nearest to a point.
+fn nearest(surface: &dyn Surface, from: Uv, q: &Point3) -> Uv {
     let domain = surface.domain();
     let mut at = from;
     for _ in 0..STEPS {
@@ -152,5 +176,5 @@ fn nearest_mm(surface: &dyn Surface, from: Uv, q: &Point3) -> f64 {
         }
         at = next;
     }
-    if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }
+    at
 }

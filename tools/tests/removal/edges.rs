@@ -61,6 +61,7 @@ fn judged(cutter: &Cutter, motions: &[Swept]) -> Verdict {
         limits: GoalLimits { scallop_mm: 0.02, gouge_mm: GOUGE_MM, unreached_mm2: 0.0, at_samples: false },
         looks: Looks { spacing_mm: Some(0.1), max_samples: 1_000_000, between: true },
         roughing_mm: None,
+        leaves_mm: 0.0,
         control: GoalControl::default(),
     };
     prove(&goal, Program { motions, times_min: &[], changes: &[] }, &|_| ()).expect("two faces")

@@ -101,7 +101,7 @@ impl<'a> Choice<'a> {
         for (k, one) in jobs.iter().enumerate() {
             tools.push(Tool {
                 cutter: &cutters[k],
-                holder: holders[k].as_ref(),
+                holder: holders[k],
                 feed_mm_min: one.feed_mm_min(),
             });
         }

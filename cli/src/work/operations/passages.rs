@@ -31,7 +31,14 @@ impl Passages {
     /// # Errors
     /// Where it names a face that is not there, and where the part is not the same in all places: with the face and the angle.
     pub fn of(operation: &Operation, job: &Job, whole: &Part) -> Result<Self, Failure> {
-        let own = whole.seen_by(job).map_err(|why| why.in_operation(&operation.name))?;
+        let leaves_mm = operation.leaves_mm;
+        let layered = |part: Part| {
+            if leaves_mm == 0.0 {
+                return Ok(part);
+            }
+            part.under_layer(leaves_mm).map_err(|why| operation.refuse("allowance_mm", format!("allowance_mm: {why}")))
+        };
+        let own = layered(whole.seen_by(job).map_err(|why| why.in_operation(&operation.name))?)?;
         let Some(Repeat { axis, count }) = operation.repeat else {
             return Ok(Self { each: vec![own], turns: vec![Isometry3::identity()], all: None, axis: None });
         };
@@ -41,10 +48,10 @@ impl Passages {
         let mut all = ids;
         let mut each = vec![own];
         for image in images {
-            each.push(whole.with_faces(job, image.clone())?);
+            each.push(layered(whole.with_faces(job, image.clone())?)?);
             all.extend(image);
         }
-        let all = whole.with_faces(job, all)?;
+        let all = layered(whole.with_faces(job, all)?)?;
         let turns = (0..count).map(|k| circle.turn(k)).collect();
         Ok(Self { each, turns, all: Some(all), axis: Some(circle.axis.direction) })
     }

@@ -13,10 +13,10 @@ use super::walls::Walls;
 use super::{CcPoint, Pass};
 use osculate_geom::{Box3, Point3, Unit3, Vec3};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
-use osculate_tools::{Cutter, Pose};
+use osculate_tools::{Cutter, Holder, Pose};
 
 /// How passes are linked. Lengths mm, feeds mm/min.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Links {
     /// Box of everything the tool must stay clear of on rapid moves.
     pub obstacles: Box3,
@@ -36,8 +36,8 @@ pub struct Links {
     pub layer_mm: f64,
     /// The cutter.
     pub cutter: Cutter,
-    /// The holder, a body whose lower end sits where the cutter's length ends.
-    pub holder: Option<Cutter>,
+    /// The holder, whose nose sits where the cutter's length ends.
+    pub holder: Option<Holder>,
     /// Feed of the tip on the part.
     pub feed_mm_min: f64,
     /// Feed on approaches.
@@ -178,7 +178,8 @@ impl Builder<'_> {
 
     /// The tool on ways that begin and end at poses.
     fn kept(&self, ends: [Pose; 2]) -> Kept<'_> {
-        Kept::new([&self.links.cutter].into_iter().chain(&self.links.holder), ends, (&self.cloud, self.walls))
+        let tool = (&self.links.cutter, self.links.holder.as_ref());
+        Kept::new(tool, ends, (&self.cloud, self.walls))
     }
 
     /// The poses above both ends of a hop on a way that is clear of the part, if there is one: as low as may be, along the normals
@@ -226,7 +227,8 @@ impl Builder<'_> {
     fn is_free(&self, pose: &Pose) -> bool {
         !self.cloud.is_within(&self.links.cutter, pose, self.links.layer_mm)
             && self.links.holder.as_ref().is_none_or(|h| {
-                !self.cloud.is_within(h, &pose.retracted(self.links.cutter.length_mm()), self.links.layer_mm)
+                h.posed(&self.links.cutter, pose)
+                    .all(|(body, at)| !self.cloud.is_within(body, &at, self.links.layer_mm))
             })
     }
 

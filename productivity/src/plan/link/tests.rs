@@ -174,7 +174,7 @@ fn a_hop_keeps_off_a_wall_that_is_not_machined() {
 fn a_holder_keeps_off_a_wall_too() {
     let passes = over_plane(6.0, 4.0);
     let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 10.0 }).unwrap();
-    let with = |holder: Option<Cutter>| Links {
+    let with = |holder: Option<Holder>| Links {
         obstacles: Box3 { min: Point3::new(-3.0, 0.0, 0.0), max: Point3::new(9.0, 12.2, 20.0) },
         clearance_mm: 5.0,
         approach_mm: 1.2,
@@ -194,7 +194,7 @@ fn a_holder_keeps_off_a_wall_too() {
     let walls = Walls::of(&[Named { face: "post", surface: &post }], 0.5, 0.0).unwrap();
     let without = link(&passes, &with(None), &walls);
     assert_eq!(without, link(&passes, &with(None), &Walls::default()));
-    let holder = Some(Cutter::cylinder(9.0, 30.0).unwrap());
-    assert_eq!(link(&passes, &with(holder), &Walls::default()), without);
+    let holder = Some(Holder::cylinder(9.0, 30.0).unwrap());
+    assert_eq!(link(&passes, &with(holder.clone()), &Walls::default()), without);
     assert_ne!(link(&passes, &with(holder), &walls), without);
 }

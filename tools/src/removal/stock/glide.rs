@@ -22,7 +22,7 @@ const FLAT_MM: f64 = 1e-3 * ENDS_MM;
 const LEVEL_MM: f64 = -ENDS_MM;
 /// ... and this near to that level is at it.
 const AT_LEVEL_MM: f64 = 0.1 * ENDS_MM;
-/// Where the body met material is told when it is this near, of its radius: a fraction of a sector.
+/// Where the body meets material is told when it is this near, of its radius: a fraction of a sector.
 const MET: f64 = 0.01;
 /// A way that is less than this part of it across the axis has no direction there: rounding is a billionth of that.
 const ACROSS: f64 = 1e-6;
@@ -85,13 +85,13 @@ struct Instant {
     rate: Vec3,
 }
 
-/// f with a slope and the second derivative of it, and the x where it is.
+/// f with a slope, and the x where it is.
 #[derive(Clone, Copy)]
 struct Lowest {
     x: f64,
     value: f64,
     slope: f64,
-    /// Zero where it is not known: at kinks.
+    /// The second derivative; zero where it is not known or asked for: at kinks, and within the body.
     bend: f64,
 }
 
@@ -164,12 +164,21 @@ impl<'a> Glide<'a> {
         Instant { x, local, by_x, by_s, place, rate }
     }
 
-    /// f at `s`, the search beginning at `guess`; any x where D is at most `enough` will do.
-    fn lowest(&self, ray: &Ray, s: f64, guess: f64, enough: f64) -> Lowest {
+    /// Whether nothing is covered from an instant on, so far along the ray: by the plane that touches D there, which D nowhere lies below
+    /// but for the term `x s c`.
+    #[inline]
+    fn is_clear(&self, here: &Instant, sign: f64, room: f64) -> bool {
+        let by_x = here.by_x * (here.x + 0.5 * here.by_x.signum());
+        let by_s = (-sign * here.by_s).max(0.0) * room;
+        here.local.distance - by_x - by_s - self.skew * room > LEVEL_MM
+    }
+
+    /// f at `s`, the search beginning at an instant there; any x where D is at most `enough` will do.
+    fn lowest(&self, ray: &Ray, s: f64, guess: Instant, enough: f64) -> Lowest {
         let (mut left, mut right): (Option<Side>, Option<Side>) = (None, None);
-        let mut x = guess;
+        let mut here = guess;
         for step in 0..MOST_STILL {
-            let here = self.at(ray, x, s);
+            let x = here.x;
             let (distance, by_x) = (here.local.distance, here.by_x);
             let room = match (&left, &right) {
                 (Some(side), _) if by_x > 0.0 => x - side.x,
@@ -178,9 +187,9 @@ impl<'a> Glide<'a> {
                 _ => 0.5 - x,
             };
             if distance <= enough {
-                return here.lowest(self);
+                return here.inside();
             }
-            let bend = here.second(&here.rate, &here.rate);
+            let bend = here.bend_along(&here.rate);
             // What Newton's step gains.
             if 0.5 * by_x * by_x <= FLAT_MM * bend {
                 return here.lowest(self);
@@ -202,7 +211,7 @@ impl<'a> Glide<'a> {
             let lo = left.map_or(-0.5, |i| i.x);
             let hi = right.map_or(0.5, |i| i.x);
             let newton = x - by_x / bend;
-            x = match (&left, &right) {
+            let x = match (&left, &right) {
                 _ if newton > lo && newton < hi && step < MOST_NEWTON => newton,
                 (Some(a), Some(b)) => {
                     let best = Self::between(a, b);
@@ -214,11 +223,12 @@ impl<'a> Glide<'a> {
                 (None, _) => -0.5,
                 (_, None) => 0.5,
             };
+            here = self.at(ray, x, s);
         }
         // At rounding: the bracket's two sides still bound f from below.
         match (&left, &right) {
             (Some(a), Some(b)) => Self::between(a, b),
-            _ => self.at(ray, x, s).lowest(self),
+            _ => here.lowest(self),
         }
     }
 
@@ -250,7 +260,10 @@ impl<'a> Glide<'a> {
     fn beside(&self, ray: &Ray, [lo, hi]: [f64; 2]) -> Option<[f64; 2]> {
         let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
         // Half of what the place moves over the piece, at most.
-        let moves = (ray.way + self.cross * middle).abs() * 0.5 + self.cross.abs() * half;
+        let moves = |k: usize| {
+            0.5 * (ray.way[k] + self.cross[k] * middle).abs() + self.cross[k].abs() * half
+        };
+        let moves = [moves(0), moves(1), moves(2)];
         let (radius, base) = (self.body.cutter.radius_mm(), self.body.above_mm);
         let slabs = [[-radius, radius], [-radius, radius], [base, base + self.body.cutter.length_mm()]];
         let (mut lo, mut hi) = (lo, hi);
@@ -267,7 +280,7 @@ impl<'a> Glide<'a> {
         }
         // |foot + s along| = reach in the plane across the axis.
         let (x, y, a, b) = (ray.foot.x, ray.foot.y, self.along.x, self.along.y);
-        let reach = radius + moves.x + moves.y;
+        let reach = radius + moves[0] + moves[1];
         let (square, cross) = (a * a + b * b, x * b - y * a);
         let room = reach * reach * square - cross * cross;
         if square > 0.0 {
@@ -284,7 +297,11 @@ impl<'a> Glide<'a> {
     fn first(&self, ray: &Ray, [start, end]: [f64; 2], guess: f64) -> Option<Found> {
         let sign = (end - start).signum();
         let mut s = start;
-        let mut here = self.lowest(ray, s, guess, LEVEL_MM - AT_LEVEL_MM);
+        let glance = self.at(ray, guess, s);
+        if self.is_clear(&glance, sign, (end - start).abs()) {
+            return None;
+        }
+        let mut here = self.lowest(ray, s, glance, LEVEL_MM - AT_LEVEL_MM);
         if here.value <= LEVEL_MM - AT_LEVEL_MM {
             return Some(Found { s, x: here.x });
         }
@@ -314,7 +331,7 @@ impl<'a> Glide<'a> {
             };
             s += sign * step.min(room);
             // From within a tangent leads outside again.
-            here = self.lowest(ray, s, here.x, LEVEL_MM - AT_LEVEL_MM);
+            here = self.lowest(ray, s, self.at(ray, here.x, s), LEVEL_MM - AT_LEVEL_MM);
             if (here.value - LEVEL_MM).abs() <= AT_LEVEL_MM || (here.value < LEVEL_MM && !bold) {
                 return Some(Found { s, x: here.x });
             }
@@ -335,22 +352,14 @@ impl<'a> Glide<'a> {
         (self.skew * step.abs() <= self.stray_mm).then_some(step)
     }
 
-    /// Where on the body it met a point of the ray, which it covers.
+    /// Where on the body it met a point of the ray, which it covers, to second order in the way over the piece.
     pub fn met(&self, ray: &Ray, s: f64) -> Met {
-        let near = MET * self.body.cutter.radius_mm();
-        let mut here = self.at(ray, -0.5, s);
-        // Newton from outside on a convex function.
-        for _ in 0..MOST_STEPS {
-            if here.local.distance <= near || here.by_x >= 0.0 {
-                break;
-            }
-            let next = here.x - here.local.distance / here.by_x;
-            if next >= 0.5 {
-                break;
-            }
-            here = self.at(ray, next, s);
+        let begin = self.at(ray, -0.5, s);
+        if begin.local.distance <= MET * self.body.cutter.radius_mm() || begin.by_x >= 0.0 {
+            return begin.place;
         }
-        here.place
+        // Newton's step from outside of a convex function leads to no place beyond.
+        begin.place + begin.rate * (-begin.local.distance / begin.by_x).min(1.0)
     }
 }
 
@@ -362,44 +371,53 @@ struct Found {
 }
 
 impl Instant {
-    /// Second derivative of the distance in two directions: the meridian's curvature along it, and around the axis the
-    /// circle's.
+    /// A direction around the axis, and along the body's meridian: of a second derivative the circle's curvature goes with the one,
+    /// the meridian's with the other.
     #[inline]
-    fn second(&self, v: &Vec3, w: &Vec3) -> f64 {
+    fn around_and_along(&self, v: &Vec3) -> [f64; 2] {
         let Self { local, place, .. } = self;
         let rho2 = place.x * place.x + place.y * place.y;
-        let flat = v.x * w.x + v.y * w.y;
         if rho2 == 0.0 {
-            return local.outwards * flat;
-        }
-        // Components outwards times rho.
-        let [a, b] = [v, w].map(|v| place.x * v.x + place.y * v.y);
-        let around = local.outwards * (flat - a * b / rho2);
-        if local.bend == 0.0 {
-            return around;
+            return [0.0; 2];
         }
         let inverse = 1.0 / rho2.sqrt();
-        let by_rho = local.outwards * rho2 * inverse;
-        let tangential = |v: &Vec3, a: f64| by_rho * v.z - local.by_z * a * inverse;
-        around + local.bend * tangential(v, a) * tangential(w, b)
+        let (out, around) = ((place.x * v.x + place.y * v.y) * inverse, (place.x * v.y - place.y * v.x) * inverse);
+        [around, local.outwards * rho2 * inverse * v.z - local.by_z * out]
+    }
+
+    /// Second derivative of the distance in a direction.
+    #[inline]
+    fn bend_along(&self, v: &Vec3) -> f64 {
+        let [around, along] = self.around_and_along(v);
+        self.local.outwards * around * around + self.local.bend * along * along
     }
 
     /// f, where D is least at this x.
     #[inline]
     fn lowest(&self, glide: &Glide<'_>) -> Lowest {
-        Lowest { x: self.x, value: self.local.distance, slope: self.by_s, bend: self.bend(glide) }
+        Lowest { bend: self.bend(glide), ..self.inside() }
+    }
+
+    /// The same where the point is within the body, and it does not matter how D bends.
+    #[inline]
+    const fn inside(&self) -> Lowest {
+        Lowest { x: self.x, value: self.local.distance, slope: self.by_s, bend: 0.0 }
     }
 
     /// f'': D_ss - D_xs^2 / D_xx where the least x is free, D_ss at an end.
     #[inline]
     fn bend(&self, glide: &Glide<'_>) -> f64 {
-        let along = glide.along + glide.cross * self.x;
-        let own = self.second(&along, &along);
-        if self.x.abs() >= 0.5 {
+        let along = self.around_and_along(&(glide.along + glide.cross * self.x));
+        let rate = self.around_and_along(&self.rate);
+        let second =
+            |a: [f64; 2], b: [f64; 2]| self.local.outwards * a[0] * b[0] + self.local.bend * a[1] * b[1];
+        let own = second(along, along);
+        let still = second(rate, rate);
+        if self.x.abs() >= 0.5 || still <= 0.0 {
             return own;
         }
-        let (mixed, still) = (self.second(&along, &self.rate), self.second(&self.rate, &self.rate));
-        if still > 0.0 { own - mixed * mixed / still } else { own }
+        let mixed = second(along, rate);
+        own - mixed * mixed / still
     }
 }
 
