@@ -63,7 +63,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         limits: GoalLimits { scallop_mm, gouge_mm: 0.5 * scallop_mm, unreached_mm2: 0.0, at_samples: false },
         looks: Looks { spacing_mm: None, max_samples: 200_000, between: true },
         roughing_mm: None,
-        leaves_mm: 0.0,
         control: GoalControl::default(),
     };
     let enough = 1 + (10.0 / (0.9 * strip.width_mm)).ceil() as usize;

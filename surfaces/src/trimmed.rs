@@ -10,8 +10,7 @@ use crate::trim::region::{Chain, Known, Region};
 use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::solve::symmetric;
 use osculate_geom::{
-    Axis, Box3, Domain, Interval, Jet2, Jet3, Offset, OffsetError, Point3, Side, Surface, Taylor, Uv,
-    forward_surface, uv,
+    Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, forward_surface, uv,
 };
 use std::sync::Arc;
 
@@ -230,18 +229,6 @@ impl TrimmedSurface {
     pub fn flipped(mut self) -> Self {
         self.side = self.side.flipped();
         self
-    }
-
-    /// The surface moved out of the material by a distance, mm, with the same trims.
-    ///
-    /// # Errors
-    /// [`OffsetError::Distance`].
-    pub fn moved_out(&self, distance_mm: f64) -> Result<Self, OffsetError> {
-        let along = match self.side {
-            Side::Along => distance_mm,
-            _ => -distance_mm,
-        };
-        Ok(self.on(Arc::new(Offset::new(Arc::clone(&self.carrier), along)?)))
     }
 
     /// Integral of `f dA` over the inside, mm2 times the unit of `f`; `relative` is the accuracy aimed at.

@@ -111,7 +111,7 @@ static OWN: &[Table] = &[
         may("faces", Kind::Faces, "those of the part", "[\"F1\", \"F2\"]", "faces to machine"),
         may("repeat", Kind::WholeOrTable(2, MOST_PLACES), "planned where its faces are, once", "6",
             "equal places in a circle: planned at its faces, and repeated by turning about an axis of the part"),
-        may("allowance_mm", MM_OR_ZERO, "rough: 0.5; others: 0", "0.5", "what it leaves on the faces on purpose, for later operations: it is judged against that"),
+        may("allowance_mm", MM_OR_ZERO, "rough: 0.5", "0.5", "what it leaves on the faces on purpose"),
         may("stepdown_mm", MM, "rough: a quarter of the diameter", "3", "deepest cut along the axis"),
         may("stepover_mm", MM, "rough: 0.4 of the diameter", "5", "distance of rows"),
         may("overlap_mm", MM, "rest: a tenth of the diameter", "0.5", "how far passes go beyond what stands too high"),

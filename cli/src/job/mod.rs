@@ -65,7 +65,6 @@ struct Told {
     layers_mm: Vec<f64>,
     tolerance: Tolerance,
     unreached_mm2: f64,
-    leaves_mm: f64,
     strategy: Strategy,
     control: Control,
     /// Whether the control is the job's own.
@@ -163,7 +162,9 @@ impl Told {
         let t = &raw.tolerance;
         let feeds_mm_min =
             tools.iter().map(|t| feed_mm_min(&places, raw, (t, &strategy))).collect::<Result<_, _>>()?;
-        let highest_mm = tools.iter().map(|tool| layer_mm(raw, tool)).fold(0.0, f64::max);
+        // What operations before left is known place by place: links ask it how high it stands.
+        let layers = || tools.iter().map(|tool| layer_mm(raw, tool)).fold(0.0, f64::max);
+        let highest_mm = if raw.standing_mm.is_some() { 0.0 } else { layers() };
         let setup = Setup::of(&places, &raw.setup, &strategy, highest_mm)?;
         let contact = raw.contact.as_ref().map(|c| Contact::of(&places, c)).transpose()?;
         let control = Control::of(&places, raw.machine.as_ref(), &tools[0])?;
@@ -191,7 +192,6 @@ impl Told {
                 chord_mm: t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm),
             },
             unreached_mm2: t.unreached_mm2.unwrap_or(0.0),
-            leaves_mm: raw.leaves_mm,
             strategy,
             names_machine: machine.is_some(),
             work_offset,
@@ -354,12 +354,6 @@ impl Job {
     #[must_use]
     pub fn unreached_mm2(&self) -> f64 {
         self.told.unreached_mm2
-    }
-
-    /// What a finishing leaves on its faces on purpose, mm: its faces are those moved out by that.
-    #[must_use]
-    pub fn leaves_mm(&self) -> f64 {
-        self.told.leaves_mm
     }
 
     /// How to cut.

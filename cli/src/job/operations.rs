@@ -9,6 +9,7 @@ use crate::job::raw::{self, Raw, RawList};
 use crate::job::repeat::Repeat;
 use crate::job::words::{AxisKey, Gouges, OperationWord, StrategyWord};
 use crate::job::{Job, SHARES, check, keys, repeat, schema};
+use crate::words::number;
 use std::path::Path;
 
 /// What a roughing leaves where nothing says it, mm.
@@ -44,8 +45,6 @@ pub struct Operation {
     pub overlap_mm: f64,
     /// Equal places in which it is done.
     pub repeat: Option<Repeat>,
-    /// What a finishing or rest leaves on its faces on purpose, mm.
-    pub leaves_mm: f64,
     places: Places,
     raw: Raw,
 }
@@ -62,12 +61,6 @@ pub struct Operations {
 }
 
 impl Operation {
-    /// Whether it brings its faces to their tolerance.
-    #[must_use]
-    pub fn finishes(&self) -> bool {
-        self.kind != OperationWord::Rough && self.leaves_mm == 0.0
-    }
-
     /// The job that is judged: raw material stands as the whole list says.
     ///
     /// # Errors
@@ -354,7 +347,6 @@ fn common(list: &RawList, tools: &[usize]) -> Raw {
         flank: raw::Flank::default(),
         verification: list.verification.clone(),
         standing_mm: None,
-        leaves_mm: 0.0,
     }
 }
 
@@ -415,7 +407,6 @@ fn composed(
         setup,
         overlap_mm: own.overlap_mm.unwrap_or(OVERLAP * smallest_mm),
         repeat: own.repeat.map(Repeat::of),
-        leaves_mm: raw.leaves_mm,
         places,
         raw,
     })
@@ -472,7 +463,13 @@ fn rough(raw: &mut Raw, own: &raw::Operation, diameter_mm: f64) -> Result<(), Wr
 
 /// Finishing, and what is left of it.
 fn fine(places: &Places, raw: &mut Raw, own: &raw::Operation) -> Result<(), Wrong> {
-    raw.leaves_mm = own.allowance_mm.unwrap_or(0.0);
+    if own.allowance_mm.is_some_and(|a| a > 0.0) {
+        let what = format!(
+            "allowance_mm = {}: only kind = \"rough\" leaves an allowance; a finishing brings faces to their tolerance",
+            number(own.allowance_mm.unwrap_or(0.0), 4)
+        );
+        return Err(("allowance_mm", what));
+    }
     for (key, given) in [("stepdown_mm", own.stepdown_mm), ("stepover_mm", own.stepover_mm)] {
         if given.is_some() {
             return Err((key, format!("{key} is for kind = \"rough\": leave it out")));

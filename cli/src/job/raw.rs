@@ -34,9 +34,6 @@ pub struct Raw {
     /// How high material stands on the faces, where operations before have left it, mm.
     #[serde(skip)]
     pub standing_mm: Option<f64>,
-    /// What a finishing leaves on the faces on purpose, mm.
-    #[serde(skip)]
-    pub leaves_mm: f64,
 }
 
 #[derive(Debug, Clone, Deserialize)]

@@ -11,17 +11,12 @@ pub use turned::{TurnedFaces, turned};
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
-use crate::words::number;
-use osculate_geom::offset::clear_range;
 use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::removal::Unseen;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
-
-/// Places along each span at which it is looked how hollow a face is.
-const PER_SPAN: usize = 8;
 
 fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
     let surface = TrimmedSurface::new(b.surface, &[], Side::Along).map_err(Failure::job)?;
@@ -132,8 +127,10 @@ pub struct Part {
     pub unseen: Vec<Unseen>,
     /// Ids of faces of which nothing says on which side the material is.
     pub open: Vec<String>,
-    /// The check faces as hops see them, once they are asked for.
+    /// What links keep off, once it is asked for.
     pub walls: OnceLock<Arc<Walls>>,
+    /// Points of the surface of raw material that operations before have left, where that is known.
+    pub left: Option<Arc<[Point3]>>,
     /// Wall time of reading it, s; zero where nobody measured it.
     pub import_s: f64,
 }
@@ -154,29 +151,6 @@ impl Part {
     /// Where the job has one of them for something else.
     pub fn with_faces(&self, job: &Job, ids: Vec<String>) -> Result<Self, Failure> {
         sorted(job, self.part.clone(), ids, self.open.clone())
-    }
-
-    /// The same part with its faces to machine moved out by a layer, mm, which is left on them on purpose.
-    ///
-    /// # Errors
-    /// Where a face is too hollow for that: with the layer that would do.
-    pub fn under_layer(mut self, layer_mm: f64) -> Result<Self, String> {
-        for face in &mut self.faces {
-            let range = clear_range(&*face.surface, PER_SPAN);
-            if layer_mm >= range.outward_mm {
-                return Err(format!(
-                    "{} is hollow to a radius of {} mm, so that a layer of {layer_mm} mm has no surface there: leave less on it, or \
-                     leave it to a later operation",
-                    face.id,
-                    number(range.outward_mm, 4)
-                ));
-            }
-            face.surface = Arc::new(face.surface.moved_out(layer_mm).map_err(|e| e.to_string())?);
-            // What is on the file's own surface is not on the layer.
-            face.spline = None;
-        }
-        self.walls = OnceLock::new();
-        Ok(self)
     }
 
     /// A failure with what was warned of when the part was read: it may be why.
@@ -254,7 +228,7 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
         unseen.push(Unseen::NoSide(no_side));
         check.retain(|f| !open.contains(&f.id));
     }
-    Ok(Part { part, faces, check, unseen, open, walls: OnceLock::new(), import_s: 0.0 })
+    Ok(Part { part, faces, check, unseen, open, walls: OnceLock::new(), left: None, import_s: 0.0 })
 }
 
 /// A face that two keys of a job name for different things.

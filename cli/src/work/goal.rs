@@ -143,7 +143,6 @@ impl<'a> Aim<'a> {
                 between: !self.step,
             },
             roughing_mm: job.strategy().layers().map(|l| l.allowance_mm),
-            leaves_mm: job.leaves_mm(),
             control,
         }
     }

@@ -12,7 +12,7 @@ use crate::work::setup::{self, Along};
 use crate::work::verify::{self, Verified};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
-use osculate_productivity::plan::{Linked, Passes};
+use osculate_productivity::plan::{CcPoint, Linked, Passes};
 use osculate_tools::Lean;
 use serde::Serialize;
 
@@ -41,6 +41,8 @@ pub struct WallS {
 pub struct Planned<'a> {
     /// The passes.
     pub passes: Passes,
+    /// After each what was taken out of the pass that it is of, up to the next: ways may follow it.
+    pub skipped: Vec<Vec<CcPoint>>,
     /// The passes joined.
     pub linked: Linked,
     /// Its name.

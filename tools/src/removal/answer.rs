@@ -158,10 +158,6 @@ impl Trial<'_> {
         if let Some(allowance) = goal.roughing_mm {
             row("roughing", format!("faces are judged {allowance} mm outside, by what stands above that"));
         }
-        if goal.leaves_mm > 0.0 {
-            let leaves = goal.leaves_mm;
-            row("allowance", format!("{leaves} mm are left on purpose: faces are judged so far outside"));
-        }
         if goal.limits.unreached_mm2 > 0.0 {
             let text = format!(
                 "{:.3} mm2, of which {} mm2 are accepted",

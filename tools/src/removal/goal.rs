@@ -165,8 +165,6 @@ pub struct Goal<'a> {
     pub looks: Looks,
     /// What a roughing leaves on the faces on purpose, mm; None for a finishing.
     pub roughing_mm: Option<f64>,
-    /// What a finishing leaves on the faces to machine on purpose, mm: they are moved out by that.
-    pub leaves_mm: f64,
     /// The control.
     pub control: GoalControl,
 }

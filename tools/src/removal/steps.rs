@@ -34,8 +34,7 @@ impl GoalStep<'_> {
     /// Where the faces of the whole goal are in the step; None where it has samples of its own.
     pub(super) fn seats(&self, whole: &Goal<'_>) -> Option<Vec<Seat>> {
         let known = |name: &str| whole.machined.iter().any(|f| f.name == name);
-        let outside = self.is_alone() || self.goal.leaves_mm != whole.leaves_mm;
-        if outside || !self.goal.machined.iter().all(|f| known(f.name)) {
+        if self.is_alone() || !self.goal.machined.iter().all(|f| known(f.name)) {
             return None;
         }
         let first = self.goal.machined.len();

@@ -16,7 +16,6 @@ use super::tooth::{Edge, Marks, Teeth};
 use super::tree::Ways;
 use super::unreached::give_up;
 use osculate_geom::Surface;
-use rayon::prelude::*;
 
 /// Samples across a strip that a ball of the cutter's radius leaves on a plane.
 const SAMPLES_ACROSS: f64 = 10.0;
@@ -29,8 +28,6 @@ const MOST_EVEN: f64 = 0.8;
 const MOST_ADDED: usize = 4;
 /// Fewest samples that say anything.
 pub const LEAST_SAMPLES: usize = 100;
-/// A place lies beneath the layer of another face where it does so by more than this share of the gouge that is accepted.
-const BENEATH: f64 = 0.1;
 /// Times that samples of a sliver are put four times as close before it counts as having none.
 const FINER: usize = 4;
 
@@ -242,33 +239,7 @@ impl<'a> Trial<'a> {
             }
             patches.resize(samples.len(), None);
         }
-        if self.goal.leaves_mm > 0.0 {
-            lost.extend(self.without_hidden(&mut samples, &mut patches, spacing));
-        }
         Ok(Sampled { samples, patches, density: density.ok_or(ProveError::NoFace)?, lost })
-    }
-
-    /// Takes away samples on faces that are moved out which lie beneath the layer of another: beside inner edges. What they stand for is told.
-    fn without_hidden(
-        &self,
-        samples: &mut Vec<Sample>,
-        patches: &mut Vec<Option<Patch>>,
-        spacing: f64,
-    ) -> Option<String> {
-        let (faces, layer_mm) = (self.goal.machined.len(), self.goal.leaves_mm);
-        let depths = [BENEATH * self.limits.gouge_mm, 2.0 * layer_mm];
-        // As far around as a place can lie beneath a layer.
-        let edges = Edges::new(&self.surfaces, samples, layer_mm.max(CHECK_COARSER * spacing));
-        let hidden: Vec<bool> = samples
-            .par_iter()
-            .map(|s| !s.check_only && edges.is_beneath(s, faces, depths))
-            .collect();
-        let area: f64 = samples.iter().zip(&hidden).filter(|h| *h.1).map(|(s, _)| s.area_mm2).sum();
-        let mut kept = hidden.iter().map(|h| !h);
-        samples.retain(|_| kept.next().unwrap_or(true));
-        let mut kept = hidden.iter().map(|h| !h);
-        patches.retain(|_| kept.next().unwrap_or(true));
-        (area > 0.0).then(|| format!("{area:.4} mm2 of the layer lie beneath that of another face, beside inner edges"))
     }
 
     /// Samples an even distance apart, and what is left at them; at stops, by the motions that come after each, on the way.

@@ -61,7 +61,6 @@ fn judged(cutter: &Cutter, motions: &[Swept]) -> Verdict {
         limits: GoalLimits { scallop_mm: 0.02, gouge_mm: GOUGE_MM, unreached_mm2: 0.0, at_samples: false },
         looks: Looks { spacing_mm: Some(0.1), max_samples: 1_000_000, between: true },
         roughing_mm: None,
-        leaves_mm: 0.0,
         control: GoalControl::default(),
     };
     prove(&goal, Program { motions, times_min: &[], changes: &[] }, &|_| ()).expect("two faces")
@@ -82,7 +81,8 @@ fn too_deep_over_one_face_is_no_deeper_beside_its_edge() {
         // Along the wall's normal it is 0.08 mm at a depth of 0.001 mm.
         assert_eq!(v.answer(), Answer::Held, "{depth}: {v}");
         let found = v.figures().tally.gouge_max_mm;
-        assert!((found - depth).abs() < 1e-6, "{depth}: {found}");
+        // No less, and more by a fiftieth of the limit at most.
+        assert!(found > depth - 1e-6 && found < depth + 0.025 * GOUGE_MM, "{depth}: {found}");
     }
 }
 

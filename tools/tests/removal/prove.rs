@@ -94,7 +94,6 @@ fn judged(asked: Asked) -> Result<Verdict, ProveError> {
         },
         looks: Looks { spacing_mm: Some(0.05), max_samples: 100_000, between: true },
         roughing_mm: None,
-        leaves_mm: 0.0,
         control: GoalControl { words: String::new(), remarks: asked.remarks, blend_mm: asked.blend_mm },
     };
     let motions = raster(asked.z);

@@ -199,7 +199,6 @@ impl Plate {
             limits: GoalLimits { scallop_mm: 0.01, gouge_mm: 0.005, unreached_mm2: 0.0, at_samples: false },
             looks: Looks { spacing_mm: Some(0.1), max_samples: 100_000, between: true },
             roughing_mm: None,
-            leaves_mm: 0.0,
             control: GoalControl::default(),
         };
         ask(&goal, Program { motions: &self.motions, times_min: &self.times_min, changes })
@@ -256,7 +255,6 @@ fn operations_are_judged_when_they_end() {
             limits: GoalLimits { at_samples: true, ..goal.limits },
             looks: Looks { between: false, ..goal.looks },
             roughing_mm: None,
-            leaves_mm: 0.0,
             control: GoalControl::default(),
         };
         let steps = [

@@ -13,6 +13,7 @@ use osculate_tools::removal::{
     self, Body, Change, Cut, Limits, Sample, Swept, cut, cut_on, sample_boundary, sample_surface,
 };
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Places at which it is looked how high material stands on the faces of an operation, along the axis that its tool keeps.
 const PLACES: f64 = 8000.0;
@@ -150,6 +151,11 @@ impl Behind {
         let stock = raw.map(RawMaterial::filled).transpose()?;
         let ground = raw.map(|raw| Ground::of(part, raw)).transpose()?.unwrap_or_default();
         Ok(Self { stock, ground, ..Self::default() })
+    }
+
+    /// Points of the surface of the raw material that is left, where some is declared.
+    pub fn left(&self) -> Option<Arc<[Point3]>> {
+        self.stock.as_ref().map(|stock| stock.ends().into())
     }
 
     /// Goes on with an operation. Its rapid moves that would go through material are made at the feed of plunges; how many they are

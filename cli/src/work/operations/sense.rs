@@ -2,7 +2,7 @@
 //! hold the part, fixtures that stand in it.
 
 use crate::failure::Failure;
-use crate::job::{Blank, Job, Operations};
+use crate::job::{Blank, Job, OperationWord, Operations};
 use crate::part::{self, Part};
 use crate::words::number;
 use crate::work::operations::passages::Passages;
@@ -29,7 +29,7 @@ fn finished(list: &Operations, part: &Part) -> Result<(), Failure> {
     let mut finished: Vec<String> = Vec::new();
     for operation in list.all() {
         let own = Passages::of(operation, &operation.judged()?, part)?.into_all();
-        if operation.finishes() {
+        if operation.kind != OperationWord::Rough {
             finished.extend(own.faces.into_iter().map(|f| f.id));
         }
     }

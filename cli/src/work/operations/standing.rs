@@ -51,7 +51,7 @@ pub fn left(list: &Operations, part: &Part, steps: &[Step<'_>], whole: &Verified
     for (k, face) in part.faces.iter().enumerate() {
         let on_it: Vec<&Step<'_>> = steps
             .iter()
-            .filter(|s| s.operation.finishes() && s.part.faces.iter().any(|f| f.id == face.id))
+            .filter(|s| s.job.strategy().layers().is_none() && s.part.faces.iter().any(|f| f.id == face.id))
             .collect();
         let tool_mm = on_it.iter().map(|s| smallest(&s.job)).fold(f64::INFINITY, f64::min);
         let axes: Option<Vec<Unit3>> = on_it.iter().map(|s| s.kept_axis).collect();

@@ -218,7 +218,17 @@ fn merged(steps: &[Step<'_>]) -> Planned<'static> {
         }
     }
     let strategy = names.join(", ");
-    Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: true }
+    let skipped = Vec::new();
+    Planned {
+        passes,
+        skipped,
+        linked,
+        strategy,
+        lean: Lean::default(),
+        local: false,
+        extras,
+        with_strips: true,
+    }
 }
 
 /// The motions as reports take them.

@@ -74,7 +74,7 @@ impl Stock {
         let mut out = HEAD.to_vec();
         out.extend(of.lines().next().unwrap_or_default().bytes().take(LONGEST));
         out.push(b'\n');
-        let mut number = |out: &mut Vec<u8>, x: f64| out.extend(x.to_le_bytes());
+        let number = |out: &mut Vec<u8>, x: f64| out.extend(x.to_le_bytes());
         for x in self.bounds.min.iter().chain(self.bounds.max.iter()).chain([&self.cell]) {
             number(&mut out, *x);
         }
