@@ -4,7 +4,7 @@
 
 use osculate_geom::analytic::{Paraboloid, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Surface, Vec3};
-use osculate_productivity::plan::{Links, Named, PlanError, RoughTask, Roughing, Sizes, z_level};
+use osculate_productivity::plan::{Links, Named, PlanError, Rates, RoughTask, Roughing, Sizes, z_level};
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
 use osculate_tools::{Cutter, CutterSpec};

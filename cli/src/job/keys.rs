@@ -225,7 +225,7 @@ pub static TABLES: &[Table] = &[
     ]),
     table("stock", false, "raw material: one of box_mm, [stock.cylinder], file, allowance_mm", &[
         may("box_mm", Kind::Corners("mm"), "", "[-10, -10, -20, 10, 10, 5]", "two corners in the part's frame"),
-        may("file", Kind::File, "", "\"stock.stl\"", "a closed STL mesh in the part's frame, mm"),
+        may("file", Kind::File, "", "\"stock.stl\"", "a closed STL mesh in the part's frame, mm, or stock-N.stock of a plan of the same part"),
         may("allowance_mm", MM, "", "2", "a layer around the faces, or around the file's solid"),
         may("cell_mm", MM, "a 256th of its size", "0.5", "sides of cells"),
         may("memory_mb", Kind::Number(ABOVE, "MB"), "512", "512", "memory for it"),

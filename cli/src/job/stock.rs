@@ -15,8 +15,8 @@ const DEFAULT_MEMORY_MB: f64 = 512.0;
 const FIXTURE_SPACING_MM: f64 = 1.0;
 /// Largest mesh, bytes: beyond it the file is none that was meant.
 const LARGEST: u64 = 4 << 30;
-/// What is read of a stock to tell that it is one, bytes.
-const HEAD: usize = 17;
+/// What the names of saved stocks end in.
+const SAVED: &str = "stock";
 /// What is read of a mesh to tell that it is one, bytes.
 const LOOK: u64 = 1 << 16;
 /// Head of a binary STL file and what each triangle takes, bytes.
@@ -89,8 +89,13 @@ impl Stock {
             let axis = direction(c.axis.unwrap_or([0.0, 0.0, 1.0]));
             Blank::Cylinder { axis, diameter_mm: c.diameter_mm, along_mm: c.z_mm }
         } else if let Some(file) = t.file.as_ref().filter(|file| is_saved(places, file)) {
-            let words = "what was saved is as fine as it was looked at, and nothing is around it";
-            for (key, given) in [("allowance_mm", t.allowance_mm.is_some()), ("cell_mm", t.cell_mm.is_some())] {
+            let words = "what was saved has its own cells, and nothing is around it";
+            let given = [
+                ("allowance_mm", t.allowance_mm.is_some()),
+                ("cell_mm", t.cell_mm.is_some()),
+                ("memory_mb", t.memory_mb.is_some()),
+            ];
+            for (key, given) in given {
                 if given {
                     let what = format!("{key} does not go with file = \"{file}\": {words}; leave it out");
                     return Err(places.refuse(TABLE, key, what));
@@ -116,11 +121,13 @@ impl Fixture {
     }
 }
 
-/// Whether a file is a stock that was saved.
+/// Whether a file is a stock that was saved, by its name or by what it begins with.
 fn is_saved(places: &Places, file: &str) -> bool {
-    let mut head = [0; HEAD];
-    let read = File::open(beside(places.path(), file)).and_then(|mut f| f.read_exact(&mut head));
-    read.is_ok() && osculate_tools::removal::stock::Stock::is_saved(&head)
+    let path = beside(places.path(), file);
+    let mut head = Vec::new();
+    let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(SAVED));
+    let read = File::open(path).and_then(|f| f.take(LOOK).read_to_end(&mut head));
+    named || (read.is_ok() && osculate_tools::removal::stock::Stock::is_saved(&head))
 }
 
 /// A file that is there, by its path from the job.

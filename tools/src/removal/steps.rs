@@ -4,9 +4,9 @@
 //! nothing is measured twice. One whose faces are not those of the whole, such as a roughing that is judged outside by its allowance,
 //! has samples of its own. Either way it is not looked at between samples, as the whole is.
 
+use super::conclude::{Closing, check, concluded, looked_at};
 use super::goal::{Goal, Program};
 use super::job::{Change, Cut, Sample};
-use super::prove::{Closing, check, concluded, looked_at};
 use super::trial::{ProveError, Sampled, Trial, changes_of, unbounded};
 use super::verdict::{StockFound, Verdict};
 use std::ops::Range;
@@ -102,12 +102,8 @@ impl GoalStep<'_> {
 
 /// Of the samples of the whole goal those on the faces of a step; of those on faces that it does not machine the ones that were harmed.
 fn taken(sampled: &Sampled, cuts: &[Cut], seats: &[Seat]) -> (Sampled, Vec<Cut>) {
-    let mut out = Sampled {
-        samples: Vec::new(),
-        patches: Vec::new(),
-        density: sampled.density,
-        lost: Vec::new(),
-    };
+    let mut out =
+        Sampled { samples: Vec::new(), patches: Vec::new(), density: sampled.density, lost: Vec::new() };
     let mut left = Vec::new();
     let all = sampled.samples.iter().zip(&sampled.patches).zip(cuts);
     for ((sample, patch), cut) in all {

@@ -3,9 +3,9 @@
 use super::*;
 use crate::plan::Named;
 use osculate_geom::analytic::Line;
-use osculate_geom::{Extruded, Interval, Point3, Unit3, Vec3, uv};
-use osculate_tools::CutterSpec;
+use osculate_geom::{Box3, Extruded, Interval, Point3, Unit3, Vec3, uv};
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
+use osculate_tools::{Cutter, CutterSpec, Holder};
 
 const TROUGH_MM: f64 = 4.0;
 const BALL_MM: f64 = 3.0;

@@ -6,9 +6,10 @@
 
 use super::kept::{Around, Kept};
 use super::left::Left;
+use super::links::{Links, STRAIGHT};
 use super::rates::Step;
 use super::tree::Dots;
-use super::{Links, STRAIGHT, Walls};
+use super::walls::Walls;
 use crate::plan::CcPoint;
 use osculate_geom::{Point3, Unit3};
 use osculate_tools::Pose;
