@@ -22,11 +22,12 @@ fn plate(thick_mm: f64) -> String {
 }
 
 const BLOCK: &str = "[stock]\nbox_mm = [-6, -6, -6, 6, 6, 1.5]\ncell_mm = 0.25\n";
-const ROUGH: &str = "[[operation]]\nname = \"rough\"\nkind = \"rough\"\ntools = [4]\nallowance_mm = 0.4\nfaces = [\"top\"]\n";
+const ROUGH: &str =
+    "[[operation]]\nname = \"rough\"\nkind = \"rough\"\ntools = [4]\nallowance_mm = 0.4\nfaces = [\"top\"]\n";
 const FINISH: &str = "[[operation]]\nname = \"finish\"\nkind = \"finish\"\ntools = [7]\nfaces = [\"top\"]\nstrategy = { kind = \"isoplanar_3c\" }\n";
 const OTHER_SIDE: &str = "[[setup]]\nname = \"op20\"\nrotate_deg = [180, 0, 0]\n";
 const BENEATH: &str = "[[operation]]\nname = \"beneath\"\nkind = \"finish\"\ntools = [7]\nsetup = \"op20\"\nfaces = [\"bottom\"]\n\
-    strategy = { kind = \"isoplanar_3c\" }\n";
+    strategy = { kind = \"isoplanar_3c\", axis = [0, 0, -1] }\n";
 
 /// A list of operations on faces of the plate, from raw material.
 fn list(faces: &str, stock: &str, more: &str) -> String {
@@ -80,7 +81,11 @@ fn a_job_goes_on_with_what_another_has_left() {
     let verify = ["verify", program.to_str().unwrap(), "--job", job.to_str().unwrap(), "--json"];
     let again = osculate(&verify).json();
     assert_eq!(again["verdict"], next["verdict"]);
-    assert!(next["verdict"].to_string().contains("what was left as stock-1.stock has it"), "{}", next["verdict"]);
+    assert!(
+        next["verdict"].to_string().contains("what was left as stock-1.stock has it"),
+        "{}",
+        next["verdict"]
+    );
     // What is written of the job finds the material from anywhere.
     let resolved = scratch.path("next/job.resolved.toml");
     let third = scratch.path("third");
@@ -95,7 +100,7 @@ fn a_part_is_turned_and_held_otherwise() {
     let first = planned(&scratch, "first", &list("[\"top\"]", BLOCK, &format!("{ROUGH}{FINISH}"))).json();
     assert_eq!(first["verdict"]["answer"], "held", "{}", first["verdict"]);
     // The other side, clamped by a jaw beside it that ends below what is machined, seen from there.
-    let jaw = |lowest: f64| wedge([6.2, -2.0, lowest], [8.0, 2.0, -1.0]);
+    let jaw = |lowest: f64| bar([6.2, -2.0, lowest], [8.0, 2.0, -1.0]);
     scratch.write("jaw.stl", &jaw(-THICK_MM + 1.0));
     scratch.write("high.stl", &jaw(-THICK_MM - 0.3));
     let second = |fixture: &str| {
@@ -104,7 +109,7 @@ fn a_part_is_turned_and_held_otherwise() {
         planned(&scratch, "second", &list("[\"bottom\"]", left, &format!("{setup}{BENEATH}"))).json()
     };
     let clear = second("jaw.stl");
-    assert_eq!(clear["verdict"]["answer"], "held", "{}", clear["verdict"]);
+    assert_eq!(clear["verdict"]["answer"], "held", "{clear}");
     // From the first job's material: without the layer above the top, and all beneath the bottom goes.
     let begins = number(&clear["operations"][0]["removed_mm3"]) + number(&clear["operations"][0]["left_mm3"]);
     assert!((begins - number(&first["operations"][1]["left_mm3"])).abs() < 1e-6 * begins);
@@ -116,14 +121,19 @@ fn a_part_is_turned_and_held_otherwise() {
     // In one list of both setups both answers are the same.
     for (fixture, one) in [("jaw.stl", &clear), ("high.stl", &hit)] {
         let setups = format!("[[setup]]\nname = \"op10\"\n{OTHER_SIDE}fixtures = [\"{fixture}\"]\n");
-        let v = planned(&scratch, "both", &list("\"all\"", BLOCK, &format!("{setups}{ROUGH}{FINISH}{BENEATH}"))).json();
+        let v =
+            planned(&scratch, "both", &list("\"all\"", BLOCK, &format!("{setups}{ROUGH}{FINISH}{BENEATH}")))
+                .json();
         assert_eq!(v["verdict"]["answer"], one["verdict"]["answer"], "{fixture}: {}", v["verdict"]);
-        assert!((number(&v["operations"][2]["left_mm3"]) - number(&one["operations"][0]["left_mm3"])).abs() < 1e-6);
+        assert!(
+            (number(&v["operations"][2]["left_mm3"]) - number(&one["operations"][0]["left_mm3"])).abs()
+                < 1e-6
+        );
     }
 }
 
 /// A box as a mesh.
-fn wedge(lo: [f64; 3], hi: [f64; 3]) -> String {
+fn bar(lo: [f64; 3], hi: [f64; 3]) -> String {
     let p = |k: usize| [0, 1, 2].map(|j| if k >> j & 1 == 0 { lo[j] } else { hi[j] });
     let mut text = String::from("solid jaw\n");
     for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
@@ -161,6 +171,7 @@ fn material_of_another_part_and_half_a_file_are_refused() {
     // A plate that is a hair thinner is another part; the mesh of the same material is taken for it.
     scratch.write("plate.json", &plate(THICK_MM - 0.01));
     next(file, &["[stock]", "file = ", "another part (plate.json", ".stl beside it"]);
-    let run = planned(&scratch, "next", &list("[\"top\"]", "[stock]\nfile = \"first/stock-1.stl\"\n", FINISH));
+    let run =
+        planned(&scratch, "next", &list("[\"top\"]", "[stock]\nfile = \"first/stock-1.stl\"\n", FINISH));
     assert_eq!(run.code, 0, "{}{}", run.out, run.err);
 }

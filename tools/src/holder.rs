@@ -149,7 +149,10 @@ mod tests {
         let pose = Pose { tip: Point3::new(1.0, 2.0, 3.0), axis: Vec3::z_axis() };
         let distance = |rho: f64, above_nose: f64| {
             let p = Point3::new(1.0 + rho, 2.0, 28.0 + above_nose);
-            holder.posed(&cutter, &pose).map(|(body, at)| body.distance(&at, &p)).fold(f64::INFINITY, f64::min)
+            holder
+                .posed(&cutter, &pose)
+                .map(|(body, at)| body.distance(&at, &p))
+                .fold(f64::INFINITY, f64::min)
         };
         let root = 0.5f64.sqrt();
         let turn = 0.25f64.atan();

@@ -18,7 +18,8 @@ impl Loaded {
             bytes.extend(face.id.bytes());
             for k in 0..PLACES * PLACES {
                 let at = |k: u32| f64::from(k) / f64::from(PLACES - 1);
-                let p = osculate_geom::Surface::point(&*face.surface, domain.at(at(k % PLACES), at(k / PLACES)));
+                let p =
+                    osculate_geom::Surface::point(&*face.surface, domain.at(at(k % PLACES), at(k / PLACES)));
                 // Casting takes what is too far for a whole number to the last one.
                 bytes.extend(p.iter().flat_map(|x| ((x / COUNTS_MM).round() as i64).to_le_bytes()));
             }

@@ -61,7 +61,8 @@ pub fn outlines(tool: &Tool) -> Vec<(Piece, Vec<[f64; 2]>)> {
         }
         top = tool.length_mm;
     }
-    for holder in tool.holder.iter().filter(|h| h.diameters_mm.iter().all(|d| good(*d)) && good(h.length_mm)) {
+    for holder in tool.holder.iter().filter(|h| h.diameters_mm.iter().all(|d| good(*d)) && good(h.length_mm))
+    {
         let radii = holder.diameters_mm.map(|d| 0.5 * d);
         pieces.push((Piece::Holder, section(radii, top, top + holder.length_mm)));
         top += holder.length_mm;

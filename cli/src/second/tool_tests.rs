@@ -239,7 +239,10 @@ fn what_is_no_tool_is_refused() {
     ];
     let ball = tool(Shape::Ball, 6.0);
     bad.push(Tool { flute_mm: Some(50.0), ..ball.clone() });
-    bad.push(Tool { holder: vec![HolderPart { diameter_mm: 0.0, upper_diameter_mm: 0.0, length_mm: 5.0 }], ..ball });
+    bad.push(Tool {
+        holder: vec![HolderPart { diameter_mm: 0.0, upper_diameter_mm: 0.0, length_mm: 5.0 }],
+        ..ball
+    });
     for t in bad {
         assert!(matches!(Bodies::of(&t), Err(NoOpinion::Tool { .. })), "{t:?}");
     }

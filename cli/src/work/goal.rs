@@ -7,10 +7,10 @@ use crate::work::rough;
 use crate::work::stock::{self, RawMaterial};
 use osculate_geom::{Offset, Surface};
 use osculate_surfaces::TrimmedSurface;
-use osculate_tools::{Cutter, Holder};
 use osculate_tools::removal::{
     Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Looks,
 };
+use osculate_tools::{Cutter, Holder};
 
 /// Most samples where the job does not say.
 const MAX_SAMPLES: usize = 1_000_000;

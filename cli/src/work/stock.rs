@@ -118,8 +118,7 @@ pub fn of_part(job: &Job, faces: &Part) -> String {
 /// Where the file is none, or is of another part.
 fn saved(path: &Path, job: &Job, faces: &Part) -> Result<Stock, Failure> {
     let again = "copy it again from where it was planned, or plan that job again: stock-N.stock is what its operation N left";
-    let (stock, of) =
-        Stock::read(&read(path)?).map_err(|e| Failure::file(path, format!("{e}; {again}")))?;
+    let (stock, of) = Stock::read(&read(path)?).map_err(|e| Failure::file(path, format!("{e}; {again}")))?;
     let own = of_part(job, faces);
     let print = |text: &str| text.split(' ').nth(1).map(ToOwned::to_owned);
     if print(&of) != print(&own) {

@@ -55,7 +55,8 @@ impl Tool {
     #[must_use]
     pub fn new(cutter: Cutter, holder: Option<&Holder>) -> Self {
         let sections = holder.map(Holder::sections).unwrap_or_default();
-        let mounted = |s: &HolderSection| Mounted { body: s.body, height_mm: cutter.length_mm() + s.above_mm };
+        let mounted =
+            |s: &HolderSection| Mounted { body: s.body, height_mm: cutter.length_mm() + s.above_mm };
         Self { cutter, mounted: sections.iter().map(mounted).collect() }
     }
 

@@ -1,8 +1,8 @@
 //! What must not touch: holder, rapids, and what does not touch though it seems to.
 
 use crate::common::{ball, flat, run, sample, through, upright};
-use osculate_tools::{Cutter, Holder, HolderSpec};
 use osculate_tools::removal::{Body, Cut, Job, JobError, Sample, Swept, cut};
+use osculate_tools::{Cutter, Holder, HolderSpec};
 
 fn with_holder(cutter: &Cutter, holder: &Holder, motions: &[Swept], samples: &[Sample]) -> Vec<Cut> {
     let job =

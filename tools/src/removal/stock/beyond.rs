@@ -55,7 +55,9 @@ mod tests {
         let resolution = Resolution { cell_mm: 0.1, tri: true, budget_bytes: 1 << 30 };
         let stock = Stock::fill(&Blank::Box(bounds), &resolution).unwrap().stock;
         let from = Point3::new(1.0, -1.0, 0.5);
-        for (way, wanted) in [([0.0, 0.0, 1.0], 1.5), ([-1.0, 0.0, 0.0], 6.0), ([1.0, 1.0, 0.0], 4.0 * 2f64.sqrt())] {
+        for (way, wanted) in
+            [([0.0, 0.0, 1.0], 1.5), ([-1.0, 0.0, 0.0], 6.0), ([1.0, 1.0, 0.0], 4.0 * 2f64.sqrt())]
+        {
             let got = stock.beyond_mm(&from, &Unit3::new_normalize(Vec3::from(way)));
             assert!((got - wanted).abs() < 0.11, "{way:?}: {got} {wanted}");
         }

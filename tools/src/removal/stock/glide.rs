@@ -12,7 +12,8 @@
 //! the distance in closed form: the least x takes one or two steps.
 
 use super::ENDS_MM;
-use crate::removal::body::{Body, Local};
+use super::instant::{Instant, Lowest};
+use crate::removal::body::Body;
 use crate::removal::piece::Approach;
 use osculate_geom::{Point3, Unit3, Vec3, any_perpendicular};
 
@@ -72,27 +73,6 @@ pub(super) struct View {
 pub(super) struct Ray {
     foot: Vec3,
     way: Vec3,
-}
-
-/// D, its derivatives, and where the point is.
-#[derive(Clone, Copy)]
-struct Instant {
-    x: f64,
-    local: Local,
-    by_x: f64,
-    by_s: f64,
-    place: Vec3,
-    rate: Vec3,
-}
-
-/// f with a slope, and the x where it is.
-#[derive(Clone, Copy)]
-struct Lowest {
-    x: f64,
-    value: f64,
-    slope: f64,
-    /// The second derivative; zero where it is not known or asked for: at kinks, and within the body.
-    bend: f64,
 }
 
 /// D and its derivatives at an x.
@@ -164,6 +144,11 @@ impl<'a> Glide<'a> {
         Instant { x, local, by_x, by_s, place, rate }
     }
 
+    /// The ray's direction as seen from the tool at an instant.
+    fn along_at(&self, x: f64) -> Vec3 {
+        self.along + self.cross * x
+    }
+
     /// Whether nothing is covered from an instant on, so far along the ray: by the plane that touches D there, which D nowhere lies below
     /// but for the term `x s c`.
     #[inline]
@@ -192,7 +177,7 @@ impl<'a> Glide<'a> {
             let bend = here.bend_along(&here.rate);
             // What Newton's step gains.
             if 0.5 * by_x * by_x <= FLAT_MM * bend {
-                return here.lowest(self);
+                return here.lowest(&self.along_at(here.x));
             }
             let side = Side { x, distance, by_x, by_s: here.by_s };
             if by_x.abs() * room <= FLAT_MM {
@@ -200,7 +185,7 @@ impl<'a> Glide<'a> {
                 return match (&left, &right) {
                     (Some(left), _) if by_x > 0.0 => Self::between(left, &side),
                     (_, Some(right)) if by_x <= 0.0 => Self::between(&side, right),
-                    _ => here.lowest(self),
+                    _ => here.lowest(&self.along_at(here.x)),
                 };
             }
             if by_x > 0.0 {
@@ -228,7 +213,7 @@ impl<'a> Glide<'a> {
         // At rounding: the bracket's two sides still bound f from below.
         match (&left, &right) {
             (Some(a), Some(b)) => Self::between(a, b),
-            _ => here.lowest(self),
+            _ => here.lowest(&self.along_at(here.x)),
         }
     }
 
@@ -260,9 +245,7 @@ impl<'a> Glide<'a> {
     fn beside(&self, ray: &Ray, [lo, hi]: [f64; 2]) -> Option<[f64; 2]> {
         let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
         // Half of what the place moves over the piece, at most.
-        let moves = |k: usize| {
-            0.5 * (ray.way[k] + self.cross[k] * middle).abs() + self.cross[k].abs() * half
-        };
+        let moves = |k: usize| 0.5 * (ray.way[k] + self.cross[k] * middle).abs() + self.cross[k].abs() * half;
         let moves = [moves(0), moves(1), moves(2)];
         let (radius, base) = (self.body.cutter.radius_mm(), self.body.above_mm);
         let slabs = [[-radius, radius], [-radius, radius], [base, base + self.body.cutter.length_mm()]];
@@ -368,57 +351,6 @@ impl<'a> Glide<'a> {
 struct Found {
     s: f64,
     x: f64,
-}
-
-impl Instant {
-    /// A direction around the axis, and along the body's meridian: of a second derivative the circle's curvature goes with the one,
-    /// the meridian's with the other.
-    #[inline]
-    fn around_and_along(&self, v: &Vec3) -> [f64; 2] {
-        let Self { local, place, .. } = self;
-        let rho2 = place.x * place.x + place.y * place.y;
-        if rho2 == 0.0 {
-            return [0.0; 2];
-        }
-        let inverse = 1.0 / rho2.sqrt();
-        let (out, around) = ((place.x * v.x + place.y * v.y) * inverse, (place.x * v.y - place.y * v.x) * inverse);
-        [around, local.outwards * rho2 * inverse * v.z - local.by_z * out]
-    }
-
-    /// Second derivative of the distance in a direction.
-    #[inline]
-    fn bend_along(&self, v: &Vec3) -> f64 {
-        let [around, along] = self.around_and_along(v);
-        self.local.outwards * around * around + self.local.bend * along * along
-    }
-
-    /// f, where D is least at this x.
-    #[inline]
-    fn lowest(&self, glide: &Glide<'_>) -> Lowest {
-        Lowest { bend: self.bend(glide), ..self.inside() }
-    }
-
-    /// The same where the point is within the body, and it does not matter how D bends.
-    #[inline]
-    const fn inside(&self) -> Lowest {
-        Lowest { x: self.x, value: self.local.distance, slope: self.by_s, bend: 0.0 }
-    }
-
-    /// f'': D_ss - D_xs^2 / D_xx where the least x is free, D_ss at an end.
-    #[inline]
-    fn bend(&self, glide: &Glide<'_>) -> f64 {
-        let along = self.around_and_along(&(glide.along + glide.cross * self.x));
-        let rate = self.around_and_along(&self.rate);
-        let second =
-            |a: [f64; 2], b: [f64; 2]| self.local.outwards * a[0] * b[0] + self.local.bend * a[1] * b[1];
-        let own = second(along, along);
-        let still = second(rate, rate);
-        if self.x.abs() >= 0.5 || still <= 0.0 {
-            return own;
-        }
-        let mixed = second(along, rate);
-        own - mixed * mixed / still
-    }
 }
 
 #[cfg(test)]

@@ -21,6 +21,7 @@ mod beyond;
 mod blank;
 mod carve;
 mod glide;
+mod instant;
 mod lattice;
 mod mesh;
 mod rays;

@@ -122,7 +122,11 @@ impl Stock {
         if sum_of(whole) != u64::from_le_bytes(*sum) {
             return Err(damaged("its sum is not that of what was written"));
         }
-        let line = rest.iter().take(LONGEST + 1).position(|b| *b == b'\n').ok_or(damaged("it says not what it is of"))?;
+        let line = rest
+            .iter()
+            .take(LONGEST + 1)
+            .position(|b| *b == b'\n')
+            .ok_or(damaged("it says not what it is of"))?;
         let of = String::from_utf8_lossy(&rest[..line]).into_owned();
         let mut from = Reader(&rest[line + 1..rest.len() - sum.len()]);
         let bounds = Box3 { min: from.point()?, max: from.point()? };
@@ -132,7 +136,11 @@ impl Stock {
             return Err(damaged("its box has no volume"));
         }
         let fields = (0..count).map(|_| field(&mut from)).collect::<Result<_, _>>()?;
-        if from.0.is_empty() { Ok((Self { bounds, cell, fields }, of)) } else { Err(damaged("it goes on after its end")) }
+        if from.0.is_empty() {
+            Ok((Self { bounds, cell, fields }, of))
+        } else {
+            Err(damaged("it goes on after its end"))
+        }
     }
 }
 
