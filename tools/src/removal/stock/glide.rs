@@ -23,7 +23,7 @@ const FLAT_MM: f64 = 1e-3 * ENDS_MM;
 const LEVEL_MM: f64 = -ENDS_MM;
 /// ... and this near to that level is at it.
 const AT_LEVEL_MM: f64 = 0.1 * ENDS_MM;
-/// Where the body meets material is told when it is this near, of its radius: a fraction of a sector.
+/// Where the body met material is told when it is this near, of its radius: a fraction of a sector.
 const MET: f64 = 0.01;
 /// A way that is less than this part of it across the axis has no direction there: rounding is a billionth of that.
 const ACROSS: f64 = 1e-6;
@@ -335,14 +335,22 @@ impl<'a> Glide<'a> {
         (self.skew * step.abs() <= self.stray_mm).then_some(step)
     }
 
-    /// Where on the body it met a point of the ray, which it covers, to second order in the way over the piece.
+    /// Where on the body it met a point of the ray, which it covers.
     pub fn met(&self, ray: &Ray, s: f64) -> Met {
-        let begin = self.at(ray, -0.5, s);
-        if begin.local.distance <= MET * self.body.cutter.radius_mm() || begin.by_x >= 0.0 {
-            return begin.place;
+        let near = MET * self.body.cutter.radius_mm();
+        let mut here = self.at(ray, -0.5, s);
+        // Newton from outside on a convex function.
+        for _ in 0..MOST_STEPS {
+            if here.local.distance <= near || here.by_x >= 0.0 {
+                break;
+            }
+            let next = here.x - here.local.distance / here.by_x;
+            if next >= 0.5 {
+                break;
+            }
+            here = self.at(ray, next, s);
         }
-        // Newton's step from outside of a convex function leads to no place beyond.
-        begin.place + begin.rate * (-begin.local.distance / begin.by_x).min(1.0)
+        here.place
     }
 }
 
