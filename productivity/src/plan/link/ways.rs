@@ -89,8 +89,7 @@ impl<'a> Finder<'a> {
 
     /// The tool on ways that begin and end at poses.
     fn kept(&self, ends: [Pose; 2]) -> Kept<'a> {
-        let bodies = [&self.links.cutter].into_iter().chain(&self.links.holder);
-        Kept::new(bodies, ends, self.around, self.links.dip_mm)
+        Kept::new(self.links.bodies(), ends, self.around, self.links.dip_mm)
     }
 
     /// The pose on the axis of `pose` whose tip is on the safe plane, never below `pose` itself.
@@ -123,7 +122,7 @@ impl<'a> Finder<'a> {
     fn is_free(&self, pose: &Pose, k: u32) -> bool {
         let off_mm = self.links.layer_mm + RAPID_OFF * self.links.hop_mm;
         let mut up_mm = 0.0;
-        [&self.links.cutter].into_iter().chain(&self.links.holder).all(|body| {
+        self.links.bodies().all(|body| {
             let pose = pose.retracted(up_mm);
             up_mm += body.length_mm();
             !self.around.is_within(body, &pose, off_mm)
