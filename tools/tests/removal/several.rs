@@ -8,7 +8,7 @@ use osculate_tools::removal::{
     Answer, Change, Cut, Goal, GoalControl, GoalFace, GoalLimits, GoalStep, GoalStock, GoalTool, Job,
     JobError, Looks, Program, ProveError, Sample, Swept, Verdict, cut, prove, prove_in_steps,
 };
-use osculate_tools::{Cutter, Pose};
+use osculate_tools::{Cutter, Holder, Pose};
 use proptest::prelude::*;
 
 /// Passes along x between two y, `step` apart, with the tip at a height.
@@ -31,7 +31,7 @@ fn samples() -> Vec<Sample> {
 
 /// What two tools leave, the second from motion `first` on.
 fn both(
-    tools: [(&Cutter, Option<&Cutter>); 2],
+    tools: [(&Cutter, Option<&Holder>); 2],
     motions: &[Swept],
     first: usize,
     samples: &[Sample],
@@ -87,7 +87,7 @@ proptest! {
 #[test]
 fn each_tool_has_its_own_holder() {
     let (long, short) = (flat(6.0), Cutter::cylinder(6.0, 4.0).unwrap());
-    let holder = Cutter::cylinder(30.0, 20.0).unwrap();
+    let holder = Holder::cylinder(30.0, 20.0).unwrap();
     let floor = sample([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
     // A wall beside, as high as the nose of the short tool's holder lies deep.
     let top = sample([8.0, 0.0, 5.0], [0.0, 0.0, 1.0]);

@@ -140,8 +140,11 @@ impl<'a> Ends<'a> {
     pub fn min_between(&self, a: &End, b: &End) -> f64 {
         let l = self.links;
         let step = Step { length_mm: (b.tip - a.tip).norm(), turn_rad: a.axis.angle(&b.axis) };
-        let lift = if step.length_mm <= STRAIGHT * l.cutter.radius_mm() { 0.0 } else { 2.0 * l.hop_mm };
-        let fed = l.rates.feed_min(step, l.feed_mm_min) + lift / l.feed_mm_min;
+        let fed = if step.length_mm <= STRAIGHT * l.cutter.radius_mm() {
+            l.rates.feed_min(step, l.plunge_mm_min)
+        } else {
+            l.rates.feed_min(step, l.feed_mm_min) + 2.0 * l.hop_mm / l.feed_mm_min
+        };
         fed.min(self.least_over() + l.rates.rapid_min(step))
     }
 

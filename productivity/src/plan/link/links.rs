@@ -4,10 +4,10 @@ use super::rates::Rates;
 use super::tree::{Dot, Dots};
 use crate::plan::{CcPoint, Pass};
 use osculate_geom::Box3;
-use osculate_tools::Cutter;
+use osculate_tools::{Cutter, Holder};
 
 /// How passes are linked. Lengths mm, feeds mm/min.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Links {
     /// Box of everything the tool must stay clear of on rapid moves.
     pub obstacles: Box3,
@@ -29,14 +29,22 @@ pub struct Links {
     pub layer_mm: f64,
     /// The cutter.
     pub cutter: Cutter,
-    /// The holder, a body whose lower end sits where the cutter's length ends.
-    pub holder: Option<Cutter>,
+    /// The holder, whose nose sits where the cutter's length ends.
+    pub holder: Option<Holder>,
     /// Feed of the tip on the part.
     pub feed_mm_min: f64,
     /// Feed on approaches.
     pub plunge_mm_min: f64,
     /// How fast the machine goes between passes.
     pub rates: Rates,
+}
+
+impl Links {
+    /// What the tool is of, each standing on the one before: the cutter, and the sections of its holder.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = &Cutter> {
+        let sections = self.holder.as_ref().map(Holder::sections).unwrap_or_default();
+        std::iter::once(&self.cutter).chain(sections.iter().map(|s| &s.body))
+    }
 }
 
 /// Ways straight along the surface are no longer than so many radii.
