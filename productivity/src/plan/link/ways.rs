@@ -240,10 +240,16 @@ impl<'a> Finder<'a> {
     }
 
     /// Straight along the surface: the tool cuts there, across the passes, where teeth mark the crests between them more than those of
-    /// the passes do; it goes no faster than into material.
+    /// the passes do; what touches goes no faster than into material.
     fn grazing(&self, poses: &[Pose]) -> Way {
         let mut way = Way { clear: true, ..Way::default() };
-        poses.windows(2).for_each(|w| self.fed(&mut way, (&w[0], &w[1]), self.links.plunge_mm_min));
+        for w in poses.windows(2) {
+            let whole = step(&w[0], &w[1]);
+            let share = whole.length_mm / self.links.grazed_mm(whole).max(f64::MIN_POSITIVE);
+            if whole.length_mm > 0.0 {
+                self.fed(&mut way, (&w[0], &w[1]), share * self.links.plunge_mm_min);
+            }
+        }
         way
     }
 
