@@ -222,7 +222,8 @@ impl<'a> Finder<'a> {
                     };
                     [from.pose, off(from), off(to), to.pose]
                 };
-                let clear = |mm: f64| kept.room(&way(mm)).is_some_and(|r| r >= 1.0);
+                let room = |way: &[Pose]| if is_graze { kept.room_along(way) } else { kept.room(way) };
+                let clear = |mm: f64| room(&way(mm)).is_some_and(|r| r >= 1.0);
                 if clear(lift) && (lift >= highest || clear((1.0 - SPARE) * lift)) {
                     let way = way(lift);
                     let on = if lift > 0.0 { &way[..] } else { &[from.pose, to.pose][..] };
