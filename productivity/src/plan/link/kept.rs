@@ -15,6 +15,9 @@ const SLACK: f64 = 1e-4;
 /// Poses next to the part are no farther apart than this part of the cutter's radius: between them a cylinder grazes by an eighth of the
 /// square of that, a thousandth of its radius.
 const STEP: f64 = 0.1;
+/// On a way along the part the corner of a tool may graze, between two poses, an edge that it goes over by this part of what ways may go
+/// into the part.
+const GRAZE: f64 = 0.5;
 /// As far as this many radii it is asked what a tool has to spare.
 const SPARE: f64 = 1.0;
 /// Most poses of a piece.
@@ -57,8 +60,9 @@ struct KeptBody<'a> {
 pub(super) struct Kept<'a> {
     around: Around<'a>,
     slack_mm: f64,
-    /// Distance of poses next to the part.
+    /// Distance of poses next to the part, of ways off it and of ways along it.
     step_mm: f64,
+    fine_mm: f64,
     /// What is asked for of what there is to spare.
     most_mm: f64,
     /// From the tip to the top of all bodies.
@@ -75,13 +79,23 @@ impl<'a> Kept<'a> {
         around: Around<'a>,
         dip_mm: f64,
     ) -> Self {
-        let mut kept =
-            Self { around, slack_mm: 0.0, step_mm: 0.0, most_mm: 0.0, height_mm: 0.0, bodies: Vec::new() };
+        let mut kept = Self {
+            around,
+            slack_mm: 0.0,
+            step_mm: 0.0,
+            fine_mm: 0.0,
+            most_mm: 0.0,
+            height_mm: 0.0,
+            bodies: Vec::new(),
+        };
         for body in bodies {
             if kept.bodies.is_empty() {
                 let radius_mm = body.radius_mm();
                 (kept.slack_mm, kept.step_mm) = (SLACK * radius_mm, STEP * radius_mm);
                 kept.most_mm = SPARE * radius_mm;
+                let corner_mm = if body.corner_mm() > 0.0 { body.corner_mm() } else { radius_mm };
+                let fine_mm = (8.0 * corner_mm * GRAZE * dip_mm).sqrt();
+                kept.fine_mm = if fine_mm > 0.0 { fine_mm.min(kept.step_mm) } else { kept.step_mm };
             }
             let up_mm = kept.height_mm;
             let ends = ends.map(|p| p.retracted(up_mm));
@@ -112,6 +126,15 @@ impl<'a> Kept<'a> {
     /// The least that the tool keeps of what it should on straight ways from pose to pose, 1 at most; None where it goes into the part
     /// or may touch a wall.
     pub fn room(&self, way: &[Pose]) -> Option<f64> {
+        self.room_by(self.step_mm, way)
+    }
+
+    /// The same of a way that touches the part all along.
+    pub fn room_along(&self, way: &[Pose]) -> Option<f64> {
+        self.room_by(self.fine_mm, way)
+    }
+
+    fn room_by(&self, step_mm: f64, way: &[Pose]) -> Option<f64> {
         way.windows(2).try_fold(1.0, |least: f64, w| {
             let motion = LinearMotion { from: w[0], to: w[1] };
             // No point of the tool moves farther.
@@ -125,7 +148,7 @@ impl<'a> Kept<'a> {
                 if at >= length {
                     return Some(least);
                 }
-                at = (at + room.spare_mm.max(self.step_mm)).min(length);
+                at = (at + room.spare_mm.max(step_mm)).min(length);
             }
             None
         })

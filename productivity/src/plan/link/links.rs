@@ -1,6 +1,6 @@
 //! What links are asked for.
 
-use super::rates::Rates;
+use super::rates::{Rates, Step};
 use super::tree::{Dot, Dots};
 use crate::plan::{CcPoint, Pass};
 use osculate_geom::Box3;
@@ -44,6 +44,13 @@ impl Links {
     pub(super) fn bodies(&self) -> impl Iterator<Item = &Cutter> {
         let sections = self.holder.as_ref().map(Holder::sections).unwrap_or_default();
         std::iter::once(&self.cutter).chain(sections.iter().map(|s| &s.body))
+    }
+}
+
+impl Links {
+    /// How far what touches of the tool goes at most while the tip makes a step.
+    pub(super) fn grazed_mm(&self, step: Step) -> f64 {
+        step.length_mm + self.cutter.radius_mm() * step.turn_rad
     }
 }
 

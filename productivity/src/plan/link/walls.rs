@@ -23,6 +23,8 @@ const ADDED: f64 = 0.75;
 const ADDED_AT_RIMS: f64 = 0.5;
 /// What an edge of a tool may go into a face between points of it, of their spacing.
 const AT_EDGES: f64 = 0.1;
+/// What a round tool may go into an edge between points of it, of what ways may go into faces.
+const OVER_EDGES: f64 = 0.25;
 /// Share of what may be hidden between samples under a tool, of what ways may go into faces: together they are accepted.
 const HIDDEN: f64 = 0.5;
 /// Most points over all faces that are not machined, and fewest of one: with more room between them the clearance at the samples
@@ -46,6 +48,13 @@ pub struct Keeping {
 }
 
 impl Keeping {
+    /// The greatest spacing of points along an edge of a face that is machined, no more than that of points on it: a tool that goes over
+    /// the edge goes into it between them by its sagitta.
+    fn along_edges_mm(&self, apart_mm: f64) -> f64 {
+        let sagitta = OVER_EDGES * self.accepted_mm;
+        if sagitta > 0.0 { apart_mm.min((8.0 * self.radius_mm * sagitta).sqrt()) } else { apart_mm }
+    }
+
     /// The greatest spacing of samples at which no more is hidden under the tool than may be, and little of the clearance.
     #[must_use]
     pub fn spacing_mm(&self) -> f64 {
@@ -112,7 +121,8 @@ impl Walls {
             let found = samples(&all, wanted).map_err(|(_, e)| e)?;
             for ((face, found), number) in faces.iter().zip(found).zip(0..) {
                 let apart_mm = found.density.spacing_mm;
-                let rims = rim(face, number, apart_mm);
+                let rims =
+                    rim(face, number, if is_own { keeping.along_edges_mm(apart_mm) } else { apart_mm });
                 let dots = found.samples.iter().chain(&rims).map(dot);
                 if is_own {
                     ground_apart_mm = ground_apart_mm.max(apart_mm);

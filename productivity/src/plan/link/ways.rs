@@ -222,7 +222,8 @@ impl<'a> Finder<'a> {
                     };
                     [from.pose, off(from), off(to), to.pose]
                 };
-                let clear = |mm: f64| kept.room(&way(mm)).is_some_and(|r| r >= 1.0);
+                let room = |way: &[Pose]| if is_graze { kept.room_along(way) } else { kept.room(way) };
+                let clear = |mm: f64| room(&way(mm)).is_some_and(|r| r >= 1.0);
                 if clear(lift) && (lift >= highest || clear((1.0 - SPARE) * lift)) {
                     let way = way(lift);
                     let on = if lift > 0.0 { &way[..] } else { &[from.pose, to.pose][..] };
@@ -240,10 +241,16 @@ impl<'a> Finder<'a> {
     }
 
     /// Straight along the surface: the tool cuts there, across the passes, where teeth mark the crests between them more than those of
-    /// the passes do; it goes no faster than into material.
+    /// the passes do; what touches goes no faster than into material.
     fn grazing(&self, poses: &[Pose]) -> Way {
         let mut way = Way { clear: true, ..Way::default() };
-        poses.windows(2).for_each(|w| self.fed(&mut way, (&w[0], &w[1]), self.links.plunge_mm_min));
+        for w in poses.windows(2) {
+            let whole = step(&w[0], &w[1]);
+            let share = whole.length_mm / self.links.grazed_mm(whole).max(f64::MIN_POSITIVE);
+            if whole.length_mm > 0.0 {
+                self.fed(&mut way, (&w[0], &w[1]), share * self.links.plunge_mm_min);
+            }
+        }
         way
     }
 
