@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 /// Axes of a machine with one rotary joint are tried so far apart, rad.
 const LINE_RAD: f64 = 0.02;
 /// Share of the gouge tolerance that axes may use: chords and words need the rest.
-const ACCEPTED: f64 = 0.6;
+const ACCEPTED: f64 = 0.3;
 /// Axes lean off the normal by a right angle less this at most, rad.
 const UPRIGHT_RAD: f64 = 0.035;
 /// A flat bottom leans so much at least, rad: else it rubs where it should cut.
