@@ -33,6 +33,7 @@ pub struct Tool {
     shank: Option<Cutter>,
     holder: Option<(HolderSpec, Cutter)>,
     teeth: Option<u32>,
+    plunges: bool,
     words: String,
     feeding: raw::Cutting,
 }
@@ -66,6 +67,7 @@ impl Tool {
             shank,
             holder: holder.transpose()?,
             teeth: t.teeth,
+            plunges: t.plunges,
             words: t.name.clone().unwrap_or_else(|| {
                 format!("{} {}{}", t.kind.word(), t.diameter_mm, corner.unwrap_or_default())
             }),
@@ -106,6 +108,12 @@ impl Tool {
     #[must_use]
     pub const fn flutes(&self) -> (Cutter, Option<Cutter>) {
         (self.cutting, self.shank)
+    }
+
+    /// Whether it may go straight down into material.
+    #[must_use]
+    pub const fn plunges(&self) -> bool {
+        self.plunges
     }
 
     /// The holder as a cylinder.

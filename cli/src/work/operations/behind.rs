@@ -28,6 +28,8 @@ const PLUNGE: f64 = 0.5;
 const SEEN: f64 = 0.05;
 /// Area that may stand higher under a tool that leans.
 const APART: f64 = 0.02;
+/// Up to so many cells of the stock heights are asked of the tools themselves.
+const NEAR_CELLS: f64 = 4.0;
 /// Where less than this stands nothing is said to stand, mm: a layer of nothing has no place in a job.
 const LEAST_MM: f64 = 0.05;
 
@@ -103,6 +105,11 @@ impl Behind {
         Ok(Self { stock, ..Self::default() })
     }
 
+    /// What is left of the raw material, where some is declared.
+    pub const fn stock(&self) -> Option<&Stock> {
+        self.stock.as_ref()
+    }
+
     /// Goes on with an operation. Its rapid moves that would go through material are made at the feed of plunges; how many they are
     /// comes back.
     pub fn take(&mut self, job: &Job, linked: &mut Linked) -> Result<usize, Failure> {
@@ -135,8 +142,32 @@ impl Behind {
         Ok(slowed)
     }
 
-    /// How high material stands at samples, mm; nowhere higher than `most_mm`.
+    /// How high material stands at samples, mm; nowhere higher than `most_mm`. What stands high is taken from the stock, to its cells: only
+    /// close to the faces the tools themselves are asked.
     fn heights_mm(&self, samples: &[Sample], most_mm: f64) -> Result<Vec<f64>, Failure> {
+        let Some(stock) = &self.stock else { return self.exact_mm(samples, most_mm) };
+        let cell = stock.cell_mm();
+        let near_mm = NEAR_CELLS * cell;
+        if most_mm <= near_mm || self.tools.is_empty() {
+            return self.exact_mm(samples, most_mm);
+        }
+        let stands = |s: &Sample| {
+            let n = s.normal.into_inner();
+            let steps = ((most_mm - cell) / (0.5 * cell)).ceil() as usize;
+            let at = |k: usize| (cell + 0.5 * cell * k as f64).min(most_mm);
+            (0..=steps).map(at).find(|h| !stock.is_material(&(s.point + n * *h))).unwrap_or(most_mm)
+        };
+        let mut out: Vec<f64> = samples.iter().map(stands).collect();
+        let low: Vec<usize> = (0..out.len()).filter(|k| out[*k] < 0.75 * near_mm).collect();
+        let close: Vec<Sample> = low.iter().map(|k| samples[*k]).collect();
+        for (k, height) in low.into_iter().zip(self.exact_mm(&close, near_mm)?) {
+            out[k] = height;
+        }
+        Ok(out)
+    }
+
+    /// How high material stands at samples by the tools that went there, mm; nowhere higher than `most_mm`.
+    fn exact_mm(&self, samples: &[Sample], most_mm: f64) -> Result<Vec<f64>, Failure> {
         let Some(((_, cutter, holder), later)) = self.tools.split_first() else {
             return Ok(vec![most_mm; samples.len()]);
         };

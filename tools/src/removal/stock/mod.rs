@@ -22,6 +22,7 @@ mod carve;
 mod glide;
 mod lattice;
 mod mesh;
+mod query;
 mod rays;
 mod report;
 mod stl;

@@ -1,0 +1,102 @@
+//! A part as it is seen along a direction: how low a tool comes over every node of a lattice, and what it reaches.
+//!
+//! Points of the faces are seen at the nodes next to them, so that heights are good to a cell's way down the slope. That is enough to compare
+//! directions and to say what a direction is for; where a tool goes is asked of the faces themselves.
+
+use super::super::frame::Frame;
+use super::columns::Underside;
+use super::grid::{Disc, Grid};
+use osculate_geom::Point3;
+
+/// Points of a part.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Points {
+    pub at: Vec<Point3>,
+    /// Whether each is on a face to machine.
+    pub own: Vec<bool>,
+    /// Distance of points, mm.
+    pub spacing_mm: f64,
+}
+
+/// A tool that keeps an allowance.
+#[derive(Clone, Debug)]
+pub(super) struct Rougher {
+    /// The cutter.
+    pub bare: Underside,
+    /// The cutter everywhere larger by the allowance.
+    pub grown: Underside,
+    pub allowance_mm: f64,
+    /// Radius of the holder with what it keeps off, and how far above the tip it begins; none where there is no holder.
+    pub holder: Option<[f64; 2]>,
+}
+
+/// A part seen along a direction.
+#[derive(Clone, Debug)]
+pub(super) struct Relief {
+    pub frame: Frame,
+    pub grid: Grid,
+    /// How low the tip comes at each node; minus infinity where nothing is below, infinity where it is not to go.
+    pub tip: Vec<f64>,
+    /// The same for the holder alone.
+    pub holder: Vec<f64>,
+    /// The least height at each node that some position of the tool reaches.
+    pub reached: Vec<f64>,
+    /// Whether material over a node is to go: what is seen there is a face to machine, or the side of one stands beside it.
+    pub wanted: Vec<bool>,
+}
+
+impl Relief {
+    /// A part seen in a frame, on nodes no further apart than `cell`.
+    pub fn of(points: &Points, frame: Frame, tool: &Rougher, (extent, cell): ([[f64; 2]; 2], f64)) -> Self {
+        // A node between two points must not be missed.
+        let cell = cell.max(1.2 * points.spacing_mm);
+        let grid = Grid::over(extent, cell);
+        let mut top = vec![f64::NEG_INFINITY; grid.len()];
+        let mut own = vec![false; grid.len()];
+        let mut low = vec![f64::INFINITY; grid.len()];
+        for (p, is_own) in points.at.iter().zip(&points.own) {
+            let [x, y, z] = frame.of(p);
+            let Some(k) = grid.near([x, y]) else { continue };
+            if z > top[k] {
+                (top[k], own[k]) = (z, *is_own);
+            }
+            if *is_own {
+                low[k] = low[k].min(z);
+            }
+        }
+        let grown = &tool.grown;
+        let rests = grid.raised(&top, grown.radius_mm, |rho| grown.lift_mm(rho));
+        // Beside the part the tool goes down as far as faces to machine are near.
+        let sides = grid.lowest(&low, &Disc::new(grown.radius_mm + tool.bare.radius_mm, cell));
+        let tip: Vec<f64> = rests
+            .iter()
+            .zip(&sides)
+            .map(|(rest, side)| if *rest > f64::NEG_INFINITY { rest + tool.allowance_mm } else { *side })
+            .collect();
+        let holder = match tool.holder {
+            Some([radius, above]) => {
+                let under = grid.highest(&top, &Disc::new(radius, cell));
+                under.into_iter().map(|h| h - above).collect()
+            }
+            None => vec![f64::NEG_INFINITY; grid.len()],
+        };
+        let stands: Vec<f64> = tip.iter().zip(&holder).map(|(t, h)| -t.max(*h)).collect();
+        let bare = &tool.bare;
+        let reached = if bare.is_flat() {
+            grid.highest(&stands, &Disc::new(bare.radius_mm, cell))
+        } else {
+            grid.raised(&stands, bare.radius_mm, |rho| bare.lift_mm(rho))
+        };
+        let reached = reached.into_iter().map(|h| -h).collect();
+        let wanted = (0..grid.len())
+            .map(|k| if top[k] > f64::NEG_INFINITY { own[k] } else { sides[k] < f64::INFINITY })
+            .collect();
+        Self { frame, grid, tip, holder, reached, wanted }
+    }
+
+    /// Whether material at a point is to go and is reached.
+    pub fn takes(&self, p: &Point3) -> bool {
+        let [x, y, z] = self.frame.of(p);
+        self.grid.near([x, y]).is_some_and(|k| self.wanted[k] && z >= self.reached[k])
+    }
+}
