@@ -204,6 +204,8 @@ fn roughing_keeps_its_allowance() {
         contacts: true,
         dropped: false,
         layer_mm: 0.0,
+        dip_mm: 0.0,
+        rates: Rates::default(),
         cutter: TOROIDAL.cutter(),
         holder: None,
         feed_mm_min: 1000.0,

@@ -26,6 +26,8 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         contacts: true,
         dropped: false,
         layer_mm: 0.0,
+        dip_mm: 0.0,
+        rates: Rates::default(),
         cutter: *cutter,
         holder: None,
         feed_mm_min: 1000.0,

@@ -11,6 +11,8 @@ mod ci;
 mod cmd;
 mod figures;
 mod interop;
+mod measured;
+mod parts;
 mod plans;
 mod test;
 mod tidy;
@@ -43,6 +45,8 @@ usage: cargo xtask COMMAND
                 docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
   plans --speed [--only TEXT] [--program FILE]
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
+  parts [--only TEXT] [--program FILE]
+                docs/parts.md: the examples that are whole parts, from the block to finished, planned and verified
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -72,6 +76,10 @@ fn main() -> ExitCode {
                     "plans takes --data FOLDER, --only TEXT and --program FILE; with --speed no --data",
                 );
             }
+        },
+        ["parts", rest @ ..] => match parts::Options::of(rest) {
+            Some(options) => parts::run(&options),
+            None => return wrong_usage("parts takes --only TEXT and --program FILE"),
         },
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),

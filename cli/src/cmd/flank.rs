@@ -149,14 +149,22 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         chord_mm: tolerance.chord_mm,
     };
     let passes = path::pass(&work)?;
-    let linked = passes::linked(&job, &faces, &passes, &cutter)?;
+    let linked = passes::linked(&job, &faces, &passes.passes.clone().into())?;
     wall_s.plan = stage.end();
     let axes = passes.passes.iter().flat_map(|p| &p.points).map(|p| p.pose.axis).collect();
     let tables = vec![page_table(&comparison)];
     let extras = Extras { axes, maps: maps(&answers), tables, left_out: Vec::new(), diagnostics };
     let strategy = format!("flank, {}", table.method.word());
-    let planned =
-        Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: false };
+    let planned = Planned {
+        passes,
+        skipped: Vec::new(),
+        linked,
+        strategy,
+        lean: Lean::default(),
+        local: false,
+        extras,
+        with_strips: false,
+    };
     SCREEN.saves_into(out);
     let plan = prove(&job, &faces, planned, wall_s, &SCREEN)?;
     plan::write(&plan, out)?;

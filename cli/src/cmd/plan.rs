@@ -93,23 +93,25 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     text.push_str(&format!("{}\n{}", figures(&s.verification), on_screen(v)));
     if !v.verdict.is_held() {
         for w in v.worst.iter().take(5) {
-            text.push_str(&format!(
-                "  {} {} mm at ({:.3}, {:.3}, {:.3}) on {}, block {}\n",
-                w.kind,
-                number(w.value_mm, 4),
-                w.at_mm[0],
-                w.at_mm[1],
-                w.at_mm[2],
-                w.face,
-                w.block
-            ));
+            let [x, y, z] = w.at_mm;
+            let value = number(w.value_mm, 4);
+            let made = w.made_by();
+            text.push_str(&format!("  {} {value} mm at ({x:.3}, {y:.3}, {z:.3}) on {}, {made}\n", w.kind, w.face));
         }
     }
     let w = &s.wall_s;
-    text.push_str(&format!(
-        "\n  wall s: import {:.2}, plan {:.2}, post {:.2}, verify {:.2}, ideal {:.2}, report {:.2}\n",
-        w.import, w.plan, w.post, w.verify, w.ideal, w.report
-    ));
+    let stages = [
+        ("import", w.import),
+        ("plan", w.plan),
+        ("between operations", w.between),
+        ("post", w.post),
+        ("verify", w.verify),
+        ("ideal", w.ideal),
+        ("report", w.report),
+    ];
+    let stages: Vec<String> =
+        stages.iter().filter(|s| s.1 > 0.0).map(|(name, s)| format!("{name} {s:.2}")).collect();
+    text.push_str(&format!("\n  wall s: {}; in all {:.2}\n", stages.join(", "), w.total));
     if !plan.diagnostics.is_empty() {
         text.push_str(&format!("\n{}", findings(&plan.diagnostics)));
     }

@@ -164,18 +164,10 @@ fn told(v: &Verified, wall_s: f64) -> String {
         histogram_text(&v.histogram)
     );
     if !v.worst.is_empty() {
-        let mut t = Table::new(["worst", "mm", "x", "y", "z", "face", "block"]);
+        let mut t = Table::new(["worst", "mm", "x", "y", "z", "face", "made by"]);
         for w in &v.worst {
-            let c = |k: usize| format!("{:.3}", w.at_mm[k]);
-            t.row([
-                w.kind.clone(),
-                number(w.value_mm, 4),
-                c(0),
-                c(1),
-                c(2),
-                w.face.clone(),
-                w.block.to_string(),
-            ]);
+            let [x, y, z] = w.at_mm.map(|c| format!("{c:.3}"));
+            t.row([w.kind.clone(), number(w.value_mm, 4), x, y, z, w.face.clone(), w.made_by()]);
         }
         text += &format!("\n{}", t.render());
     }
@@ -266,13 +258,14 @@ fn stock_text(s: &StockSummary) -> String {
         out += &format!("\n{}", t.render());
     }
     if !s.collisions.is_empty() {
-        let mut t = Table::new(["collision", "block", "mm deep", "x", "y", "z"]);
+        let mut t = Table::new(["collision", "block", "operation", "mm deep", "x", "y", "z"]);
         for c in s.collisions.iter().take(10) {
             let body = if c.rapid { format!("{} in rapid", c.body) } else { c.body.to_owned() };
             let at = c.at_mm.map(|x| format!("{x:.3}"));
             t.row([
                 body,
                 c.block.to_string(),
+                c.made_by(),
                 number(c.deepest_mm, 3),
                 at[0].clone(),
                 at[1].clone(),

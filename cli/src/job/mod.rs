@@ -163,7 +163,9 @@ impl Told {
         let t = &raw.tolerance;
         let feeds_mm_min =
             tools.iter().map(|t| feed_mm_min(&places, raw, (t, &strategy))).collect::<Result<_, _>>()?;
-        let highest_mm = tools.iter().map(|tool| layer_mm(raw, tool)).fold(0.0, f64::max);
+        // What operations before left is known place by place: links ask it how high it stands.
+        let layers = || tools.iter().map(|tool| layer_mm(raw, tool)).fold(0.0, f64::max);
+        let highest_mm = if raw.standing_mm.is_some() { 0.0 } else { layers() };
         let setup = Setup::of(&places, &raw.setup, &strategy, highest_mm)?;
         let contact = raw.contact.as_ref().map(|c| Contact::of(&places, c)).transpose()?;
         let control = Control::of(&places, raw.machine.as_ref(), &tools[0])?;

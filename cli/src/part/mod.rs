@@ -126,8 +126,10 @@ pub struct Part {
     pub unseen: Vec<Unseen>,
     /// Ids of faces of which nothing says on which side the material is.
     pub open: Vec<String>,
-    /// The check faces as hops see them, once they are asked for.
+    /// What links keep off, once it is asked for.
     pub walls: OnceLock<Arc<Walls>>,
+    /// Points of the surface of raw material that operations before have left, where that is known.
+    pub left: Option<Arc<[Point3]>>,
     /// Wall time of reading it, s; zero where nobody measured it.
     pub import_s: f64,
 }
@@ -225,7 +227,7 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
         unseen.push(Unseen::NoSide(no_side));
         check.retain(|f| !open.contains(&f.id));
     }
-    Ok(Part { part, faces, check, unseen, open, walls: OnceLock::new(), import_s: 0.0 })
+    Ok(Part { part, faces, check, unseen, open, walls: OnceLock::new(), left: None, import_s: 0.0 })
 }
 
 /// A face that two keys of a job name for different things.

@@ -127,6 +127,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         stages: [
             ("import", s.wall_s.import),
             ("plan", s.wall_s.plan),
+            ("between operations", s.wall_s.between),
             ("post", s.wall_s.post),
             ("verify", s.wall_s.verify),
             ("ideal", s.wall_s.ideal),
@@ -161,14 +162,14 @@ fn verdict(story: &Story<'_>) -> Verdict {
     let mut words = story.verified.verdict.words();
     if let Some(w) = story.verified.worst.first().filter(|_| answer == Answer::NotHeld) {
         words += &format!(
-            ". Worst: {} of {} mm on {} at ({:.3}, {:.3}, {:.3}), block {}.",
+            ". Worst: {} of {} mm on {} at ({:.3}, {:.3}, {:.3}), {}.",
             w.kind,
             number(w.value_mm, 4),
             w.face,
             w.at_mm[0],
             w.at_mm[1],
             w.at_mm[2],
-            w.block
+            w.made_by()
         );
     }
     Verdict {
@@ -194,12 +195,12 @@ fn verdict(story: &Story<'_>) -> Verdict {
                 deviation_mm: if w.kind == "gouge" { -w.value_mm } else { w.value_mm },
                 at_mm: w.at_mm,
                 place: format!(
-                    "{}: {}, u {} v {}, block {}",
+                    "{}: {}, u {} v {}, {}",
                     w.kind,
                     w.face,
                     number(w.uv[0], 5),
                     number(w.uv[1], 5),
-                    w.block
+                    w.made_by()
                 ),
             })
             .collect(),

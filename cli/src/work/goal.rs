@@ -8,11 +8,9 @@ use crate::work::stock::{self, RawMaterial};
 use osculate_geom::{Offset, Surface};
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::Cutter;
-use osculate_tools::removal::stock::Stock;
 use osculate_tools::removal::{
     Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Looks,
 };
-use std::sync::Arc;
 
 /// Most samples where the job does not say.
 const MAX_SAMPLES: usize = 1_000_000;
@@ -44,16 +42,6 @@ impl Held {
     }
 }
 
-/// Raw material that operations before have left.
-pub struct Left {
-    /// What is left.
-    pub stock: Arc<Stock>,
-    /// Index of the first motion that goes through it.
-    pub from: usize,
-    /// In words.
-    pub words: String,
-}
-
 /// What a goal looks at: made once for a job with its tools.
 pub struct Aim<'a> {
     job: &'a Job,
@@ -62,7 +50,8 @@ pub struct Aim<'a> {
     /// Of a roughing, the faces to machine, outside by its allowance.
     offsets: Vec<Offset<TrimmedSurface>>,
     raw: Option<RawMaterial<'a>>,
-    left: Option<Left>,
+    /// What a step on the way to the part begins from, in words, where that is not what is declared.
+    begun: Option<String>,
     fixtures: Vec<GoalFixture>,
     /// Whether this is a step on the way to the part.
     step: bool,
@@ -93,28 +82,22 @@ impl<'a> Aim<'a> {
             tools: tools.iter().map(Held::of).collect(),
             offsets: rough::measured(job, faces)?,
             raw: RawMaterial::of(job, faces)?,
-            left: None,
+            begun: None,
             fixtures,
             step: false,
         })
     }
 
-    /// The same from raw material that operations before have left.
+    /// The same for a step on the way to the part, with what it begins from in words: it is not looked at between the samples, as the
+    /// part is.
     #[must_use]
-    pub fn begun(self, left: Left) -> Self {
-        Self { left: Some(left), ..self }
-    }
-
-    /// The same for a step on the way to the part: it is looked at less closely, and not between the samples, as the part is.
-    #[must_use]
-    pub fn of_step(self) -> Self {
-        Self { step: true, ..self }
+    pub fn of_step(self, begun: Option<String>) -> Self {
+        Self { step: true, begun, ..self }
     }
 
     /// The goal, with the state of the control as a program has it, and the speed of each tool where it says one.
     pub fn goal(&self, control: GoalControl, speeds_rpm: &[Option<f64>]) -> Goal<'_> {
         let job = self.job;
-        let tolerance = job.tolerance();
         let most = if self.step { STEP_SAMPLES } else { usize::MAX };
         let face = |k: usize, f: &'a LoadedFace| GoalFace {
             name: &f.id,
@@ -130,7 +113,13 @@ impl<'a> Aim<'a> {
             self.faces.faces.iter().enumerate().map(|(k, f)| face(k, f)).collect();
         let checked = self.faces.check.iter().map(|f| face(usize::MAX, f)).collect();
         let layer_mm = job.layer_mm();
-        let declared = || self.raw.as_ref().map_or(GoalStock::Assumed { layer_mm }, |raw| raw.goal(layer_mm));
+        let stock = match self.raw.as_ref().map(|raw| raw.goal(layer_mm)) {
+            None => GoalStock::Assumed { layer_mm },
+            Some(GoalStock::Declared { blank, resolution, layer_mm, words }) => {
+                GoalStock::Declared { blank, resolution, layer_mm, words: self.begun.as_deref().unwrap_or(words) }
+            }
+            Some(assumed) => assumed,
+        };
         let speed = |k: usize| speeds_rpm.get(k).copied().flatten();
         let tools = self.tools.iter().enumerate().map(|(k, t)| GoalTool {
             cutter: &t.cutter,
@@ -146,13 +135,8 @@ impl<'a> Aim<'a> {
             unseen: self.faces.unseen.clone(),
             fixtures: self.fixtures.clone(),
             tools: tools.collect(),
-            stock: self.left.as_ref().map_or_else(declared, |left| stock::goal_of_left(left, layer_mm)),
-            limits: GoalLimits {
-                scallop_mm: tolerance.scallop_mm,
-                gouge_mm: tolerance.gouge_mm,
-                unreached_mm2: job.unreached_mm2(),
-                at_samples: self.step || job.verification().accept == Accept::Samples,
-            },
+            stock,
+            limits: self.limits(),
             looks: Looks {
                 spacing_mm: job.verification().spacing_mm,
                 max_samples: job.verification().max_samples.unwrap_or(MAX_SAMPLES).min(most),
@@ -160,6 +144,17 @@ impl<'a> Aim<'a> {
             },
             roughing_mm: job.strategy().layers().map(|l| l.allowance_mm),
             control,
+        }
+    }
+
+    /// What must hold.
+    pub fn limits(&self) -> GoalLimits {
+        let (job, tolerance) = (self.job, self.job.tolerance());
+        GoalLimits {
+            scallop_mm: tolerance.scallop_mm,
+            gouge_mm: tolerance.gouge_mm,
+            unreached_mm2: job.unreached_mm2(),
+            at_samples: self.step || job.verification().accept == Accept::Samples,
         }
     }
 

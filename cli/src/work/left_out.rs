@@ -9,7 +9,7 @@ use crate::work::drop::names;
 use crate::work::extras::{Extras, FaceLeftOut};
 use crate::work::passes;
 use osculate_geom::Diagnostic;
-use osculate_productivity::plan::{Guard, LeftOut, Linked, Passes, leave_out};
+use osculate_productivity::plan::{CcPoint, Guard, LeftOut, Linked, Passes, Stretches, leave_out};
 
 /// Whether the job wants places left out at which the tool would go into the part.
 pub fn is_wanted(job: &Job) -> bool {
@@ -30,15 +30,42 @@ pub fn of(job: &Job, faces: &Part, passes: &Passes) -> Result<LeftOut, Failure> 
     leave_out(passes, &guard).map_err(|e| Failure::file(job.path(), e))
 }
 
-/// Passes with what the job wants left out of them, joined, and what the report says of it.
-pub fn linked(job: &Job, faces: &Part, passes: Passes) -> Result<(Passes, Linked, Extras<'static>), Failure> {
-    let cutter = &job.cutter();
+/// Passes in their order, joined.
+pub struct Joined {
+    /// The passes.
+    pub passes: Passes,
+    /// After each what was taken out of the pass that it is of, up to the next.
+    pub skipped: Vec<Vec<CcPoint>>,
+    /// The path.
+    pub linked: Linked,
+    /// What the report says of what was left out.
+    pub extras: Extras<'static>,
+}
+
+/// Passes with what the job wants left out of them, put in order and joined. After each pass is what was taken out of it already, if
+/// anything was.
+///
+/// # Errors
+/// Where nothing remains, or faces cannot be looked at.
+pub fn linked(
+    job: &Job,
+    faces: &Part,
+    (passes, skipped): (Passes, Vec<Vec<CcPoint>>),
+) -> Result<Joined, Failure> {
+    let joined = |passes: Passes, skipped: Vec<Vec<CcPoint>>, extras: Extras<'static>| {
+        let Passes { passes, diagnostics } = passes;
+        let all = if skipped.is_empty() { passes.into() } else { Stretches { passes, skipped } };
+        let ordered = passes::in_order(job, faces, all)?;
+        let linked = passes::linked(job, faces, &ordered)?;
+        let passes = Passes { passes: ordered.passes, diagnostics };
+        Ok(Joined { passes, skipped: ordered.skipped, linked, extras })
+    };
     let mut extras = Extras::default();
     if !is_wanted(job) {
-        let linked = passes::linked(job, faces, &passes, cutter)?;
-        return Ok((passes, linked, extras));
+        return joined(passes, skipped, extras);
     }
-    let LeftOut { passes: rest, touched, area_mm2 } = of(job, faces, &passes)?;
+    let LeftOut { passes: rest, skipped: cut, touched, area_mm2 } = of(job, faces, &passes)?;
+    let skipped = if touched > 0 { cut } else { skipped };
     if rest.passes.is_empty() {
         let text = "[strategy] gouges = \"leave_out\": nothing remains: the tool goes into the part or a check face all along \
                     the passes";
@@ -66,8 +93,7 @@ pub fn linked(job: &Job, faces: &Part, passes: Passes) -> Result<(Passes, Linked
                 .collect(),
         });
     }
-    let linked = passes::linked_around_all(job, faces, &rest, cutter)?;
-    Ok((rest, linked, extras))
+    joined(rest, skipped, extras)
 }
 
 /// Faces and areas in words.

@@ -2,21 +2,25 @@
 
 use crate::failure::Failure;
 use crate::job::strategy::{Drop, Kind};
-use crate::job::{Job, LeadKey};
+use crate::job::{Control, Job, LeadKey};
 use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
 use crate::work::axes::Fields;
 use crate::work::budget;
+use crate::work::drop::names;
 use crate::work::left_out;
 use crate::work::look::Look;
 use crate::work::nc;
+use crate::work::stock::{self, RawMaterial};
 use osculate_geom::{Axis, Box3, Diagnostic, Surface};
+use osculate_postproc::machine::{Drive, JointKind};
 use osculate_productivity::compare::{Around, Axes};
 use osculate_productivity::plan::{
-    Along, Leaning, Linked, Links, LocalLead, Named, Passes, Strategy, Task, Walls, link,
-    predicted_length_mm, run as plan_face, run_in,
+    Along, Freedom, Keeping, Leaning, Linked, Links, LocalLead, Milling, Passes, Rates, Senses, Strategy,
+    Stretches, Task, Walls, link, link_stretches, ordered, predicted_length_mm, run as plan_face, run_in,
 };
 use osculate_tools::cl::ClPath;
+use osculate_tools::removal::{Sample, sample_boundary};
 use osculate_tools::{Cutter, Lean};
 use std::path::Path;
 use std::sync::Arc;
@@ -43,53 +47,107 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
         hop_mm: job.setup().hop_mm,
         contacts: !matches!(job.strategy().kind, Kind::Drop(Drop::Waterlines)),
         dropped: matches!(job.strategy().kind, Kind::Drop(_)),
+        dip_mm: INTO_WALLS * job.tolerance().gouge_mm,
         layer_mm: job.layer_mm(),
         cutter: *cutter,
         holder: job.holder(),
         feed_mm_min,
         plunge_mm_min: 0.5 * feed_mm_min,
+        rates: rates(job.control()),
     }
 }
 
-/// Faces that hops keep off, and such that they go over no lower than passes.
-fn walls_of<'a>(
-    job: &Job,
-    faces: impl Iterator<Item = &'a LoadedFace>,
-    own: &'a [LoadedFace],
-) -> Result<Walls, Failure> {
-    fn named(f: &LoadedFace) -> Named<'_> {
-        Named { face: &f.id, surface: &*f.surface }
+/// How fast the joints of a machine go between passes: the slowest of each kind.
+fn rates(control: &Control) -> Rates {
+    let usual = Rates::default();
+    let slowest = |kind: JointKind, of: fn(&Drive) -> f64, usual: f64| {
+        let joints = control.machine.joints().iter().filter(|j| j.kind == kind);
+        let least = joints.map(|j| of(&j.drive)).filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least } else { usual }
+    };
+    let velocity = |d: &Drive| 60.0 * d.velocity_per_s;
+    let acceleration = |d: &Drive| 3600.0 * d.acceleration_per_s2;
+    Rates {
+        rapid_mm_min: slowest(JointKind::Linear, velocity, usual.rapid_mm_min),
+        rapid_mm_min2: slowest(JointKind::Linear, acceleration, usual.rapid_mm_min2),
+        turn_rad_min: slowest(JointKind::Rotary, velocity, usual.turn_rad_min),
+        turn_rad_min2: slowest(JointKind::Rotary, acceleration, usual.turn_rad_min2),
     }
-    let check: Vec<Named<'_>> = faces.map(named).collect();
-    let own: Vec<Named<'_>> = own.iter().map(named).collect();
-    Walls::of(&check, job.setup().check_clearance_mm, INTO_WALLS * job.tolerance().gouge_mm)
-        .and_then(|walls| walls.over(&own))
-        .map_err(|e| Failure::file(job.path(), format!("faces that hops keep off: {e}")))
 }
 
-/// The faces as hops see them, made once for all plans of a job.
+/// How finely the rims of faces are followed where no accuracy says it, of the clearance.
+const RIM_OF_CLEARANCE: f64 = 0.25;
+
+/// Everything that links keep off.
+fn walls_of(job: &Job, faces: &Part) -> Result<Walls, Failure> {
+    let setup = job.setup();
+    let radius_mm = job.each_tool().iter().map(|j| j.cutter().radius_mm()).fold(f64::INFINITY, f64::min);
+    let keeping = Keeping {
+        clearance_mm: setup.check_clearance_mm,
+        accepted_mm: INTO_WALLS * job.tolerance().gouge_mm,
+        radius_mm,
+    };
+    let fail = |e| Failure::file(job.path(), format!("faces that links keep off: {e}"));
+    let walls = Walls::of(&names(&faces.check), &names(&faces.faces), &keeping).map_err(fail)?;
+    let apart_mm = RIM_OF_CLEARANCE * setup.check_clearance_mm;
+    let fixtures = stock::fixtures(job, faces)?;
+    let walls = walls
+        .with(&rims(&faces.check, apart_mm), apart_mm, setup.check_clearance_mm)
+        .with_own(&rims(&faces.faces, apart_mm))
+        .with(&fixtures, job.fixture().map_or(0.0, |f| f.spacing_mm), setup.check_clearance_mm);
+    let left = match (&faces.left, RawMaterial::of(job, faces)?) {
+        (Some(left), _) => left.to_vec(),
+        (None, Some(raw)) => raw.filled()?.ends(),
+        (None, None) => Vec::new(),
+    };
+    Ok(walls.with_stock(left))
+}
+
+/// Places along the outlines of trimmed faces.
+fn rims(faces: &[LoadedFace], apart_mm: f64) -> Vec<Sample> {
+    let trimmed = faces.iter().filter(|f| f.surface.is_trimmed());
+    trimmed
+        .flat_map(|f| {
+            f.surface.loops().iter().flat_map(|l| sample_boundary(&*f.surface, &l.points, 0, apart_mm))
+        })
+        .collect()
+}
+
+/// What links keep off, made once for all plans of a job.
 fn walls(job: &Job, faces: &Part) -> Result<Arc<Walls>, Failure> {
     if let Some(made) = faces.walls.get() {
         return Ok(Arc::clone(made));
     }
-    let walls = walls_of(job, faces.check.iter(), &faces.faces)?;
+    let walls = walls_of(job, faces)?;
     Ok(Arc::clone(faces.walls.get_or_init(|| Arc::new(walls))))
 }
 
-/// Passes joined to a path.
-pub fn linked(job: &Job, faces: &Part, passes: &Passes, cutter: &Cutter) -> Result<Linked, Failure> {
-    Ok(link(&passes.passes, &links(job, faces, cutter), &*walls(job, faces)?))
+/// What an order may do with the passes of a job.
+fn freedom(job: &Job) -> Freedom {
+    let strategy = job.strategy();
+    let wishes = strategy.senses != Senses::default();
+    // Only where axes do not follow the feed does a pass leave the same either way.
+    let same = strategy.axis_field || strategy.kept_axis().is_some();
+    let from_above = matches!(strategy.kind, Kind::Drop(Drop::Waterlines));
+    Freedom { turned: same && !wishes, in_turn: strategy.senses.milling != Milling::Any || from_above }
 }
 
-/// Passes joined to a path whose hops keep off faces to machine too: over places that passes leave out.
-pub fn linked_around_all(
-    job: &Job,
-    faces: &Part,
-    passes: &Passes,
-    cutter: &Cutter,
-) -> Result<Linked, Failure> {
-    let walls = walls_of(job, faces.faces.iter().chain(&faces.check), &[])?;
-    Ok(link(&passes.passes, &links(job, faces, cutter), &walls))
+/// Passes in the order in which they are cut soonest.
+pub fn in_order(job: &Job, faces: &Part, passes: Stretches) -> Result<Stretches, Failure> {
+    let walls = &*walls(job, faces)?;
+    Ok(ordered(&passes, &links_by(job, faces, walls), walls, freedom(job)))
+}
+
+/// How passes are joined where what stands on the faces is known as raw material, or else is a layer.
+fn links_by(job: &Job, faces: &Part, walls: &Walls) -> Links {
+    let layer_mm = if walls.knows_stock() { 0.0 } else { job.layer_mm() };
+    Links { layer_mm, ..links(job, faces, &job.cutter()) }
+}
+
+/// Passes joined to a path.
+pub fn linked(job: &Job, faces: &Part, all: &Stretches) -> Result<Linked, Failure> {
+    let walls = &*walls(job, faces)?;
+    Ok(link_stretches(&all.passes, &all.skipped, &links_by(job, faces, walls), walls))
 }
 
 /// A linked path with the tool and spindle of the job.
@@ -238,7 +296,7 @@ pub fn with_best_lead(
         match each_face(job, faces, &way(lean, Axes::Held), progress) {
             Ok(mut p) if choice => {
                 // The shortest path is of no use where the heel of the tool digs in: a coarse look at the CL path tells.
-                let gouge = Look::at(job, faces, &linked(job, faces, &p, cutter)?)?.gouge_mm;
+                let gouge = Look::at(job, faces, &linked(job, faces, &p.passes.clone().into())?)?.gouge_mm;
                 // Where such places are left out, the lead that leaves out the least is the best.
                 let (off, what, fine) = if left_out::is_wanted(job) {
                     let left = left_out::of(job, faces, &p)?;

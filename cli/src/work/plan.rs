@@ -19,7 +19,7 @@ use crate::work::{drop, ideal, left_out, rough};
 use osculate_geom::Diagnostic;
 use osculate_productivity::compare::Axes;
 use osculate_productivity::levels::{Totals, levels};
-use osculate_productivity::plan::Passes;
+use osculate_productivity::plan::{CcPoint, Passes};
 use osculate_tools::Lean;
 use osculate_tools::removal::Verdict;
 use std::path::Path;
@@ -239,6 +239,8 @@ impl Proved<'_> {
             PlanFile::of_text("path.svg", pages.path_svg),
         ];
         summary.wall_s.report = stage.end();
+        let w = summary.wall_s;
+        summary.wall_s.total = w.import + w.plan + w.post + w.verify + w.ideal + w.report;
         let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
         files.push(PlanFile::of_text("summary.json", text));
         Ok(Plan { job: job.clone(), summary, verified, diagnostics, files })
@@ -325,6 +327,8 @@ pub fn summary_of(
 pub struct Laid {
     /// The passes.
     pub passes: Passes,
+    /// After each what was taken out of the pass that it is of, up to the next; none where nothing was.
+    pub skipped: Vec<Vec<CcPoint>>,
     /// Lead and tilt.
     pub lean: Lean,
     /// Whether the lead was found place by place.
@@ -342,11 +346,87 @@ impl Laid {
         watch: &dyn Watch,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Self, Failure> {
+        // DEVHOOK
+        let Ok(dir) = std::env::var("OSC_CACHE") else { return Self::of_real(job, faces, watch, progress) };
+        let ids: Vec<&str> = faces.faces.iter().map(|f| f.id.as_str()).collect();
+        let key = format!(
+            "{}-{}-{}-{}-{}-{:?}",
+            passes::title(job),
+            job.strategy().name(),
+            job.tool().number(),
+            ids.join("_"),
+            job.tolerance().scallop_mm,
+            job.strategy().feed_direction
+        );
+        let key: String =
+            key.chars().map(|c| if c.is_alphanumeric() || c == '.' { c } else { '_' }).take(180).collect();
+        let file = Path::new(&dir).join(key);
+        use osculate_geom::{Point3, Unit3, Vec3, uv};
+        use osculate_productivity::plan::{CcPoint, Pass};
+        if let Ok(bytes) = std::fs::read(&file) {
+            let mut f = bytes.chunks_exact(8).map(|c| f64::from_le_bytes(c.try_into().unwrap()));
+            let mut g = || f.next().unwrap();
+            let lean = Lean { lead_rad: g(), tilt_rad: g() };
+            let local = g() > 0.0;
+            let n = g() as usize;
+            let mut out = Passes::default();
+            for _ in 0..n {
+                let closed = g() > 0.0;
+                let m = g() as usize;
+                let mut points = Vec::new();
+                for _ in 0..m {
+                    let a = uv(g(), g());
+                    let point = Point3::new(g(), g(), g());
+                    let normal = Unit3::new_unchecked(Vec3::new(g(), g(), g()));
+                    let tip = Point3::new(g(), g(), g());
+                    let axis = Unit3::new_unchecked(Vec3::new(g(), g(), g()));
+                    let width_mm = g();
+                    points.push(CcPoint {
+                        uv: a,
+                        point,
+                        normal,
+                        pose: osculate_tools::Pose { tip, axis },
+                        width_mm,
+                    });
+                }
+                out.passes.push(Pass { points, closed });
+            }
+            return Ok(Self { passes: out, skipped: Vec::new(), lean, local });
+        }
+        let made = Self::of_real(job, faces, watch, progress)?;
+        let mut o: Vec<f64> = vec![
+            made.lean.lead_rad,
+            made.lean.tilt_rad,
+            f64::from(u8::from(made.local)),
+            made.passes.passes.len() as f64,
+        ];
+        for p in &made.passes.passes {
+            o.push(f64::from(u8::from(p.closed)));
+            o.push(p.points.len() as f64);
+            for c in &p.points {
+                o.extend([c.uv.u, c.uv.v]);
+                o.extend(c.point.iter());
+                o.extend(c.normal.iter());
+                o.extend(c.pose.tip.iter());
+                o.extend(c.pose.axis.iter());
+                o.push(c.width_mm);
+            }
+        }
+        std::fs::write(&file, o.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>()).unwrap();
+        Ok(made)
+    }
+
+    fn of_real(
+        job: &Job,
+        faces: &Part,
+        watch: &dyn Watch,
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Self, Failure> {
         let strategy = match &job.strategy().kind {
             Kind::Faces(strategy) => strategy,
             Kind::Drop(kind) => {
                 let passes = drop::passes(job, faces, *kind, progress)?;
-                return Ok(Self { passes, lean: Lean::default(), local: false });
+                return Ok(Self { passes, skipped: Vec::new(), lean: Lean::default(), local: false });
             }
             Kind::Layers(_) | Kind::Auto | Kind::Flank => return Err(not_planned(job)),
         };
@@ -360,7 +440,7 @@ impl Laid {
             None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
         };
         let local = job.strategy().lead == LeadKey::Local || job.strategy().axis_field;
-        Ok(Self { passes, lean, local })
+        Ok(Self { passes, skipped: Vec::new(), lean, local })
     }
 
     /// The passes joined, less what the job wants left out of them.
@@ -368,10 +448,11 @@ impl Laid {
     /// # Errors
     /// Where nothing remains.
     pub fn linked(self, job: &Job, faces: &Part) -> Result<Planned<'static>, Failure> {
-        let Self { passes, lean, local } = self;
-        let (passes, linked, extras) = left_out::linked(job, faces, passes)?;
+        let Self { passes, skipped, lean, local } = self;
+        let left_out::Joined { passes, skipped, linked, extras } =
+            left_out::linked(job, faces, (passes, skipped))?;
         let strategy = job.strategy().name().to_owned();
-        Ok(Planned { passes, linked, strategy, lean, local, extras, with_strips: true })
+        Ok(Planned { passes, skipped, linked, strategy, lean, local, extras, with_strips: true })
     }
 }
 

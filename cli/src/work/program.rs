@@ -12,17 +12,19 @@ use crate::work::setup::{self, Along};
 use crate::work::verify::{self, Verified};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
-use osculate_productivity::plan::{Linked, Passes};
+use osculate_productivity::plan::{CcPoint, Linked, Passes};
 use osculate_tools::Lean;
 use serde::Serialize;
 
 /// Seconds of wall time by stage.
 #[derive(Debug, Default, Serialize, Clone, Copy)]
 pub struct WallS {
-    /// Reading the part.
+    /// Reading the part, and telling what of the job cannot be meant for it.
     pub import: f64,
     /// Planning.
     pub plan: f64,
+    /// Of a list of operations, what each leaves to the next: raw material, and what stands on the faces.
+    pub between: f64,
     /// Posting.
     pub post: f64,
     /// Verification.
@@ -31,12 +33,16 @@ pub struct WallS {
     pub ideal: f64,
     /// Pages and pictures.
     pub report: f64,
+    /// All of it, but for writing the files.
+    pub total: f64,
 }
 
 /// A plan before it is posted.
 pub struct Planned<'a> {
     /// The passes.
     pub passes: Passes,
+    /// After each what was taken out of the pass that it is of, up to the next: ways may follow it.
+    pub skipped: Vec<Vec<CcPoint>>,
     /// The passes joined.
     pub linked: Linked,
     /// Its name.

@@ -111,6 +111,7 @@ pub fn planned(
     let rough = plan::rough(&task).map_err(|e| Failure::file(job.path(), e))?;
     Ok(Planned {
         passes: rough.passes,
+        skipped: Vec::new(),
         linked: rough.linked,
         strategy: job.strategy().name().to_owned(),
         lean: Lean::default(),

@@ -3,7 +3,6 @@
 use crate::failure::{Failure, read};
 use crate::job::{Blank as Raw, Job};
 use crate::part::{self, Part};
-use crate::work::goal::Left;
 use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, read_stl};
@@ -82,6 +81,26 @@ pub struct StockCollision {
     pub volume_mm3: f64,
     /// Where, part coordinates.
     pub at_mm: [f64; 3],
+    /// Of a list of operations, the one that did it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub operation: Option<String>,
+    /// With which tool.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool_number: Option<u32>,
+    /// The motion of the whole program, by its index.
+    #[serde(skip)]
+    pub motion: usize,
+}
+
+impl StockCollision {
+    /// Of a list of operations, the one that did it with its tool.
+    pub fn made_by(&self) -> String {
+        match (&self.operation, self.tool_number) {
+            (Some(name), Some(n)) => format!("{name} with T{n}"),
+            (Some(name), None) => name.clone(),
+            (None, _) => String::new(),
+        }
+    }
 }
 
 fn mesh(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
@@ -296,20 +315,7 @@ impl<'a> RawMaterial<'a> {
             Raw::Layer(thickness_mm) => layer(*thickness_mm, false),
             Raw::Cylinder { .. } | Raw::File { .. } => Blank::Mesh(&self.triangles),
         };
-        GoalStock::Declared { blank, resolution: self.resolution, from: 0, layer_mm, words: &self.words }
-    }
-}
-
-/// Raw material that operations before have left, as a goal has it.
-pub fn goal_of_left(left: &Left, layer_mm: f64) -> GoalStock<'_> {
-    let stock = &*left.stock;
-    let resolution = Resolution { cell_mm: stock.cell_mm(), tri: true, budget_bytes: stock.bytes() };
-    GoalStock::Declared {
-        blank: Blank::Left(stock),
-        resolution,
-        from: left.from,
-        layer_mm,
-        words: &left.words,
+        GoalStock::Declared { blank, resolution: self.resolution, layer_mm, words: &self.words }
     }
 }
 
@@ -368,6 +374,9 @@ fn summary(found: &StockFound) -> StockSummary {
         deepest_mm: c.deepest_mm,
         volume_mm3: c.volume_mm3,
         at_mm: c.at.into(),
+        operation: None,
+        tool_number: None,
+        motion: c.motion as usize,
     });
     StockSummary {
         cell_mm: found.cell_mm,

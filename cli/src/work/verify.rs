@@ -110,6 +110,26 @@ pub struct WorstPlace {
     pub uv: [f64; 2],
     /// NC line or CL move, from 1; 0 where no motion did it.
     pub block: u32,
+    /// Of a list of operations, the one that made it so; of places that nothing touched, the last one that is to machine the face.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub operation: Option<String>,
+    /// With which tool.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool_number: Option<u32>,
+    /// The motion of what was judged, by its index.
+    #[serde(skip)]
+    pub motion: Option<u32>,
+}
+
+impl WorstPlace {
+    /// What made it so, in words: block, and of a list of operations the operation with its tool.
+    pub fn made_by(&self) -> String {
+        match (&self.operation, self.tool_number, self.block) {
+            (Some(name), Some(n), block) => format!("block {block} of {name} with T{n}"),
+            (Some(name), None, _) => format!("where {name} does not come"),
+            (None, _, block) => format!("block {block}"),
+        }
+    }
 }
 
 /// The `verdict` object of `summary.json` and of `verify --json`.
@@ -185,68 +205,88 @@ pub fn judge(
     reading: Reading<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verified, Failure> {
-    let (job, faces) = (aim.job(), aim.faces());
+    let source = reading.source;
     let goal = aim.goal(reading.control, &reading.speeds_rpm);
-    let verdict = prove(&goal, reading.program, progress).map_err(|e| match e {
+    let verdict = prove(&goal, reading.program, progress).map_err(|why| refused(aim.job(), why))?;
+    Ok(Verified::of(aim, verdict, source))
+}
+
+/// A program that cannot be judged, as a failure of its job.
+pub fn refused(job: &Job, why: ProveError) -> Failure {
+    match why {
         ProveError::Blank(why) => Failure::file(job.path(), format!("[stock] {why}")),
         other => Failure::file(job.path(), other),
-    })?;
-    let (limits, f) = (goal.limits, verdict.figures());
-    // Worst first: by how much of its own limit a place takes.
+    }
+}
+
+impl Verified {
+    /// A verdict on what a goal is made for, as files have it.
+    pub fn of(aim: &Aim<'_>, verdict: Verdict, source: &'static str) -> Self {
+        let limits = aim.limits();
+        let f = verdict.figures();
+        let finite = |x: f64| x.is_finite().then_some(x);
+        let summary = Verification {
+            source,
+            samples: f.tally.samples,
+            added_samples: f.added,
+            coarse: f.coarse,
+            spacing_mm: f.spacing_mm,
+            hidden_scallop_mm: finite(f.hidden.scallop_mm),
+            hidden_gouge_mm: finite(f.hidden.gouge_mm),
+            smallest_radius_mm: f.smallest_radius_mm,
+            certain: verdict.is_held() && !limits.at_samples,
+            scallop_max_mm: f.tally.scallop_max_mm,
+            scallop_p99_mm: f.tally.scallop_p99_mm,
+            scallop_median_mm: f.tally.median_mm,
+            crest_median_mm: f.crest_median_mm,
+            scallop_use: f.crest_median_mm / limits.scallop_mm,
+            gouge_max_mm: f.tally.gouge_max_mm,
+            uncut_area_mm2: f.tally.uncut_area_mm2,
+            rapid_max_mm: f.tally.rapid_max_mm,
+            holder_max_mm: f.tally.holder_max_mm,
+            tooth_mark_max_mm: f.mark_max_mm,
+            height_max_mm: f.height_max_mm,
+            within_tolerance: verdict.is_held(),
+        };
+        let bin = |b: &removal::Bin| HistogramBin {
+            from_mm: finite(b.from_mm),
+            to_mm: finite(b.to_mm),
+            area_mm2: b.area_mm2,
+        };
+        let histogram = f.tally.histogram.iter().map(bin).collect();
+        let (stock, diagnostics) = f.stock.as_ref().map(|found| stock::told(found, aim.faces())).unzip();
+        let diagnostics = diagnostics.unwrap_or_default();
+        let worst = worst(aim, &f.tally.worst);
+        Self { summary, worst, histogram, verdict, stock, diagnostics }
+    }
+}
+
+/// The worst places, by how much of its own limit each takes.
+fn worst(aim: &Aim<'_>, found: &[removal::Worst]) -> Vec<WorstPlace> {
+    let limits = aim.limits();
     let share = |w: &removal::Worst| match w.kind {
         Kind::Scallop | Kind::Uncut => w.value_mm / limits.scallop_mm,
         Kind::Gouge | Kind::Holder | Kind::Rapid => w.value_mm / limits.gouge_mm,
     };
-    let mut places: Vec<removal::Worst> = f.tally.worst.clone();
+    let mut places: Vec<removal::Worst> = found.to_vec();
     places.sort_by(|a, b| share(b).total_cmp(&share(a)));
-    let worst = places
-        .iter()
-        .map(|w| WorstPlace {
-            kind: match w.kind {
-                Kind::Scallop => "scallop",
-                Kind::Gouge => "gouge",
-                Kind::Uncut => "uncut",
-                Kind::Holder => "holder",
-                Kind::Rapid => "rapid",
-            }
-            .to_owned(),
-            value_mm: w.value_mm,
-            at_mm: [w.at.x, w.at.y, w.at.z],
-            face: aim.face_name(w.face),
-            uv: [w.uv.u, w.uv.v],
-            block: w.block.unwrap_or(0),
-        })
-        .collect();
-    let finite = |x: f64| x.is_finite().then_some(x);
-    let summary = Verification {
-        source: reading.source,
-        samples: f.tally.samples,
-        added_samples: f.added,
-        coarse: f.coarse,
-        spacing_mm: f.spacing_mm,
-        hidden_scallop_mm: finite(f.hidden.scallop_mm),
-        hidden_gouge_mm: finite(f.hidden.gouge_mm),
-        smallest_radius_mm: f.smallest_radius_mm,
-        certain: verdict.is_held() && !limits.at_samples,
-        scallop_max_mm: f.tally.scallop_max_mm,
-        scallop_p99_mm: f.tally.scallop_p99_mm,
-        scallop_median_mm: f.tally.median_mm,
-        crest_median_mm: f.crest_median_mm,
-        scallop_use: f.crest_median_mm / limits.scallop_mm,
-        gouge_max_mm: f.tally.gouge_max_mm,
-        uncut_area_mm2: f.tally.uncut_area_mm2,
-        rapid_max_mm: f.tally.rapid_max_mm,
-        holder_max_mm: f.tally.holder_max_mm,
-        tooth_mark_max_mm: f.mark_max_mm,
-        height_max_mm: f.height_max_mm,
-        within_tolerance: verdict.is_held(),
+    let place = |w: &removal::Worst| WorstPlace {
+        kind: match w.kind {
+            Kind::Scallop => "scallop",
+            Kind::Gouge => "gouge",
+            Kind::Uncut => "uncut",
+            Kind::Holder => "holder",
+            Kind::Rapid => "rapid",
+        }
+        .to_owned(),
+        value_mm: w.value_mm,
+        at_mm: [w.at.x, w.at.y, w.at.z],
+        face: aim.face_name(w.face),
+        uv: [w.uv.u, w.uv.v],
+        block: w.block.unwrap_or(0),
+        motion: w.motion,
+        operation: None,
+        tool_number: None,
     };
-    let bin = |b: &removal::Bin| HistogramBin {
-        from_mm: finite(b.from_mm),
-        to_mm: finite(b.to_mm),
-        area_mm2: b.area_mm2,
-    };
-    let histogram = f.tally.histogram.iter().map(bin).collect();
-    let (stock, diagnostics) = f.stock.as_ref().map(|found| stock::told(found, faces)).unzip();
-    Ok(Verified { summary, worst, histogram, verdict, stock, diagnostics: diagnostics.unwrap_or_default() })
+    places.iter().map(place).collect()
 }

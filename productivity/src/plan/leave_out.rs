@@ -10,7 +10,7 @@
 //! A stretch is left out, never machined in another way: leads are chosen before.
 
 use super::samples::{Wanted, samples};
-use super::stations::{pieces, stations};
+use super::stations::{Stretches, pieces, stations};
 use super::{CcPoint, Named, Pass, Passes, Tolerance};
 use crate::axis::sunk;
 use osculate_geom::Surface;
@@ -71,6 +71,8 @@ pub struct Guard<'a> {
 pub struct LeftOut {
     /// What remains.
     pub passes: Passes,
+    /// After each of these passes the poses of the pass that it was cut out of up to the next; none where that is of another.
+    pub skipped: Vec<Vec<CcPoint>>,
     /// Passes of which something was left out.
     pub touched: usize,
     /// Of each face to machine, the area that the whole passes cut and what remains of them leaves standing, mm2.
@@ -205,7 +207,7 @@ impl<'a> Watch<'a> {
     }
 
     /// The pieces of a pass that remain; None where it remains whole.
-    fn remaining(&self, pass: &Pass) -> Option<Vec<Pass>> {
+    fn remaining(&self, pass: &Pass) -> Option<Stretches> {
         let stations = stations(pass, STEP * self.guard.cutter.radius_mm());
         let mut out: Vec<bool> = stations.iter().map(|s| self.is_in(&s.point, Depth::Accepted)).collect();
         if !out.iter().any(|b| *b) {
@@ -269,17 +271,19 @@ fn left_standing(guard: &Guard<'_>, whole: &[Pass], rest: &[Pass]) -> Result<Vec
 /// A distance to keep off that is none, or faces and passes that cannot be measured.
 pub fn leave_out(passes: &Passes, guard: &Guard<'_>) -> Result<LeftOut, LeaveOutError> {
     let watch = Watch::new(guard)?;
-    let remaining: Vec<Option<Vec<Pass>>> = passes.passes.par_iter().map(|p| watch.remaining(p)).collect();
+    let remaining: Vec<Option<Stretches>> = passes.passes.par_iter().map(|p| watch.remaining(p)).collect();
     let area_mm2 = vec![0.0; guard.faces.len()];
     if remaining.iter().all(Option::is_none) {
-        return Ok(LeftOut { passes: passes.clone(), touched: 0, area_mm2 });
+        let skipped = vec![Vec::new(); passes.passes.len()];
+        return Ok(LeftOut { passes: passes.clone(), skipped, touched: 0, area_mm2 });
     }
     let touched = remaining.iter().filter(|r| r.is_some()).count();
     let pieces = passes.passes.iter().zip(remaining);
-    let rest: Vec<Pass> = pieces.flat_map(|(p, r)| r.unwrap_or_else(|| vec![p.clone()])).collect();
-    let area_mm2 = left_standing(guard, &passes.passes, &rest)?;
+    let rest: Stretches = pieces.map(|(p, r)| r.unwrap_or_else(|| vec![p.clone()].into())).collect();
+    let area_mm2 = left_standing(guard, &passes.passes, &rest.passes)?;
     Ok(LeftOut {
-        passes: Passes { passes: rest, diagnostics: passes.diagnostics.clone() },
+        passes: Passes { passes: rest.passes, diagnostics: passes.diagnostics.clone() },
+        skipped: rest.skipped,
         touched,
         area_mm2,
     })

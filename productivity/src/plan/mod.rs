@@ -3,7 +3,6 @@
 //! A strategy places passes of contact points ([`Pass`]) so that the exact strips meet within the scallop tolerance;
 //! [`link`] joins passes to a [`ClPath`](osculate_tools::cl::ClPath). What a plan promises is checked elsewhere, from the NC text.
 
-mod around;
 mod columns;
 mod contour;
 mod cover;
@@ -12,7 +11,6 @@ mod ends;
 pub(crate) mod extended;
 mod fits;
 mod isoparametric;
-mod kept;
 mod lead;
 mod leave_out;
 mod level;
@@ -32,7 +30,6 @@ mod stations;
 mod strategy;
 mod task;
 mod walk;
-pub(crate) mod walls;
 
 pub use contour::contour_2cl;
 pub use drop::{
@@ -43,13 +40,13 @@ pub use isoparametric::isoparametric;
 pub use lead::{LeadField, Leaning, LocalLead};
 pub use leave_out::{Guard, LeaveOutError, LeftOut, leave_out};
 pub use level::{curvature_5c, isoplanar, isoscallop, streamline};
-pub use link::{Linked, Links, link};
+pub use link::{Freedom, Keeping, Linked, Links, Rates, Walls, link, link_stretches, ordered};
 pub use predict::predicted_length_mm;
 pub use regions::regions;
 pub use repeat::repeated;
 pub use rest::{Rest, RestError, rest_of};
 pub use senses::{Milling, Senses, run_in};
+pub use stations::Stretches;
 pub use strategy::{Strategy, run};
 pub use task::{Along, CcPoint, Named, Pass, Passes, PlanError, Task, Tolerance};
 use task::{MAX_PASSES, check_tolerance, shorter};
-pub use walls::Walls;

@@ -3,18 +3,26 @@
 //! A motion keeps lengths and angles: what a pass leaves at the place that it was planned for, its image leaves at the other. The surface
 //! parameters of its points stay those of the face that was planned.
 
-use super::{CcPoint, Pass};
+use super::{CcPoint, Pass, Stretches};
 use nalgebra::Isometry3;
 use osculate_geom::Unit3;
 use osculate_tools::Pose;
 
 /// The images of passes under each of the motions, in the order of the motions and within each in that of the passes.
 #[must_use]
-pub fn repeated(passes: &[Pass], motions: &[Isometry3<f64>]) -> Vec<Pass> {
-    motions.iter().flat_map(|motion| passes.iter().map(move |pass| moved(pass, motion))).collect()
+pub fn repeated(stretches: &Stretches, motions: &[Isometry3<f64>]) -> Stretches {
+    let image = |motion| Stretches {
+        passes: stretches
+            .passes
+            .iter()
+            .map(|pass| Pass { points: moved(&pass.points, motion), closed: pass.closed })
+            .collect(),
+        skipped: stretches.skipped.iter().map(|way| moved(way, motion)).collect(),
+    };
+    motions.iter().map(image).collect()
 }
 
-fn moved(pass: &Pass, motion: &Isometry3<f64>) -> Pass {
+fn moved(points: &[CcPoint], motion: &Isometry3<f64>) -> Vec<CcPoint> {
     // A turn keeps unit vectors but for rounding, which is not to grow.
     let direction = |d: &Unit3| Unit3::new_normalize(motion * d.into_inner());
     let point = |c: &CcPoint| CcPoint {
@@ -23,7 +31,7 @@ fn moved(pass: &Pass, motion: &Isometry3<f64>) -> Pass {
         pose: Pose { tip: motion * c.pose.tip, axis: direction(&c.pose.axis) },
         ..*c
     };
-    Pass { points: pass.points.iter().map(point).collect(), closed: pass.closed }
+    points.iter().map(point).collect()
 }
 
 #[cfg(test)]
@@ -51,8 +59,11 @@ mod tests {
             let pass = Pass { points: points.iter().map(own).collect(), closed: false };
             let turns: Vec<_> =
                 (0..count).map(|k| about.turn(std::f64::consts::TAU * k as f64 / count as f64)).collect();
-            let all = repeated(std::slice::from_ref(&pass), &turns);
-            prop_assert_eq!(all.len(), count);
+            let way = pass.points.clone();
+            let one = |pass: &Pass| Stretches { passes: vec![pass.clone()], skipped: vec![way.clone()] };
+            let Stretches { passes: all, skipped } = repeated(&one(&pass), &turns);
+            prop_assert_eq!((all.len(), skipped.len()), (count, count));
+            prop_assert!(all.iter().zip(&skipped).all(|(p, way)| p.points == *way));
             for image in &all {
                 for (a, b) in pass.points.iter().zip(&image.points) {
                     let off = (a.pose.tip - a.point).norm() - (b.pose.tip - b.point).norm();
@@ -63,8 +74,8 @@ mod tests {
                 }
             }
             // The last turn goes on to the first pass again.
-            let on = repeated(&all[count - 1..], &turns[1..2]);
-            for (a, b) in pass.points.iter().zip(&on[0].points) {
+            let on = repeated(&one(&all[count - 1]), &turns[1..2]);
+            for (a, b) in pass.points.iter().zip(&on.passes[0].points) {
                 prop_assert!((a.point - b.point).norm() < 1e-11 * 200.0);
             }
         }

@@ -4,7 +4,7 @@
 //! strip, or no further beside it than an overlap. What lies between two stretches that remain is cut along where that is shorter than a hop
 //! over it.
 
-use super::stations::{pieces, stations};
+use super::stations::{Stretches, pieces, stations};
 use super::{CcPoint, Pass};
 use osculate_geom::Point3;
 use osculate_tools::reach::{ObstacleKind, ObstaclePoint, Obstacles, ObstaclesError};
@@ -46,7 +46,7 @@ pub enum RestError {
 ///
 /// # Errors
 /// Lengths that are not positive, places that are not finite.
-pub fn rest_of(passes: &[Pass], rest: &Rest<'_>) -> Result<Vec<Pass>, RestError> {
+pub fn rest_of(passes: &[Pass], rest: &Rest<'_>) -> Result<Stretches, RestError> {
     for (what, got) in [("the overlap of rest passes", rest.overlap_mm), ("the height of a hop", rest.hop_mm)]
     {
         if !(got > 0.0 && got.is_finite()) {
@@ -55,10 +55,11 @@ pub fn rest_of(passes: &[Pass], rest: &Rest<'_>) -> Result<Vec<Pass>, RestError>
     }
     let point = |(p, owner): (&Point3, u32)| ObstaclePoint { point: *p, owner, kind: ObstacleKind::Part };
     let places = Obstacles::new(rest.places.iter().zip(0u32..).map(point))?;
-    Ok(passes.par_iter().flat_map_iter(|p| remaining(p, rest, &places)).collect())
+    let each: Vec<Stretches> = passes.par_iter().map(|p| remaining(p, rest, &places)).collect();
+    Ok(each.into_iter().collect())
 }
 
-fn remaining(pass: &Pass, rest: &Rest<'_>, places: &Obstacles) -> Vec<Pass> {
+fn remaining(pass: &Pass, rest: &Rest<'_>, places: &Obstacles) -> Stretches {
     let widest = pass.points.iter().map(|p| p.width_mm).fold(0.0, f64::max);
     let step = STEP * if widest > 0.0 { rest.overlap_mm.min(widest) } else { rest.overlap_mm };
     let stations = stations(pass, step);
@@ -66,7 +67,7 @@ fn remaining(pass: &Pass, rest: &Rest<'_>, places: &Obstacles) -> Vec<Pass> {
     let mut out: Vec<bool> = stations.iter().map(|s| !cuts(&s.point)).collect();
     bridge(&mut out, &stations.iter().map(|s| s.point.point).collect::<Vec<_>>(), BRIDGED * rest.hop_mm);
     if !out.iter().any(|o| *o) {
-        return vec![pass.clone()];
+        return vec![pass.clone()].into();
     }
     pieces(pass, &stations, &out, 0.0)
 }
@@ -118,7 +119,7 @@ mod tests {
         ) {
             let places: Vec<Point3> = places.into_iter().map(|(x, y)| Point3::new(x, y, 0.0)).collect();
             let pass = straight(0.0, 100, width);
-            let got = rest_of(std::slice::from_ref(&pass), &Rest { places: &places, overlap_mm: overlap, hop_mm: hop }).unwrap();
+            let got = rest_of(std::slice::from_ref(&pass), &Rest { places: &places, overlap_mm: overlap, hop_mm: hop }).unwrap().passes;
             let reach = 0.5 * width + overlap;
             // Ends lie on stations.
             let slack = STEP * overlap.min(width) + 1e-9;
@@ -144,8 +145,9 @@ mod tests {
     #[test]
     fn without_places_nothing_remains_and_with_all_of_them_everything() {
         let passes = [straight(0.0, 10, 1.0), straight(1.0, 10, 1.0)];
-        let rest =
-            |places: &[Point3]| rest_of(&passes, &Rest { places, overlap_mm: 0.5, hop_mm: 0.3 }).unwrap();
+        let rest = |places: &[Point3]| {
+            rest_of(&passes, &Rest { places, overlap_mm: 0.5, hop_mm: 0.3 }).unwrap().passes
+        };
         assert!(rest(&[]).is_empty());
         let all: Vec<Point3> = (0..=20).map(|k| Point3::new(0.5 * f64::from(k), 0.5, 0.0)).collect();
         assert_eq!(rest(&all), passes);

@@ -22,6 +22,8 @@ pub fn joined(surface: &dyn Surface, passes: &[Pass], cutter: &Cutter) -> ClPath
         contacts: true,
         dropped: false,
         layer_mm: 0.0,
+        dip_mm: 0.0,
+        rates: Rates::default(),
         cutter: *cutter,
         holder: None,
         feed_mm_min: 1000.0,

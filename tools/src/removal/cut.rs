@@ -1,4 +1,4 @@
-//! The removal itself: every group of samples against the motions that come near it.
+//! The removal itself: every group of samples against the motions that come near it, tool by tool.
 
 use super::body::Body as Moved;
 use super::cluster::{Cluster, clusters};
@@ -9,6 +9,7 @@ use super::target::Target;
 use super::tree::{Ways, Which};
 use crate::cutter::Line;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Heights, and what made them, for all samples of a job, in their order.
@@ -19,44 +20,75 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// # Errors
 /// [`JobError`] for numbers that are not finite and axes that turn over.
 pub fn cut(job: &Job<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Vec<Cut>, JobError> {
+    cut_on(job, job.before_any(), progress)
+}
+
+/// The same on what motions before have left at the samples. Those of this job are counted from 0.
+///
+/// # Errors
+/// As [`cut`], and where what was left is not that of the job's samples.
+pub fn cut_on(
+    job: &Job<'_>,
+    before: Vec<Cut>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Vec<Cut>, JobError> {
     if !(job.stock_mm >= 0.0 && job.stock_mm.is_finite()) {
         return Err(JobError::Stock { got: job.stock_mm });
     }
     if !(job.depth_mm > 0.0 && job.depth_mm.is_finite()) {
         return Err(JobError::Depth { got: job.depth_mm });
     }
-    cut_by(job, &Ways::of_job(job)?, progress)
+    if before.len() != job.samples.len() {
+        return Err(JobError::Before { samples: job.samples.len(), before: before.len() });
+    }
+    let mut cuts = before;
+    let ways = Ways::of_job(job)?;
+    Cutting::new(job, &ways)?.go(0..ways.tools(), &mut cuts, progress);
+    Ok(cuts)
 }
 
-/// The same by the ways of the job's motions.
-pub(super) fn cut_by(
-    job: &Job<'_>,
-    ways: &Ways,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<Vec<Cut>, JobError> {
-    let world = World { job, bodies: Moved::all(job), ways };
-    let groups = clusters(job.samples)?;
-    let done = AtomicUsize::new(0);
-    let cuts: Vec<Vec<Cut>> = groups
-        .par_iter()
-        .map(|group| {
-            let cuts = world.cut_group(group);
-            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-            // A thousand reports are enough for any display.
-            if count == groups.len() || count.is_multiple_of(groups.len() / 1000 + 1) {
-                progress(count as f64 / groups.len() as f64);
+/// As [`cut`], by the ways of the job's motions.
+pub(super) fn cut_by(job: &Job<'_>, ways: &Ways) -> Result<Vec<Cut>, JobError> {
+    let mut cuts = job.before_any();
+    Cutting::new(job, ways)?.go(0..ways.tools(), &mut cuts, &|_| {});
+    Ok(cuts)
+}
+
+/// A job whose tools can be taken one after the other.
+pub(super) struct Cutting<'a> {
+    world: World<'a>,
+    groups: Vec<Cluster>,
+}
+
+impl<'a> Cutting<'a> {
+    /// Of a job with the ways of its motions.
+    pub fn new(job: &'a Job<'a>, ways: &'a Ways) -> Result<Self, JobError> {
+        Ok(Self { world: World { job, bodies: Moved::all(job), ways }, groups: clusters(job.samples)? })
+    }
+
+    /// Goes on with the motions of some of the tools, which follow those that have left the samples so.
+    pub fn go(&self, tools: Range<usize>, cuts: &mut [Cut], progress: &(dyn Fn(f64) + Sync)) {
+        let (done, count) = (AtomicUsize::new(0), self.groups.len());
+        let before = &*cuts;
+        let after: Vec<Vec<Cut>> = self
+            .groups
+            .par_iter()
+            .map(|group| {
+                let cuts = self.world.cut_group(group, tools.clone(), before);
+                let now = done.fetch_add(1, Ordering::Relaxed) + 1;
+                // A thousand reports are enough for any display.
+                if now == count || now.is_multiple_of(count / 1000 + 1) {
+                    progress(now as f64 / count as f64);
+                }
+                cuts
+            })
+            .collect();
+        for (group, after) in self.groups.iter().zip(after) {
+            for (k, cut) in group.members.iter().zip(after) {
+                cuts[*k as usize] = cut;
             }
-            cuts
-        })
-        .collect();
-    let blank = Cut { standoff_mm: job.stock_mm, by: None, rapid: None, holder: None };
-    let mut out = vec![blank; job.samples.len()];
-    for (group, cuts) in groups.iter().zip(cuts) {
-        for (k, cut) in group.members.iter().zip(cuts) {
-            out[*k as usize] = cut;
         }
     }
-    Ok(out)
 }
 
 struct World<'a> {
@@ -76,9 +108,9 @@ struct Candidate {
 }
 
 impl World<'_> {
-    fn candidates(&self, target: &Target, which: Which) -> Vec<Candidate> {
+    fn candidates(&self, tool: usize, target: &Target, which: Which) -> Vec<Candidate> {
         let mut found = Vec::new();
-        self.ways.near(&self.bodies, target, which, |k, body, index| {
+        self.ways.near_of(tool, &self.bodies, (target, which), |k, body, index| {
             let piece = &self.ways.pieces[k as usize];
             let swept = &self.job.motions[piece.motion as usize];
             match which {
@@ -100,18 +132,26 @@ impl World<'_> {
         found
     }
 
-    fn cut_group(&self, group: &Cluster) -> Vec<Cut> {
+    /// What some of the tools, one after the other, make of what was left at all samples: at those of a group.
+    fn cut_group(&self, group: &Cluster, tools: Range<usize>, before: &[Cut]) -> Vec<Cut> {
+        let work = |k: &u32| Work::new(self, &self.job.samples[*k as usize], before[*k as usize]);
+        let mut work: Vec<Work<'_>> = group.members.iter().map(work).collect();
+        for tool in tools {
+            self.cut_by_tool(group, tool, &mut work);
+        }
+        work.into_iter().map(|one| one.cut).collect()
+    }
+
+    fn cut_by_tool(&self, group: &Cluster, tool: usize, work: &mut [Work<'_>]) {
         let samples = self.job.samples;
-        let mut work: Vec<Work<'_>> =
-            group.members.iter().map(|k| Work::new(self, &samples[*k as usize])).collect();
         let target = |work: &[Work<'_>]| group.target(samples, |k| work[k].cut.standoff_mm);
         // Material is not supposed to meet these: what they take depends on what was cut before them.
-        let intruders = self.candidates(&target(&work), Which::Intruding);
-        for one in &mut work {
+        let intruders = self.candidates(tool, &target(work), Which::Intruding);
+        for one in work.iter_mut() {
             one.in_order = intruders.iter().any(|c| one.lowered_by(c).is_some());
         }
         if work.iter().any(|one| one.in_order) {
-            let mut all = self.candidates(&target(&work), Which::All);
+            let mut all = self.candidates(tool, &target(work), Which::All);
             // Within a motion, which may have several pieces, the cutter before the holder.
             all.sort_unstable_by_key(|c| (self.ways.pieces[c.piece as usize].motion, c.body, c.piece));
             for one in work.iter_mut().filter(|one| one.in_order) {
@@ -124,12 +164,12 @@ impl World<'_> {
         // samples, and there is much less of it than of what comes near all material.
         let thin = self.job.stock_mm * THIN;
         let layer = group.target(samples, |k| work[k].cut.standoff_mm.min(thin));
-        self.lower(group, &mut work, self.candidates(&layer, Which::Cutting));
+        let near = self.candidates(tool, &layer, Which::Cutting);
+        self.lower(group, work, near);
         if work.iter().any(|one| !one.in_order && one.cut.standoff_mm > thin) {
-            let whole = target(&work);
-            self.lower(group, &mut work, self.candidates(&whole, Which::Cutting));
+            let near = self.candidates(tool, &target(work), Which::Cutting);
+            self.lower(group, work, near);
         }
-        work.into_iter().map(|one| one.cut).collect()
     }
 
     /// Cuts those samples of a group for which the order of motions does not matter.
@@ -181,10 +221,9 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(world: &'a World<'a>, sample: &Sample) -> Self {
-        let standoff_mm = if sample.check_only { 0.0 } else { world.job.stock_mm };
+    fn new(world: &'a World<'a>, sample: &Sample, cut: Cut) -> Self {
         let line = Line { origin: sample.point, direction: sample.normal };
-        Self { world, line, cut: Cut { standoff_mm, by: None, rapid: None, holder: None }, in_order: false }
+        Self { world, line, cut, in_order: false }
     }
 
     /// The height to which a candidate would cut, where that is lower than it is now.

@@ -11,13 +11,18 @@ use super::job::{Cut, Sample};
 use osculate_geom::{Point3, Surface, Unit3, Uv};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// What lies beneath is nearer to another face than this share of the depth that is asked for; at an inner edge it is as far.
 const NEARER: f64 = 0.999;
 /// Steps towards the nearest point of another face.
 const STEPS: usize = 8;
-/// Places along what was taken beneath a sample.
-const BENEATH: u32 = 8;
+/// Pieces of what was taken beneath a sample at first ...
+const BENEATH: u32 = 4;
+/// ... and places in it that are looked at, at most.
+const LOOKS: usize = 128;
+/// What is said to be deep may be this share of the limit less.
+const CLOSE: f64 = 0.02;
 /// Depths below this share of the limit are left as they seem.
 const DEEP: f64 = 0.25;
 /// Samples that are measured anew at most: beyond it a program is far off wherever it goes.
@@ -37,24 +42,33 @@ pub fn beside_edges(
     samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
 }
 
+/// Of each box of space the samples in it: face and place on it.
+type Hints = HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>;
+
 /// All faces of a goal, found by place.
 pub(super) struct Edges<'a> {
     surfaces: &'a [&'a dyn Surface],
+    samples: &'a [Sample],
     side_mm: f64,
-    /// Of each box of space the samples in it: face and place on it.
-    hints: HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>,
+    /// Made when they are first asked for: where nothing is deep, nobody asks.
+    hints: OnceLock<Hints>,
 }
 
 impl<'a> Edges<'a> {
     /// Faces by number, with samples that are no farther apart than this.
-    pub fn new(surfaces: &'a [&'a dyn Surface], samples: &[Sample], apart_mm: f64) -> Self {
-        let mut out = Self { surfaces, side_mm: 2.0 * apart_mm, hints: HashMap::new() };
-        // Places on fixtures are on no face.
-        for s in samples.iter().filter(|s| (s.face as usize) < surfaces.len()) {
-            let key = out.key(&s.point);
-            out.hints.entry(key).or_default().push((s.face, s.uv, s.point));
-        }
-        out
+    pub const fn new(surfaces: &'a [&'a dyn Surface], samples: &'a [Sample], apart_mm: f64) -> Self {
+        Self { surfaces, samples, side_mm: 2.0 * apart_mm, hints: OnceLock::new() }
+    }
+
+    fn hints(&self) -> &Hints {
+        self.hints.get_or_init(|| {
+            let mut out = Hints::new();
+            // Places on fixtures are on no face.
+            for s in self.samples.iter().filter(|s| (s.face as usize) < self.surfaces.len()) {
+                out.entry(self.key(&s.point)).or_default().push((s.face, s.uv, s.point));
+            }
+            out
+        })
     }
 
     fn key(&self, p: &Point3) -> [i64; 3] {
@@ -71,12 +85,13 @@ impl<'a> Edges<'a> {
     /// The distance of a point from faces other than one of them, as far as it is found; looking ends where it is below `enough_mm`.
     fn distance_mm(&self, q: &Point3, face: u32, enough_mm: f64) -> f64 {
         let [x, y, z] = self.key(q);
+        let hints = self.hints();
         // Of each face around, the nearest sample.
         let mut near: Vec<(f64, u32, Uv)> = Vec::new();
         for key in
             (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])))
         {
-            for (other, at, point) in self.hints.get(&key).into_iter().flatten() {
+            for (other, at, point) in hints.get(&key).into_iter().flatten() {
                 if *other == face {
                     continue;
                 }
@@ -99,13 +114,28 @@ impl<'a> Edges<'a> {
         least
     }
 
-    /// How deep the deepest point beneath a sample is that was taken, where the tool went so far along its normal.
-    fn depth_mm(&self, s: &Sample, along_mm: f64) -> f64 {
-        let each = (1..=BENEATH).map(|k| {
-            let t = along_mm * f64::from(k) / f64::from(BENEATH);
-            t.min(self.distance_mm(&(s.point - s.normal.into_inner() * t), s.face, 0.0))
-        });
-        each.fold(0.0, f64::max)
+    /// How deep the deepest point beneath a sample is that was taken, where the tool went so far along its normal: no less, and more by
+    /// a share of the limit at most, as long as looks suffice. Over the depth t along the normal the depth is that of `min(t, d(t))`, and d, a
+    /// distance, changes no faster than t: between two places it is nowhere more than half of the sum of their distances and
+    /// of the way between them.
+    fn depth_mm(&self, s: &Sample, along_mm: f64, limit_mm: f64) -> f64 {
+        let distance = |t: f64| self.distance_mm(&(s.point - s.normal.into_inner() * t), s.face, 0.0);
+        let most = |[a, b]: [(f64, f64); 2]| b.0.min(0.5 * (a.1 + b.1 + b.0 - a.0));
+        let at = |k: u32| along_mm * f64::from(k) / f64::from(BENEATH);
+        let places: Vec<(f64, f64)> = (0..=BENEATH).map(|k| (at(k), distance(at(k)))).collect();
+        let mut pieces: Vec<[(f64, f64); 2]> = places.windows(2).map(|w| [w[0], w[1]]).collect();
+        let mut found = places.iter().map(|p| p.0.min(p.1)).fold(0.0, f64::max);
+        for _ in places.len()..LOOKS {
+            let highest = (0..pieces.len()).max_by(|a, b| most(pieces[*a]).total_cmp(&most(pieces[*b])));
+            let Some(k) = highest.filter(|k| most(pieces[*k]) > found + CLOSE * limit_mm) else { break };
+            let [a, b] = pieces[k];
+            let t = 0.5 * (a.0 + b.0);
+            let middle = (t, distance(t));
+            found = found.max(t.min(middle.1));
+            pieces[k] = [a, middle];
+            pieces.push([middle, b]);
+        }
+        pieces.iter().map(|p| most(*p)).fold(found, f64::max)
     }
 
     /// Measures anew what seems deeper than a share of a limit.
@@ -115,7 +145,7 @@ impl<'a> Edges<'a> {
             let along_mm = limit_mm.min(-c.standoff_mm);
             let own = (s.face as usize) < self.surfaces.len();
             if own && self.is_beside((&s.point, &s.normal), s.face, along_mm) {
-                c.standoff_mm = -self.depth_mm(s, -c.standoff_mm);
+                c.standoff_mm = -self.depth_mm(s, -c.standoff_mm, limit_mm);
             }
         }
     }
@@ -142,4 +172,56 @@ fn nearest_mm(surface: &dyn Surface, from: Uv, q: &Point3) -> f64 {
         at = next;
     }
     if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use osculate_geom::analytic::{Placed, Placement, Plane};
+    use osculate_geom::{Domain, Interval, Vec3, uv};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Beneath a place beside the edge of two planes at any angle, against the distance from the other plane.
+        #[test]
+        fn depths_beside_an_edge_are_no_less_than_the_closed_form(
+            inner_rad in 0.3..2.9f64,
+            e in 0.01..0.4f64,
+            along in 0.02..0.8f64,
+            limit in 0.01..0.2f64,
+        ) {
+            let i = Interval::new(0.0, 6.0);
+            let flat = Plane::new(Domain { u: i, v: i });
+            // The other plane goes down from the edge at x = 6, the material between them.
+            let (sin, cos) = inner_rad.sin_cos();
+            let (down, out) = (Vec3::new(-cos, 0.0, -sin), Vec3::new(sin, 0.0, -cos));
+            let at = Placement::new(Point3::new(6.0, 0.0, 0.0), Unit3::new_normalize(out), Some(down));
+            let wall = Placed { surface: flat.clone(), placement: at };
+            let surfaces: [&dyn Surface; 2] = [&flat, &wall];
+            let sample = |face: u32, at: Uv| {
+                let jet = surfaces[face as usize].jet2(at);
+                let normal = if face == 0 { Vec3::z_axis() } else { Unit3::new_normalize(out) };
+                Sample { point: jet.point, normal, face, uv: at, area_mm2: 0.01, check_only: false }
+            };
+            let own = sample(0, uv(6.0 - e, 3.0));
+            prop_assert!((own.point - Point3::new(6.0 - e, 3.0, 0.0)).norm() < 1e-12);
+            let mut samples = vec![own];
+            for k in 0..60 {
+                for j in 25..36 {
+                    let s = sample(1, uv(0.1 * f64::from(k), 0.1 * f64::from(j)));
+                    prop_assert!(s.point.z < 1e-9);
+                    samples.push(s);
+                }
+            }
+            let edges = Edges::new(&surfaces, &samples, 1.0);
+            let found = edges.depth_mm(&own, along, limit);
+            let beneath = |t: f64| t.min((e * sin - t * cos).abs());
+            let want = (0..=20_000).map(|k| beneath(along * f64::from(k) / 2e4)).fold(0.0, f64::max);
+            prop_assert!(found >= want - 1e-9, "{found} of {want}");
+            // Looks suffice for limits that are not much less than what was taken.
+            if along < 4.0 * limit {
+                prop_assert!(found <= want + CLOSE * limit + 1e-9, "{found} of {want}");
+            }
+        }
+    }
 }

@@ -63,8 +63,6 @@ pub enum GoalStock<'a> {
         blank: Blank<'a>,
         /// How finely it is looked at.
         resolution: Resolution,
-        /// Index of the first motion that goes through it: those before have left it so.
-        from: usize,
         /// What stands on the faces to machine at most as far as they are judged, mm.
         layer_mm: f64,
         /// In words.

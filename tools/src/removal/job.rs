@@ -84,6 +84,12 @@ pub struct Change<'a> {
 }
 
 impl Job<'_> {
+    /// What there is at the samples before the first motion: the whole layer, and none on faces that are not machined.
+    pub(super) fn before_any(&self) -> Vec<Cut> {
+        let height = |s: &Sample| if s.check_only { 0.0 } else { self.stock_mm };
+        self.samples.iter().map(|s| Cut::untouched(height(s))).collect()
+    }
+
     /// Which tool makes a motion, counted from 0.
     pub(super) fn tool_of(&self, motion: u32) -> usize {
         self.changes.partition_point(|c| c.first <= motion as usize)
@@ -114,6 +120,14 @@ pub enum JobError {
     Depth {
         /// The value, mm.
         got: f64,
+    },
+    /// What was left before is not that of the samples.
+    #[error("what was left before is given at {before} of {samples} samples: one for each is needed")]
+    Before {
+        /// Samples.
+        samples: usize,
+        /// Places at which it is given.
+        before: usize,
     },
     /// A motion with a coordinate that is not finite.
     #[error("motion {motion} (block {block}) has a coordinate that is not finite")]
@@ -211,6 +225,12 @@ pub struct Cut {
 }
 
 impl Cut {
+    /// Of a place where so much stands and nothing was yet.
+    #[must_use]
+    pub const fn untouched(standoff_mm: f64) -> Self {
+        Self { standoff_mm, by: None, rapid: None, holder: None }
+    }
+
     /// The same with motions counted from so many motions before.
     pub(super) fn later(self, by: u32) -> Self {
         let touch = |t: Touch| Touch { motion: t.motion + by, ..t };

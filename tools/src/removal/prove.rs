@@ -8,9 +8,11 @@
 use super::density::Hidden;
 use super::goal::{Goal, Gravity, Program};
 use super::job::Cut;
-use super::refine::Measured;
-use super::tally::Tally;
-use super::trial::{LEAST_SAMPLES, Look, ProveError, Trial, changes_of, unbounded};
+use super::refine::{Measured, Refined};
+use super::steps::GoalStep;
+use super::tally::{Limits, Tally};
+use super::tooth::Marks;
+use super::trial::{LEAST_SAMPLES, Look, ProveError, Sampled, Trial, changes_of, unbounded};
 use super::verdict::{Figures, StockFound, Verdict};
 
 /// A limit exceeded this many times by the first look ends the work: what lies closer would not turn the answer, and no plan
@@ -22,8 +24,18 @@ const HOPELESS_UNCUT: f64 = 0.05;
 const GIVEN_UP: u32 = 3;
 /// A first look is this many times as coarse: it costs a twenty-fifth.
 const COARSE: f64 = 5.0;
-/// Shares of the work, for its progress.
-const SHARES: [f64; 3] = [0.05, 0.65, 0.85];
+/// Operations are judged by this many samples of all faces where the whole is too far off for a look at more.
+const OF_STEPS: f64 = 4e5;
+/// Shares of the work, for its progress: raw material where operations are judged, the first look, all of it, and what lies between.
+const SHARES: [f64; 4] = [0.15, 0.2, 0.75, 0.9];
+
+/// What was found of a program and of its operations.
+pub struct Proved {
+    /// The verdict on the whole.
+    pub whole: Verdict,
+    /// The verdict on each operation.
+    pub steps: Vec<Verdict>,
+}
 
 /// Judges a program against a goal.
 ///
@@ -36,19 +48,68 @@ pub fn prove(
     program: Program<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verdict, ProveError> {
+    prove_in_steps(goal, program, (&[], &[]), progress).map(|proved| proved.whole)
+}
+
+/// Judges a program and, when each of them ends, its operations: by what is measured for the whole. `stops` are the numbers of motions
+/// after which operations end, ascending; `steps` are none, or one for each stop. The verdict on the whole is that of [`prove`].
+///
+/// # Errors
+/// As [`prove`].
+pub fn prove_in_steps(
+    goal: &Goal<'_>,
+    program: Program<'_>,
+    (stops, steps): (&[usize], &[GoalStep<'_>]),
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Proved, ProveError> {
     check(goal, &program)?;
-    let changed = changes_of(goal, &program);
+    let ordered = stops.windows(2).all(|w| w[0] <= w[1]) && stops.iter().all(|s| *s <= program.motions.len());
+    if !ordered || !(steps.is_empty() || steps.len() == stops.len()) {
+        return Err(ProveError::Stops { stops: stops.len(), steps: steps.len() });
+    }
+    let within = |k: usize, f: f64| {
+        let begin = if k == 0 { 0.0 } else { SHARES[k - 1] };
+        progress(begin + (SHARES.get(k).unwrap_or(&1.0) - begin) * f);
+    };
+    let changed = changes_of(goal, &program, stops);
     let trial = Trial::new(goal, program, &changed);
+    let mut material = None;
+    if !steps.is_empty() {
+        let touch = |s: &GoalStep<'_>| Limits::new(s.goal.limits.scallop_mm, s.goal.limits.gouge_mm);
+        let touches = steps.iter().map(|s| touch(s).collision_mm);
+        let touch_mm = touches.fold(trial.limits.collision_mm, f64::min);
+        material = trial.carve((stops, touch_mm), &|f| within(0, f))?;
+    }
     let mut notes = Vec::new();
     let spacing = trial.spacing_mm(&mut notes);
-    let mut look = trial.look(COARSE * spacing, &|f| progress(SHARES[0] * f))?;
+    let mut look = trial.look(COARSE * spacing, &[], (&mut |_, _, _| Ok(()), &|f| within(1, f)))?;
     let coarse = is_hopeless(&trial, &look.tally);
+    let mut found: Vec<Option<StockFound>> = match &mut material {
+        Some(m) => std::mem::take(&mut m.at_stops).into_iter().map(Some).collect(),
+        None => steps.iter().map(|_| None).collect(),
+    };
+    let seats: Vec<_> = steps.iter().map(|s| s.seats(goal)).collect();
+    let mut judged: Vec<Option<Verdict>> = steps.iter().map(|_| None).collect();
+    let mut at_stop = |k: usize, sampled: &Sampled, cuts: &[Cut]| {
+        if let Some(seats) = seats.get(k).and_then(Option::as_ref) {
+            let stock = found[k].take();
+            judged[k] = Some(steps[k].on_samples_of_all((&program, seats), (sampled, cuts), stock)?);
+        }
+        Ok(())
+    };
     if !coarse {
-        let rest = SHARES[1] - SHARES[0];
-        look = trial.look(spacing, &|f| progress(SHARES[0] + rest * f))?;
+        look = trial.look(spacing, stops, (&mut at_stop, &|f| within(2, f)))?;
         trial.give_up(&mut look, spacing)?;
+    } else if seats.iter().any(Option::is_some) {
+        // What is far off in the end need not be so where an operation ends.
+        let spacing = trial.spacing_of_mm(OF_STEPS).max(spacing);
+        trial.look(spacing, stops, (&mut at_stop, &|f| within(2, f)))?;
     }
-    let mut marks = trial.marks(&look.measured.samples, &look.measured.cuts);
+    let apart = steps.iter().zip(&mut judged).zip(&mut found).filter(|((_, judged), _)| judged.is_none());
+    for ((step, judged), found) in apart {
+        *judged = Some(step.on_its_own(&program, found.take(), &|_| {})?);
+    }
+    let mut marks = trial.marks(&look.measured, usize::MAX);
     let crest_median_mm = trial.crests(&look.measured)?;
     let bounds = goal.looks.between && !coarse;
     let mut refined = if bounds { trial.refine(&mut look, &mut marks)? } else { unbounded() };
@@ -60,9 +121,55 @@ pub fn prove(
         trial.give_up(&mut look, spacing)?;
         refined = trial.refine(&mut look, &mut marks)?;
     }
-    progress(SHARES[2]);
-    let stock = if coarse { None } else { trial.carve(&|f| progress(SHARES[2] + (1.0 - SHARES[2]) * f))? };
+    within(3, 1.0);
+    let stock = match material {
+        _ if coarse => None,
+        Some(m) => Some(m.whole),
+        None => trial.carve((&[], trial.limits.collision_mm), &|f| within(4, f))?.map(|m| m.whole),
+    };
     progress(1.0);
+    let whole = concluded(&trial, look, (&marks, crest_median_mm), Closing { coarse, refined, stock, notes });
+    Ok(Proved { whole, steps: judged.into_iter().flatten().collect() })
+}
+
+/// What a verdict is made of beside a look.
+pub(super) struct Closing {
+    /// Nothing was looked at closer.
+    pub coarse: bool,
+    pub refined: Refined,
+    pub stock: Option<StockFound>,
+    pub notes: Vec<String>,
+}
+
+/// The verdict by a first look and, where that is not far off, another: not between the samples, with what was found of raw material.
+pub(super) fn looked_at(
+    trial: &Trial<'_>,
+    stock: Option<StockFound>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Verdict, ProveError> {
+    let mut notes = Vec::new();
+    let spacing = trial.spacing_mm(&mut notes);
+    let none = &mut |_: usize, _: &Sampled, _: &[Cut]| Ok(());
+    let mut look = trial.look(COARSE * spacing, &[], (none, &|_| {}))?;
+    let coarse = is_hopeless(trial, &look.tally);
+    if !coarse {
+        look = trial.look(spacing, &[], (none, progress))?;
+        trial.give_up(&mut look, spacing)?;
+    }
+    let marks = trial.marks(&look.measured, usize::MAX);
+    let crest_median_mm = trial.crests(&look.measured)?;
+    let closing = Closing { coarse, refined: unbounded(), stock, notes };
+    Ok(concluded(trial, look, (&marks, crest_median_mm), closing))
+}
+
+/// The verdict by what was found.
+pub(super) fn concluded(
+    trial: &Trial<'_>,
+    look: Look,
+    (marks, crest_median_mm): (&Marks, f64),
+    Closing { coarse, refined, stock, mut notes }: Closing,
+) -> Verdict {
+    let goal = trial.goal;
     let Look { measured, tally, density, lost } = look;
     let Measured { samples, patches, cuts } = measured;
     let bend = patches.iter().flatten().map(|p| p.convex_per_mm.max(p.concave_per_mm)).fold(0.0, f64::max);
@@ -89,7 +196,7 @@ pub fn prove(
     let (answer, why) = trial.answer(&figures, refined.left_out);
     let told = goal.control.remarks.iter().filter(|r| r.gravity == Gravity::Told).map(|r| r.text.clone());
     let remarks = told.chain(notes).collect();
-    Ok(Verdict {
+    Verdict {
         answer,
         only: trial.only(),
         at_samples: goal.limits.at_samples,
@@ -100,26 +207,11 @@ pub fn prove(
         figures,
         samples,
         cuts,
-    })
-}
-
-/// Moves the tools through the declared raw material, whatever else may hold: what is left of it is where the next operation begins. None
-/// where none is declared.
-///
-/// # Errors
-/// As [`prove`].
-pub fn carve(
-    goal: &Goal<'_>,
-    program: Program<'_>,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<Option<StockFound>, ProveError> {
-    check(goal, &program)?;
-    let changed = changes_of(goal, &program);
-    Trial::new(goal, program, &changed).carve(progress)
+    }
 }
 
 /// Refuses what cannot be judged.
-fn check(goal: &Goal<'_>, program: &Program<'_>) -> Result<(), ProveError> {
+pub(super) fn check(goal: &Goal<'_>, program: &Program<'_>) -> Result<(), ProveError> {
     let (motions, times) = (program.motions.len(), program.times_min.len());
     if motions == 0 {
         return Err(ProveError::NoMotion);

@@ -122,7 +122,7 @@ pub(super) fn refine_beside(
             measured.divide(surfaces, from + of_one[0].0, of_one.iter().map(|p| p.1));
         }
         let samples = &measured.samples[first..];
-        measured.cuts.extend(cut_by(&Job { samples, ..*job }, &ways, &|_| ())?);
+        measured.cuts.extend(cut_by(&Job { samples, ..*job }, &ways)?);
         let new = first..measured.samples.len();
         let gouge_mm = wanted.gouge_mm;
         if let Some(edges) = edges {

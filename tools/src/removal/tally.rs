@@ -64,6 +64,8 @@ pub struct Worst {
     pub uv: Uv,
     /// The block that did it; None where nothing did (uncut).
     pub block: Option<u32>,
+    /// The motion, by its index.
+    pub motion: Option<u32>,
 }
 
 /// A bin of the histogram of standoffs.
@@ -192,13 +194,13 @@ pub fn tally(
     };
     for (k, (sample, cut)) in samples.iter().zip(cuts).enumerate() {
         let (height, area) = (cut.standoff_mm, sample.area_mm2);
-        let block = cut.by.map(|by| by.block);
+        let by = cut.by.map(|by| Maker { motion: by.motion, block: by.block });
         if height < 0.0 {
             v.gouge_max_mm = v.gouge_max_mm.max(-height);
             if -height > limits.gouge_mm {
                 v.gouge_area_mm2 += area;
             }
-            places.see(Kind::Gouge, -height, k, block);
+            places.see(Kind::Gouge, -height, k, by);
         }
         for (kind, touch, max) in
             [(Kind::Holder, cut.holder, &mut v.holder_max_mm), (Kind::Rapid, cut.rapid, &mut v.rapid_max_mm)]
@@ -206,7 +208,8 @@ pub fn tally(
             if let Some(touch) = touch {
                 *max = max.max(touch.removed_mm);
                 if touch.removed_mm > limits.collision_mm {
-                    places.see(kind, touch.removed_mm, k, Some(touch.block));
+                    let by = Maker { motion: touch.motion, block: touch.block };
+                    places.see(kind, touch.removed_mm, k, Some(by));
                 }
             }
         }
@@ -220,12 +223,12 @@ pub fn tally(
         if cut.by.is_none() || height > limits.uncut_mm {
             v.uncut_area_mm2 += area;
             v.uncut_samples += 1;
-            places.see(Kind::Uncut, height, k, block);
+            places.see(Kind::Uncut, height, k, by);
         } else {
             v.scallop_max_mm = v.scallop_max_mm.max(height);
             left.push((height, area));
             if height > 0.0 {
-                places.see(Kind::Scallop, height, k, block);
+                places.see(Kind::Scallop, height, k, by);
             }
         }
     }
@@ -268,8 +271,15 @@ fn bins(limits: &Limits) -> Vec<Bin> {
 
 const KINDS: [Kind; 5] = [Kind::Gouge, Kind::Holder, Kind::Rapid, Kind::Uncut, Kind::Scallop];
 
-/// A place seen: value, sample, block.
-type Seen = (f64, usize, Option<u32>);
+/// What did it.
+#[derive(Clone, Copy)]
+struct Maker {
+    motion: u32,
+    block: u32,
+}
+
+/// A place seen: value, sample, and what did it.
+type Seen = (f64, usize, Option<Maker>);
 
 /// What was seen, by kind.
 struct Places<'a> {
@@ -278,9 +288,9 @@ struct Places<'a> {
 }
 
 impl Places<'_> {
-    fn see(&mut self, kind: Kind, value: f64, sample: usize, block: Option<u32>) {
+    fn see(&mut self, kind: Kind, value: f64, sample: usize, by: Option<Maker>) {
         let k = KINDS.iter().position(|x| *x == kind).expect("every kind is listed");
-        self.of[k].push((value, sample, block));
+        self.of[k].push((value, sample, by));
     }
 
     fn worst(self, most: usize) -> Vec<Worst> {
@@ -292,7 +302,7 @@ impl Places<'_> {
             seen.retain(|x| x.0 >= 0.5 * top);
             seen.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let first = out.len();
-            for (value_mm, sample, block) in seen {
+            for (value_mm, sample, by) in seen {
                 if out.len() - first >= most {
                     break;
                 }
@@ -300,7 +310,8 @@ impl Places<'_> {
                 if out[first..].iter().any(|w: &Worst| (w.at - s.point).norm() < apart) {
                     continue;
                 }
-                out.push(Worst { kind, value_mm, at: s.point, face: s.face, uv: s.uv, block });
+                let (block, motion) = (by.map(|b| b.block), by.map(|b| b.motion));
+                out.push(Worst { kind, value_mm, at: s.point, face: s.face, uv: s.uv, block, motion });
             }
         }
         out

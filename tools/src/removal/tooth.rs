@@ -43,9 +43,13 @@ pub(super) struct Teeth<'a> {
 }
 
 impl Teeth<'_> {
-    /// The marks at samples, mm, in their order; zero where no feed move of the cutter made the surface.
-    pub fn marks(&self, samples: &[Sample], cuts: &[Cut], stock_mm: f64) -> Vec<f64> {
-        samples.par_iter().zip(cuts).map(|(s, c)| self.mark(s, c, stock_mm)).collect()
+    /// The marks at samples, mm, in their order; zero where no feed move of the cutter made the surface, and where they are not looked
+    /// for: at one sample in so many they are.
+    pub fn marks(&self, (samples, cuts): (&[Sample], &[Cut]), stock_mm: f64, stride: usize) -> Vec<f64> {
+        let mark = |(k, (s, c)): (usize, (&Sample, &Cut))| {
+            if k.is_multiple_of(stride) { self.mark(s, c, stock_mm) } else { 0.0 }
+        };
+        samples.par_iter().zip(cuts).enumerate().map(mark).collect()
     }
 
     fn mark(&self, sample: &Sample, cut: &Cut, stock_mm: f64) -> f64 {

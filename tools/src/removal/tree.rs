@@ -72,6 +72,11 @@ impl Ways {
         Self::of(job.motions, &Body::all(job), job.changes.iter().map(|c| c.first))
     }
 
+    /// How many tools there are, one after the other.
+    pub fn tools(&self) -> usize {
+        self.trees.len()
+    }
+
     /// Calls `found` with every piece that may bring a body of its tool to the target, with the body and its place among `bodies`,
     /// which are those of all tools.
     pub fn near<'b>(
@@ -84,6 +89,17 @@ impl Ways {
         for tree in &self.trees {
             tree.near(bodies, target, which, &mut found);
         }
+    }
+
+    /// The same of one of the tools.
+    pub fn near_of<'b>(
+        &self,
+        tool: usize,
+        bodies: &[Body<'b>],
+        (target, which): (&Target, Which),
+        mut found: impl FnMut(u32, &Body<'b>, usize),
+    ) {
+        self.trees[tool].near(bodies, target, which, &mut found);
     }
 }
 

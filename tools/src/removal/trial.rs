@@ -2,21 +2,20 @@
 
 use super::boundary::sample_boundary;
 use super::crest::crests;
-use super::cut::cut;
+use super::cut::{Cutting, cut};
 use super::density::{Density, Hidden};
 use super::edges::Edges;
-use super::goal::{Goal, GoalFace, GoalFixture, GoalStock, GoalTool, Program};
+use super::goal::{Goal, GoalFace, GoalFixture, GoalTool, Program};
 use super::hidden::Wanted;
-use super::job::{Body, Change, Cut, Job, JobError, Sample};
+use super::job::{Change, Cut, Job, JobError, Sample};
 use super::refine::{Measured, Refined, refine_beside};
 use super::sampling::{Patch, Sampling, SamplingError, sample_surface};
-use super::stock::{BlankError, Carved, Stock, StockJob, Upper};
+use super::stock::BlankError;
 use super::tally::{Limits, Tally, TallyError, tally};
 use super::tooth::{Edge, Marks, Teeth};
+use super::tree::Ways;
 use super::unreached::give_up;
-use super::verdict::StockFound;
 use osculate_geom::Surface;
-use std::sync::Arc;
 
 /// Samples across a strip that a ball of the cutter's radius leaves on a plane.
 const SAMPLES_ACROSS: f64 = 10.0;
@@ -54,6 +53,14 @@ pub enum ProveError {
     Samples {
         /// What was given.
         got: usize,
+    },
+    /// Operations that are not those of the program.
+    #[error("{steps} operations for a program that has {stops} in ascending order: one for each, or none")]
+    Stops {
+        /// Ends of operations in the program.
+        stops: usize,
+        /// Operations.
+        steps: usize,
     },
     /// Times that are not those of the motions.
     #[error("{times} times for {motions} motions: one for each, or none")]
@@ -106,19 +113,36 @@ pub(super) struct Trial<'a> {
     pub limits: Limits,
     /// Width of a strip that a ball of the smallest cutter's radius leaves on a plane, mm.
     pub strip_mm: f64,
-    /// Where tools take over from the first.
+    /// Where tools take over from the first, or go on after a stop.
     changes: &'a [Change<'a>],
 }
 
-/// Where tools take over from the first.
-pub(super) fn changes_of<'a>(goal: &Goal<'a>, program: &Program<'_>) -> Vec<Change<'a>> {
-    let later = goal.tools.iter().skip(1);
-    let change = |(tool, first): (&GoalTool<'a>, &usize)| Change {
-        first: *first,
-        cutter: tool.cutter,
-        holder: tool.holder,
+/// What hears of samples and what was left at them when a stop is reached, with the place of the stop.
+pub(super) type AtStop<'a> = &'a mut dyn FnMut(usize, &Sampled, &[Cut]) -> Result<(), ProveError>;
+
+/// Samples on faces, an even distance apart.
+pub(super) struct Sampled {
+    pub samples: Vec<Sample>,
+    pub patches: Vec<Option<Patch>>,
+    pub density: Density,
+    /// What could not be looked at.
+    pub lost: Vec<String>,
+}
+
+/// Where tools take over from the first: at the changes of the program, and once more the same one at every stop at which something is
+/// looked at.
+pub(super) fn changes_of<'a>(goal: &Goal<'a>, program: &Program<'_>, stops: &[usize]) -> Vec<Change<'a>> {
+    let mut firsts: Vec<usize> = program.changes.to_vec();
+    let more = stops.iter().filter(|s| **s > 0 && **s < program.motions.len() && !program.changes.contains(s));
+    firsts.extend(more);
+    firsts.sort_unstable();
+    firsts.dedup();
+    let change = |first: usize| {
+        // A tool that makes no motion is passed over.
+        let tool = &goal.tools[program.tool_of(first).min(goal.tools.len() - 1)];
+        Change { first, cutter: tool.cutter, holder: tool.holder }
     };
-    later.zip(program.changes).map(change).collect()
+    firsts.into_iter().map(change).collect()
 }
 
 impl<'a> Trial<'a> {
@@ -135,16 +159,21 @@ impl<'a> Trial<'a> {
         face < self.goal.machined.len()
     }
 
-    /// How far samples are to be apart.
-    pub fn spacing_mm(&self, notes: &mut Vec<String>) -> f64 {
-        let wanted = self.goal.looks.spacing_mm.unwrap_or(self.strip_mm / SAMPLES_ACROSS);
+    /// How far so many samples of all faces are apart.
+    pub fn spacing_of_mm(&self, samples: f64) -> f64 {
         let area = |k: usize| {
             let coarser = if self.is_machined(k) { 1.0 } else { CHECK_COARSER * CHECK_COARSER };
             osculate_geom::quadrature::area(self.surfaces[k], 1e-2).value / coarser
         };
         let whole: f64 = (0..self.surfaces.len()).map(area).filter(|a| a.is_finite()).sum();
+        (whole / samples).sqrt()
+    }
+
+    /// How far samples are to be apart.
+    pub fn spacing_mm(&self, notes: &mut Vec<String>) -> f64 {
+        let wanted = self.goal.looks.spacing_mm.unwrap_or(self.strip_mm / SAMPLES_ACROSS);
         let max = self.goal.looks.max_samples;
-        let spacing = wanted.max((whole / (MOST_EVEN * max as f64)).sqrt());
+        let spacing = wanted.max(self.spacing_of_mm(MOST_EVEN * max as f64));
         if spacing > 1.01 * wanted {
             notes.push(format!(
                 "warning: verification: samples are {spacing:.4} mm apart instead of {wanted:.4} mm to stay within {max} of them"
@@ -171,13 +200,11 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Samples an even distance apart, and what is left at them.
-    pub fn look(&self, spacing: f64, progress: &(dyn Fn(f64) + Sync)) -> Result<Look, ProveError> {
+    /// Samples an even distance apart.
+    fn sampled(&self, spacing: f64) -> Result<Sampled, ProveError> {
         let max = self.goal.looks.max_samples;
-        let mut samples: Vec<Sample> = Vec::new();
-        let mut patches: Vec<Option<Patch>> = Vec::new();
+        let (mut samples, mut patches, mut lost) = (Vec::new(), Vec::new(), Vec::new());
         let mut density: Option<Density> = None;
-        let mut lost = Vec::new();
         for (k, face) in self.faces.iter().enumerate() {
             let check_only = !self.is_machined(k);
             let step = if check_only { CHECK_COARSER * spacing } else { spacing };
@@ -212,9 +239,44 @@ impl<'a> Trial<'a> {
             }
             patches.resize(samples.len(), None);
         }
-        let density = density.ok_or(ProveError::NoFace)?;
-        let mut cuts = cut(&Job { samples: &samples, ..self.job_without() }, progress)?;
-        self.edges(&samples, spacing).measure(&samples, &mut cuts, self.limits.gouge_mm);
+        Ok(Sampled { samples, patches, density: density.ok_or(ProveError::NoFace)?, lost })
+    }
+
+    /// Samples an even distance apart, and what is left at them; at stops, by the motions that come after each, on the way.
+    pub fn look(
+        &self,
+        spacing: f64,
+        stops: &[usize],
+        (at_stop, progress): (AtStop<'_>, &(dyn Fn(f64) + Sync)),
+    ) -> Result<Look, ProveError> {
+        let sampled = self.sampled(spacing)?;
+        let job = Job { samples: &sampled.samples, ..self.job_without() };
+        let mut cuts = job.before_any();
+        let ways = Ways::of_job(&job)?;
+        let cutting = Cutting::new(&job, &ways)?;
+        let mut done = 0;
+        for (k, stop) in stops.iter().enumerate() {
+            let tools = self.tools_before(*stop);
+            let share = |x: f64| progress((done as f64 + x * (tools - done) as f64) / ways.tools() as f64);
+            cutting.go(done..tools, &mut cuts, &share);
+            at_stop(k, &sampled, &cuts)?;
+            done = tools;
+        }
+        let share = |x: f64| progress((done as f64 + x * (ways.tools() - done) as f64) / ways.tools() as f64);
+        cutting.go(done..ways.tools(), &mut cuts, &share);
+        drop(cutting);
+        self.seen(sampled, cuts)
+    }
+
+    /// How many of the tools, those that go on after stops counted, begin before a motion.
+    fn tools_before(&self, motion: usize) -> usize {
+        1 + self.changes.partition_point(|c| c.first < motion)
+    }
+
+    /// Samples with what was left at them, depths measured beside edges too, and what fixtures met.
+    pub fn seen(&self, sampled: Sampled, mut cuts: Vec<Cut>) -> Result<Look, ProveError> {
+        let Sampled { mut samples, mut patches, density, lost } = sampled;
+        self.edges(&samples, density.spacing_mm).measure(&samples, &mut cuts, self.limits.gouge_mm);
         for fixture in &self.goal.fixtures {
             cuts.extend(self.met(fixture)?);
             samples.extend(&fixture.samples);
@@ -225,7 +287,7 @@ impl<'a> Trial<'a> {
     }
 
     /// The faces with their outer edges, found by samples so far apart.
-    fn edges(&self, samples: &[Sample], spacing: f64) -> Edges<'_> {
+    fn edges<'s>(&'s self, samples: &'s [Sample], spacing: f64) -> Edges<'s> {
         Edges::new(&self.surfaces, samples, CHECK_COARSER * spacing)
     }
 
@@ -237,7 +299,7 @@ impl<'a> Trial<'a> {
         let first = self.changes.partition_point(|c| c.first <= begin);
         let later = self.changes[first..].iter().take_while(|c| c.first < end);
         let changes: Vec<Change<'_>> = later.map(|c| Change { first: c.first - begin, ..*c }).collect();
-        let tool = &self.goal.tools[first];
+        let tool = &self.goal.tools[self.program.tool_of(begin)];
         let work = Job {
             cutter: tool.cutter,
             holder: tool.holder,
@@ -288,7 +350,8 @@ impl<'a> Trial<'a> {
         (judged && per_min > 0.0 && per_min.is_finite()).then(|| 1.0 / per_min)
     }
 
-    pub fn marks(&self, samples: &[Sample], cuts: &[Cut]) -> Marks {
+    /// The marks at samples; at so many of them at most, evenly chosen.
+    pub fn marks(&self, Measured { samples, cuts, .. }: &Measured, most: usize) -> Marks {
         let tools: Option<Vec<Edge<'_>>> = self
             .goal
             .tools
@@ -300,48 +363,8 @@ impl<'a> Trial<'a> {
         };
         let teeth = Teeth { tools, program: self.program };
         let stock_mm = self.goal.stock.layer_mm();
-        Marks { each: teeth.marks(samples, cuts, stock_mm), known: true }
-    }
-
-    /// Moves the tool through the declared raw material.
-    pub fn carve(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<Option<StockFound>, ProveError> {
-        let GoalStock::Declared { blank, resolution, from, .. } = &self.goal.stock else { return Ok(None) };
-        let made = Stock::fill(blank, resolution)?;
-        let mut stock = made.stock;
-        let before = stock.volume();
-        let touch_mm = self.limits.collision_mm;
-        let (all, changes) = (self.program.motions, self.program.changes);
-        let mut carved = Carved::default();
-        for (k, tool) in self.goal.tools.iter().enumerate() {
-            let begin = if k == 0 { 0 } else { changes[k - 1] }.max(*from);
-            let end = changes.get(k).copied().unwrap_or(all.len());
-            if begin >= end {
-                continue;
-            }
-            let mut uppers = Vec::new();
-            let mut above_mm = tool.flutes.length_mm();
-            for (body, kind) in [(tool.shank, Body::Shank), (tool.holder, Body::Holder)] {
-                if let Some(body) = body {
-                    uppers.push(Upper { body, above_mm, kind });
-                    above_mm += body.length_mm();
-                }
-            }
-            let work = StockJob { cutter: tool.flutes, uppers: &uppers, motions: &all[begin..end], touch_mm };
-            let share = |f: f64| {
-                (begin as f64 + f * (end - begin) as f64 - *from as f64) / (all.len() - from).max(1) as f64
-            };
-            carved.follow(stock.carve(&work, &|f| progress(share(f)))?, begin);
-        }
-        Ok(Some(StockFound {
-            cell_mm: stock.cell_mm(),
-            coarsened_mm: made.coarsened,
-            rays: stock.rays(),
-            bounds: *stock.bounds(),
-            before,
-            left: stock.volume(),
-            carved,
-            stock: Arc::new(stock),
-        }))
+        let stride = samples.len().div_ceil(most).max(1);
+        Marks { each: teeth.marks((samples, cuts), stock_mm, stride), known: true }
     }
 
     /// Adds samples where limits may be exceeded between those there are. What comes back of scallops is what nothing stands above
@@ -358,9 +381,8 @@ impl<'a> Trial<'a> {
         let max = self.goal.looks.max_samples;
         let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
         let lots = marks.lots();
-        let edges =
-            Edges::new(&self.surfaces, &look.measured.samples, CHECK_COARSER * look.density.spacing_mm);
         let Measured { samples, patches, cuts } = std::mem::take(&mut look.measured);
+        let edges = self.edges(&samples, look.density.spacing_mm);
         let (mut all, mut more) = (Measured::default(), Measured::default());
         let mut in_order = Vec::with_capacity(samples.len());
         let mut refined = Refined { added: 0, left_out: 0, ..unbounded() };
@@ -399,7 +421,7 @@ impl<'a> Trial<'a> {
             all.patches.append(&mut lot.patches);
             all.cuts.append(&mut lot.cuts);
         }
-        in_order.extend(self.marks(&more.samples, &more.cuts).each);
+        in_order.extend(self.marks(&more, usize::MAX).each);
         marks.each = in_order;
         all.samples.append(&mut more.samples);
         all.patches.append(&mut more.patches);

@@ -81,7 +81,8 @@ fn too_deep_over_one_face_is_no_deeper_beside_its_edge() {
         // Along the wall's normal it is 0.08 mm at a depth of 0.001 mm.
         assert_eq!(v.answer(), Answer::Held, "{depth}: {v}");
         let found = v.figures().tally.gouge_max_mm;
-        assert!((found - depth).abs() < 1e-6, "{depth}: {found}");
+        // No less, and more by a fiftieth of the limit at most.
+        assert!(found > depth - 1e-6 && found < depth + 0.025 * GOUGE_MM, "{depth}: {found}");
     }
 }
 

@@ -4,10 +4,10 @@
 //! million points beside half and a quarter of it: what a point costs is to stay the same.
 
 use crate::cmd::{Failure, write};
+use crate::measured;
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
 
 const PLANE: &str = "builtin = { kind = \"plane\", half_size_mm = 50 }";
 const DISH: &str =
@@ -31,28 +31,10 @@ fn one(name: &str, text: &str, program: &Path, place: &Path) -> Result<(), Failu
     let folder = place.join(name.replace([' ', ','], "-"));
     let file = folder.join("job.toml");
     write(&file, text)?;
-    let begun = Instant::now();
-    let mut child = Command::new(program)
-        .arg("plan")
-        .arg(&file)
-        .arg("--out")
-        .arg(&folder)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(|why| Failure::Read { path: program.to_path_buf(), why })?;
-    let mut memory = String::from("-");
-    // The system keeps the greatest memory of a running program; without such a system there is none to show.
-    let status = format!("/proc/{}/status", child.id());
-    while child.try_wait().is_ok_and(|done| done.is_none()) {
-        if let Ok(text) = std::fs::read_to_string(&status)
-            && let Some(line) = text.lines().find_map(|l| l.strip_prefix("VmHWM:"))
-        {
-            line.trim().clone_into(&mut memory);
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let wall_s = begun.elapsed().as_secs_f64();
+    let mut plan = Command::new(program);
+    plan.arg("plan").arg(&file).arg("--out").arg(&folder);
+    let ran = measured::run(plan)?;
+    let (wall_s, memory) = (ran.wall_s, ran.memory_mb.map_or("-".to_owned(), |mb| format!("{mb:.0} MB")));
     let text = std::fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
     let s: Value = serde_json::from_str(&text).unwrap_or_default();
     let n = |v: &Value, digits: usize| v.as_f64().map_or("-".to_owned(), |x| format!("{x:.digits$}"));

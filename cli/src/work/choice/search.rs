@@ -16,7 +16,7 @@ use crate::work::program::{Planned, Posted, WallS};
 use osculate_geom::Surface;
 use osculate_productivity::compare::{Around, Axes, Candidate, Setting, Tool, screen};
 use osculate_productivity::ideal::Patch;
-use osculate_productivity::plan::Strategy;
+use osculate_productivity::plan::{Passes, Strategy};
 
 /// Candidates that are planned at most, and while none is known to hold.
 const MOST_PLANS: usize = 16;
@@ -373,7 +373,10 @@ impl<'a> Choice<'a> {
                 return Ok(State::Out(why));
             }
         };
-        let linked = passes::linked(job, self.faces, &passes, &job.cutter())?;
+        let Passes { passes, diagnostics } = passes;
+        let ordered = passes::in_order(job, self.faces, passes.into())?;
+        let linked = passes::linked(job, self.faces, &ordered)?;
+        let passes = Passes { passes: ordered.passes, diagnostics };
         self.entries[k].figures = Some(Figures {
             passes: passes.passes.len(),
             points: linked.path.moves.len(),
@@ -394,6 +397,7 @@ impl<'a> Choice<'a> {
         let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
         Ok(State::Planned(Box::new(Planned {
             passes,
+            skipped: ordered.skipped,
             linked,
             strategy,
             lean,

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::{Part, area};
+use crate::part::{LoadedFace, Part, area};
 use crate::work::stock::RawMaterial;
 use osculate_geom::{Point3, Unit3};
 use osculate_productivity::plan::Linked;
@@ -10,12 +10,18 @@ use osculate_tools::Cutter;
 use osculate_tools::cl::Motion;
 use osculate_tools::removal::stock::{Stock, StockJob, Upper};
 use osculate_tools::removal::{
-    self, Body, Change, Limits, Sample, Swept, cut, sample_boundary, sample_surface,
+    self, Body, Change, Cut, Limits, Sample, Swept, cut, cut_on, sample_boundary, sample_surface,
 };
 use serde::Serialize;
+use std::sync::Arc;
 
-/// Places at which it is looked how high material stands on the faces of an operation.
+/// Places at which it is looked how high material stands on the faces of an operation, along the axis that its tool keeps.
 const PLACES: f64 = 8000.0;
+/// Places on all faces of the part at which it is known how high material stands, and on a face at least.
+const GROUND: f64 = 16_000.0;
+const OF_A_FACE: f64 = 250.0;
+/// Most places on one face.
+const MOST_OF_A_FACE: usize = 1_000_000;
 /// Places at which rest is looked for, at most ...
 const REST_PLACES: f64 = 400_000.0;
 /// ... so far apart, of its overlap.
@@ -28,8 +34,6 @@ const PLUNGE: f64 = 0.5;
 const SEEN: f64 = 0.05;
 /// Area that may stand higher under a tool that leans.
 const APART: f64 = 0.02;
-/// Up to so many cells of the stock heights are asked of the tools themselves.
-const NEAR_CELLS: f64 = 4.0;
 /// Where less than this stands nothing is said to stand, mm: a layer of nothing has no place in a job.
 const LEAST_MM: f64 = 0.05;
 
@@ -38,9 +42,50 @@ const LEAST_MM: f64 = 0.05;
 pub struct Behind {
     motions: Vec<Swept>,
     /// With the first motion of each.
-    tools: Vec<(usize, Cutter, Option<Cutter>)>,
+    tools: Vec<(usize, Cutter)>,
     /// What is left of the raw material, where some is declared.
     stock: Option<Stock>,
+    ground: Ground,
+}
+
+/// How high material stands on the faces of the part, as the last operation has left it.
+#[derive(Default)]
+struct Ground {
+    /// Ids of faces by their numbers in the samples.
+    faces: Vec<String>,
+    samples: Vec<Sample>,
+    /// How far the raw material goes beyond each sample, mm.
+    beyond_mm: Vec<f64>,
+    cuts: Vec<Cut>,
+}
+
+impl Ground {
+    fn of(part: &Part, raw: &RawMaterial<'_>) -> Result<Self, Failure> {
+        let whole: f64 = part.faces.iter().map(area).sum();
+        let even_mm = (whole / GROUND).sqrt();
+        let mut samples = Vec::new();
+        for (face, k) in part.faces.iter().zip(0u32..) {
+            samples.extend(samples_of(face, k, even_mm.min((area(face) / OF_A_FACE).sqrt()))?);
+        }
+        let beyond_mm: Vec<f64> = samples.iter().map(|s| raw.beyond_mm(&s.point, &s.normal)).collect();
+        let cuts = beyond_mm.iter().map(|b| Cut::untouched(b.max(LEAST_MM))).collect();
+        Ok(Self { faces: part.faces.iter().map(|f| f.id.clone()).collect(), samples, beyond_mm, cuts })
+    }
+
+    /// Goes on with the motions of one tool.
+    fn take(&mut self, cutter: &Cutter, motions: &[Swept]) -> Result<(), Failure> {
+        let job = removal::Job {
+            cutter,
+            holder: None,
+            changes: &[],
+            motions,
+            samples: &self.samples,
+            stock_mm: self.cuts.iter().map(|c| c.standoff_mm).fold(LEAST_MM, f64::max),
+            depth_mm: cutter.radius_mm(),
+        };
+        self.cuts = cut_on(&job, std::mem::take(&mut self.cuts), &|_| {}).map_err(Failure::job)?;
+        Ok(())
+    }
 }
 
 /// Places of faces where material stands too high.
@@ -77,32 +122,40 @@ pub fn on_faces(part: &Part, before: Vec<Standing>, after: Vec<Standing>) -> Vec
     both.map(|(face, (before, after))| OnFace { face: face.id.clone(), before, after }).collect()
 }
 
+/// Places on a face, so far apart; none on a sliver, of which its neighbours tell what stands on it.
+fn samples_of(face: &LoadedFace, number: u32, apart_mm: f64) -> Result<Vec<Sample>, Failure> {
+    match sample_surface(&*face.surface, number, apart_mm, MOST_OF_A_FACE) {
+        Ok(found) => {
+            let mut out = found.samples;
+            // What stands on an edge may be narrower than samples are apart.
+            let outlines = face.surface.loops().iter().filter(|_| face.surface.is_trimmed());
+            out.extend(outlines.flat_map(|l| sample_boundary(&*face.surface, &l.points, number, apart_mm)));
+            Ok(out)
+        }
+        Err(removal::SamplingError::Nothing { .. }) => Ok(Vec::new()),
+        Err(why) => Err(Failure::job(format!("{}: {why}", face.id))),
+    }
+}
+
 /// Places on the faces to machine of a part, so far apart or `most` of them.
 fn samples(part: &Part, apart_mm: f64, most: f64) -> Result<Vec<Sample>, Failure> {
     let whole: f64 = part.faces.iter().map(area).sum();
-    let spacing = apart_mm.max((whole / most).sqrt());
-    let mut out = Vec::new();
-    for (face, k) in part.faces.iter().zip(0u32..) {
-        match sample_surface(&*face.surface, k, spacing, 2 * most as usize) {
-            Ok(found) => {
-                out.extend(found.samples);
-                // What stands on an edge may be narrower than samples are apart.
-                let outlines = face.surface.loops().iter().filter(|_| face.surface.is_trimmed());
-                out.extend(outlines.flat_map(|l| sample_boundary(&*face.surface, &l.points, k, spacing)));
-            }
-            // A sliver without a place says nothing of what stands on it; its neighbours do.
-            Err(removal::SamplingError::Nothing { .. }) => {}
-            Err(why) => return Err(Failure::job(format!("{}: {why}", face.id))),
-        }
-    }
-    Ok(out)
+    let apart_mm = apart_mm.max((whole / most).sqrt());
+    let each = part.faces.iter().zip(0u32..).map(|(face, k)| samples_of(face, k, apart_mm));
+    Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 impl Behind {
-    /// Before the first operation.
-    pub fn new(raw: Option<&RawMaterial<'_>>) -> Result<Self, Failure> {
+    /// Before the first operation on a part, all of whose faces to machine are looked at.
+    pub fn new(part: &Part, raw: Option<&RawMaterial<'_>>) -> Result<Self, Failure> {
         let stock = raw.map(RawMaterial::filled).transpose()?;
-        Ok(Self { stock, ..Self::default() })
+        let ground = raw.map(|raw| Ground::of(part, raw)).transpose()?.unwrap_or_default();
+        Ok(Self { stock, ground, ..Self::default() })
+    }
+
+    /// Points of the surface of the raw material that is left, where some is declared.
+    pub fn left(&self) -> Option<Arc<[Point3]>> {
+        self.stock.as_ref().map(|stock| stock.ends().into())
     }
 
     /// What is left of the raw material, where some is declared.
@@ -137,50 +190,31 @@ impl Behind {
                 slowed += 1;
             }
         }
-        self.tools.push((self.motions.len(), job.cutter(), job.holder()));
-        self.motions.extend(Swept::along(&linked.path));
+        // What takes material is a motion that cuts, as far as heights are concerned: where it must not it is found elsewhere, and
+        // where the order of motions does not matter there is far less to look at.
+        let motions = Swept::along(&linked.path).into_iter().map(|m| Swept { rapid: false, ..m });
+        self.tools.push((self.motions.len(), job.cutter()));
+        self.motions.extend(motions);
+        let (first, cutter) = &self.tools[self.tools.len() - 1];
+        self.ground.take(cutter, &self.motions[*first..])?;
         Ok(slowed)
     }
 
     /// How high material stands at samples, mm; nowhere higher than `most_mm`. What stands high is taken from the stock, to its cells: only
     /// close to the faces the tools themselves are asked.
     fn heights_mm(&self, samples: &[Sample], most_mm: f64) -> Result<Vec<f64>, Failure> {
-        let Some(stock) = &self.stock else { return self.exact_mm(samples, most_mm) };
-        let cell = stock.cell_mm();
-        let near_mm = NEAR_CELLS * cell;
-        if most_mm <= near_mm || self.tools.is_empty() {
-            return self.exact_mm(samples, most_mm);
-        }
-        let stands = |s: &Sample| {
-            let n = s.normal.into_inner();
-            let steps = ((most_mm - cell) / (0.5 * cell)).ceil() as usize;
-            let at = |k: usize| (cell + 0.5 * cell * k as f64).min(most_mm);
-            (0..=steps).map(at).find(|h| !stock.is_material(&(s.point + n * *h))).unwrap_or(most_mm)
-        };
-        let mut out: Vec<f64> = samples.iter().map(stands).collect();
-        let low: Vec<usize> = (0..out.len()).filter(|k| out[*k] < 0.75 * near_mm).collect();
-        let close: Vec<Sample> = low.iter().map(|k| samples[*k]).collect();
-        for (k, height) in low.into_iter().zip(self.exact_mm(&close, near_mm)?) {
-            out[k] = height;
-        }
-        Ok(out)
-    }
-
-    /// How high material stands at samples by the tools that went there, mm; nowhere higher than `most_mm`.
-    fn exact_mm(&self, samples: &[Sample], most_mm: f64) -> Result<Vec<f64>, Failure> {
-        let Some(((_, cutter, holder), later)) = self.tools.split_first() else {
+        let Some(((_, cutter), later)) = self.tools.split_first() else {
             return Ok(vec![most_mm; samples.len()]);
         };
-        let change =
-            |(first, cutter, holder): &'_ (usize, Cutter, Option<Cutter>)| (*first, *cutter, *holder);
+        let change = |(first, cutter): &'_ (usize, Cutter)| (*first, *cutter);
         let owned: Vec<_> = later.iter().map(change).collect();
         let changes: Vec<Change<'_>> = owned
             .iter()
-            .map(|(first, cutter, holder)| Change { first: *first, cutter, holder: holder.as_ref() })
+            .map(|(first, cutter)| Change { first: *first, cutter, holder: None })
             .collect();
         let work = removal::Job {
             cutter,
-            holder: holder.as_ref(),
+            holder: None,
             changes: &changes,
             motions: &self.motions,
             samples,
@@ -219,23 +253,20 @@ impl Behind {
         Ok(found.map_or(LEAST_MM, |f| f.0.max(LEAST_MM)))
     }
 
-    /// What stands on each face to machine of a part, and where it is higher than a limit: at some thousand places.
-    pub fn stands(
-        &self,
-        part: &Part,
-        raw: &RawMaterial<'_>,
-        limit_mm: f64,
-    ) -> Result<Vec<Standing>, Failure> {
-        let samples = samples(part, 0.0, PLACES)?;
-        let beyond: Vec<f64> = samples.iter().map(|s| raw.beyond_mm(&s.point, &s.normal)).collect();
-        let heights = self.heights_mm(&samples, beyond.iter().copied().fold(LEAST_MM, f64::max))?;
-        let mut out = vec![Standing::default(); part.faces.len()];
-        for ((s, height), beyond) in samples.iter().zip(heights).zip(beyond) {
-            let (on, height_mm) = (&mut out[s.face as usize], height.min(beyond));
+    /// What stands on each face to machine of a part, and where it is higher than a limit; nothing where no raw material is declared.
+    pub fn stands(&self, part: &Part, limit_mm: f64) -> Vec<Standing> {
+        let Ground { faces, samples, beyond_mm, cuts } = &self.ground;
+        if samples.is_empty() {
+            return Vec::new();
+        }
+        let mut of: Vec<Standing> = vec![Standing::default(); faces.len()];
+        for ((s, cut), beyond) in samples.iter().zip(cuts).zip(beyond_mm) {
+            let (on, height_mm) = (&mut of[s.face as usize], cut.standoff_mm.min(*beyond));
             on.highest_mm = on.highest_mm.max(height_mm);
             on.too_high_mm2 += if height_mm > limit_mm { s.area_mm2 } else { 0.0 };
         }
-        Ok(out)
+        let on = |f: &LoadedFace| faces.iter().position(|id| *id == f.id).map(|k| of[k]).unwrap_or_default();
+        part.faces.iter().map(on).collect()
     }
 
     /// Where material stands above the scallop of a job.

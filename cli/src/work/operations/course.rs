@@ -3,15 +3,16 @@
 use crate::failure::Failure;
 use crate::job::{Job, Operations};
 use crate::part::Part;
-use crate::work::goal::{Aim, Left};
+use crate::work::goal::Aim;
 use crate::work::nc::{self, Call};
 use crate::work::operations::Judged;
+use crate::work::operations::passages::Passages;
 use crate::work::verify::{self, Reading, Verified};
 use crate::work::{posted_setup, reading, stock};
 use osculate_geom::Diagnostic;
 use osculate_postproc::Setup;
-use osculate_tools::removal::stock::Stock;
-use osculate_tools::removal::{GoalControl, GoalFixture, Program, Remark, Swept, carve};
+use osculate_tools::removal::{GoalControl, GoalFixture, GoalStep, Program, Remark, Swept, prove_in_steps};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -43,10 +44,41 @@ pub struct Course {
     control: GoalControl,
     /// The motions of each setup.
     pub setups: Vec<Range<usize>>,
+    /// The operations as the programs name them, in order; none where a program names none.
+    pub sections: Vec<Section>,
     /// Time of each setup's program, min.
     pub setup_min: Vec<f64>,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+/// An operation as a program names it where it begins.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Section {
+    /// Its name, as the job has it where it has one that reads the same.
+    pub name: String,
+    /// The number of its tool.
+    pub tool: Option<u32>,
+    /// Its motions.
+    pub motions: Range<usize>,
+}
+
+/// What of a name a program can say: controls know few characters, and one case.
+fn readable(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+}
+
+/// The operations that a program names, each with the line, from 1, in which it does so.
+fn named(text: &str) -> Vec<(usize, String, Option<u32>)> {
+    let mut out: Vec<(usize, String, Option<u32>)> = Vec::new();
+    for (k, line) in text.lines().enumerate() {
+        let words = format!("operation {}: ", out.len() + 1);
+        let Some(at) = line.to_ascii_lowercase().find(&words) else { continue };
+        let rest = line[at + words.len()..].trim_end_matches([')', ' ']);
+        let (name, tool) = rest.rsplit_once(", T").or_else(|| rest.rsplit_once(", t")).unwrap_or((rest, ""));
+        out.push((k + 1, name.to_owned(), tool.parse().ok()));
+    }
+    out
 }
 
 /// Where the part of a setup sits, as the head of its program says it.
@@ -92,6 +124,15 @@ impl Course {
             out.diagnostics.extend(read.diagnostics);
             let (begin, clock) = (out.motions.len(), out.times_min.last().copied().unwrap_or(0.0));
             out.take_calls(text.file, begin, &read.calls, &tools)?;
+            let names = named(text.text);
+            for (k, (line, name, tool)) in names.iter().enumerate() {
+                let first = |line: usize| read.motions.partition_point(|m| (m.block as usize) < line);
+                let from = if k == 0 { 0 } else { first(*line) };
+                let to = names.get(k + 1).map_or(read.motions.len(), |next| first(next.0));
+                let own = list.all().iter().find(|o| readable(&o.name) == readable(name));
+                let name = own.map_or_else(|| name.clone(), |o| o.name.clone());
+                out.sections.push(Section { name, tool: *tool, motions: begin + from..begin + to });
+            }
             out.motions.extend(read.motions);
             out.times_min.extend(read.times_min.iter().map(|t| t + clock));
             out.setups.push(begin..out.motions.len());
@@ -179,55 +220,90 @@ impl Course {
         Ok(out)
     }
 
-    /// The verdict on one operation, which is made by the motions of a stretch: on its own faces, in the raw material that was there when
-    /// it began. A finishing is judged after everything before it too, a roughing by itself: what is finished already has no
+    /// The verdict on the finished part, on all faces from the raw material as declared, and on each of its steps, on its own faces when its
+    /// last motion is made: by what is measured for the part. A roughing is judged by itself, since what is finished has no
     /// allowance any more.
     ///
     /// # Errors
-    /// Where it cannot be judged.
-    pub fn judge_step(
+    /// Where they cannot be judged.
+    pub fn judge(
         &self,
-        (list, job): (&Operations, &Job),
-        part: &Part,
-        (own, left): (Range<usize>, Option<(Arc<Stock>, String)>),
+        (list, part): (&Operations, &Part),
+        steps: &[StepOf<'_>],
         progress: &(dyn Fn(f64) + Sync),
-    ) -> Result<Judged, Failure> {
-        let begin = if job.strategy().layers().is_some() { own.start } else { 0 };
-        let range = begin..own.end;
-        let stretch = self.stretch(range.clone());
-        let mut aim = Aim::of_tools(job, part, stretch.tools, self.fixtures(list, part, &range)?)?.of_step();
-        if let Some((stock, words)) = left {
-            aim = aim.begun(Left { stock, from: own.start - begin, words });
-        }
-        let verified = verify::judge(&aim, stretch.reading(&self.control), progress)?;
-        let found = match &verified.verdict.figures().stock {
-            Some(found) => Some(found.clone()),
-            // A program that is far off without raw material is not led through it to be told so, but the next begins there.
-            None => {
-                let Reading { program, control, speeds_rpm, .. } = stretch.reading(&self.control);
-                carve(&aim.goal(control, &speeds_rpm), program, &|_| {})
-                    .map_err(|e| Failure::file(job.path(), e))?
-            }
-        };
-        let stock = found.as_ref().map(|f| stock::told(f, part).0);
-        Ok(Judged { verified, stock, left: found.map(|f| f.stock) })
-    }
-
-    /// The verdict on the finished part: on all faces, from the raw material as declared.
-    ///
-    /// # Errors
-    /// Where it cannot be judged.
-    pub fn judge_whole(
-        &self,
-        list: &Operations,
-        part: &Part,
-        progress: &(dyn Fn(f64) + Sync),
-    ) -> Result<Verified, Failure> {
+    ) -> Result<(Verified, Vec<Judged>), Failure> {
         let all = 0..self.motions.len();
         let stretch = self.stretch(all.clone());
         let aim = Aim::of_tools(list.whole(), part, stretch.tools, self.fixtures(list, part, &all)?)?;
-        verify::judge(&aim, stretch.reading(&self.control), progress)
+        let mut aims = Vec::with_capacity(steps.len());
+        for (k, (step, section)) in steps.iter().zip(&self.sections).enumerate() {
+            let alone = step.job.strategy().layers().is_some();
+            let range = if alone { section.motions.start } else { 0 }..section.motions.end;
+            let begun = k.checked_sub(1).map(|before| format!("what {} left", self.sections[before].name));
+            let own = self.stretch(range.clone());
+            let fixtures = self.fixtures(list, part, &range)?;
+            aims.push((Aim::of_tools(&step.job, step.part, own.tools, fixtures)?.of_step(begun), own));
+        }
+        let goals = aims.iter().zip(&self.sections).map(|((aim, own), section)| {
+            let Reading { control, speeds_rpm, .. } = own.reading(&self.control);
+            GoalStep { goal: aim.goal(control, &speeds_rpm), motions: section.motions.clone() }
+        });
+        let goals: Vec<GoalStep<'_>> = goals.collect();
+        let stops: Vec<usize> = self.sections.iter().map(|s| s.motions.end).collect();
+        let Reading { control, speeds_rpm, program, source } = stretch.reading(&self.control);
+        let goal = aim.goal(control, &speeds_rpm);
+        let proved = prove_in_steps(&goal, program, (&stops, &goals), progress)
+            .map_err(|why| verify::refused(list.whole(), why))?;
+        let finishers = finishers(list, part)?;
+        let named = |verified: Verified, from: usize| self.named(verified, from, &finishers);
+        let whole = named(Verified::of(&aim, proved.whole, source), 0);
+        let judged = proved.steps.into_iter().zip(&aims).zip(steps.iter().zip(&self.sections));
+        let judged = judged.map(|((verdict, (aim, _)), (step, section))| {
+            let from = if step.job.strategy().layers().is_some() { section.motions.start } else { 0 };
+            let left = verdict.figures().stock.as_ref().map(|f| Arc::clone(&f.stock));
+            let verified = named(Verified::of(aim, verdict, source), from);
+            Judged { verified, left }
+        });
+        Ok((whole, judged.collect()))
     }
+
+    /// Which operation makes a motion.
+    fn section_of(&self, motion: usize) -> Option<&Section> {
+        self.sections.iter().find(|s| s.motions.contains(&motion))
+    }
+
+    /// The operations that made the worst places and the collisions so, by the motions that did it, counted from one of them.
+    fn named(&self, mut verified: Verified, from: usize, finishers: &HashMap<String, String>) -> Verified {
+        for w in &mut verified.worst {
+            let by = w.motion.and_then(|m| self.section_of(from + m as usize));
+            w.operation = by.map(|s| s.name.clone()).or_else(|| finishers.get(&w.face).cloned());
+            w.tool_number = by.and_then(|s| s.tool);
+        }
+        for c in verified.stock.iter_mut().flat_map(|s| &mut s.collisions) {
+            let by = self.section_of(c.motion);
+            c.operation = by.map(|s| s.name.clone());
+            c.tool_number = by.and_then(|s| s.tool);
+        }
+        verified
+    }
+}
+
+/// The last operation that is to machine each face.
+fn finishers(list: &Operations, part: &Part) -> Result<HashMap<String, String>, Failure> {
+    let mut out = HashMap::new();
+    for operation in list.all() {
+        let own = Passages::of(operation, &operation.judged()?, part)?.into_all();
+        out.extend(own.faces.into_iter().map(|f| (f.id, operation.name.clone())));
+    }
+    Ok(out)
+}
+
+/// A step on the way to the part.
+pub struct StepOf<'a> {
+    /// Its job as it is judged, with its tool in hand.
+    pub job: Job,
+    /// The part with its own faces to machine.
+    pub part: &'a Part,
 }
 
 /// Some of the motions, counted from the first of them.

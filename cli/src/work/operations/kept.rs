@@ -160,6 +160,7 @@ impl Kept {
         let left_out = self.left_out.iter().map(|(face, a)| FaceLeftOut { face: face.clone(), area_mm2: *a });
         Planned {
             passes: Passes { passes: passes.collect(), diagnostics: heard(said) },
+            skipped: Vec::new(),
             linked: Linked {
                 path: ClPath { moves: self.moves.iter().map(step).collect(), ..ClPath::default() },
                 pass_of_move: self.pass_of_move.clone(),

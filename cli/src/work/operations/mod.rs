@@ -18,13 +18,15 @@ use crate::part::Part;
 use crate::watch::{Stage, Watch};
 use crate::work::plan::Plan;
 use crate::work::program::WallS;
-use crate::work::stock::{RawMaterial, StockSummary};
+use crate::work::stock::RawMaterial;
 use crate::work::verify::Verified;
-pub use course::{Course, Text};
+use course::StepOf;
+pub use course::{Course, Section, Text};
 use kept::Kept;
 use osculate_geom::Diagnostic;
 use osculate_tools::removal::stock::Stock;
 use std::sync::Arc;
+use std::time::Instant;
 use step::{Planning, Step};
 
 /// Reads the part of a list of operations, and derives the operations where it lists none.
@@ -32,9 +34,11 @@ use step::{Planning, Step};
 /// # Errors
 /// As [`Part::of`], and where faces are machined by nothing, raw material does not hold the part, or a fixture stands in it.
 pub fn part(list: Operations, watch: &dyn Watch) -> Result<(Part, Operations), Failure> {
-    let part = Part::watched(list.whole(), watch)?;
+    let mut part = Part::watched(list.whole(), watch)?;
+    let stage = Stage::begin(watch, "check");
     let list = derive::derived(list, &part)?;
     sense::check(&list, &part)?;
+    part.import_s += stage.end();
     Ok((part, list))
 }
 
@@ -44,11 +48,14 @@ pub fn part(list: Operations, watch: &dyn Watch) -> Result<(Part, Operations), F
 /// Where an operation cannot be planned or posted. A part that is not held is none: the verdict says so.
 pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, Failure> {
     let mut wall_s = WallS { import: part.import_s, ..WallS::default() };
+    let begin = Instant::now();
+    let stage = Stage::begin(watch, "stock");
     let raw = RawMaterial::of(list.whole(), part)?;
-    let mut behind = behind::Behind::new(raw.as_ref())?;
+    let mut behind = behind::Behind::new(part, raw.as_ref())?;
     let mut steps: Vec<Step<'_>> = Vec::new();
     let mut notes: Vec<Diagnostic> = Vec::new();
     let key = kept::key(list)?;
+    wall_s.between = stage.end();
     for (place, operation) in list.all().iter().enumerate() {
         let before = watch.kept(&kept::name(place)).and_then(|bytes| Kept::read(&bytes, key));
         let planning = match before {
@@ -58,13 +65,11 @@ pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, F
         match planning {
             Planning::Path(mut step) => {
                 watch.keep(&kept::name(place), &step.kept(key).bytes());
-                let stands = |behind: &behind::Behind| {
-                    let limit_mm = list.whole().tolerance().scallop_mm;
-                    raw.as_ref().map_or(Ok(Vec::new()), |raw| behind.stands(&step.part, raw, limit_mm))
-                };
-                let before = stands(&behind)?;
+                let stage = Stage::begin(watch, "stock");
+                let limit_mm = list.whole().tolerance().scallop_mm;
+                let before = behind.stands(&step.part, limit_mm);
                 let slowed = behind.take(&step.job, &mut step.planned.linked)?;
-                step.on_faces = behind::on_faces(&step.part, before, stands(&behind)?);
+                step.on_faces = behind::on_faces(&step.part, before, behind.stands(&step.part, limit_mm));
                 if slowed > 0 {
                     let text = format!(
                         "{}: {slowed} rapid moves would go through material and are made at feed",
@@ -73,6 +78,7 @@ pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, F
                     notes.push(Diagnostic::note("links", text));
                 }
                 wall_s.plan += step.plan_s;
+                wall_s.between += stage.end();
                 steps.push(*step);
             }
             Planning::Nothing(note) => notes.push(note),
@@ -87,22 +93,22 @@ pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, F
     let course = Course::read(list, part, &texts, false)?;
     wall_s.post = stage.end();
     let stage = Stage::begin(watch, "verify");
-    let ends = posted::ends(&course, &programs, &steps)?;
-    let count = (steps.len() + 1) as f64;
-    let mut judged = Vec::with_capacity(steps.len());
-    let mut left: Option<(Arc<Stock>, String)> = None;
-    let mut begin = 0;
-    for (k, (step, end)) in steps.iter().zip(&ends).enumerate() {
-        let own = step.operation.judged()?.in_hand(step.job.tool().number());
-        let here = |f: f64| stage.at((k as f64 + f) / count);
-        let found = course.judge_step((list, &own), &step.part, (begin..*end, left), &here)?;
-        left = found.left.clone().map(|stock| (stock, format!("what {} left", step.operation.name)));
-        begin = *end;
-        judged.push(found);
+    if course.sections.len() != steps.len() {
+        let what = format!(
+            "its programs name {} operations where {} are planned: a fault of the post",
+            course.sections.len(),
+            steps.len()
+        );
+        return Err(Failure::file(list.path(), what));
     }
-    let whole = course.judge_whole(list, part, &|f| stage.at((count - 1.0 + f) / count))?;
+    let own = |step: &Step<'_>| Ok(step.operation.judged()?.in_hand(step.job.tool().number()));
+    let judging: Vec<StepOf<'_>> =
+        steps.iter().map(|s| Ok(StepOf { job: own(s)?, part: &s.part })).collect::<Result<_, Failure>>()?;
+    let (whole, judged) = course.judge((list, part), &judging, &|f| stage.at(f))?;
+    drop(judging);
     wall_s.verify = stage.end();
-    told::told(told::Known { list, part, steps, programs, course, ends, judged, whole, notes, wall_s }, watch)
+    let known = told::Known { list, part, steps, programs, course, judged, whole, notes, wall_s, begin };
+    told::told(known, watch)
 }
 
 /// Judges the programs of all setups of a list, in their order: on the finished part, from the texts alone. The programs of a
@@ -118,7 +124,7 @@ pub fn verify(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Verified, Failure> {
     let course = Course::read(list, part, texts, lenient).map_err(|why| part.warned(why))?;
-    let mut verified = course.judge_whole(list, part, progress)?;
+    let (mut verified, _) = course.judge((list, part), &[], progress)?;
     let of_stock = std::mem::take(&mut verified.diagnostics);
     verified.diagnostics =
         part.part.diagnostics.iter().chain(&course.diagnostics).cloned().chain(of_stock).collect();
@@ -129,8 +135,6 @@ pub fn verify(
 pub struct Judged {
     /// The verdict on it.
     pub verified: Verified,
-    /// What it took of the raw material, where some is declared.
-    pub stock: Option<StockSummary>,
-    /// What is left of it.
+    /// What is left of the raw material, where some is declared.
     pub left: Option<Arc<Stock>>,
 }

@@ -4,12 +4,13 @@ use crate::failure::Failure;
 use crate::job::{Job, Operation, OperationWord, Repeat};
 use crate::part::{self, Part, TurnedFaces};
 use crate::work::operations::behind::{Behind, TooHigh};
+use crate::work::passes;
 use crate::work::program::Planned;
 use crate::work::stock::RawMaterial;
-use crate::work::{left_out, passes};
 use nalgebra::Isometry3;
-use osculate_geom::{Diagnostic, Unit3};
-use osculate_productivity::plan::{Places, repeated};
+use osculate_geom::{Diagnostic, Point3, Unit3};
+use osculate_productivity::plan::{Places, Stretches, repeated};
+use std::sync::Arc;
 
 /// An axis that leans off that of the turns by more than this, as a sine, is another one in every place.
 const ALONG: f64 = 1e-9;
@@ -54,6 +55,12 @@ impl Passages {
         let turns = (0..count).map(|k| circle.turn(k)).collect();
         let circle = Places { axis: circle.axis, count };
         Ok(Self { each, turns, all: Some(all), circle: Some(circle) })
+    }
+
+    /// The same in the raw material that is left, as points of its surface.
+    pub fn in_stock(mut self, left: Option<Arc<[Point3]>>) -> Self {
+        self.each.iter_mut().chain(&mut self.all).for_each(|part| part.left.clone_from(&left));
+        self
     }
 
     /// The part with the faces to machine of the place that is planned.
@@ -112,15 +119,13 @@ impl Passages {
     /// Where the faces that links keep off cannot be taken in.
     pub fn repeat(&self, job: &Job, planned: Planned<'static>) -> Result<Planned<'static>, Failure> {
         let Some(all) = &self.all else { return Ok(planned) };
-        let Planned { mut passes, mut extras, .. } = planned;
+        let Planned { mut passes, skipped, mut extras, .. } = planned;
         let count = self.turns.len();
-        passes.passes = repeated(&passes.passes, &self.turns);
-        let cutter = &job.cutter();
-        let linked = if left_out::is_wanted(job) {
-            passes::linked_around_all(job, all, &passes, cutter)?
-        } else {
-            passes::linked(job, all, &passes, cutter)?
-        };
+        let one = Stretches { passes: passes.passes, skipped };
+        let stretches = repeated(&one, &self.turns);
+        let linked = passes::linked(job, all, &stretches)?;
+        passes.passes = stretches.passes;
+        let skipped = stretches.skipped;
         for left in &mut extras.left_out {
             left.area_mm2 *= count as f64;
             left.face = format!("{} and its {} images", left.face, count - 1);
@@ -128,6 +133,6 @@ impl Passages {
         let ids: Vec<&str> = self.each[0].faces.iter().map(|f| f.id.as_str()).collect();
         let text = format!("planned on {} and repeated in {count} places", ids.join(", "));
         extras.diagnostics.push(Diagnostic::note("repeat", text));
-        Ok(Planned { passes, linked, extras, ..planned })
+        Ok(Planned { passes, skipped, linked, extras, ..planned })
     }
 }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::{Job, Operations};
 use crate::part::Part;
-use crate::work::operations::course::{Course, Text};
+use crate::work::operations::course::Text;
 use crate::work::operations::step::Step;
 use crate::work::program::axes_of;
 use crate::work::setup::{self, Along};
@@ -11,7 +11,7 @@ use crate::work::{budget, nc, passes};
 use osculate_geom::Diagnostic;
 use osculate_postproc::{Section, Setup, post_sections};
 use osculate_tools::cl::ClPath;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The program of a setup.
 pub struct Program {
@@ -96,37 +96,4 @@ fn placed(
     let jobs = held.each_tool();
     let longest = jobs.iter().max_by(|a, b| nc::gauge_mm(a).total_cmp(&nc::gauge_mm(b))).unwrap_or(held);
     setup::of(longest, part, Some(Along { path: &all, axes: &axes }))
-}
-
-/// Where each step ends among the motions: programs of several sections say where one begins.
-///
-/// # Errors
-/// Where a program does not say it, which is a fault of the post.
-pub fn ends(course: &Course, programs: &[Program], steps: &[Step<'_>]) -> Result<Vec<usize>, Failure> {
-    let mut out = vec![0; steps.len()];
-    for (k, (program, range)) in programs.iter().zip(&course.setups).enumerate() {
-        let own = of_setup(steps, k);
-        for (j, s) in own.iter().enumerate() {
-            out[*s] = match own.get(j + 1) {
-                None => range.end,
-                Some(_) => {
-                    let line =
-                        heading(&program.text, j + 2).ok_or_else(|| no_heading(&program.path, j + 2))?;
-                    let inside = &course.motions[range.clone()];
-                    range.start + inside.partition_point(|m| (m.block as usize) < line)
-                }
-            };
-        }
-    }
-    Ok(out)
-}
-
-/// The line, from 1, in which a program says that a section begins.
-fn heading(text: &str, section: usize) -> Option<usize> {
-    let words = format!("operation {section}: ");
-    text.lines().position(|l| l.to_ascii_lowercase().contains(&words)).map(|k| k + 1)
-}
-
-fn no_heading(file: &Path, section: usize) -> Failure {
-    Failure::file(file, format!("does not say where operation {section} begins"))
 }

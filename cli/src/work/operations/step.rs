@@ -95,7 +95,7 @@ pub fn plan<'a>(
     let here = |why: Failure| why.in_operation(&operation.name);
     let stage = Stage::begin(watch, "plan");
     let job = operation.judged()?;
-    let places = Passages::of(operation, &job, whole)?;
+    let places = Passages::of(operation, &job, whole)?.in_stock(behind.left());
     let (part, whole_place) = (places.first(), places.all());
     let standing_mm = raw.map(|raw| places.standing_mm(behind, &job, raw)).transpose()?;
     let job = operation.planned(standing_mm)?;
@@ -121,7 +121,8 @@ pub fn plan<'a>(
             let mut laid = laid(&job, part, watch, &progress).map_err(here)?;
             let rest =
                 Rest { places: &high.places, overlap_mm: operation.overlap_mm, hop_mm: job.setup().hop_mm };
-            laid.passes.passes = rest_of(&laid.passes.passes, &rest).map_err(Failure::job).map_err(here)?;
+            let remaining = rest_of(&laid.passes.passes, &rest).map_err(Failure::job).map_err(here)?;
+            (laid.passes.passes, laid.skipped) = (remaining.passes, remaining.skipped);
             if laid.passes.passes.is_empty() {
                 let text = format!(
                     "{}: {} mm2 stand above the tolerance, and no pass of {} goes there",
@@ -210,6 +211,7 @@ fn alone(part: &Part, k: usize) -> Part {
         unseen: part.unseen.clone(),
         open: part.open.clone(),
         walls: OnceLock::new(),
+        left: part.left.clone(),
         import_s: 0.0,
     }
 }

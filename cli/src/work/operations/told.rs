@@ -25,6 +25,8 @@ use osculate_productivity::plan::{Linked, Passes};
 use osculate_tools::Lean;
 use osculate_tools::removal::Answer;
 use std::fmt::Write;
+use std::ops::Range;
+use std::time::Instant;
 
 /// Cubes along the longest side of meshes of what is left.
 const CUBES: usize = 160;
@@ -41,8 +43,6 @@ pub struct Known<'a> {
     pub programs: Vec<Program>,
     /// What they do.
     pub course: Course,
-    /// Where each operation ends in it.
-    pub ends: Vec<usize>,
     /// The verdict on each, with what it left.
     pub judged: Vec<Judged>,
     /// The verdict on the finished part.
@@ -51,6 +51,8 @@ pub struct Known<'a> {
     pub notes: Vec<Diagnostic>,
     /// Wall time by stage.
     pub wall_s: WallS,
+    /// When planning began.
+    pub begin: Instant,
 }
 
 /// Files, figures and pages.
@@ -58,18 +60,16 @@ pub struct Known<'a> {
 /// # Errors
 /// Where figures or paths cannot be written as text.
 pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
-    let Known { list, part, steps, programs, course, ends, judged, whole, notes, mut wall_s } = known;
+    let Known { list, part, steps, programs, course, judged, whole, notes, mut wall_s, begin } = known;
     let stage = Stage::begin(watch, "report");
     let mut operations = Vec::with_capacity(steps.len());
-    for (k, (step, judged)) in steps.iter().zip(&judged).enumerate() {
-        let begin = if k == 0 { 0 } else { ends[k - 1] };
-        operations.push(operation(list, step, judged, times(&course, begin, ends[k]))?);
+    for ((step, judged), section) in steps.iter().zip(&judged).zip(&course.sections) {
+        operations.push(operation(list, step, judged, times(&course, &section.motions))?);
     }
-    let begins = (0..steps.len()).map(|k| if k == 0 { 0 } else { ends[k - 1] });
-    let hands = steps.iter().zip(begins).map(|(step, begin)| {
+    let hands = steps.iter().zip(&course.sections).map(|(step, section)| {
         let mut tool = fill::tool(&step.job);
         tool.label = format!("{}: T{} {}", step.operation.name, step.job.tool().number(), tool.label);
-        (begin, tool)
+        (section.motions.start, tool)
     });
     let hands = hands.collect();
     let merged = merged(&steps);
@@ -139,6 +139,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     files.push(PlanFile::of_text("picture.svg", pages.svg));
     files.push(PlanFile::of_text("path.svg", pages.path_svg));
     wall_s.report = stage.end();
+    wall_s.total = part.import_s + begin.elapsed().as_secs_f64();
     summary.wall_s = wall_s;
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::job)? + "\n";
     files.push(PlanFile::of_text("summary.json", text));
@@ -146,10 +147,10 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
 }
 
 /// Times of a stretch of the motions.
-fn times(course: &Course, begin: usize, end: usize) -> Times {
+fn times(course: &Course, &Range { start, end }: &Range<usize>) -> Times {
     let at = |k: usize| if k == 0 { 0.0 } else { course.times_min[k - 1] };
-    let feeds = (begin..end).filter(|k| !course.motions[*k].rapid);
-    Times { time_min: at(end) - at(begin), cutting_min: feeds.map(|k| at(k + 1) - at(k)).sum(), joints: None }
+    let feeds = (start..end).filter(|k| !course.motions[*k].rapid);
+    Times { time_min: at(end) - at(start), cutting_min: feeds.map(|k| at(k + 1) - at(k)).sum(), joints: None }
 }
 
 fn operation(
@@ -169,8 +170,8 @@ fn operation(
         standing_mm: step.standing_mm,
         too_high_mm2: step.too_high_mm2,
         on_faces: step.on_faces.clone(),
-        removed_mm3: judged.stock.as_ref().map(|s| s.removed_mm3),
-        left_mm3: judged.stock.as_ref().map(|s| s.left_mm3),
+        removed_mm3: judged.verified.stock.as_ref().map(|s| s.removed_mm3),
+        left_mm3: judged.verified.stock.as_ref().map(|s| s.left_mm3),
         step: match judged.verified.verdict.answer() {
             Answer::Held => "held",
             Answer::NotHeld if judged.verified.verdict.leaves_only() => "leaves some",
@@ -215,7 +216,17 @@ fn merged(steps: &[Step<'_>]) -> Planned<'static> {
         }
     }
     let strategy = names.join(", ");
-    Planned { passes, linked, strategy, lean: Lean::default(), local: false, extras, with_strips: true }
+    let skipped = Vec::new();
+    Planned {
+        passes,
+        skipped,
+        linked,
+        strategy,
+        lean: Lean::default(),
+        local: false,
+        extras,
+        with_strips: true,
+    }
 }
 
 /// The motions as reports take them.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::plan::Named;
 use osculate_geom::analytic::Line;
-use osculate_geom::{Extruded, Interval, uv};
+use osculate_geom::{Extruded, Interval, Point3, Unit3, Vec3, uv};
 use osculate_tools::CutterSpec;
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
 
@@ -35,11 +35,13 @@ fn a_hop_does_not_go_into_the_wall_across() {
         hop_mm: 4.0 * (TROUGH_MM - BALL_MM),
         contacts: true,
         dropped: false,
+        dip_mm: 0.0,
         layer_mm: 0.0,
+        rates: Rates::default(),
         cutter,
         holder: None,
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 500.0,
+        feed_mm_min: 5000.0,
+        plunge_mm_min: 2500.0,
     };
     let passes: Vec<Pass> =
         (-18..=18).map(|k| pass(f64::from(k) * 5.0f64.to_radians(), k % 2 == 0)).collect();
@@ -57,9 +59,18 @@ fn a_hop_does_not_go_into_the_wall_across() {
             assert!(gap >= BALL_MM - 1e-9, "{centre}");
         }
     }
-    // All the same passes are joined by hops: nothing goes up to the sphere but at both ends.
-    let rapid = linked.path.moves.iter().filter(|m| m.motion == Motion::Rapid).count();
-    assert_eq!(rapid, 5);
+    // All the same nothing goes up to the sphere but at both ends: passes are joined where they are.
+    let first = linked.pass_of_move.iter().position(Option::is_some).unwrap();
+    let last = linked.pass_of_move.iter().rposition(Option::is_some).unwrap();
+    let highest =
+        linked.path.moves[first..last].iter().map(|m| m.pose.tip.z).fold(f64::NEG_INFINITY, f64::max);
+    assert!(highest <= 4.0 * (TROUGH_MM - BALL_MM), "{highest}");
+    // From each of the 36 ends the ball goes on by 5 degrees about the trough's axis.
+    let on = 2.0 * (TROUGH_MM - BALL_MM) * 2.5f64.to_radians().sin();
+    let legs = linked.path.moves[first..=last].windows(2).zip(&linked.pass_of_move[first + 1..=last]);
+    let air: f64 =
+        legs.filter(|(_, p)| p.is_none()).map(|(w, _)| (w[1].pose.tip - w[0].pose.tip).norm()).sum();
+    assert!((air - 36.0 * on).abs() < 1e-9, "{air} {}", 36.0 * on);
 }
 
 /// Passes along y, `apart` from each other, over the plane z = 0 with a ball that stands upright.
@@ -86,11 +97,13 @@ fn a_hop_rises_by_no_more_than_is_clear() {
         hop_mm,
         contacts: true,
         dropped: false,
+        dip_mm: 0.0,
         layer_mm: 0.0,
+        rates: Rates::default(),
         cutter,
         holder: None,
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 500.0,
+        feed_mm_min: 5000.0,
+        plunge_mm_min: 2500.0,
     };
     // Of the hop from the first pass to the second.
     let top = |linked: &Linked| {
@@ -98,7 +111,8 @@ fn a_hop_rises_by_no_more_than_is_clear() {
         let hop = moves.skip_while(|m| *m.1 != Some(0)).take_while(|m| *m.1 != Some(1));
         hop.filter(|m| m.1.is_none()).map(|(m, _)| m.pose.tip.z).fold(0.0, f64::max)
     };
-    let flat = over_plane(4.0, 3.0);
+    // Farther apart than the tool is wide: nothing goes straight along the surface.
+    let flat = over_plane(7.0, 3.0);
     let low = link(&flat, &links(0.125), &Walls::default());
     let high = link(&flat, &links(2.0), &Walls::default());
     assert_eq!([top(&low), top(&high)], [0.125, 2.0]);
@@ -106,13 +120,16 @@ fn a_hop_rises_by_no_more_than_is_clear() {
     assert!((high.air_length_mm - low.air_length_mm - 4.0 * 1.875).abs() < 1e-12);
     // A rib along the middle of the first hop, machined by a later pass: half of the lift must be spare.
     for (rib, lift) in [(0.1, 0.25), (0.2, 0.5), (0.4, 1.0), (0.7, 2.0)] {
-        let mut passes = over_plane(4.0, 3.0);
+        let mut passes = over_plane(7.0, 3.0);
         for p in &mut passes[2].points {
             p.point = Point3::new(0.0, p.point.y, rib);
         }
         let linked = link(&passes[..3], &links(0.125), &Walls::default());
         assert_eq!(top(&linked), lift, "{rib}");
     }
+    // Beside each other: straight along the surface, as long as nothing stands there.
+    let beside = link(&over_plane(4.0, 3.0), &links(0.125), &Walls::default());
+    assert_eq!(top(&beside), 0.0);
 }
 
 #[test]
@@ -127,18 +144,21 @@ fn a_hop_keeps_off_a_wall_that_is_not_machined() {
         hop_mm: 1.2,
         contacts: true,
         dropped: false,
+        dip_mm: 0.0,
         layer_mm: 0.0,
+        rates: Rates::default(),
         cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 }).unwrap(),
         holder: None,
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 500.0,
+        feed_mm_min: 5000.0,
+        plunge_mm_min: 2500.0,
     };
     // A thin wall on the plane x = 0, between the first two passes.
     let joined = |height: f64, clearance: f64| {
         let foot = Line::new(Point3::origin(), Vec3::y(), Interval::new(-2.0, 10.0)).unwrap();
         let wall = Extruded::new(foot, Vec3::z(), Interval::new(0.0, height)).unwrap();
         let named = Named { face: "wall", surface: &wall };
-        link(&passes, &links, &Walls::of(&[named], clearance, 0.0).unwrap())
+        let keeping = Keeping { clearance_mm: clearance, accepted_mm: 0.0, radius_mm: RADIUS };
+        link(&passes, &links, &Walls::of(&[named], &[], &keeping).unwrap())
     };
     // How far the ball's surface is off the wall at the nearest, in the closed form.
     let gap = |linked: &Linked, height: f64| {
@@ -152,22 +172,32 @@ fn a_hop_keeps_off_a_wall_that_is_not_machined() {
         })
         .fold(f64::INFINITY, f64::min)
     };
-    let rapid = |linked: &Linked| linked.path.moves.iter().filter(|m| m.motion == Motion::Rapid).count();
-    let hops = link(&passes, &links, &Walls::default());
-    // A wall higher than the hop: a hop that does not see it goes into it, one that does is none. The hop from the second
-    // pass to the third stays.
-    assert!(gap(&hops, 1.5) < -0.29, "{}", gap(&hops, 1.5));
-    let seen = joined(1.5, 0.5);
-    let at_passes = (0.5 * APART).hypot(RADIUS - 1.5) - RADIUS;
-    assert!(gap(&seen, 1.5) >= at_passes - 1e-9 && rapid(&seen) > rapid(&hops), "{}", gap(&seen, 1.5));
-    assert_eq!(
-        seen.path.moves.iter().rev().take(20).collect::<Vec<_>>(),
-        hops.path.moves.iter().rev().take(20).collect::<Vec<_>>()
-    );
-    // One that leaves 0.3 mm is passed over with a clearance of 0.2, not of 0.5.
-    assert_eq!(joined(0.9, 0.2), hops);
-    assert!((gap(&hops, 0.9) - 0.3).abs() < 1e-9);
-    assert_eq!(rapid(&joined(0.9, 0.5)), rapid(&seen));
+    // How high the tool goes between the first two passes.
+    let top = |linked: &Linked| {
+        let moves = linked.path.moves.iter().zip(&linked.pass_of_move);
+        let way = moves.skip_while(|m| *m.1 != Some(0)).take_while(|m| *m.1 != Some(1));
+        way.filter(|m| m.1.is_none()).map(|(m, _)| m.pose.tip.z).fold(0.0, f64::max)
+    };
+    // A wall between two passes that lie beside each other: a way that does not see it goes straight through it.
+    let blind = link(&passes, &links, &Walls::default());
+    assert!(gap(&blind, 1.5) < -1.2 && top(&blind) == 0.0);
+    // One that does goes over it, by its clearance at least but for where passes are nearer; from the second pass to the third nothing
+    // stands in the way.
+    let at_passes = |height: f64| (0.5 * APART).hypot(RADIUS - height) - RADIUS;
+    for (height, clearance) in [(1.5, 0.5), (0.9, 0.5), (0.9, 0.2)] {
+        let seen = joined(height, clearance);
+        assert!(
+            gap(&seen, height) >= clearance.min(0.5 * at_passes(height)) - 1e-9,
+            "{}",
+            gap(&seen, height)
+        );
+        assert!(top(&seen) >= height + clearance.min(at_passes(height)), "{}", top(&seen));
+        let last = |linked: &Linked| linked.path.moves.iter().rev().take(20).copied().collect::<Vec<_>>();
+        assert_eq!(last(&seen), last(&blind));
+    }
+    // With 0.3 mm over the wall a hop of 1.2 mm keeps 0.2 mm, not half a millimetre.
+    assert_eq!(top(&joined(0.9, 0.2)), 1.2);
+    assert!(top(&joined(0.9, 0.5)) > 1.2);
 }
 
 #[test]
@@ -181,17 +211,20 @@ fn a_holder_keeps_off_a_wall_too() {
         hop_mm: 1.2,
         contacts: true,
         dropped: false,
+        dip_mm: 0.0,
         layer_mm: 0.0,
+        rates: Rates::default(),
         cutter: ball,
         holder,
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 500.0,
+        feed_mm_min: 5000.0,
+        plunge_mm_min: 2500.0,
     };
     // A post above the cutter's length, behind the middle between the ends of the first two passes: 5.05 mm off their axes, and
     // 4.2 mm off that of a tool half way between.
     let foot = Line::new(Point3::new(0.0, 12.2, 12.0), Vec3::x(), Interval::new(-0.2, 0.2)).unwrap();
     let post = Extruded::new(foot, Vec3::z(), Interval::new(0.0, 8.0)).unwrap();
-    let walls = Walls::of(&[Named { face: "post", surface: &post }], 0.5, 0.0).unwrap();
+    let keeping = Keeping { clearance_mm: 0.5, accepted_mm: 0.0, radius_mm: 4.0 };
+    let walls = Walls::of(&[Named { face: "post", surface: &post }], &[], &keeping).unwrap();
     let without = link(&passes, &with(None), &walls);
     assert_eq!(without, link(&passes, &with(None), &Walls::default()));
     let holder = Some(Cutter::cylinder(9.0, 30.0).unwrap());

@@ -9,7 +9,7 @@ use super::material::Material;
 use super::relief::{Points, Rougher};
 use super::swing::Sphere;
 use super::task::{Headings, Places, RoughTask, Roughing, Search};
-use crate::plan::{Linked, PlanError, repeated};
+use crate::plan::{Linked, PlanError, Stretches, repeated};
 use nalgebra::Isometry3;
 use osculate_geom::{Diagnostic, Surface, Unit3, Vec3};
 use osculate_tools::cl::ClMove;
@@ -151,7 +151,7 @@ fn fixed(known: &Known<'_>, axis: Unit3) -> Result<Roughing, PlanError> {
             let turns = places.turns();
             everywhere(&made.linked, &turns, &sphere, &mut out.linked, 0);
             sphere.leave(&mut out.linked);
-            out.passes.passes = repeated(&made.passes, &turns);
+            out.passes.passes = repeated(&Stretches::from(made.passes.clone()), &turns).passes;
         }
         None => {
             out.linked = made.linked.clone();
@@ -205,7 +205,7 @@ fn found(known: &Known<'_>, search: &Search<'_>) -> Result<Roughing, PlanError> 
         let passes = out.passes.passes.len() as u32;
         let before = out.linked.path.moves.len();
         everywhere(&made.linked, &turns, &sphere, &mut out.linked, passes);
-        out.passes.passes.extend(repeated(&made.passes, &turns));
+        out.passes.passes.extend(repeated(&Stretches::from(made.passes.clone()), &turns).passes);
         told(&mut out, known, &made, turns.len());
         carve(&mut stock, known, &out.linked, before)?;
         out.headings.push(made.heading);
