@@ -48,11 +48,6 @@ fn sizes(job: &Job, layers: &Layers) -> Sizes {
     }
 }
 
-/// Greatest volume rate of a roughing, mm3/min: where the job gives none, that of rows between others at its feed.
-pub fn volume_rate_mm3_min(job: &Job, layers: &Layers) -> f64 {
-    layers.volume_rate_mm3_min.unwrap_or(layers.stepdown_mm * layers.stepover_mm * job.feed_mm_min())
-}
-
 /// The axes that the job's machine reaches, with the part as it stands before a path is known.
 fn candidates(job: &Job, faces: &Part) -> Result<Vec<Unit3>, Failure> {
     let (setup, _) = setup::of(job, faces, None);
@@ -104,7 +99,7 @@ pub fn planned(
             EntryWord::Plunge => plan::Entry::Plunge,
         },
         plunges: job.tool().plunges(),
-        volume_rate_mm3_min: volume_rate_mm3_min(job, layers),
+        volume_rate_mm3_min: layers.volume_rate_mm3_min.unwrap_or(f64::INFINITY),
         links: &links,
         progress,
     };

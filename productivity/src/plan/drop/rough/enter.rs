@@ -45,6 +45,11 @@ impl Moves<'_> {
         }
     }
 
+    /// Whether the tool gets to a place on its layer from what is cleared.
+    pub(super) fn gets_to(&self, sheet: &Sheet, at: [f64; 3]) -> bool {
+        self.stands_at([at[0], at[1]]) <= at[2] + self.thin(sheet) || self.air_near(sheet, at).is_some()
+    }
+
     /// Straight down; false where the tool may not.
     fn plunge(&mut self, start: [f64; 3]) -> bool {
         if self.manner.plunges {
@@ -58,10 +63,9 @@ impl Moves<'_> {
     }
 
     /// The upper end of what stands under the tool at a place.
-    fn stands_at(&self, at: [f64; 2]) -> f64 {
-        let disc = Disc::new(self.site.tool.bare.radius_mm, self.site.grid.cell);
+    pub(super) fn stands_at(&self, at: [f64; 2]) -> f64 {
         let k = self.site.grid.near(at);
-        k.map_or(f64::NEG_INFINITY, |k| self.columns.top_in(&self.site.grid, &disc, k))
+        k.map_or(f64::NEG_INFINITY, |k| self.columns.top_in(&self.site.grid, &self.under, k))
     }
 
     /// Over to a place and straight down; through what stands there at the feed of plunges.
@@ -119,7 +123,10 @@ impl Moves<'_> {
             let (s, c) = (TAU * k as f64 / CORNERS as f64).sin_cos();
             [at[0] + radius * c, at[1] + radius * s, z]
         };
-        let free = (0..CORNERS).map(|k| corner(k, at[2])).all(|p| self.site.rests([p[0], p[1]]) <= at[2]);
+        let near = |p: [f64; 3]| self.site.grid.near([p[0], p[1]]);
+        let free = (0..CORNERS).map(|k| corner(k, at[2])).chain([at]).all(|p| {
+            self.site.rests([p[0], p[1]]) <= at[2] && near(p).is_some_and(|k| self.holder_lets(k, at[2]))
+        });
         if !free {
             return false;
         }

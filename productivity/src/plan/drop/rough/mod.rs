@@ -10,6 +10,7 @@
 //! Where axes are to be found ([`directions`]) the one that takes most comes first, and the next is sought for what is left then.
 
 mod clear;
+mod climb;
 mod columns;
 mod contour;
 mod directions;

@@ -72,11 +72,11 @@ struct Run {
     closed: bool,
 }
 
-fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
 }
 
-fn between(a: [f64; 3], b: [f64; 3], f: f64) -> [f64; 3] {
+pub(super) fn between(a: [f64; 3], b: [f64; 3], f: f64) -> [f64; 3] {
     [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * f)
 }
 
@@ -295,7 +295,7 @@ impl<'a> Moves<'a> {
             }
         }
         if flat {
-            return Some(vec![to]);
+            return (!self.dives(sheet, [from, to])).then(|| vec![to]);
         }
         let mut way = along_faces(site, floor, &[[from[0], from[1]], [to[0], to[1]]]);
         let steep = way.windows(2).any(|w| {
@@ -304,7 +304,9 @@ impl<'a> Moves<'a> {
         });
         let high = way.iter().any(|p| p[2] >= sheet.layer.ceiling);
         way.push(to);
-        (!steep && !high).then_some(way)
+        let whole: Vec<[f64; 3]> = std::iter::once(from).chain(way.iter().copied()).collect();
+        let dives = whole.windows(2).any(|w| self.dives(sheet, [w[0], w[1]]));
+        (!steep && !high && !dives).then_some(way)
     }
 
     /// The stretches of a line that take something now.
@@ -353,7 +355,9 @@ impl<'a> Moves<'a> {
             if run.closed {
                 self.begin_near(&mut run.stations);
             }
-            self.run(sheet, &run.stations);
+            for stretch in self.climbing(sheet, run.stations) {
+                self.run(sheet, &stretch);
+            }
         }
     }
 
