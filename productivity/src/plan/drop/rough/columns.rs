@@ -118,11 +118,6 @@ impl Columns {
         &self.spans[k]
     }
 
-    /// Whether a column has material between two heights.
-    pub fn has(&self, k: usize, [lo, hi]: [f64; 2]) -> bool {
-        self.top[k] > lo && self.spans[k].iter().any(|[a, b]| *b > lo && *a < hi)
-    }
-
     /// Takes what lies above a height; its length comes back.
     fn lower(&mut self, k: usize, z: f64) -> f64 {
         if self.top[k] <= z {
@@ -253,7 +248,6 @@ mod tests {
             assert_eq!(columns.cut(&grid, &tool, [[-14.0, 0.3, -depth], [14.0, 0.3, -depth]]), 0.0);
             let middle = grid.near([0.0, 0.3]).unwrap();
             assert!((columns.tops()[middle] + depth).abs() < 1e-9);
-            assert!(columns.has(middle, [-3.0, -2.5]) && !columns.has(middle, [-0.9, 5.0]));
         }
     }
 

@@ -4,7 +4,6 @@
 //! tool with its holder reaches it; what is left changes from axis to axis, what is reached does not. Among those that take nearly the
 //! most the one comes first that takes most for the way that it has to go.
 
-use super::grid::Grid;
 use super::heading::Known;
 use super::material::Material;
 use super::relief::{Points, Relief};
@@ -12,7 +11,7 @@ use super::site::view;
 use super::task::{Places, Search};
 use osculate_geom::{Point3, Unit3};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Nodes of reliefs that are compared stand this part of the tool's radius apart.
@@ -22,7 +21,7 @@ const MOST_POINTS: f64 = 40_000.0;
 /// They stand no closer than this part of the tool's radius.
 const APART: f64 = 0.4;
 /// Candidates that take so much of the most are compared by their way, too.
-const NEARLY: f64 = 0.8;
+const NEARLY: f64 = 0.5;
 /// Words of bits.
 const WORD: usize = 64;
 
@@ -34,6 +33,8 @@ pub(super) struct Views {
     points: Vec<Point3>,
     /// What each candidate takes from any place, a bit for each point.
     takes: Vec<Vec<u64>>,
+    /// How often each of its points is gone over by a candidate in all places, at a mean.
+    often: Vec<f64>,
     /// What any takes.
     any: Vec<u64>,
     each_mm3: f64,
@@ -104,25 +105,31 @@ impl Views {
             || vec![nalgebra::Isometry3::identity()],
             |p| p.turns().iter().map(nalgebra::Isometry3::inverse).collect(),
         );
-        let takes: Vec<Vec<u64>> = candidates
+        let seen: Vec<(Vec<u64>, f64)> = candidates
             .par_iter()
             .map(|axis| {
                 let (frame, area, cell) = view(material, (*axis, &known.task.feed), &known.rougher, CELL);
                 let relief = Relief::of(&part, frame, &known.rougher, (area, cell));
                 let mut bits = vec![0u64; points.len().div_ceil(WORD)];
+                let is_once = places.is_some_and(|p| p.of_axis(axis).is_none());
+                let (mut taken, mut gone_over) = (0u32, 0u32);
                 for (k, p) in points.iter().enumerate() {
-                    if back.iter().any(|turn| relief.takes(&(turn * p))) {
+                    let times = back.iter().filter(|turn| relief.takes(&(**turn * p))).count() as u32;
+                    if times > 0 {
                         bits[k / WORD] |= 1 << (k % WORD);
+                        taken += 1;
+                        gone_over += if is_once { 1 } else { times };
                     }
                 }
-                bits
+                (bits, f64::from(gone_over.max(1)) / f64::from(taken.max(1)))
             })
             .collect();
+        let (takes, often): (Vec<Vec<u64>>, Vec<f64>) = seen.into_iter().unzip();
         let mut any = vec![0u64; points.len().div_ceil(WORD)];
         for bits in &takes {
             any.iter_mut().zip(bits).for_each(|(a, b)| *a |= b);
         }
-        Self { candidates, points, takes, any, each_mm3 }
+        Self { candidates, points, takes, often, any, each_mm3 }
     }
 
     /// What all candidates together take, mm3.
@@ -150,7 +157,7 @@ impl Views {
         let near = |k: &usize| f64::from(gains[*k]) >= NEARLY * most;
         let mut found: Vec<(f64, usize)> = (0..gains.len())
             .filter(near)
-            .map(|k| (f64::from(gains[k]) / self.way(k, left, known) as f64, k))
+            .map(|k| (f64::from(gains[k]) / (self.often[k] * self.way(k, left, known) as f64), k))
             .collect();
         found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         found.into_iter().map(|(_, k)| (self.candidates[k], f64::from(gains[k]) * self.each_mm3)).collect()
@@ -160,20 +167,12 @@ impl Views {
     fn way(&self, k: usize, left: &[u64], known: &Known<'_>) -> usize {
         let frame = super::super::frame::Frame::new(self.candidates[k], &known.task.feed);
         let (apart, deep) = (self.each_mm3.cbrt(), known.task.sizes.stepdown_mm);
-        let mut cells: BTreeMap<[i64; 3], ()> = BTreeMap::new();
+        let mut cells: BTreeSet<[i64; 3]> = BTreeSet::new();
         let bits = common(&self.takes[k], left);
-        for (n, p) in self.points.iter().enumerate().filter(|(n, _)| bits[n / WORD] >> (n % WORD) & 1 == 1) {
-            let _ = n;
+        for (_, p) in self.points.iter().enumerate().filter(|(n, _)| bits[n / WORD] >> (n % WORD) & 1 == 1) {
             let [x, y, z] = frame.of(p);
-            cells.insert([(x / apart).floor() as i64, (y / apart).floor() as i64, (z / deep).floor() as i64], ());
+            cells.insert([x / apart, y / apart, z / deep].map(|c| c.floor() as i64));
         }
         cells.len().max(1)
-    }
-
-    /// Points of what is left that no candidate takes, mm3 for each.
-    pub fn beyond(&self, material: &Material<'_>) -> (Vec<Point3>, f64) {
-        let _ = Grid::NONE;
-        let out = self.points.iter().filter(|p| material.is(p)).copied().collect();
-        (out, self.each_mm3)
     }
 }

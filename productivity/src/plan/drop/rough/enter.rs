@@ -13,6 +13,10 @@ const CORNERS: usize = 24;
 const LEAST_HELIX: f64 = 0.25;
 /// Air is looked for so far around a place, in radii of the tool.
 const AROUND: f64 = 4.0;
+/// The tool comes down where it has been, so far from a start, in its radii; ...
+const BEEN: f64 = 2.5;
+/// ... no more of such places are tried.
+const MOST_BEEN: usize = 12;
 /// A ramp uses no more of a line than this, in radii of the tool: longer ways to and fro clear less than the line does.
 const LONG_RAMP: f64 = 12.0;
 /// Most times that a ramp goes to and fro.
@@ -22,6 +26,14 @@ impl Moves<'_> {
     /// Comes to the start of a line from elsewhere; false, without a move, where no way in fits.
     pub(super) fn come_in(&mut self, sheet: &Sheet, stations: &[[f64; 3]]) -> bool {
         let Some(start) = stations.first().copied() else { return false };
+        // Where the tool has been it comes down in rapid, and from there it goes on through the layer.
+        let been = self.been_near(start, sheet.layer.floor);
+        let led = been.into_iter().find_map(|from| Some((from, self.straight(sheet, from, start)?)));
+        if let Some((from, way)) = led {
+            self.back_to(from);
+            self.feed(&way, self.manner.links.feed_mm_min, None);
+            return true;
+        }
         let stands = self.stands_at([start[0], start[1]]);
         if stands <= start[2] + self.thin(sheet) {
             self.drop_to(start);
@@ -47,7 +59,9 @@ impl Moves<'_> {
 
     /// Whether the tool gets to a place on its layer from what is cleared.
     pub(super) fn gets_to(&self, sheet: &Sheet, at: [f64; 3]) -> bool {
-        self.stands_at([at[0], at[1]]) <= at[2] + self.thin(sheet) || self.air_near(sheet, at).is_some()
+        self.stands_at([at[0], at[1]]) <= at[2] + self.thin(sheet)
+            || self.been_near(at, sheet.layer.floor).into_iter().any(|p| self.straight(sheet, p, at).is_some())
+            || self.air_near(sheet, at).is_some()
     }
 
     /// Straight down; false where the tool may not.
@@ -66,6 +80,25 @@ impl Moves<'_> {
     pub(super) fn stands_at(&self, at: [f64; 2]) -> f64 {
         let k = self.site.grid.near(at);
         k.map_or(f64::NEG_INFINITY, |k| self.columns.top_in(&self.site.grid, &self.under, k))
+    }
+
+    /// Places near one on a layer where the tool has been so low, or at the floor over those where it was lower; the nearest first.
+    fn been_near(&self, start: [f64; 3], floor: f64) -> Vec<[f64; 3]> {
+        let (site, near_mm) = (self.site, BEEN * self.site.tool.bare.radius_mm);
+        let Some(k) = site.grid.near([start[0], start[1]]) else { return Vec::new() };
+        let away = |p: &[f64; 3]| (p[0] - start[0]).hypot(p[1] - start[1]);
+        let disc = Disc::new(near_mm, site.grid.cell);
+        let all = site.grid.disc(&disc, k).flatten().filter_map(|m| self.been[m]);
+        let mut found: Vec<[f64; 3]> = all.map(|p| [p[0], p[1], p[2].max(floor)]).filter(|p| p[2] <= start[2]).collect();
+        found.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        found.truncate(MOST_BEEN);
+        found
+    }
+
+    /// Over to a place where the tool has been, and down in rapid but for the approach.
+    fn back_to(&mut self, at: [f64; 3]) {
+        self.above(at, at[2]);
+        self.feed(&[at], self.plunge_mm_min(), None);
     }
 
     /// Over to a place and straight down; through what stands there at the feed of plunges.

@@ -52,6 +52,8 @@ pub(super) struct Moves<'a> {
     here: Option<[f64; 3]>,
     taken_mm3: f64,
     shut_mm3: f64,
+    /// Next to each node where the tool has been lowest.
+    pub(super) been: Vec<Option<[f64; 3]>>,
     /// Discs under the tool, the tool as rapids keep off, and the holder.
     pub(super) under: Disc,
     pub(super) wide: Disc,
@@ -107,6 +109,7 @@ impl<'a> Moves<'a> {
             here: None,
             taken_mm3: 0.0,
             shut_mm3: 0.0,
+            been: vec![None; site.grid.len()],
             under: site.disc.clone(),
             wide,
             held,
@@ -165,6 +168,10 @@ impl<'a> Moves<'a> {
                     before = Some(end);
                 }
                 self.taken_mm3 += self.columns.cut(&site.grid, &site.tool.bare, [here, next]);
+                if let Some(k) = site.grid.near([next[0], next[1]]) {
+                    let been = &mut self.been[k];
+                    *been = been.filter(|b| b[2] < next[2]).or(Some(next));
+                }
                 fed.push((next, feed));
                 here = next;
             }
@@ -252,16 +259,24 @@ impl<'a> Moves<'a> {
 
     /// Goes over to a place through the air, and down to where material may stand. The rest of the way down is fed.
     pub(super) fn over_to(&mut self, at: [f64; 3]) {
+        let stands = self.clear_over([at[0], at[1]], [at[0], at[1]]);
+        self.above(at, stands);
+    }
+
+    /// Goes over to a place through the air, and down to where something stands there.
+    pub(super) fn above(&mut self, at: [f64; 3], stands: f64) {
         let (safe, approach) = (self.manner.safe, self.manner.links.approach_mm);
-        let from = self.here.unwrap_or([at[0], at[1], safe]);
-        let clear = self.clear_over([from[0], from[1]], [at[0], at[1]]) + approach;
-        let high = clear.max(at[2] + approach).max(from[2]).min(safe);
-        if self.here.is_some() {
-            self.rapid([from[0], from[1], high]);
-        }
-        let high = if self.here.is_some() { high } else { safe };
+        let high = match self.here {
+            Some(from) => {
+                let clear = self.clear_over([from[0], from[1]], [at[0], at[1]]) + approach;
+                let high = clear.max(at[2] + approach).max(from[2]).min(safe);
+                self.rapid([from[0], from[1], high]);
+                high
+            }
+            None => safe,
+        };
         self.rapid([at[0], at[1], high]);
-        let low = self.clear_over([at[0], at[1]], [at[0], at[1]]).max(at[2]) + approach;
+        let low = stands.max(at[2]) + approach;
         self.rapid([at[0], at[1], low.min(high)]);
     }
 

@@ -59,8 +59,6 @@ pub(super) struct Sight {
     relief: Relief,
     /// The least height of what is to go, as in [`Site`].
     least: Vec<f64>,
-    /// What is to go, mm3.
-    pub wanted_mm3: f64,
 }
 
 /// The frame, the least and greatest places of material in it with room for the tool around, and the distance of nodes.
@@ -95,11 +93,7 @@ impl Sight {
         if let Some(places) = places {
             claim(&relief, &columns, &mut least, (places, CLAIM_STEP * tool.bare.radius_mm));
         }
-        let above = |k: usize| -> f64 {
-            columns.of_node(k).iter().map(|[a, b]| (b - a.max(least[k])).max(0.0)).sum()
-        };
-        let wanted_mm3 = (0..grid.len()).filter(|k| least[*k].is_finite()).map(above).sum::<f64>() * grid.cell.powi(2);
-        Self { relief, least, wanted_mm3 }
+        Self { relief, least }
     }
 
     /// The frame of the axis.

@@ -1,7 +1,7 @@
 //! What to rough, and what comes of it.
 
 use crate::plan::{Links, Named, Linked, Passes, PlanError};
-use osculate_geom::{Point3, TurnAxis, Unit3, Vec3};
+use osculate_geom::{TurnAxis, Unit3, Vec3};
 use osculate_tools::Cutter;
 use osculate_tools::removal::stock::Stock;
 
@@ -145,15 +145,6 @@ pub struct Heading {
     pub cutting_length_mm: f64,
     /// What is left because nothing leads into it: pockets too narrow for the way down, mm3.
     pub shut_mm3: f64,
-}
-
-/// Material that stands above the allowance, and that no direction takes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Standing {
-    /// Places of it.
-    pub places: Vec<Point3>,
-    /// What each stands for, mm3.
-    pub each_mm3: f64,
 }
 
 /// A roughing.
