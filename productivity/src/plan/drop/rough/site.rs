@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Nodes stand this part of the tool's radius apart ...
-const CELL: f64 = 1.0 / 7.0;
+pub(super) const CELL: f64 = 1.0 / 7.0;
 /// ... but no more of them are looked at.
 const MOST_NODES: f64 = 4e5;
 /// Beside what is to go the tool may come from this many of its radii away.

@@ -2,18 +2,21 @@
 
 use super::super::frame::Frame;
 use super::super::ground::{areas, nothing, seeds};
+use super::super::height::Seed;
 use super::columns::Underside;
 use super::directions::Views;
 use super::heading::{Along, Known, along, drop_task};
 use super::material::Material;
 use super::relief::{Points, Rougher};
+use super::site::CELL;
 use super::swing::Sphere;
 use super::task::{Headings, Places, RoughTask, Roughing, Search};
 use crate::plan::{Linked, PlanError, Stretches, repeated};
 use nalgebra::Isometry3;
 use osculate_geom::{Diagnostic, Surface, Unit3, Vec3};
 use osculate_tools::cl::ClMove;
-use osculate_tools::removal::Swept;
+use rayon::prelude::*;
+use osculate_tools::removal::{SamplingError, Swept, sample_surface};
 use osculate_tools::removal::stock::{Stock, StockJob};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 
@@ -23,6 +26,10 @@ const NAME: &str = "z_level";
 const KNOWN: f64 = 1.0;
 /// What is thinner than this share of what may stand is left by found axes after the first.
 const THIN: f64 = 0.5;
+/// Points of faces are this part of a node's distance apart, and no more than so many, on one face and about in all.
+const APART: f64 = 0.8;
+const MOST_OF_A_FACE: usize = 1_000_000;
+const MOST_POINTS: f64 = 1e6;
 /// Axes that are looked at closely before one is taken.
 const LOOKED_AT: usize = 3;
 
@@ -82,11 +89,39 @@ fn known<'a>(task: &'a RoughTask<'a>) -> Result<Known<'a>, PlanError> {
     };
     let (seeds, spacing_mm, _) =
         seeds(&drop_task(&known, Vec3::z_axis()), (&known.surfaces, &areas(&known.surfaces)), &seen)?;
-    let at = seeds.iter().map(|s| seen.point(s.at)).collect();
-    let own = seeds.iter().map(|s| (s.face as usize) < task.faces.len()).collect();
-    known.points = Points { at, own, spacing_mm };
+    known.points = points(&known, &seeds)?;
     (known.seeds, known.spacing_mm) = (seeds, spacing_mm);
     Ok(known)
+}
+
+/// Points of all faces, so close that nodes are not missed; with the seeds, which have those of the rims.
+fn points(known: &Known<'_>, seeds: &[Seed]) -> Result<Points, PlanError> {
+    let own = known.task.faces.len();
+    let areas = areas(&known.surfaces);
+    let all: f64 = areas.iter().sum();
+    let apart_mm = (APART * CELL * known.rougher.bare.radius_mm).max((all / MOST_POINTS).sqrt());
+    let mut out = Points { spacing_mm: apart_mm, ..Points::default() };
+    let each: Vec<_> = (0u32..)
+        .zip(&known.surfaces)
+        .collect::<Vec<_>>()
+        .par_iter()
+        .map(|(k, surface)| sample_surface(*surface, *k, apart_mm, MOST_OF_A_FACE))
+        .collect();
+    for (k, found) in each.into_iter().enumerate() {
+        match found {
+            Ok(sampling) => {
+                out.spacing_mm = out.spacing_mm.max(sampling.density.spacing_mm);
+                out.at.extend(sampling.samples.iter().map(|s| s.point));
+                out.own.resize(out.at.len(), k < own);
+            }
+            // A sliver has its seeds on the rim.
+            Err(SamplingError::Nothing { .. }) => {}
+            Err(e) => return Err(nothing(&drop_task(known, Vec3::z_axis()), &e.to_string())),
+        }
+    }
+    out.at.extend(seeds.iter().map(|s| known.seen.point(s.at)));
+    out.own.extend(seeds.iter().map(|s| (s.face as usize) < own));
+    Ok(out)
 }
 
 /// A path in all places, one after the other.
@@ -175,7 +210,8 @@ fn found(known: &Known<'_>, search: &Search<'_>) -> Result<Roughing, PlanError> 
     let cell = material.cell_mm();
     let sphere = sphere(known, &material);
     let views = Views::of(known, &material, search, task.repeat.as_ref());
-    let all_mm3 = views.all_mm3();
+    // Candidates are weighed in one of the places.
+    let (all_mm3, all_places) = (views.all_mm3(), task.repeat.map_or(1.0, |p| p.count as f64));
     (task.progress)(0.1);
     let mut out = Roughing::default();
     let mut done: Vec<Unit3> = Vec::new();
@@ -194,7 +230,7 @@ fn found(known: &Known<'_>, search: &Search<'_>) -> Result<Roughing, PlanError> 
             done.push(axis);
             if let Some(along) = along(known, &seen, (axis, places.as_ref(), thin), &here)? {
                 let times = places.map_or(1.0, |p| p.count as f64);
-                if along.heading.volume_mm3 * times >= search.least_share * all_mm3 {
+                if along.heading.volume_mm3 * times >= search.least_share * all_mm3 * all_places {
                     made = Some((along, places));
                     break;
                 }
