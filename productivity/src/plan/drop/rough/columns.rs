@@ -52,7 +52,7 @@ impl Underside {
 }
 
 /// Where a line along the axis over a place of the plane is within a box; None beside it.
-fn within(b: &Box3, frame: &Frame, at: [f64; 2]) -> Option<[f64; 2]> {
+pub(super) fn within(b: &Box3, frame: &Frame, at: [f64; 2]) -> Option<[f64; 2]> {
     let from = frame.point([at[0], at[1], 0.0]);
     let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..3 {

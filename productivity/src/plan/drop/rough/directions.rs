@@ -109,7 +109,7 @@ impl Views {
             .par_iter()
             .map(|axis| {
                 let (frame, area, cell) = view(material, (*axis, &known.task.feed), &known.rougher, CELL);
-                let relief = Relief::of(&part, frame, &known.rougher, (area, cell));
+                let relief = Relief::of(&part, (frame, material.bounds()), &known.rougher, (area, cell));
                 let mut bits = vec![0u64; points.len().div_ceil(WORD)];
                 let is_once = places.is_some_and(|p| p.of_axis(axis).is_none());
                 let (mut taken, mut gone_over) = (0u32, 0u32);

@@ -4,9 +4,9 @@
 //! directions and to say what a direction is for; where a tool goes is asked of the faces themselves.
 
 use super::super::frame::Frame;
-use super::columns::Underside;
+use super::columns::{Underside, within};
 use super::grid::{Disc, Grid};
-use osculate_geom::Point3;
+use osculate_geom::{Box3, Point3};
 
 /// Points of a part.
 #[derive(Clone, Debug, Default)]
@@ -45,9 +45,39 @@ pub(super) struct Relief {
     pub wanted: Vec<bool>,
 }
 
+/// How low the tool goes beside the part: as far as faces to machine are near, and where what is farther off would be left as a strip
+/// narrower than the tool; infinite elsewhere.
+fn beside(
+    grid: &Grid,
+    (top, low): (&[f64], &[f64]),
+    tool: &Rougher,
+    may_hold: impl Fn(usize) -> bool,
+) -> Vec<f64> {
+    let (near, wide) = (tool.grown.radius_mm + tool.bare.radius_mm, 2.0 * tool.bare.radius_mm);
+    let mut out = grid.lowest(low, &Disc::new(near, grid.cell));
+    let strip = Disc::new(wide, grid.cell);
+    let is = |is: bool| if is { 1.0 } else { 0.0 };
+    let done: Vec<f64> = out.iter().map(|z| is(z.is_finite())).collect();
+    let done_near = grid.highest(&done, &strip);
+    let far = |k: usize| top[k] == f64::NEG_INFINITY && out[k] == f64::INFINITY && may_hold(k);
+    let core: Vec<f64> = (0..grid.len()).map(|k| is(far(k) && done_near[k] == 0.0)).collect();
+    let core_near = grid.highest(&core, &strip);
+    let narrow: Vec<usize> = (0..grid.len()).filter(|k| far(*k) && core_near[*k] == 0.0).collect();
+    let farther = grid.lowest(low, &Disc::new(near + wide, grid.cell));
+    for k in narrow {
+        out[k] = farther[k];
+    }
+    out
+}
+
 impl Relief {
     /// A part seen in a frame, on nodes no further apart than `cell`.
-    pub fn of(points: &Points, frame: Frame, tool: &Rougher, (extent, cell): ([[f64; 2]; 2], f64)) -> Self {
+    pub fn of(
+        points: &Points,
+        (frame, bounds): (Frame, &Box3),
+        tool: &Rougher,
+        (extent, cell): ([[f64; 2]; 2], f64),
+    ) -> Self {
         // A node between two points must not be missed.
         let cell = cell.max(1.2 * points.spacing_mm);
         let grid = Grid::over(extent, cell);
@@ -66,8 +96,7 @@ impl Relief {
         }
         let grown = &tool.grown;
         let rests = grid.raised(&top, grown.radius_mm, |rho| grown.lift_mm(rho));
-        // Beside the part the tool goes down as far as faces to machine are near.
-        let sides = grid.lowest(&low, &Disc::new(grown.radius_mm + tool.bare.radius_mm, cell));
+        let sides = beside(&grid, (&top, &low), tool, |k| within(bounds, &frame, grid.at(k)).is_some());
         let tip: Vec<f64> = rests
             .iter()
             .zip(&sides)

@@ -86,7 +86,7 @@ impl Sight {
         (tool, places, thin_mm): (&Rougher, Option<&Places>, f64),
     ) -> Self {
         let (frame, area, cell) = view(material, (axis, feed), tool, CELL);
-        let relief = Relief::of(points, frame, tool, (area, cell));
+        let relief = Relief::of(points, (frame, material.bounds()), tool, (area, cell));
         let grid = &relief.grid;
         let columns = Columns::of(material, &frame, grid, |k| relief.wanted[k] && relief.reached[k].is_finite());
         let mut least = thick(grid, &columns, &relief.reached, (thin_mm, tool.bare.radius_mm));
