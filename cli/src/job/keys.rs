@@ -25,7 +25,6 @@ const MM_OR_ZERO: Kind = Kind::Number(NOT_BELOW, "mm");
 const SMALL: Kind = Kind::Number(FINE, "mm");
 const RATE: Range = Range { least: 0.0, most: 1e9, open: [true, false] };
 const RAMP: Kind = Kind::Number(Range { least: 0.0, most: 45.0, open: [true, false] }, "deg");
-const ENGAGEMENT: Kind = Kind::Number(Range { least: 10.0, most: 180.0, open: [false; 2] }, "deg");
 const SHARE: Kind = Kind::Number(Range { least: 0.0, most: 1.0, open: [true, false] }, "");
 const DIRECTIONS: Kind = Kind::WholeOr(1, 100, DirectionsKey::WORDS);
 const TRIPLE: Kind = Kind::Numbers(3, FAR, "mm");
@@ -122,8 +121,7 @@ static OWN: &[Table] = &[
         may("axis", Kind::Direction, "rough: [0, 0, 1]", "[0, 0, 1]", "rough: the tool's axis, from tip to holder"),
         may("directions", DIRECTIONS, "rough: one, axis", "\"auto\"", "rough: axes found from where most is reached; no more than so many"),
         may("least_share", SHARE, "0.02", "0.02", "rough: a found axis that takes less than this share is not taken"),
-        may("way", Kind::Word(WayWord::WORDS), "rows", "\"offset\"", "rough: rows, lines around, or arcs of limited engagement"),
-        may("engagement_deg", ENGAGEMENT, "60", "60", "rough: way = \"adaptive\": greatest angle over which the tool is engaged"),
+        may("way", Kind::Word(WayWord::WORDS), "rows", "\"offset\"", "rough: straight rows, or lines around along the walls"),
         may("entry", Kind::Word(EntryWord::WORDS), "auto", "\"helix\"", "rough: the way into material where none leads in from outside"),
         may("ramp_deg", RAMP, "3", "3", "rough: steepest way down into material"),
         may("volume_rate_mm3_min", Kind::Number(RATE, "mm3/min"), "no limit", "12000",
@@ -204,8 +202,7 @@ pub static TABLES: &[Table] = &[
         may("ramp_deg", RAMP, "3", "3", "z_level: steepest way down into material"),
         may("directions", DIRECTIONS, "one, axis", "\"auto\"", "z_level: axes found from where most is reached; no more than so many"),
         may("least_share", SHARE, "0.02", "0.02", "z_level: a found axis that takes less than this share is not taken"),
-        may("way", Kind::Word(WayWord::WORDS), "rows", "\"offset\"", "z_level: rows, lines around, or arcs of limited engagement"),
-        may("engagement_deg", ENGAGEMENT, "60", "60", "z_level: way = \"adaptive\": greatest angle over which the tool is engaged"),
+        may("way", Kind::Word(WayWord::WORDS), "rows", "\"offset\"", "z_level: straight rows, or lines around along the walls"),
         may("entry", Kind::Word(EntryWord::WORDS), "auto", "\"helix\"", "z_level: the way into material where none leads in from outside"),
         may("volume_rate_mm3_min", Kind::Number(RATE, "mm3/min"), "no limit", "12000",
             "z_level: most that is taken a minute; the feed follows"),

@@ -8,8 +8,6 @@ use crate::job::SHARES;
 
 /// Steepest way down into material where the job gives none, degrees.
 const RAMP_DEG: f64 = 3.0;
-/// Greatest engagement of `adaptive` where the job gives none, degrees.
-const ENGAGEMENT_DEG: f64 = 60.0;
 /// No more directions are taken by themselves.
 const MOST_DIRECTIONS: usize = 12;
 /// A direction that takes less than this share of all is not worth it.
@@ -39,11 +37,9 @@ pub struct Layers {
     pub ramp_rad: f64,
     /// How it goes over a layer.
     pub way: WayWord,
-    /// Greatest engagement of `adaptive`.
-    pub engagement_rad: f64,
     /// How it comes into material.
     pub entry: EntryWord,
-    /// Greatest volume rate; without it that of rows at the job's feed.
+    /// Greatest volume rate; none without it.
     pub volume_rate_mm3_min: Option<f64>,
     /// Most directions, where they are to be found.
     pub directions: Option<usize>,
@@ -58,10 +54,6 @@ pub(super) fn layers(places: &Places, t: &raw::Strategy) -> Result<Layers, Failu
         let what = format!("{} needs {key}, a positive number", t.kind.word());
         value.ok_or_else(|| places.refuse(TABLE, "kind", what))
     };
-    let way = t.way.unwrap_or_default();
-    if way != WayWord::Adaptive && t.engagement_deg.is_some() {
-        return refuse("engagement_deg", "engagement_deg is for way = \"adaptive\": leave it out");
-    }
     if t.directions.is_some() && matches!(t.axis, Some(AxisKey::Given(_))) {
         return refuse("directions", "directions finds the axes, and axis gives one: leave out one of the two");
     }
@@ -73,8 +65,7 @@ pub(super) fn layers(places: &Places, t: &raw::Strategy) -> Result<Layers, Failu
         stepover_mm: needed("stepover_mm", t.stepover_mm)?,
         allowance_mm: t.allowance_mm.unwrap_or(0.0),
         ramp_rad: t.ramp_deg.unwrap_or(RAMP_DEG).to_radians(),
-        way,
-        engagement_rad: t.engagement_deg.unwrap_or(ENGAGEMENT_DEG).to_radians(),
+        way: t.way.unwrap_or_default(),
         entry: t.entry.unwrap_or_default(),
         volume_rate_mm3_min: t.volume_rate_mm3_min,
         directions: t.directions.map(|d| match d {
@@ -94,7 +85,6 @@ pub(super) fn own_key(own: &raw::Operation) -> Option<&'static str> {
         ("directions", own.directions.is_some()),
         ("least_share", own.least_share.is_some()),
         ("way", own.way.is_some()),
-        ("engagement_deg", own.engagement_deg.is_some()),
         ("entry", own.entry.is_some()),
         ("ramp_deg", own.ramp_deg.is_some()),
         ("volume_rate_mm3_min", own.volume_rate_mm3_min.is_some()),
@@ -118,7 +108,6 @@ pub(super) fn rough(raw: &mut Raw, own: &raw::Operation, diameter_mm: f64) -> Re
     s.directions = own.directions.or(s.directions);
     s.least_share = own.least_share.or(s.least_share);
     s.way = own.way.or(s.way);
-    s.engagement_deg = own.engagement_deg.or(s.engagement_deg);
     s.entry = own.entry.or(s.entry);
     s.ramp_deg = own.ramp_deg.or(s.ramp_deg);
     s.volume_rate_mm3_min = own.volume_rate_mm3_min.or(s.volume_rate_mm3_min);

@@ -129,15 +129,13 @@ words! {
         Rows = "rows",
         /// Around, at even distances from the walls.
         Offset = "offset",
-        /// In arcs that keep the engagement under an angle.
-        Adaptive = "adaptive",
     }
 }
 
 words! {
     /// How a roughing comes into the material.
     EntryWord {
-        /// From outside, else by a helix, else down a ramp.
+        /// From outside, else by a helix, else down a ramp, else straight down with a tool that plunges.
         #[default]
         Auto = "auto",
         /// From outside, else by a helix.
@@ -146,8 +144,6 @@ words! {
         Ramp = "ramp",
         /// From outside only.
         Outside = "outside",
-        /// Straight down.
-        Plunge = "plunge",
     }
 }
 

@@ -89,14 +89,12 @@ pub fn planned(
         way: match layers.way {
             WayWord::Rows => plan::Way::Rows,
             WayWord::Offset => plan::Way::Offset,
-            WayWord::Adaptive => plan::Way::Adaptive { engagement_rad: layers.engagement_rad },
         },
         entry: match layers.entry {
             EntryWord::Auto => plan::Entry::Auto,
             EntryWord::Helix => plan::Entry::Helix,
             EntryWord::Ramp => plan::Entry::Ramp,
             EntryWord::Outside => plan::Entry::Outside,
-            EntryWord::Plunge => plan::Entry::Plunge,
         },
         plunges: job.tool().plunges(),
         volume_rate_mm3_min: layers.volume_rate_mm3_min.unwrap_or(f64::INFINITY),

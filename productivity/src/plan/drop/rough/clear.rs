@@ -7,7 +7,6 @@
 use super::grid::{Disc, Grid};
 use super::layer::{Cut, Layer, Masks, Walls};
 use super::moves::Moves;
-use super::ways::Hole;
 use std::collections::BTreeMap;
 
 /// Lines of lesser order within this many distances of lines come first.
@@ -20,7 +19,6 @@ pub(super) struct Part {
     pub layer: usize,
     nodes: Vec<u32>,
     cuts: Vec<Cut>,
-    holes: Vec<Hole>,
     /// How many parts above it are not cut yet, and which lie below.
     above: usize,
     below: Vec<usize>,
@@ -37,21 +35,20 @@ pub(super) struct Sheet {
 pub(super) fn parts(
     grid: &Grid,
     sheets: &[Sheet],
-    lines: Vec<(Vec<Cut>, Vec<Hole>)>,
+    lines: Vec<Vec<Cut>>,
     (apart_mm, radius_mm): (f64, f64),
 ) -> Vec<Part> {
     let mut out: Vec<Part> = Vec::new();
     // The last part over each node.
     let mut over: Vec<u32> = vec![Grid::NONE; grid.len()];
     let reach = Disc::new(radius_mm, grid.cell);
-    for (n, (sheet, (cuts, holes))) in sheets.iter().zip(lines).enumerate() {
+    for (n, (sheet, cuts)) in sheets.iter().zip(lines).enumerate() {
         let (part, count) = sheet.masks.parts(grid, 2.0 * apart_mm);
         let first = out.len();
         out.extend((0..count).map(|_| Part {
             layer: n,
             nodes: Vec::new(),
             cuts: Vec::new(),
-            holes: Vec::new(),
             above: 0,
             below: Vec::new(),
         }));
@@ -62,11 +59,6 @@ pub(super) fn parts(
             // A line may go through several parts: each has its stretches.
             for (own, cut) in parted(grid, &part, cut) {
                 out[first + own].cuts.push(cut);
-            }
-        }
-        for hole in holes {
-            if let Some(own) = grid.near(hole.0).map(|k| part[k]).filter(|p| *p != Grid::NONE) {
-                out[first + own as usize].holes.push(hole);
             }
         }
         for p in first..out.len() {
@@ -149,8 +141,8 @@ pub(super) fn clear(parts: &mut [Part], sheets: &[Sheet], moves: &mut Moves<'_>,
     let mut left: Vec<usize> = parts.iter().map(|p| p.above).collect();
     // What lies below the part that was cut last comes next: the list is a stack.
     while let Some(p) = ready.pop() {
-        let (cuts, holes) = (std::mem::take(&mut parts[p].cuts), std::mem::take(&mut parts[p].holes));
-        cut_part(moves, &sheets[parts[p].layer], cuts, holes, apart_mm);
+        let cuts = std::mem::take(&mut parts[p].cuts);
+        cut_part(moves, &sheets[parts[p].layer], cuts, apart_mm);
         let mut next = Vec::new();
         for b in std::mem::take(&mut parts[p].below) {
             left[b] -= 1;
@@ -162,10 +154,7 @@ pub(super) fn clear(parts: &mut [Part], sheets: &[Sheet], moves: &mut Moves<'_>,
     }
 }
 
-fn cut_part(moves: &mut Moves<'_>, sheet: &Sheet, cuts: Vec<Cut>, holes: Vec<Hole>, apart_mm: f64) {
-    for (at, radius) in holes {
-        moves.drill(sheet, at, radius);
-    }
+fn cut_part(moves: &mut Moves<'_>, sheet: &Sheet, cuts: Vec<Cut>, apart_mm: f64) {
     let before = befores(&cuts, apart_mm);
     let mut waits: Vec<usize> = before.iter().map(|(count, _)| *count).collect();
     let mut open: Vec<Option<Cut>> = cuts.into_iter().map(Some).collect();
@@ -229,7 +218,7 @@ fn nearest(open: &[Option<Cut>], waits: &[usize], here: Option<[f64; 3]>) -> Opt
     for (k, cut) in open.iter().enumerate().filter(|(k, _)| waits[*k] == 0) {
         let Some(cut) = cut else { continue };
         let Some(h) = here else { return Some(k) };
-        let ends = cut.places.first().into_iter().chain(cut.places.last().filter(|_| !cut.one_way));
+        let ends = cut.places.first().into_iter().chain(cut.places.last());
         // A line that closes may be begun anywhere.
         let places: Vec<&[f64; 3]> = if cut.closed { cut.places.iter().collect() } else { ends.collect() };
         for p in places {

@@ -4,11 +4,12 @@ use super::clear::Sheet;
 use super::grid::Disc;
 use super::moves::Moves;
 use super::task::Entry;
-use super::ways::HELIX;
 use std::f64::consts::TAU;
 
 /// Corners of a turn of a helix.
 const CORNERS: usize = 24;
+/// Radius of a helix, of the tool's: more would leave a core.
+const HELIX: f64 = 0.9;
 /// A helix of a lesser radius than this, of the tool's, drills.
 const LEAST_HELIX: f64 = 0.25;
 /// Air is looked for so far around a place, in radii of the tool.
@@ -48,7 +49,6 @@ impl Moves<'_> {
         }
         match self.manner.entry {
             Entry::Outside => false,
-            Entry::Plunge => self.plunge(start),
             Entry::Helix => self.helix(sheet, start),
             Entry::Ramp => self.ramp(stations, stands),
             Entry::Auto => {
@@ -138,16 +138,6 @@ impl Moves<'_> {
             return false;
         }
         self.spiral(at, radius)
-    }
-
-    /// Clears a hole down to the floor of a layer.
-    pub(super) fn drill(&mut self, sheet: &Sheet, at: [f64; 2], radius: f64) {
-        let at = [at[0], at[1], sheet.layer.floor];
-        let fits = radius >= LEAST_HELIX * self.site.tool.bare.radius_mm;
-        let allowed = matches!(self.manner.entry, Entry::Auto | Entry::Helix);
-        if fits && allowed && self.stands_at([at[0], at[1]]) > at[2] {
-            self.spiral(at, radius);
-        }
     }
 
     /// The turns of a helix down to a place; false where it would go below the faces.

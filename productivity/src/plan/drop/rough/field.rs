@@ -1,9 +1,7 @@
-//! Distances over the nodes of a lattice: to lines straight on, and from places by the shortest way that is free.
+//! Distances of the nodes of a lattice to lines.
 
 use super::contour::Line;
 use super::grid::Grid;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// Distances of all nodes to the nearest of some lines, mm; infinite where there is none. Where several are as near the nearest may be
 /// missed by a small part of a cell.
@@ -60,69 +58,6 @@ pub(super) fn distances(grid: &Grid, lines: &[Line]) -> Vec<f64> {
     nearest.into_iter().map(|n| n.0).collect()
 }
 
-/// A node that a front reaches, the nearest first.
-struct Reached {
-    at: f64,
-    node: usize,
-}
-
-impl PartialEq for Reached {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Reached {}
-impl PartialOrd for Reached {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.at.total_cmp(&self.at).then(other.node.cmp(&self.node))
-    }
-}
-
-/// How far free nodes are from the sources by a way over free ones, mm; infinite where there is none, no number where a node is not
-/// free. A front goes out from the sources, whose slope is one (fast marching): distances are good to a few parts of a hundred.
-pub(super) fn ways(grid: &Grid, free: &[bool], sources: impl Iterator<Item = usize>) -> Vec<f64> {
-    let mut out: Vec<f64> = free.iter().map(|f| if *f { f64::INFINITY } else { f64::NAN }).collect();
-    let mut settled = vec![false; grid.len()];
-    let mut heap = BinaryHeap::new();
-    for node in sources.filter(|k| free[*k]) {
-        out[node] = 0.0;
-        heap.push(Reached { at: 0.0, node });
-    }
-    let [ni, nj] = grid.n;
-    while let Some(Reached { at, node }) = heap.pop() {
-        if settled[node] || at > out[node] {
-            continue;
-        }
-        settled[node] = true;
-        for k in grid.beside(node, false) {
-            if !free[k] || settled[k] {
-                continue;
-            }
-            let [i, j] = grid.place(k);
-            let of = |is: bool, m: usize| if is && settled[m] { out[m] } else { f64::INFINITY };
-            let a = of(i > 0, k.wrapping_sub(1)).min(of(i + 1 < ni, (k + 1).min(grid.len() - 1)));
-            let b = of(j > 0, k.wrapping_sub(ni).min(grid.len() - 1)).min(of(j + 1 < nj, (k + ni).min(grid.len() - 1)));
-            // (d - a)^2 + (d - b)^2 = cell^2 where both are near, else one cell on from the nearer.
-            let h = grid.cell;
-            let d = if (a - b).abs() < h {
-                0.5 * (a + b + (2.0 * h * h - (a - b) * (a - b)).sqrt())
-            } else {
-                a.min(b) + h
-            };
-            if d < out[k] {
-                out[k] = d;
-                heap.push(Reached { at: d, node: k });
-            }
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -140,19 +75,5 @@ mod tests {
             assert!((found[k] - want).abs() < 0.05, "{p:?} {} {want}", found[k]);
         }
         assert!(distances(&grid, &[]).iter().all(|d| *d == f64::INFINITY));
-    }
-
-    /// Around the end of a wall: two straight ways.
-    #[test]
-    fn ways_go_around_a_wall() {
-        let grid = Grid::over([[-5.0, 0.0], [5.0, 6.0]], 0.1);
-        let free: Vec<bool> = (0..grid.len()).map(|k| grid.at(k)[0].abs() > 0.06 || grid.at(k)[1] > 4.0).collect();
-        let source = grid.near([-3.0, 0.0]).unwrap();
-        let found = ways(&grid, &free, std::iter::once(source));
-        let at = |p: [f64; 2]| found[grid.near(p).unwrap()];
-        for (p, want) in [([-3.0, 4.0], 4.0), ([-1.0, 2.0], 8f64.sqrt()), ([3.0, 0.0], 10.0)] {
-            assert!((at(p) / want - 1.0).abs() < 0.04, "{p:?} {} {want}", at(p));
-        }
-        assert!(at([0.0, 1.0]).is_nan());
     }
 }

@@ -78,27 +78,20 @@ pub(super) fn along(
             // Rows go up slopes, and leave none in steps.
             let masks = Masks::of(&site, layer, [thin, if close { thin } else { steps }]);
             let walls = Walls::of(&site, layer, &masks, s.chord_mm);
-            let lines = match (&rows, task.way) {
-                (Some(rows), _) => {
+            let lines = match &rows {
+                Some(rows) => {
                     let mut lines = ways::of_rows(rows, layer, site.grid.cell);
                     lines.extend(ways::along_walls(&site, layer, (&masks, &walls), (1.0, [steps; 2])));
-                    (lines, Vec::new())
+                    lines
                 }
-                (None, Way::Adaptive { engagement_rad }) => {
-                    let apart = engaged_mm(&site, engagement_rad);
-                    ways::fronts(&site, layer, (&masks, &walls), (apart, s))
-                }
-                (None, _) => (ways::around(&site, layer, (&masks, &walls), s), Vec::new()),
+                None => ways::around(&site, layer, (&masks, &walls), s),
             };
             (Sheet { layer, masks, walls }, lines)
         })
         .collect();
     progress(0.6);
     let (sheets, lines): (Vec<Sheet>, Vec<_>) = found.into_iter().unzip();
-    let apart_mm = match task.way {
-        Way::Adaptive { engagement_rad } => engaged_mm(&site, engagement_rad),
-        Way::Rows | Way::Offset => s.stepover_mm,
-    };
+    let apart_mm = s.stepover_mm;
     let mut parts = clear::parts(&site.grid, &sheets, lines, (apart_mm, known.rougher.bare.radius_mm));
     let safe = super::columns::extent(material.bounds(), &frame)[1][2]
         .max(super::columns::extent(&task.links.obstacles, &frame)[1][2])
@@ -131,11 +124,6 @@ pub(super) fn drop_task<'a>(known: &'a Known<'_>, axis: Unit3) -> DropTask<'a> {
     let tolerance = crate::plan::Tolerance { scallop_mm: chord, gouge_mm: chord, chord_mm: chord };
     let (faces, check, cutter) = (task.faces, task.check, &known.grown);
     DropTask { faces, check, cutter, axis, feed: task.feed, tolerance, progress: &|_| {} }
-}
-
-/// How far fronts go on where the tool is engaged over an angle in front of a straight wall.
-fn engaged_mm(site: &Site<'_>, engagement_rad: f64) -> f64 {
-    site.tool.bare.radius_mm * (1.0 - engagement_rad.cos())
 }
 
 /// Heights of even layers from the top down to the lowest place of the tool.

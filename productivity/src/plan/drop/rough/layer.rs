@@ -28,8 +28,6 @@ pub(super) struct Layer {
 pub(super) struct Cut {
     pub places: Vec<[f64; 3]>,
     pub closed: bool,
-    /// Whether it may be run one way only.
-    pub one_way: bool,
     /// Of lines next to each other the lesser ones come first.
     pub order: f64,
     /// What stands less high above it is not worth a move, mm: on the layer's floor, and on slopes.
@@ -44,8 +42,6 @@ pub(super) struct Masks {
     pub flat: Vec<bool>,
     /// Whether it takes something that is to go.
     pub useful: Vec<bool>,
-    /// Whether it takes nothing at all.
-    pub in_air: Vec<bool>,
 }
 
 /// The greatest height at each node that has material between two heights, no higher than the upper one.
@@ -81,7 +77,6 @@ impl Masks {
             }
         };
         let wanted = over(&|k| site.least[k].max(floor) + thin);
-        let any = over(&|_| floor + thin);
         let height: Vec<f64> = (0..site.grid.len())
             .map(|k| {
                 let height = site.tip[k].max(floor);
@@ -94,8 +89,7 @@ impl Masks {
         let useful = (0..height.len())
             .map(|k| takes(&wanted, k, if height[k] == floor || site.shallow[k] { thin } else { slope }))
             .collect();
-        let in_air = (0..height.len()).map(|k| !height[k].is_nan() && !takes(&any, k, thin)).collect();
-        Self { height, flat, useful, in_air }
+        Self { height, flat, useful }
     }
 
     /// Parts of what is useful that hang together, over gaps of no more than `apart_mm`; the parts' number for each node.

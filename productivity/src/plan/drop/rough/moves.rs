@@ -356,7 +356,7 @@ impl<'a> Moves<'a> {
     /// Cuts along a line.
     pub fn cut(&mut self, sheet: &Sheet, cut: Cut) {
         let mut runs = self.runs(sheet, &cut);
-        if !cut.one_way && !cut.closed {
+        if !cut.closed {
             let d = |p: Option<&[f64; 3]>, h: [f64; 3]| p.map_or(f64::INFINITY, |p| (p[0] - h[0]).hypot(p[1] - h[1]));
             let ends = (runs.first().and_then(|r| r.stations.first()), runs.last().and_then(|r| r.stations.last()));
             if let Some(h) = self.here

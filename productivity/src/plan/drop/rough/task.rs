@@ -74,17 +74,12 @@ pub enum Way {
     Rows,
     /// Around, at even distances from the walls, from within.
     Offset,
-    /// In arcs across what is cleared, so that the tool is engaged no further than an angle.
-    Adaptive {
-        /// The angle, rad.
-        engagement_rad: f64,
-    },
 }
 
 /// How the tool comes into the material where it cannot come from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entry {
-    /// By a helix where one fits, else along the pass, else straight down where the tool may.
+    /// By a helix where one fits, else to and fro along the pass, else straight down where the tool may.
     Auto,
     /// By a helix.
     Helix,
@@ -92,8 +87,6 @@ pub enum Entry {
     Ramp,
     /// From outside only.
     Outside,
-    /// Straight down: a tool that cuts over its centre.
-    Plunge,
 }
 
 /// How much a roughing takes at once and leaves.

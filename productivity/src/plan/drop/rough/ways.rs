@@ -1,20 +1,15 @@
-//! The lines of a layer: rows, lines at even distances from the walls, or fronts that go out from what is cleared.
+//! The lines of a layer: rows, or lines at even distances from the walls.
 
 use super::super::course::Course;
 use super::profile::{below, raised};
 use super::super::trace;
 use super::contour::{self, Line};
-use super::field;
 use super::layer::{Cut, Layer, Masks, THIN, Walls, lifted};
 use super::moves::stations;
 use super::site::{Site, slope};
 use super::task::Sizes;
 use rayon::prelude::*;
 
-/// Radius of a helix, of the tool's: more would leave a core.
-pub(super) const HELIX: f64 = 0.9;
-/// A front comes in from the one before over this many radii of the tool.
-const BLEND: f64 = 2.0;
 /// Most levels of lines around.
 const MOST_LEVELS: usize = 10_000;
 
@@ -84,7 +79,7 @@ pub(super) fn of_rows(rows: &[Row], layer: Layer, step: f64) -> Vec<Cut> {
                 let places: Vec<[f64; 3]> =
                     raised(&places, layer.floor).into_iter().map(|[x, z]| [x, row.y, z]).collect();
                 let places = stations(&places, false, step);
-                out.push(Cut { places, closed: false, one_way: false, order: 0.0, thin: [THIN * deep; 2] });
+                out.push(Cut { places, closed: false, order: 0.0, thin: [THIN * deep; 2] });
             }
         }
     }
@@ -113,7 +108,7 @@ pub(super) fn around(
     for depth in levels(0.0, deepest, apart_mm).chain(levels(steepest, 0.0, -on_slope)) {
         for line in contour::level(&site.grid, &walls.depth, depth) {
             let places = lifted(site, layer, masks, (&line, false));
-            out.push(Cut { places, closed: line.closed, one_way: false, order: -depth, thin });
+            out.push(Cut { places, closed: line.closed, order: -depth, thin });
         }
     }
     out.extend(along_walls(site, layer, (masks, walls), (0.0, thin)));
@@ -145,100 +140,7 @@ pub(super) fn along_walls(
 ) -> Vec<Cut> {
     let cut = |line: &Line| {
         let places = lifted(site, layer, masks, (line, true));
-        Cut { places, closed: line.closed, one_way: false, order, thin }
+        Cut { places, closed: line.closed, order, thin }
     };
     walls.lines.iter().map(cut).collect()
-}
-
-/// A place where the tool is to come in by a helix, with its radius.
-pub(super) type Hole = ([f64; 2], f64);
-
-/// Fronts that go out from where the tool is in air, or from holes where it is so nowhere, and at last the lines along the walls.
-pub(super) fn fronts(
-    site: &Site<'_>,
-    layer: Layer,
-    (masks, walls): (&Masks, &Walls),
-    (apart_mm, sizes): (f64, &Sizes),
-) -> (Vec<Cut>, Vec<Hole>) {
-    let grid = &site.grid;
-    let free: Vec<bool> = masks.height.iter().map(|h| !h.is_nan()).collect();
-    let (part, count) = grid.parts(&free);
-    let own = |k: usize| part[k] as usize;
-    // Parts that are to be cut and have no air: their deepest place.
-    let (mut air, mut deepest, mut cuts) = (vec![false; count], vec![(0.0, usize::MAX); count], vec![false; count]);
-    for k in (0..grid.len()).filter(|k| free[*k]) {
-        air[own(k)] |= masks.in_air[k];
-        cuts[own(k)] |= masks.useful[k];
-        if masks.flat[k] && walls.depth[k] > deepest[own(k)].0 {
-            deepest[own(k)] = (walls.depth[k], k);
-        }
-    }
-    let mut holes: Vec<Hole> = Vec::new();
-    for p in 0..count {
-        let (depth, k) = deepest[p];
-        if cuts[p] && !air[p] && k != usize::MAX {
-            holes.push((grid.at(k), depth.min(HELIX * site.tool.bare.radius_mm)));
-        }
-    }
-    let in_hole = |k: usize| {
-        let at = grid.at(k);
-        holes.iter().any(|(c, r)| (at[0] - c[0]).hypot(at[1] - c[1]) <= *r)
-    };
-    let sources: Vec<usize> = (0..grid.len()).filter(|k| free[*k] && (masks.in_air[*k] || in_hole(*k))).collect();
-    let near: Vec<f64> = field::ways(grid, &free, sources.into_iter()).into_iter().map(|d| -d).collect();
-    let useful = |k: &usize| masks.useful[*k] && near[*k].is_finite();
-    let farthest = (0..grid.len()).filter(useful).map(|k| -near[k]).fold(0.0, f64::max);
-    let mut out = Vec::new();
-    let thin = layer.thin(sizes.stands_mm);
-    for n in 1..MOST_LEVELS {
-        let far = apart_mm * n as f64;
-        if far > farthest + apart_mm {
-            break;
-        }
-        for line in contour::level(grid, &near, -far) {
-            let line = blended(site, line, &near, apart_mm);
-            let places = lifted(site, layer, masks, (&line, false));
-            out.push(Cut { places, closed: line.closed, one_way: true, order: far, thin });
-        }
-    }
-    let last = farthest + 2.0 * apart_mm;
-    if (0..grid.len()).any(|k| masks.useful[k] && !near[k].is_finite()) {
-        // Where no front comes lines around do: places too narrow for a helix.
-        let others = around(site, layer, (masks, walls), sizes);
-        let deepest = others.iter().map(|c| -c.order).fold(0.0, f64::max);
-        out.extend(others.into_iter().map(|c| Cut { order: last + deepest + c.order, ..c }));
-    } else {
-        out.extend(along_walls(site, layer, (masks, walls), (last, thin)));
-    }
-    (out, holes)
-}
-
-/// An open front that begins on the one before: the tool comes into the material little by little.
-fn blended(site: &Site<'_>, mut line: Line, near: &[f64], apart_mm: f64) -> Line {
-    if line.closed {
-        return line;
-    }
-    let grid = &site.grid;
-    let long = BLEND * site.tool.bare.radius_mm;
-    let mut way = 0.0;
-    let mut last = line.points[0];
-    for p in &mut line.points {
-        let here = *p;
-        way += (here[0] - last[0]).hypot(here[1] - last[1]);
-        last = here;
-        if way >= long {
-            break;
-        }
-        let Some(([a, b, c, d], [f, g])) = grid.around(here) else { continue };
-        let slope = [
-            (near[b] - near[a]) * (1.0 - g) + (near[d] - near[c]) * g,
-            (near[c] - near[a]) * (1.0 - f) + (near[d] - near[b]) * f,
-        ];
-        let steep = slope[0].hypot(slope[1]);
-        if steep > 0.0 && steep.is_finite() {
-            let back = apart_mm * (1.0 - way / long) / steep;
-            *p = [0, 1].map(|k| here[k] + slope[k] * back);
-        }
-    }
-    line
 }
