@@ -38,7 +38,8 @@ struct Plate {
 
 impl Plate {
     fn surface(&self) -> Extruded<Line> {
-        let foot = Line::new(Point3::new(self.x, 0.0, 0.0), Vec3::y(), Interval::new(self.y[0], self.y[1])).unwrap();
+        let foot =
+            Line::new(Point3::new(self.x, 0.0, 0.0), Vec3::y(), Interval::new(self.y[0], self.y[1])).unwrap();
         Extruded::new(foot, Vec3::z(), Interval::new(0.0, self.height)).unwrap()
     }
 
@@ -72,7 +73,11 @@ fn off(pose: &Pose, plates: &[Plate]) -> [f64; 2] {
         plates.iter().map(|p| p.off(&a, &b)).fold(f64::INFINITY, f64::min) - radius
     };
     // The plane is nearest to the lower end, for all axes look up.
-    let plane = if at(RADIUS).x.abs().max(at(RADIUS).y.abs()) > SIDE + RADIUS { f64::INFINITY } else { at(RADIUS).z - RADIUS };
+    let plane = if at(RADIUS).x.abs().max(at(RADIUS).y.abs()) > SIDE + RADIUS {
+        f64::INFINITY
+    } else {
+        at(RADIUS).z - RADIUS
+    };
     [least(cutter, RADIUS).min(least(holder, HOLDER[0])), plane]
 }
 
@@ -81,7 +86,8 @@ fn frozen(path: &ClPath, pass_of_move: &[Option<u32>]) -> impl Iterator<Item = (
     let legs = path.moves.windows(2).zip(pass_of_move.iter().skip(1));
     legs.flat_map(|(w, pass)| {
         let [a, b] = [w[0].pose, w[1].pose];
-        let n = ((b.tip - a.tip).norm() / STEP).ceil().max((a.axis.angle(&b.axis) / 0.01).ceil()).max(1.0) as usize;
+        let n = ((b.tip - a.tip).norm() / STEP).ceil().max((a.axis.angle(&b.axis) / 0.01).ceil()).max(1.0)
+            as usize;
         (0..=n).map(move |k| {
             let t = k as f64 / n as f64;
             let axis = Unit3::new_normalize(a.axis.into_inner() * (1.0 - t) + b.axis.into_inner() * t);
@@ -189,13 +195,19 @@ fn ways_are_no_longer_than_what_stands_between_needs() {
     // Rows on both sides of a plate: half a millimetre apart on each side, 6 mm across it.
     let plate = Plate { x: 0.0, y: [-8.0, 8.0], height: 6.0 };
     let row = |x: f64| Pass { points: vec![contact(x, -6.0, 0.0), contact(x, 6.0, 0.0)], closed: false };
-    let rows: Vec<Pass> = (0..8).map(|k| row(if k < 4 { -4.5 + 0.5 * f64::from(k) } else { 1.0 + 0.5 * f64::from(k) })).collect();
+    let rows: Vec<Pass> = (0..8)
+        .map(|k| row(if k < 4 { -4.5 + 0.5 * f64::from(k) } else { 1.0 + 0.5 * f64::from(k) }))
+        .collect();
     let surface = plate.surface();
     let side = Interval::new(-SIDE, SIDE);
     let floor = Plane::new(Domain { u: side, v: side });
     let keeping = Keeping { clearance_mm: CLEARANCE, accepted_mm: INTO, radius_mm: RADIUS };
-    let walls =
-        Walls::of(&[Named { face: "plate", surface: &surface }], &[Named { face: "floor", surface: &floor }], &keeping).unwrap();
+    let walls = Walls::of(
+        &[Named { face: "plate", surface: &surface }],
+        &[Named { face: "floor", surface: &floor }],
+        &keeping,
+    )
+    .unwrap();
     let links = links();
     let all = ordered(&rows.into(), &links, &walls, Freedom { turned: true, in_turn: false });
     let linked = link_stretches(&all.passes, &all.skipped, &links, &walls);
@@ -203,8 +215,12 @@ fn ways_are_no_longer_than_what_stands_between_needs() {
     let last = linked.pass_of_move.iter().rposition(Option::is_some).unwrap();
     let highest = linked.path.moves[first..=last].iter().map(|m| m.pose.tip.z).fold(0.0, f64::max);
     // Over the plate by its clearance, once; the next height that is looked at is half as much again.
-    assert!(highest >= 6.0 + CLEARANCE && highest <= 1.5 * (6.0 + CLEARANCE) + links.approach_mm, "{highest}");
+    assert!(
+        highest >= 6.0 + CLEARANCE && highest <= 1.5 * (6.0 + CLEARANCE) + links.approach_mm,
+        "{highest}"
+    );
     let legs = linked.path.moves[first..=last].windows(2).zip(&linked.pass_of_move[first + 1..=last]);
-    let air: f64 = legs.filter(|(_, p)| p.is_none()).map(|(w, _)| (w[1].pose.tip - w[0].pose.tip).norm()).sum();
+    let air: f64 =
+        legs.filter(|(_, p)| p.is_none()).map(|(w, _)| (w[1].pose.tip - w[0].pose.tip).norm()).sum();
     assert!(air <= 6.0 * 0.6 + 2.0 * highest + 6.0, "{air}");
 }

@@ -42,7 +42,8 @@ fn filled(block: Box3) -> Stock {
 
 /// A rectangle from a corner, along x and across the normal.
 fn rectangle(corner: [f64; 3], normal: [f64; 3], x: [f64; 3], size: [f64; 2]) -> Placed<Plane> {
-    let frame = Placement::new(Point3::from(corner), Unit3::new_normalize(Vec3::from(normal)), Some(Vec3::from(x)));
+    let frame =
+        Placement::new(Point3::from(corner), Unit3::new_normalize(Vec3::from(normal)), Some(Vec3::from(x)));
     let side = |s: f64| Interval::new(0.0, s);
     Placed { surface: Plane::new(Domain { u: side(size[0]), v: side(size[1]) }), placement: frame }
 }
@@ -146,7 +147,8 @@ fn a_pocket_is_taken_by_its_volume() {
     for way in [Way::Rows, Way::Offset] {
         for entry in [Entry::Auto, Entry::Helix, Entry::Ramp] {
             let how = How { way, entry, ..How::upright() };
-            let plan = planned(&faces, block, &stock, how).unwrap();
+            let plan =
+                planned(&faces, block, &stock, how).unwrap_or_else(|e| panic!("{way:?} {entry:?}: {e}"));
             let done = heights_of(block, &plan);
             assert!((done.taken_mm3 / want - 1.0).abs() < 0.02, "{way:?} {entry:?}: {done:?}, {want}");
             assert!(done.rapid_mm < 1e-6, "{way:?} {entry:?}: {done:?}");
@@ -188,12 +190,13 @@ fn the_feed_follows_the_volume_rate() {
     let (faces, block) = pocket();
     let stock = filled(block);
     for way in [Way::Rows, Way::Offset] {
-        let most = 4000.0;
+        let most = 2500.0;
         let free = heights_of(block, &planned(&faces, block, &stock, How { way, ..How::upright() }).unwrap());
         let how = How { way, rate: most, ..How::upright() };
         let held = heights_of(block, &planned(&faces, block, &stock, how).unwrap());
         assert!(free.rate_mm3_min > 1.5 * most, "{free:?}");
-        assert!(held.rate_mm3_min < 1.1 * most, "{held:?}");
+        // Sections are known to a node, a seventh of the tool's radius.
+        assert!(held.rate_mm3_min < 1.15 * most, "{held:?}");
         assert!((held.taken_mm3 / free.taken_mm3 - 1.0).abs() < 0.01, "{held:?} {free:?}");
     }
 }
@@ -206,6 +209,7 @@ fn a_leaning_axis_clears_under_an_overhang() {
     let faces = vec![
         rectangle([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [24.0, long]),
         rectangle([0.0, long, 0.0], [high, 0.0, -reach], [reach, 0.0, high], [slant, long]),
+        rectangle([0.0, 0.0, high], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [reach, long]),
     ];
     let block = boxed([0.0, 0.0, -1.0], [24.0, long, high]);
     let stock = filled(block);

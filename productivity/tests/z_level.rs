@@ -11,8 +11,14 @@ use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
 use osculate_tools::{Cutter, CutterSpec};
 
-const SIZES: Sizes =
-    Sizes { stepdown_mm: 2.0, stepover_mm: 1.5, allowance_mm: 0.4, ramp_rad: 0.1, chord_mm: 0.01, stands_mm: 0.5 };
+const SIZES: Sizes = Sizes {
+    stepdown_mm: 2.0,
+    stepover_mm: 1.5,
+    allowance_mm: 0.4,
+    ramp_rad: 0.1,
+    chord_mm: 0.01,
+    stands_mm: 0.5,
+};
 
 fn toroid() -> Cutter {
     Cutter::try_from(CutterSpec::Toroidal { diameter_mm: 6.0, corner_radius_mm: 1.0, length_mm: 40.0 })

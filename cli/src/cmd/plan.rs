@@ -96,7 +96,10 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
             let [x, y, z] = w.at_mm;
             let value = number(w.value_mm, 4);
             let made = w.made_by();
-            text.push_str(&format!("  {} {value} mm at ({x:.3}, {y:.3}, {z:.3}) on {}, {made}\n", w.kind, w.face));
+            text.push_str(&format!(
+                "  {} {value} mm at ({x:.3}, {y:.3}, {z:.3}) on {}, {made}\n",
+                w.kind, w.face
+            ));
         }
     }
     let w = &s.wall_s;

@@ -2,8 +2,8 @@
 
 use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
-    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord, FlankShape, Gouges, LeadKey,
-    Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns, WayWord,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
+    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns, WayWord,
 };
 use osculate_postproc::built_in_names;
 use osculate_postproc::nc::Dialect;

@@ -1,8 +1,8 @@
 //! The tables of a job file as written; what they mean is made of them in [`crate::job::Job`].
 
 use crate::job::words::{
-    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord, FlankShape,
-    Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns, WayWord,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
+    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns, WayWord,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;

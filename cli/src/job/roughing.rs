@@ -1,10 +1,10 @@
 //! How a job roughs: the keys of `z_level`, and those of an operation that stand for them.
 
 use crate::failure::Failure;
+use crate::job::SHARES;
 use crate::job::problem::Places;
 use crate::job::raw::{self, Raw};
 use crate::job::words::{AxisKey, DirectionsKey, EntryWord, StrategyWord, WayWord};
-use crate::job::SHARES;
 
 /// Steepest way down into material where the job gives none, degrees.
 const RAMP_DEG: f64 = 3.0;
@@ -55,7 +55,10 @@ pub(super) fn layers(places: &Places, t: &raw::Strategy) -> Result<Layers, Failu
         value.ok_or_else(|| places.refuse(TABLE, "kind", what))
     };
     if t.directions.is_some() && matches!(t.axis, Some(AxisKey::Given(_))) {
-        return refuse("directions", "directions finds the axes, and axis gives one: leave out one of the two");
+        return refuse(
+            "directions",
+            "directions finds the axes, and axis gives one: leave out one of the two",
+        );
     }
     if t.directions.is_none() && t.least_share.is_some() {
         return refuse("least_share", "least_share is for found axes: add directions = \"auto\"");
@@ -93,7 +96,11 @@ pub(super) fn own_key(own: &raw::Operation) -> Option<&'static str> {
 }
 
 /// A roughing of a list: sizes from the tool where nothing says them.
-pub(super) fn rough(raw: &mut Raw, own: &raw::Operation, diameter_mm: f64) -> Result<(), (&'static str, String)> {
+pub(super) fn rough(
+    raw: &mut Raw,
+    own: &raw::Operation,
+    diameter_mm: f64,
+) -> Result<(), (&'static str, String)> {
     let s = &mut raw.strategy;
     if !matches!(s.kind, StrategyWord::Auto | StrategyWord::ZLevel) {
         return Err(("kind", format!("kind = \"rough\" goes in layers (z_level), not by {}", s.kind.word())));

@@ -91,7 +91,9 @@ impl Kind {
     #[must_use]
     pub fn words(&self) -> Vec<&'static str> {
         match self {
-            Self::NumberOr(_, _, w) | Self::WholeOr(_, _, w) | Self::DirectionOr(w) | Self::Word(w) => w.to_vec(),
+            Self::NumberOr(_, _, w) | Self::WholeOr(_, _, w) | Self::DirectionOr(w) | Self::Word(w) => {
+                w.to_vec()
+            }
             Self::Name(names) => names(),
             _ => Vec::new(),
         }

@@ -115,9 +115,12 @@ impl<'a> Aim<'a> {
         let layer_mm = job.layer_mm();
         let stock = match self.raw.as_ref().map(|raw| raw.goal(layer_mm)) {
             None => GoalStock::Assumed { layer_mm },
-            Some(GoalStock::Declared { blank, resolution, layer_mm, words }) => {
-                GoalStock::Declared { blank, resolution, layer_mm, words: self.begun.as_deref().unwrap_or(words) }
-            }
+            Some(GoalStock::Declared { blank, resolution, layer_mm, words }) => GoalStock::Declared {
+                blank,
+                resolution,
+                layer_mm,
+                words: self.begun.as_deref().unwrap_or(words),
+            },
             Some(assumed) => assumed,
         };
         let speed = |k: usize| speeds_rpm.get(k).copied().flatten();

@@ -72,9 +72,7 @@ pub fn planned(
     let (named, check) = (drop::names(&faces.faces), drop::names(&faces.check));
     let found: Vec<Unit3> = if layers.directions.is_some() { candidates(job, faces)? } else { Vec::new() };
     let from = match layers.directions {
-        Some(most) => {
-            Headings::Found(Search { candidates: &found, most, least_share: layers.least_share })
-        }
+        Some(most) => Headings::Found(Search { candidates: &found, most, least_share: layers.least_share }),
         None => Headings::Along(axis),
     };
     let task = RoughTask {

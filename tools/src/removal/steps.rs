@@ -109,12 +109,8 @@ impl GoalStep<'_> {
 
 /// Of the samples of the whole goal those on the faces of a step; of those on faces that it does not machine the ones that were harmed.
 fn taken(sampled: &Sampled, cuts: &[Cut], seats: &[Seat]) -> (Sampled, Vec<Cut>) {
-    let mut out = Sampled {
-        samples: Vec::new(),
-        patches: Vec::new(),
-        density: sampled.density,
-        lost: Vec::new(),
-    };
+    let mut out =
+        Sampled { samples: Vec::new(), patches: Vec::new(), density: sampled.density, lost: Vec::new() };
     let mut left = Vec::new();
     let all = sampled.samples.iter().zip(&sampled.patches).zip(cuts);
     for ((sample, patch), cut) in all {

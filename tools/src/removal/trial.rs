@@ -133,7 +133,8 @@ pub(super) struct Sampled {
 /// looked at.
 pub(super) fn changes_of<'a>(goal: &Goal<'a>, program: &Program<'_>, stops: &[usize]) -> Vec<Change<'a>> {
     let mut firsts: Vec<usize> = program.changes.to_vec();
-    let more = stops.iter().filter(|s| **s > 0 && **s < program.motions.len() && !program.changes.contains(s));
+    let more =
+        stops.iter().filter(|s| **s > 0 && **s < program.motions.len() && !program.changes.contains(s));
     firsts.extend(more);
     firsts.sort_unstable();
     firsts.dedup();

@@ -208,10 +208,8 @@ impl Behind {
         };
         let change = |(first, cutter): &'_ (usize, Cutter)| (*first, *cutter);
         let owned: Vec<_> = later.iter().map(change).collect();
-        let changes: Vec<Change<'_>> = owned
-            .iter()
-            .map(|(first, cutter)| Change { first: *first, cutter, holder: None })
-            .collect();
+        let changes: Vec<Change<'_>> =
+            owned.iter().map(|(first, cutter)| Change { first: *first, cutter, holder: None }).collect();
         let work = removal::Job {
             cutter,
             holder: None,

@@ -176,7 +176,7 @@ pub fn link_stretches(passes: &[Pass], skipped: &[Vec<CcPoint>], links: &Links, 
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
-mod tests;
+mod order_tests;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
-mod order_tests;
+mod tests;

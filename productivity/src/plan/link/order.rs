@@ -179,7 +179,8 @@ impl<'a> Ends<'a> {
 
     /// The end that is farthest from the middle of all.
     fn farthest(&self) -> u32 {
-        let middle = self.ends.iter().fold(Vec3::zeros(), |sum, e| sum + e.tip.coords) / self.ends.len().max(1) as f64;
+        let middle =
+            self.ends.iter().fold(Vec3::zeros(), |sum, e| sum + e.tip.coords) / self.ends.len().max(1) as f64;
         let far = |k: u32| (self.ends[k as usize].tip.coords - middle).norm();
         let all = (0..self.ends.len() as u32).filter(|k| self.entered(*k).is_some());
         all.reduce(|a, b| if far(b) > far(a) { b } else { a }).unwrap_or(0)

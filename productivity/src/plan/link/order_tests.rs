@@ -181,7 +181,11 @@ fn closed_passes_begin_where_the_tool_comes_from() {
 fn what_was_taken_out_stays_between_its_passes() {
     let way = |from: f64, to: f64| vec![at([from, 0.0]), at([0.5 * (from + to), 0.0]), at([to, 0.0])];
     let all = Stretches {
-        passes: vec![straight([0.0, 0.0], [4.0, 0.0]), straight([9.0, 0.0], [20.0, 0.0]), straight([0.0, 30.0], [20.0, 30.0])],
+        passes: vec![
+            straight([0.0, 0.0], [4.0, 0.0]),
+            straight([9.0, 0.0], [20.0, 0.0]),
+            straight([0.0, 30.0], [20.0, 30.0]),
+        ],
         skipped: vec![way(4.0, 9.0), Vec::new(), Vec::new()],
     };
     let found = ordered(&all, &links(), &Walls::default(), Freedom { turned: true, in_turn: false });

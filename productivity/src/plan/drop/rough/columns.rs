@@ -71,7 +71,12 @@ pub(super) fn within(b: &Box3, frame: &Frame, at: [f64; 2]) -> Option<[f64; 2]> 
 
 impl Columns {
     /// The columns of material over the nodes that are wanted; nothing over the others.
-    pub fn of(stock: &Material<'_>, frame: &Frame, grid: &Grid, wanted: impl Fn(usize) -> bool + Sync) -> Self {
+    pub fn of(
+        stock: &Material<'_>,
+        frame: &Frame,
+        grid: &Grid,
+        wanted: impl Fn(usize) -> bool + Sync,
+    ) -> Self {
         let step = STEP * stock.cell_mm();
         let spans: Vec<Vec<[f64; 2]>> = (0..grid.len())
             .into_par_iter()
@@ -198,7 +203,8 @@ impl Columns {
 
     /// The upper end of material within a disc around a node.
     pub fn top_in(&self, grid: &Grid, disc: &Disc, k: usize) -> f64 {
-        let rows = grid.disc(disc, k).map(|row| self.top[row].iter().copied().fold(f64::NEG_INFINITY, f64::max));
+        let rows =
+            grid.disc(disc, k).map(|row| self.top[row].iter().copied().fold(f64::NEG_INFINITY, f64::max));
         rows.fold(f64::NEG_INFINITY, f64::max)
     }
 }
@@ -206,8 +212,7 @@ impl Columns {
 /// The frame's heights of the corners of a box: least and greatest along the axis, and in the plane.
 pub(super) fn extent(b: &Box3, frame: &Frame) -> [[f64; 3]; 2] {
     let ends = [b.min, b.max];
-    let corners =
-        (0..8).map(|k| frame.of(&Point3::new(ends[k & 1].x, ends[k >> 1 & 1].y, ends[k >> 2].z)));
+    let corners = (0..8).map(|k| frame.of(&Point3::new(ends[k & 1].x, ends[k >> 1 & 1].y, ends[k >> 2].z)));
     corners.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[lo, hi], c| {
         [[0, 1, 2].map(|k| lo[k].min(c[k])), [0, 1, 2].map(|k| hi[k].max(c[k]))]
     })

@@ -87,7 +87,12 @@ fn common(a: &[u64], b: &[u64]) -> Vec<u64> {
 
 impl Views {
     /// What all candidates of a search reach.
-    pub fn of(known: &Known<'_>, material: &Material<'_>, search: &Search<'_>, places: Option<&Places>) -> Self {
+    pub fn of(
+        known: &Known<'_>,
+        material: &Material<'_>,
+        search: &Search<'_>,
+        places: Option<&Places>,
+    ) -> Self {
         let radius = known.rougher.bare.radius_mm;
         let (points, each_mm3) = lattice(material, places, radius);
         let candidates: Vec<Unit3> = match places {

@@ -12,6 +12,8 @@ const CORNERS: usize = 24;
 const HELIX: f64 = 0.9;
 /// A helix of a lesser radius than this, of the tool's, drills.
 const LEAST_HELIX: f64 = 0.25;
+/// No more places for a helix are tried.
+const MOST_WIDE: usize = 6;
 /// Air is looked for so far around a place, in radii of the tool.
 const AROUND: f64 = 4.0;
 /// The tool comes down where it has been, so far from a start, in its radii; ...
@@ -51,16 +53,17 @@ impl Moves<'_> {
             Entry::Outside => false,
             Entry::Helix => self.helix(sheet, start),
             Entry::Ramp => self.ramp(stations, stands),
-            Entry::Auto => {
-                self.helix(sheet, start) || self.ramp(stations, stands) || self.plunge(start)
-            }
+            Entry::Auto => self.helix(sheet, start) || self.ramp(stations, stands) || self.plunge(start),
         }
     }
 
     /// Whether the tool gets to a place on its layer from what is cleared.
     pub(super) fn gets_to(&self, sheet: &Sheet, at: [f64; 3]) -> bool {
         self.stands_at([at[0], at[1]]) <= at[2] + self.thin(sheet)
-            || self.been_near(at, sheet.layer.floor).into_iter().any(|p| self.straight(sheet, p, at).is_some())
+            || self
+                .been_near(at, sheet.layer.floor)
+                .into_iter()
+                .any(|p| self.straight(sheet, p, at).is_some())
             || self.air_near(sheet, at).is_some()
     }
 
@@ -89,7 +92,8 @@ impl Moves<'_> {
         let away = |p: &[f64; 3]| (p[0] - start[0]).hypot(p[1] - start[1]);
         let disc = Disc::new(near_mm, site.grid.cell);
         let all = site.grid.disc(&disc, k).flatten().filter_map(|m| self.been[m]);
-        let mut found: Vec<[f64; 3]> = all.map(|p| [p[0], p[1], p[2].max(floor)]).filter(|p| p[2] <= start[2]).collect();
+        let mut found: Vec<[f64; 3]> =
+            all.map(|p| [p[0], p[1], p[2].max(floor)]).filter(|p| p[2] <= start[2]).collect();
         found.sort_by(|a, b| away(a).total_cmp(&away(b)));
         found.truncate(MOST_BEEN);
         found
@@ -116,7 +120,8 @@ impl Moves<'_> {
             let p = site.grid.at(m);
             (p[0] - start[0]).hypot(p[1] - start[1])
         };
-        let mut free: Vec<usize> = site.grid.disc(&near, k).flatten().filter(|m| sheet.masks.flat[*m]).collect();
+        let mut free: Vec<usize> =
+            site.grid.disc(&near, k).flatten().filter(|m| sheet.masks.flat[*m]).collect();
         free.sort_by(|a, b| away(*a).total_cmp(&away(*b)).then(a.cmp(b)));
         let is_air = |m: &usize| {
             self.columns.top_in(&site.grid, &self.under, *m) <= floor + self.thin(sheet)
@@ -129,15 +134,39 @@ impl Moves<'_> {
         free.into_iter().filter(is_air).map(place).find(|p| self.straight(sheet, *p, start).is_some())
     }
 
-    /// Down a helix about a place, and back to it; false where none fits.
+    /// Down a helix near a place and on to it through the layer; false where none fits. The nearest wide place is taken.
     fn helix(&mut self, sheet: &Sheet, at: [f64; 3]) -> bool {
-        let depth = self.site.grid.near([at[0], at[1]]).map(|k| sheet.walls.depth[k]);
-        let most = HELIX * self.site.tool.bare.radius_mm;
-        let radius = depth.unwrap_or(0.0).min(most);
-        if radius.is_nan() || radius < LEAST_HELIX * self.site.tool.bare.radius_mm {
-            return false;
+        let (site, floor) = (self.site, sheet.layer.floor);
+        let Some(k) = site.grid.near([at[0], at[1]]) else { return false };
+        let (most, least) = (HELIX * site.tool.bare.radius_mm, LEAST_HELIX * site.tool.bare.radius_mm);
+        let near = Disc::new(AROUND * site.tool.bare.radius_mm, site.grid.cell);
+        // How far off the walls a place lies; none where the tool may not be.
+        let depth = |m: usize| sheet.walls.depth[m];
+        let place = |m: usize| {
+            let p = site.grid.at(m);
+            [p[0], p[1], floor]
+        };
+        let away = |m: &usize| (place(*m)[0] - at[0]).hypot(place(*m)[1] - at[1]);
+        let mut wide: Vec<usize> = site
+            .grid
+            .disc(&near, k)
+            .flatten()
+            .filter(|m| sheet.masks.flat[*m] && depth(*m) >= least)
+            .collect();
+        wide.sort_by(|a, b| {
+            let short = |m: usize| (most - depth(m)).max(0.0);
+            short(*a).total_cmp(&short(*b)).then(away(a).total_cmp(&away(b))).then(a.cmp(b))
+        });
+        wide.truncate(MOST_WIDE);
+        for m in wide {
+            let centre = place(m);
+            let Some(way) = self.straight(sheet, centre, at) else { continue };
+            if self.spiral(centre, depth(m).min(most)) {
+                self.feed(&way, self.manner.links.feed_mm_min, None);
+                return true;
+            }
         }
-        self.spiral(at, radius)
+        false
     }
 
     /// The turns of a helix down to a place; false where it would go below the faces.

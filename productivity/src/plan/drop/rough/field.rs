@@ -45,7 +45,10 @@ pub(super) fn distances(grid: &Grid, lines: &[Line]) -> Vec<f64> {
                 let k = j * ni + if columns_back { ni - 1 - i } else { i };
                 for m in grid.beside(k, true) {
                     let piece = nearest[m].1;
-                    if piece != u32::MAX && piece != nearest[k].1 && nearest[m].0 < nearest[k].0 + 2.0 * grid.cell {
+                    if piece != u32::MAX
+                        && piece != nearest[k].1
+                        && nearest[m].0 < nearest[k].0 + 2.0 * grid.cell
+                    {
                         let d = away(k, piece);
                         if d < nearest[k].0 {
                             nearest[k] = (d, piece);

@@ -81,8 +81,7 @@ impl Grid {
 
     /// The nodes next to one: four, or eight with those aslant.
     pub fn beside(&self, k: usize, aslant: bool) -> impl Iterator<Item = usize> + use<> {
-        const ALL: [[isize; 2]; 8] =
-            [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]];
+        const ALL: [[isize; 2]; 8] = [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]];
         let ([i, j], [ni, nj]) = (self.place(k), self.n);
         ALL[..if aslant { 8 } else { 4 }].iter().filter_map(move |[di, dj]| {
             let (a, b) = (i.checked_add_signed(*di)?, j.checked_add_signed(*dj)?);
@@ -91,7 +90,11 @@ impl Grid {
     }
 
     /// The rows of a disc around a node, as ranges of nodes.
-    pub fn disc<'a>(&self, disc: &'a Disc, k: usize) -> impl Iterator<Item = std::ops::Range<usize>> + use<'a> {
+    pub fn disc<'a>(
+        &self,
+        disc: &'a Disc,
+        k: usize,
+    ) -> impl Iterator<Item = std::ops::Range<usize>> + use<'a> {
         let ([i, j], [ni, nj]) = (self.place(k), self.n);
         disc.rows.iter().filter_map(move |(dj, half)| {
             let b = j.checked_add_signed(*dj).filter(|b| *b < nj)?;

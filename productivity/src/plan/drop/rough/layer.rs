@@ -197,7 +197,9 @@ pub(super) fn along_faces(site: &Site<'_>, floor: f64, way: &[[f64; 2]]) -> Vec<
         let Some(first) = places.first() else { continue };
         // Up to where something is below the tool nothing is.
         match out.last().copied() {
-            None if !same(*first, way[0]) => out.extend([[way[0][0], way[0][1], floor], [first[0], first[1], floor]]),
+            None if !same(*first, way[0]) => {
+                out.extend([[way[0][0], way[0][1], floor], [first[0], first[1], floor]])
+            }
             Some(last) if !same(last, [first[0], first[1]]) => {
                 out.extend([[last[0], last[1], floor], [first[0], first[1], floor]]);
             }

@@ -3,10 +3,10 @@
 //! Stock is kept as the moves before have left it: where it is taken already a line is not run, rapids go as low over it as it is known to
 //! stand, and the feed is that of the section that the tool moves into.
 
+use super::clear::Sheet;
 use super::columns::Columns;
 use super::grid::Disc;
 use super::layer::{Cut, Layer, along_faces};
-use super::clear::Sheet;
 use super::pace::{Fed, Pace, thinned};
 use super::site::Site;
 use super::task::{Entry, Sizes};
@@ -126,12 +126,7 @@ impl<'a> Moves<'a> {
         if let Some([x, y, _]) = self.here {
             self.rapid([x, y, self.manner.safe]);
         }
-        Moved {
-            linked: self.linked,
-            passes: self.passes,
-            taken_mm3: self.taken_mm3,
-            shut_mm3: self.shut_mm3,
-        }
+        Moved { linked: self.linked, passes: self.passes, taken_mm3: self.taken_mm3, shut_mm3: self.shut_mm3 }
     }
 
     fn go(&mut self, at: [f64; 3], motion: Motion, pass: Option<u32>) {
@@ -357,8 +352,11 @@ impl<'a> Moves<'a> {
     pub fn cut(&mut self, sheet: &Sheet, cut: Cut) {
         let mut runs = self.runs(sheet, &cut);
         if !cut.closed {
-            let d = |p: Option<&[f64; 3]>, h: [f64; 3]| p.map_or(f64::INFINITY, |p| (p[0] - h[0]).hypot(p[1] - h[1]));
-            let ends = (runs.first().and_then(|r| r.stations.first()), runs.last().and_then(|r| r.stations.last()));
+            let d = |p: Option<&[f64; 3]>, h: [f64; 3]| {
+                p.map_or(f64::INFINITY, |p| (p[0] - h[0]).hypot(p[1] - h[1]))
+            };
+            let ends =
+                (runs.first().and_then(|r| r.stations.first()), runs.last().and_then(|r| r.stations.last()));
             if let Some(h) = self.here
                 && d(ends.1, h) < d(ends.0, h)
             {

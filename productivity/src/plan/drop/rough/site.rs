@@ -88,7 +88,8 @@ impl Sight {
         let (frame, area, cell) = view(material, (axis, feed), tool, CELL);
         let relief = Relief::of(points, (frame, material.bounds()), tool, (area, cell));
         let grid = &relief.grid;
-        let columns = Columns::of(material, &frame, grid, |k| relief.wanted[k] && relief.reached[k].is_finite());
+        let columns =
+            Columns::of(material, &frame, grid, |k| relief.wanted[k] && relief.reached[k].is_finite());
         let mut least = thick(grid, &columns, &relief.reached, (thin_mm, tool.bare.radius_mm));
         if let Some(places) = places {
             claim(&relief, &columns, &mut least, (places, CLAIM_STEP * tool.bare.radius_mm));
@@ -180,30 +181,34 @@ fn claim(relief: &Relief, columns: &Columns, least: &mut [f64], (places, step): 
 
 impl<'a> Site<'a> {
     /// The part of a sight where something is to go, asked of the faces themselves; None where nothing is.
-    pub fn of(sight: &Sight, ground: &'a Ground<'a>, tool: &'a Rougher, material: &Material<'_>) -> Option<Self> {
+    pub fn of(
+        sight: &Sight,
+        ground: &'a Ground<'a>,
+        tool: &'a Rougher,
+        material: &Material<'_>,
+    ) -> Option<Self> {
         let (whole, radius) = (&sight.relief.grid, tool.grown.radius_mm);
         let wants: Vec<usize> = (0..whole.len()).filter(|k| sight.least[*k].is_finite()).collect();
         let nodes = (BESIDE * radius / whole.cell).ceil() as usize + 2;
-        let [from, to] = wants.iter().map(|k| whole.place(*k)).fold([[usize::MAX; 2], [0; 2]], |[lo, hi], p| {
-            [[0, 1].map(|a| lo[a].min(p[a])), [0, 1].map(|a| hi[a].max(p[a]))]
-        });
+        let [from, to] =
+            wants.iter().map(|k| whole.place(*k)).fold([[usize::MAX; 2], [0; 2]], |[lo, hi], p| {
+                [[0, 1].map(|a| lo[a].min(p[a])), [0, 1].map(|a| hi[a].max(p[a]))]
+            });
         if wants.is_empty() {
             return None;
         }
         let from = from.map(|x| x.saturating_sub(nodes));
         let to = [0, 1].map(|a| (to[a] + nodes).min(whole.n[a] - 1));
         let first = from[1] * whole.n[0] + from[0];
-        let grid = Grid {
-            lo: whole.at(first),
-            cell: whole.cell,
-            n: [to[0] - from[0] + 1, to[1] - from[1] + 1],
-        };
+        let grid =
+            Grid { lo: whole.at(first), cell: whole.cell, n: [to[0] - from[0] + 1, to[1] - from[1] + 1] };
         let there: Vec<usize> = (0..grid.len())
             .map(|k| grid.place(k))
             .map(|[i, j]| (j + from[1]) * whole.n[0] + i + from[0])
             .collect();
         let take = |of: &[f64]| -> Vec<f64> { there.iter().map(|k| of[*k]).collect() };
-        let (holder, least, coarse) = (take(&sight.relief.holder), take(&sight.least), take(&sight.relief.tip));
+        let (holder, least, coarse) =
+            (take(&sight.relief.holder), take(&sight.least), take(&sight.relief.tip));
         let wanted: Vec<f64> = least.iter().map(|z| if z.is_finite() { 1.0 } else { 0.0 }).collect();
         let domain: Vec<bool> = grid
             .highest(&wanted, &Disc::new(BESIDE * radius, grid.cell))
@@ -227,7 +232,18 @@ impl<'a> Site<'a> {
             })
             .collect();
         let shallow = (0..grid.len()).map(|k| slope(&grid, &tip, k) < SHALLOW).collect();
-        Some(Self { ground, tool, grid, tip, shallow, holder, columns, least, disc, blur_mm: material.cell_mm() })
+        Some(Self {
+            ground,
+            tool,
+            grid,
+            tip,
+            shallow,
+            holder,
+            columns,
+            least,
+            disc,
+            blur_mm: material.cell_mm(),
+        })
     }
 
     /// How low the tip comes over a place, as the faces say; minus infinity where nothing is below.

@@ -44,8 +44,8 @@ impl Sphere {
                 let steps = (angle / STEP).ceil() as usize;
                 // Opposite axes have no single arc between them: any will do.
                 let side = to.axis.into_inner() - from.axis.into_inner() * to.axis.dot(&from.axis);
-                let side =
-                    Unit3::try_new(side, 1e-9).unwrap_or_else(|| osculate_geom::any_perpendicular(&from.axis));
+                let side = Unit3::try_new(side, 1e-9)
+                    .unwrap_or_else(|| osculate_geom::any_perpendicular(&from.axis));
                 for k in 1..=steps {
                     let (s, c) = (angle * k as f64 / steps as f64).sin_cos();
                     let between = Unit3::new_normalize(from.axis.into_inner() * c + side.into_inner() * s);

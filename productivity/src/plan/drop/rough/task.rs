@@ -1,6 +1,6 @@
 //! What to rough, and what comes of it.
 
-use crate::plan::{Links, Named, Linked, Passes, PlanError};
+use crate::plan::{Linked, Links, Named, Passes, PlanError};
 use osculate_geom::{TurnAxis, Unit3, Vec3};
 use osculate_tools::Cutter;
 use osculate_tools::removal::stock::Stock;

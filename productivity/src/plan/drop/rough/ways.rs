@@ -1,11 +1,11 @@
 //! The lines of a layer: rows, or lines at even distances from the walls.
 
 use super::super::course::Course;
-use super::profile::{below, raised};
 use super::super::trace;
 use super::contour::{self, Line};
 use super::layer::{Cut, Layer, Masks, THIN, Walls, lifted};
 use super::moves::stations;
+use super::profile::{below, raised};
 use super::site::{Site, slope};
 use super::task::Sizes;
 use rayon::prelude::*;
@@ -22,7 +22,8 @@ pub(super) struct Row {
 /// Rows over a site, `apart_mm` from each other at most.
 pub(super) fn rows(site: &Site<'_>, apart_mm: f64) -> Vec<Row> {
     let grid = &site.grid;
-    let wants: Vec<f64> = (0..grid.len()).filter(|k| site.least[*k].is_finite()).map(|k| grid.at(k)[1]).collect();
+    let wants: Vec<f64> =
+        (0..grid.len()).filter(|k| site.least[*k].is_finite()).map(|k| grid.at(k)[1]).collect();
     let lo = wants.iter().copied().fold(f64::INFINITY, f64::min) - site.tool.bare.radius_mm;
     let hi = wants.iter().copied().fold(f64::NEG_INFINITY, f64::max) + site.tool.bare.radius_mm;
     let count = ((hi - lo) / apart_mm).ceil().max(1.0) as usize;
@@ -95,7 +96,8 @@ pub(super) fn around(
     sizes: &Sizes,
 ) -> Vec<Cut> {
     let apart_mm = sizes.stepover_mm.min(site.tool.bare.radius_mm);
-    let useful: Vec<usize> = (0..site.grid.len()).filter(|k| masks.useful[*k] && !walls.depth[*k].is_nan()).collect();
+    let useful: Vec<usize> =
+        (0..site.grid.len()).filter(|k| masks.useful[*k] && !walls.depth[*k].is_nan()).collect();
     let deepest = useful.iter().map(|k| walls.depth[*k]).fold(0.0, f64::max);
     let steepest = useful.iter().map(|k| walls.depth[*k]).fold(0.0, f64::min);
     let on_slope = slope_apart_mm(site, masks, &useful, sizes.stands_mm).min(apart_mm);

@@ -15,10 +15,10 @@ use crate::plan::{Linked, PlanError, Stretches, repeated};
 use nalgebra::Isometry3;
 use osculate_geom::{Diagnostic, Surface, Unit3, Vec3};
 use osculate_tools::cl::ClMove;
-use rayon::prelude::*;
-use osculate_tools::removal::{SamplingError, Swept, sample_surface};
 use osculate_tools::removal::stock::{Stock, StockJob};
+use osculate_tools::removal::{SamplingError, Swept, sample_surface};
 use osculate_tools::{Cutter, CutterSpec, Pose};
+use rayon::prelude::*;
 
 /// Where findings are.
 const NAME: &str = "z_level";
@@ -176,7 +176,8 @@ fn fixed(known: &Known<'_>, axis: Unit3) -> Result<Roughing, PlanError> {
     let thin = KNOWN * material.cell_mm();
     let made = along(known, &material, (axis, places.as_ref(), thin), task.progress)?;
     let Some(made) = made else {
-        let why = "nothing stands on it that the tool reaches along the axis; check [stock], or give another axis";
+        let why =
+            "nothing stands on it that the tool reaches along the axis; check [stock], or give another axis";
         return Err(nothing(&drop_task(known, axis), why));
     };
     let mut out = Roughing::default();
