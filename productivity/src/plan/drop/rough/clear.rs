@@ -81,8 +81,8 @@ pub(super) fn parts(
                 out[a as usize].below.push(p);
             }
         }
-        for p in first..out.len() {
-            for k in std::mem::take(&mut out[p].nodes) {
+        for (p, part) in out.iter_mut().enumerate().skip(first) {
+            for k in std::mem::take(&mut part.nodes) {
                 over[k as usize] = p as u32;
             }
         }

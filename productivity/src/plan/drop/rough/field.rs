@@ -71,11 +71,11 @@ mod tests {
         let square = vec![[-3.0, -2.0], [3.1, -2.0], [3.1, 2.0], [-3.0, 2.0]];
         let line = Line { points: square.clone(), closed: true };
         let found = distances(&grid, &[line]);
-        for k in 0..grid.len() {
+        for (k, far) in found.iter().enumerate() {
             let p = grid.at(k);
             let [dx, dy] = [(-3.0 - p[0]).max(p[0] - 3.1), (-2.0 - p[1]).max(p[1] - 2.0)];
             let want = if dx > 0.0 && dy > 0.0 { dx.hypot(dy) } else { dx.max(dy).abs() };
-            assert!((found[k] - want).abs() < 0.05, "{p:?} {} {want}", found[k]);
+            assert!((far - want).abs() < 0.05, "{p:?} {far} {want}");
         }
         assert!(distances(&grid, &[]).iter().all(|d| *d == f64::INFINITY));
     }

@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn a_way_keeps_its_corners_and_changes_of_feed() {
         let way: Vec<Fed> = (0..=20)
-            .map(|k| f64::from(k))
+            .map(f64::from)
             .map(|k| ([k.min(10.0), (k - 10.0).max(0.0), 0.0], if k <= 4.0 { 100.0 } else { 200.0 }))
             .collect();
         let thin = thinned(&way, 0.01);
