@@ -100,7 +100,18 @@ fn small_jobs() {
                 )
             }),
         ),
-        ("stock", "not_held", job(|t| t + "[stock]\nbox_mm = [-7, -7, -10, 7, 7, 15]\ncell_mm = 0.5\n")),
+        ("stock", "held", job(|t| t + "[stock]\nbox_mm = [-7, -7, -10, 7, 7, 15]\ncell_mm = 0.5\n")),
+        (
+            "stock_in_the_way",
+            "not_held",
+            job(|t| {
+                let block = "[stock]\nbox_mm = [-7, -7, -10, 7, 7, 15]\ncell_mm = 0.5\n";
+                t.replace(
+                    "length_mm = 50\n",
+                    "length_mm = 12\n[tool.holder]\ndiameter_mm = 20\nlength_mm = 40\n",
+                ) + block
+            }),
+        ),
         ("layer", "held", job(|t| t + "[stock]\nallowance_mm = 0.4\ncell_mm = 0.2\n")),
         ("fixture", "held", job(|t| t + "[fixture]\nfiles = [\"vice.stl\"]\n")),
         ("planes", "held", job(planes)),

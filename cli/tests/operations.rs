@@ -303,7 +303,8 @@ fn what_cannot_be_meant_is_refused_at_once() {
     refused(&(LIST.to_owned() + setup), &["[[setup]] number 2", "name = \"a\" is that of a setup before it"]);
     // Verbs of one operation say what they take.
     let job = scratch.write("list.toml", LIST);
-    osculate(&["compare", job.to_str().unwrap()]).refused(&["format = 2 is a list of operations"]);
+    osculate(&["compare", job.to_str().unwrap()])
+        .refused(&["a list of operations is taken by plan, verify, check and post"]);
     refused(&LIST.replace("format = 2", "format = 3"), &["format = 3 must be"]);
 }
 

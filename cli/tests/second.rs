@@ -94,7 +94,7 @@ fn heads_at_right_angles() {
 const AT_ZERO: Setup = Setup { part_zero_mm: [0.0; 3], turn: [0.0, 0.0, 0.0, 1.0], gauge_length_mm: 40.0 };
 
 fn ball() -> Tool {
-    let holder = vec![HolderPart { diameter_mm: 30.0, length_mm: 20.0 }];
+    let holder = vec![HolderPart { diameter_mm: 30.0, upper_diameter_mm: 30.0, length_mm: 20.0 }];
     Tool { shape: Shape::Ball, diameter_mm: 6.0, length_mm: 40.0, flute_mm: None, holder }
 }
 

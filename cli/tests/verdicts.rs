@@ -64,13 +64,16 @@ fn faces_that_the_job_does_not_name_are_checked() {
     assert!(run.out.contains("NOT looked at, as they may be hit"), "{}", run.out);
 }
 
-/// A block that stands far above the part: rapid moves of a finishing go through it, and the plan says so as the verification
-/// does; a mesh that is not there is told before any work.
+/// A block that stands far above the part: passes and the ways to them are fed through it, but the holder of a short tool is not, and the
+/// plan says so as the verification does; a mesh that is not there is told before any work.
 #[test]
 fn declared_raw_material_is_judged_by_plans_too() {
     let s = Scratch::new();
-    let path =
-        s.write("job.toml", &job(|t| t + "[stock]\nbox_mm = [-7, -7, -10, 7, 7, 15]\ncell_mm = 0.5\n"));
+    let block = "[stock]\nbox_mm = [-7, -7, -10, 7, 7, 15]\ncell_mm = 0.5\n";
+    let run = plan(&s.write("long.toml", &job(|t| t + block)), &s.path("long"));
+    assert_eq!((run.code, answer(&run.json())), (0, "held"));
+    let short = "length_mm = 12\n[tool.holder]\ndiameter_mm = 20\nlength_mm = 40\n";
+    let path = s.write("job.toml", &job(|t| t.replace("length_mm = 50\n", short) + block));
     let run = plan(&path, &s.path("out"));
     let planned = run.json();
     assert_eq!((run.code, answer(&planned)), (1, "not_held"));

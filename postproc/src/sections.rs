@@ -38,7 +38,7 @@ pub struct PostedSections {
 
 /// Posts paths as one program. Between two of them the tool goes to the machine's own end of Z, everything is switched off, the next
 /// tool is called with its length, speed and coolant, and every word is said again, whether the tool is another or not. The head of the
-/// program lists tools and sections.
+/// program lists tools and sections, and each section is named where it begins, one alone too.
 ///
 /// # Errors
 /// As [`post()`](crate::post()), and where there is no section or sections differ in what a program has once.
@@ -76,9 +76,7 @@ pub fn post_sections(
                 said = comments(machine, &stands(section), options);
                 said.extend(listed(sections));
             }
-            if sections.len() > 1 {
-                said.push(heading(k, section));
-            }
+            said.push(heading(k, section));
             program_of(machine, options, said)
         })
         .collect();

@@ -17,7 +17,7 @@ use osculate_productivity::plan::{
 };
 use osculate_tools::reach::Tool;
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
-use osculate_tools::{Cutter, CutterSpec, Pose, pose_with_axis};
+use osculate_tools::{Cutter, CutterSpec, Holder, Pose, pose_with_axis};
 use proptest::prelude::*;
 
 const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.02, gouge_mm: 0.01, chord_mm: 0.002 };
@@ -181,8 +181,8 @@ fn found(tool: &Tool, machine: &Machine) -> Found {
 #[test]
 fn a_field_keeps_cutter_and_holder_off_a_wall_and_names_what_no_axis_reaches() {
     const RADIUS: f64 = 3.0;
-    let (cutter, holder) = (ball(2.0 * RADIUS, 15.0), Cutter::cylinder(16.0, 40.0).unwrap());
-    let found = found(&Tool::new(cutter, Some(holder)), &Machine { fixed: None });
+    let (cutter, holder) = (ball(2.0 * RADIUS, 15.0), Holder::cylinder(16.0, 40.0).unwrap());
+    let found = found(&Tool::new(cutter, Some(&holder)), &Machine { fixed: None });
     let [floor, _] = corner();
     // The centre of the ball stands over its contact: no axis helps within a radius of the wall. Nodes are half a radius apart.
     let unreached: f64 = found.unreached.iter().map(|u| u.area_mm2).sum();

@@ -8,7 +8,7 @@ use osculate_productivity::compare::{Around, Axes, Candidate, Reason, Screened, 
 use osculate_productivity::ideal::{Feeding, Patch, Search, ideal};
 use osculate_productivity::optimum::Range;
 use osculate_productivity::plan::{Along, Strategy, Tolerance};
-use osculate_tools::{Cutter, CutterSpec, Lean};
+use osculate_tools::{Cutter, CutterSpec, Holder, Lean};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.002, chord_mm: 0.002 };
@@ -99,7 +99,7 @@ fn bodies_and_holders_that_meet_something_are_named() {
     assert!(face == "F2" && depth_mm > 0.1, "{found:?}");
     // Alone on the floor it may; its holder, where the cutter is short, meets the floor at a great lead only.
     let alone = Around::of(std::iter::once((&floor as &dyn Surface, "F1")));
-    let (cutter, holder) = (toroidal(6.0), Cutter::cylinder(80.0, 40.0).unwrap());
+    let (cutter, holder) = (toroidal(6.0), Holder::cylinder(80.0, 40.0).unwrap());
     let tool = Tool { cutter: &cutter, holder: Some(&holder), feed_mm_min: FEED };
     let found = screened(patch, tool, &alone, &[along(Axis::V, 5.0), along(Axis::V, 60.0)]);
     assert!(found[0].out.is_none(), "{found:?}");

@@ -13,8 +13,8 @@ mod cutting;
 use osculate_geom::analytic::{Paraboloid, Sphere, Torus};
 use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Along, DropTask, Links, Named, Pass, Passes, PlanError, RoughTask, Sizes, Strategy, Task, Tolerance,
-    drop_cutter, gradient_3c, run, z_level,
+    Along, DropTask, Links, Named, Pass, Passes, PlanError, Rates, RoughTask, Sizes, Strategy, Task,
+    Tolerance, drop_cutter, gradient_3c, run, z_level,
 };
 use osculate_tools::removal::Swept;
 use osculate_tools::{Cutter, CutterSpec, Lean};

@@ -4,7 +4,7 @@
 use osculate_geom::analytic::{Line, Plane};
 use osculate_geom::{Domain, Extruded, Interval, Point3, Surface, Vec3, uv};
 use osculate_productivity::plan::{CcPoint, Guard, LeaveOutError, Named, Pass, Passes, Tolerance, leave_out};
-use osculate_tools::{Cutter, CutterSpec, Pose};
+use osculate_tools::{Cutter, CutterSpec, Holder, Pose};
 
 const RADIUS: f64 = 2.0;
 const LENGTH: f64 = 30.0;
@@ -128,7 +128,7 @@ fn only_the_holder_is_in_the_way() {
     let guard = guard(&faces, &check, &cutter);
     let without = leave_out(&whole, &guard).unwrap();
     assert!(without.touched == 0 && without.passes == whole);
-    let holder = Cutter::cylinder(2.0 * HOLDER, 20.0).unwrap();
+    let holder = Holder::cylinder(2.0 * HOLDER, 20.0).unwrap();
     let with = leave_out(&whole, &Guard { holder: Some(&holder), ..guard }).unwrap();
     let near = nearest(&with.passes);
     assert!((HOLDER - 0.6 * GOUGE..=HOLDER + ENDS).contains(&near), "{near}");

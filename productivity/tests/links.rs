@@ -12,7 +12,7 @@ use osculate_productivity::plan::{
     CcPoint, Freedom, Keeping, Links, Named, Pass, Rates, Stretches, Walls, link_stretches, ordered,
 };
 use osculate_tools::cl::{ClPath, Motion};
-use osculate_tools::{Cutter, CutterSpec, Pose};
+use osculate_tools::{Cutter, CutterSpec, Holder, Pose};
 use proptest::prelude::*;
 
 const RADIUS: f64 = 2.0;
@@ -151,7 +151,7 @@ fn links() -> Links {
         dropped: false,
         layer_mm: LAYER,
         cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: LENGTH }).unwrap(),
-        holder: Some(Cutter::cylinder(2.0 * HOLDER[0], HOLDER[1]).unwrap()),
+        holder: Some(Holder::cylinder(2.0 * HOLDER[0], HOLDER[1]).unwrap()),
         feed_mm_min: 1500.0,
         plunge_mm_min: 750.0,
         rates: Rates::default(),

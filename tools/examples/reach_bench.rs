@@ -14,7 +14,7 @@ use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::reach::{
     Directions, ObstacleKind, ObstaclePoint, Obstacles, Place, Reach, ReachLimits, ReachProblem, Tool,
 };
-use osculate_tools::{Cutter, CutterSpec, pose_with_axis};
+use osculate_tools::{Cutter, CutterSpec, Holder, pose_with_axis};
 use std::error::Error;
 use std::time::Instant;
 
@@ -135,7 +135,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ball = CutterSpec::Ball { diameter_mm: 4.0, length_mm: 25.0 };
     let bull = CutterSpec::Toroidal { diameter_mm: 6.0, corner_radius_mm: 1.0, length_mm: 30.0 };
     for (name, spec, least_lean_rad) in [("ball 4", ball, 0.0), ("bull nose 6 r 1", bull, 0.02)] {
-        let tool = Tool::new(Cutter::try_from(spec)?, Some(Cutter::cylinder(20.0, 60.0)?));
+        let tool = Tool::new(Cutter::try_from(spec)?, Some(&Holder::cylinder(20.0, 60.0)?));
         let limits = ReachLimits {
             gouge_mm: 0.01,
             clearance_mm: 0.5,

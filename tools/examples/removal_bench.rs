@@ -17,7 +17,7 @@ use osculate_geom::{
 };
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob, Upper};
 use osculate_tools::removal::{Body, Job, Limits, Swept, cut, sample_surface, tally};
-use osculate_tools::{Cutter, CutterSpec, Pose};
+use osculate_tools::{Cutter, CutterSpec, Holder, Pose};
 use std::error::Error;
 use std::time::Instant;
 
@@ -228,7 +228,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
     let bull =
         Cutter::try_from(CutterSpec::Toroidal { diameter_mm: 10.0, corner_radius_mm: 2.0, length_mm: 60.0 })?;
-    let holder = Cutter::cylinder(40.0, 60.0)?;
+    let holder = Holder::cylinder(40.0, 60.0)?;
     for (name, cutter, five_axis, stock_mm) in
         [("3-axis", &ball, false, 0.3), ("5-axis", &bull, true, 0.3), ("thick", &bull, true, 3.0)]
     {

@@ -26,8 +26,8 @@ pub struct ClMove {
 pub struct ClPath {
     /// The cutter, where known.
     pub cutter: Option<CutterSpec>,
-    /// The holder, where known.
-    pub holder: Option<HolderSpec>,
+    /// The sections of the holder from the nose upwards, where known.
+    pub holder: Vec<HolderSpec>,
     /// Spindle speed, where known.
     pub spindle_rpm: Option<f64>,
     /// The moves. The first one's motion leads from an unknown place and must be [`Motion::Rapid`].

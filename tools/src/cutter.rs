@@ -143,18 +143,21 @@ impl Cutter {
 
     /// Outer radius R, mm: the greatest distance of the cutter's body from its axis.
     #[must_use]
+    #[inline]
     pub const fn radius_mm(&self) -> f64 {
         self.radius
     }
 
     /// Corner radius r, mm: R for a ball, 0 for a flat end.
     #[must_use]
+    #[inline]
     pub const fn corner_mm(&self) -> f64 {
         self.corner
     }
 
     /// Radius of the circle of corner centres, mm: R - r for ball, flat and toroidal ends.
     #[must_use]
+    #[inline]
     pub const fn core_mm(&self) -> f64 {
         match &self.meridian {
             None => self.radius - self.corner,
@@ -164,10 +167,12 @@ impl Cutter {
 
     /// Whether the cutter is a ball, flat or toroidal end, told by its radius and corner radius alone.
     #[must_use]
+    #[inline]
     pub const fn is_end_mill(&self) -> bool {
         self.meridian.is_none()
     }
 
+    #[inline]
     pub(crate) const fn meridian(&self) -> Option<&Meridian> {
         self.meridian.as_ref()
     }
@@ -186,6 +191,7 @@ impl Cutter {
 
     /// Length from the tip, mm.
     #[must_use]
+    #[inline]
     pub const fn length_mm(&self) -> f64 {
         self.length
     }

@@ -30,6 +30,7 @@ pub mod cl;
 pub mod contact;
 mod cutter;
 pub mod flank;
+mod holder;
 mod make;
 pub mod meridian;
 mod pose;
@@ -41,5 +42,6 @@ pub mod sweep;
 
 pub use contact::{Contact, ContactError, ContactMotion, FeedLine, Lean, moving_with_axis, pose_with_axis};
 pub use cutter::{Cutter, CutterError, Entry, Line, Part};
+pub use holder::{Holder, HolderError, HolderSection};
 pub use pose::Pose;
 pub use spec::{CutterSpec, HolderSpec};

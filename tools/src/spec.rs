@@ -78,12 +78,15 @@ pub enum CutterSpec {
     },
 }
 
-/// A cylindrical tool holder above the cutter.
+/// A section of a tool holder: a cylinder, or a cone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HolderSpec {
-    /// Diameter.
+    /// Diameter, at the lower end.
     pub diameter_mm: f64,
     /// Length.
     pub length_mm: f64,
+    /// Diameter at the upper end, where it is another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_diameter_mm: Option<f64>,
 }

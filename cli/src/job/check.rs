@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::keys::{LIST, ONE};
 use crate::job::problem::{Places, full, shown};
-use crate::job::schema::{Key, Kind, Range, Schema};
+use crate::job::schema::{Key, Kind, ONE_OR_MORE, Range, Schema};
 use crate::job::words::nearest;
 use std::path::Path;
 use toml::Spanned;
@@ -77,6 +77,9 @@ impl Reader<'_> {
             {
                 match value.get_ref() {
                     DeValue::Table(t) => self.table(&full(name, key), t)?,
+                    DeValue::Array(all) if ONE_OR_MORE.contains(&full(&kind, key).as_str()) => {
+                        self.sections(&full(name, key), all)?;
+                    }
                     _ => {
                         let what = format!("{key} is a table: write [{}] above its keys", full(name, key));
                         return Err(self.places.full(name, key, what, "a table".to_owned(), None));
@@ -102,6 +105,20 @@ impl Reader<'_> {
         if all.is_some() { Ok(()) } else { Err(self.no_list(list)) }
     }
 
+    /// The tables of a list that stands where one table may.
+    fn sections(&mut self, name: &str, all: &DeArray<'_>) -> Result<(), Failure> {
+        for (k, one) in all.iter().enumerate() {
+            let own = format!("{name}[{}]", k + 1);
+            self.places.keep(&own, "", self.line(one.span().start));
+            let Some(table) = one.get_ref().as_table() else {
+                let what = format!("{name} is a table, or a list of tables");
+                return Err(self.places.full(name, "", what, "tables".to_owned(), None));
+            };
+            self.table(&own, table)?;
+        }
+        Ok(())
+    }
+
     fn no_list(&self, list: &str) -> Failure {
         let what = format!("{list} is a list of tables: write [[{list}]] above the keys of each");
         self.places.full("", list, what, "a list of tables".to_owned(), None)
@@ -124,7 +141,7 @@ impl Reader<'_> {
                 Some(DeValue::Array(all)) => {
                     for (k, one) in all.iter().enumerate() {
                         if let DeValue::Table(t) = one.get_ref() {
-                            self.needed(&format!("{inner}[{}]", k + 1), t)?;
+                            self.needed(&format!("{path}[{}]", k + 1), t)?;
                         }
                     }
                 }
@@ -177,12 +194,18 @@ impl Reader<'_> {
     }
 }
 
-/// The name of a table without the place in a list.
+/// The name of a table without its places in lists.
 fn plain(name: &str) -> String {
-    match name.split_once('[') {
-        Some((list, rest)) => format!("{list}{}", rest.split_once(']').map_or("", |r| r.1)),
-        None => name.to_owned(),
+    let (mut out, mut inside) = (String::new(), false);
+    for c in name.chars() {
+        match c {
+            '[' => inside = true,
+            ']' => inside = false,
+            c if !inside => out.push(c),
+            _ => {}
+        }
     }
+    out
 }
 
 /// A number, whatever it looks like.

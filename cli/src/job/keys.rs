@@ -171,9 +171,10 @@ pub static TABLES: &[Table] = &[
         may("teeth", Kind::Whole(1, 1000), "", "4", "number of teeth, for feed_per_tooth_mm"),
         may("plunges", Kind::Flag, "false", "true", "whether it may go straight down into material"),
     ]),
-    table("tool.holder", false, "a cylinder above the cutter", &[
-        must("diameter_mm", MM, "40", "diameter"),
+    table("tool.holder", false, "a cylinder or cone above the cutter; holder = [{ ... }, { ... }] are several, from the nose upwards", &[
+        must("diameter_mm", MM, "40", "diameter, at the lower end"),
         must("length_mm", MM, "60", "length"),
+        may("upper_diameter_mm", MM, "diameter_mm", "50", "diameter at the upper end of a cone"),
     ]),
     table("tolerance", true, "what must hold", &[
         must("scallop_mm", SMALL, "0.01", "highest material left standing"),
@@ -242,7 +243,7 @@ pub static TABLES: &[Table] = &[
     ]),
     table("stock", false, "raw material: one of box_mm, [stock.cylinder], file, allowance_mm", &[
         may("box_mm", Kind::Corners("mm"), "", "[-10, -10, -20, 10, 10, 5]", "two corners in the part's frame"),
-        may("file", Kind::File, "", "\"stock.stl\"", "a closed STL mesh in the part's frame, mm"),
+        may("file", Kind::File, "", "\"stock.stl\"", "a closed STL mesh in the part's frame, mm, or stock-N.stock of a plan of the same part"),
         may("allowance_mm", MM, "", "2", "a layer around the faces, or around the file's solid"),
         may("cell_mm", MM, "a 256th of its size", "0.5", "sides of cells"),
         may("memory_mb", Kind::Number(ABOVE, "MB"), "512", "512", "memory for it"),

@@ -30,7 +30,7 @@ pub use operations::{Clamping, Operation, Operations};
 use osculate_geom::{Axis, Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
 use osculate_productivity::plan::Tolerance;
-use osculate_tools::{Cutter, CutterSpec, Lean};
+use osculate_tools::{Cutter, CutterSpec, Holder, Lean};
 pub use part::{FaceChoice, Part, Source};
 use problem::Places;
 use raw::Raw;
@@ -339,9 +339,9 @@ impl Job {
         self.tool().flutes()
     }
 
-    /// The holder as a cylinder.
+    /// The holder.
     #[must_use]
-    pub fn holder(&self) -> Option<Cutter> {
+    pub fn holder(&self) -> Option<&Holder> {
         self.tool().holder()
     }
 

@@ -112,10 +112,28 @@ pub struct Tool {
     pub teeth: Option<u32>,
     #[serde(default)]
     pub plunges: bool,
-    pub holder: Option<HolderSpec>,
+    pub holder: Option<Holder>,
     /// In a list of operations only, as all that follows here.
     pub name: Option<String>,
     pub cutting: Option<Cutting>,
+}
+
+/// A holder: one section, or several from the nose upwards.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub enum Holder {
+    One(HolderSpec),
+    Several(Vec<HolderSpec>),
+}
+
+impl Holder {
+    /// Its sections, from the nose upwards.
+    pub fn sections(&self) -> Vec<HolderSpec> {
+        match self {
+            Self::One(section) => vec![*section],
+            Self::Several(sections) => sections.clone(),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Deserialize)]

@@ -177,6 +177,9 @@ impl Table {
 /// The list of tables that stands for several of `[tool]` in a job of one operation.
 pub const TOOLS: &str = "tools";
 
+/// Tables that may be lists of such tables as well.
+pub const ONE_OR_MORE: [&str; 1] = ["tool.holder"];
+
 /// What a kind of job file may hold: its tables, and which of them stand in lists.
 #[derive(Debug)]
 pub struct Schema {

@@ -15,6 +15,8 @@ const DEFAULT_MEMORY_MB: f64 = 512.0;
 const FIXTURE_SPACING_MM: f64 = 1.0;
 /// Largest mesh, bytes: beyond it the file is none that was meant.
 const LARGEST: u64 = 4 << 30;
+/// What the names of saved stocks end in.
+const SAVED: &str = "stock";
 /// What is read of a mesh to tell that it is one, bytes.
 const LOOK: u64 = 1 << 16;
 /// Head of a binary STL file and what each triangle takes, bytes.
@@ -41,6 +43,8 @@ pub enum Blank {
         /// Thickness of the layer.
         layer_mm: Option<f64>,
     },
+    /// What another job has left, as it was saved.
+    Saved(PathBuf),
     /// A layer of this thickness around the faces of the job, mm.
     Layer(f64),
 }
@@ -84,6 +88,20 @@ impl Stock {
         } else if let Some(c) = &t.cylinder {
             let axis = direction(c.axis.unwrap_or([0.0, 0.0, 1.0]));
             Blank::Cylinder { axis, diameter_mm: c.diameter_mm, along_mm: c.z_mm }
+        } else if let Some(file) = t.file.as_ref().filter(|file| is_saved(places, file)) {
+            let words = "what was saved has its own cells, and nothing is around it";
+            let given = [
+                ("allowance_mm", t.allowance_mm.is_some()),
+                ("cell_mm", t.cell_mm.is_some()),
+                ("memory_mb", t.memory_mb.is_some()),
+            ];
+            for (key, given) in given {
+                if given {
+                    let what = format!("{key} does not go with file = \"{file}\": {words}; leave it out");
+                    return Err(places.refuse(TABLE, key, what));
+                }
+            }
+            Blank::Saved(present(places, TABLE, "file", file)?)
         } else if let Some(file) = &t.file {
             Blank::File { path: mesh(places, TABLE, "file", file)?, layer_mm: t.allowance_mm }
         } else if let Some(thickness_mm) = t.allowance_mm {
@@ -101,6 +119,15 @@ impl Fixture {
         let files = t.files.iter().map(|f| mesh(places, "fixture", "files", f)).collect::<Result<_, _>>()?;
         Ok(Self { files, spacing_mm: t.spacing_mm.unwrap_or(FIXTURE_SPACING_MM) })
     }
+}
+
+/// Whether a file is a stock that was saved, by its name or by what it begins with.
+fn is_saved(places: &Places, file: &str) -> bool {
+    let path = beside(places.path(), file);
+    let mut head = Vec::new();
+    let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(SAVED));
+    let read = File::open(path).and_then(|f| f.take(LOOK).read_to_end(&mut head));
+    named || (read.is_ok() && osculate_tools::removal::stock::Stock::is_saved(&head))
 }
 
 /// A file that is there, by its path from the job.

@@ -6,7 +6,7 @@ use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::words::ToolKind;
 use osculate_postproc::nc::Coolant;
-use osculate_tools::{Cutter, CutterSpec, HolderSpec};
+use osculate_tools::{Cutter, CutterSpec, Holder, HolderError, HolderSpec};
 
 /// Length of a cutter that gives none, in diameters.
 const DEFAULT_LENGTH: f64 = 5.0;
@@ -31,7 +31,8 @@ pub struct Tool {
     cutter: Cutter,
     cutting: Cutter,
     shank: Option<Cutter>,
-    holder: Option<(HolderSpec, Cutter)>,
+    holder: Option<Holder>,
+    sections: Vec<HolderSpec>,
     teeth: Option<u32>,
     plunges: bool,
     words: String,
@@ -50,11 +51,10 @@ impl Tool {
         let spec = spec(places, table, t)?;
         let cutter = Cutter::try_from(spec).map_err(|e| places.refuse(table, "", e))?;
         let (cutting, shank) = flutes(places, table, &cutter, t.flute_length_mm)?;
-        let holder = t.holder.map(|h| {
-            let made = Cutter::cylinder(h.diameter_mm, h.length_mm).map_err(|e| {
-                places.refuse(&format!("{table}.holder"), "", e.to_string().replace("cutter", "holder"))
-            })?;
-            Ok((h, made))
+        let sections = t.holder.as_ref().map(raw::Holder::sections).unwrap_or_default();
+        let holder = (!sections.is_empty()).then(|| {
+            let words = |e: HolderError| e.to_string().replace("cutter", "section");
+            Holder::new(&sections).map_err(|e| places.refuse(&format!("{table}.holder"), "", words(e)))
         });
         let own = t.cutting.clone().unwrap_or_default();
         let corner = t.corner_radius_mm.filter(|_| t.kind != ToolKind::Ball).map(|r| format!(" r {r}"));
@@ -66,6 +66,7 @@ impl Tool {
             cutting,
             shank,
             holder: holder.transpose()?,
+            sections,
             teeth: t.teeth,
             plunges: t.plunges,
             words: t.name.clone().unwrap_or_else(|| {
@@ -116,16 +117,16 @@ impl Tool {
         self.plunges
     }
 
-    /// The holder as a cylinder.
+    /// The holder.
     #[must_use]
-    pub fn holder(&self) -> Option<Cutter> {
-        self.holder.map(|h| h.1)
+    pub const fn holder(&self) -> Option<&Holder> {
+        self.holder.as_ref()
     }
 
-    /// The holder's description.
+    /// The sections of the holder as the job has them, from the nose upwards; none where it has no holder.
     #[must_use]
-    pub fn holder_spec(&self) -> Option<HolderSpec> {
-        self.holder.map(|h| h.0)
+    pub fn holder_sections(&self) -> &[HolderSpec] {
+        &self.sections
     }
 
     /// Spindle and feed as given for it.

@@ -1,5 +1,6 @@
 //! Parts as commands see them: faces with names, from a file or built in.
 
+mod fingerprint;
 mod loaded;
 mod sides;
 mod turned;

@@ -176,18 +176,18 @@ pub struct Tool {
     pub length_mm: f64,
     /// Length with cutting edges, mm; `None` where not known: the whole length is then drawn as cutter.
     pub flute_mm: Option<f64>,
-    /// The holder above the cutter.
-    pub holder: Option<Holder>,
+    /// The sections of the holder above the cutter, from the nose upwards.
+    pub holder: Vec<Holder>,
     /// The meridian of a cutter of another kind (cone, barrel): `[radius, height]` in mm from the tip upwards. Empty:
     /// diameter, corner radius and length say it all.
     pub meridian_mm: Vec<[f64; 2]>,
 }
 
-/// A cylindrical holder, standing on the cutter's upper end.
+/// A section of a holder, standing on what is below it.
 #[derive(Clone, Copy, Debug)]
 pub struct Holder {
-    /// Diameter, mm.
-    pub diameter_mm: f64,
+    /// Diameters at its lower and its upper end, mm.
+    pub diameters_mm: [f64; 2],
     /// Length, mm.
     pub length_mm: f64,
 }

@@ -273,8 +273,13 @@ pub fn tool(job: &Job) -> Tool {
         flute_mm: None,
         holder: job
             .tool()
-            .holder_spec()
-            .map(|h| Holder { diameter_mm: h.diameter_mm, length_mm: h.length_mm }),
+            .holder_sections()
+            .iter()
+            .map(|h| Holder {
+                diameters_mm: [h.diameter_mm, h.upper_diameter_mm.unwrap_or(h.diameter_mm)],
+                length_mm: h.length_mm,
+            })
+            .collect(),
         meridian_mm: if c.is_end_mill() { Vec::new() } else { c.outline_mm(OUTLINE_TURN_RAD) },
     }
 }

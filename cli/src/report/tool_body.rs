@@ -57,18 +57,22 @@ pub fn outlines(tool: &Tool) -> Vec<(Piece, Vec<[f64; 2]>)> {
         outline.push([0.0, end]);
         pieces.push((Piece::Cutter, outline));
         if end < tool.length_mm {
-            pieces.push((Piece::Shank, cylinder(radius, end, tool.length_mm)));
+            pieces.push((Piece::Shank, section([radius; 2], end, tool.length_mm)));
         }
         top = tool.length_mm;
     }
-    if let Some(holder) = tool.holder.filter(|h| good(h.diameter_mm) && good(h.length_mm)) {
-        pieces.push((Piece::Holder, cylinder(0.5 * holder.diameter_mm, top, top + holder.length_mm)));
+    for holder in tool.holder.iter().filter(|h| h.diameters_mm.iter().all(|d| good(*d)) && good(h.length_mm))
+    {
+        let radii = holder.diameters_mm.map(|d| 0.5 * d);
+        pieces.push((Piece::Holder, section(radii, top, top + holder.length_mm)));
+        top += holder.length_mm;
     }
     pieces
 }
 
-fn cylinder(radius: f64, from: f64, to: f64) -> Vec<[f64; 2]> {
-    vec![[0.0, from], [radius, from], [radius, to], [0.0, to]]
+/// A cylinder, or a cone where the radii of both ends differ.
+fn section(radii: [f64; 2], from: f64, to: f64) -> Vec<[f64; 2]> {
+    vec![[0.0, from], [radii[0], from], [radii[1], to], [0.0, to]]
 }
 
 #[cfg(test)]
@@ -96,18 +100,22 @@ mod tests {
             corner_radius_mm: 2.0,
             length_mm: 50.0,
             flute_mm: Some(25.0),
-            holder: Some(Holder { diameter_mm: 40.0, length_mm: 60.0 }),
+            holder: vec![
+                Holder { diameters_mm: [12.0, 40.0], length_mm: 20.0 },
+                Holder { diameters_mm: [40.0; 2], length_mm: 40.0 },
+            ],
             ..Tool::default()
         };
         let pieces = outlines(&tool);
         assert_eq!(
             pieces.iter().map(|p| p.0).collect::<Vec<_>>(),
-            [Piece::Cutter, Piece::Shank, Piece::Holder]
+            [Piece::Cutter, Piece::Shank, Piece::Holder, Piece::Holder]
         );
         for pair in pieces.windows(2) {
             assert_eq!(pair[0].1.last().map(|p| p[1]), pair[1].1.first().map(|p| p[1]));
         }
-        assert_eq!(pieces[2].1.last(), Some(&[0.0, 110.0]));
+        assert_eq!(pieces[2].1[1..3], [[6.0, 50.0], [20.0, 70.0]]);
+        assert_eq!(pieces[3].1.last(), Some(&[0.0, 110.0]));
     }
 
     #[test]

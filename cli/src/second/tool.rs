@@ -46,11 +46,13 @@ pub enum Shape {
     },
 }
 
-/// A cylinder of a holder.
+/// A section of a holder: a cylinder, or a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HolderPart {
-    /// Diameter.
+    /// Diameter at its lower end.
     pub diameter_mm: f64,
+    /// Diameter at its upper end.
+    pub upper_diameter_mm: f64,
     /// Length.
     pub length_mm: f64,
 }
@@ -67,7 +69,7 @@ pub struct Tool {
     /// From the tip to where the edges end and the shank, a cylinder of the greatest diameter, begins; the whole length where
     /// none is given.
     pub flute_mm: Option<f64>,
-    /// The holder's cylinders, from the cutter upwards.
+    /// The holder's sections, from the cutter upwards.
     pub holder: Vec<HolderPart>,
 }
 
@@ -85,6 +87,25 @@ enum Piece {
     Line { a: [f64; 2], b: [f64; 2], normal: [f64; 2] },
     /// About a centre, over outward normals from the first to the last angle.
     Arc { centre: [f64; 2], radius: f64, angles: [f64; 2] },
+}
+
+/// A cylinder or a cone without its point.
+#[derive(Clone, Copy, Debug)]
+struct Frustum {
+    /// Radii of both ends, and their heights above the tip.
+    radii: [f64; 2],
+    ends: [f64; 2],
+}
+
+impl Frustum {
+    /// Signed distance, a lower bound beside its rims.
+    fn distance(&self, rho: f64, z: f64) -> f64 {
+        let ([r, upper], [low, high]) = (self.radii, self.ends);
+        // How far the point is out from the flank's line, across it.
+        let (run, rise) = (upper - r, high - low);
+        let flank = ((rho - r) * rise - (z - low) * run) / (run * run + rise * rise).sqrt();
+        flank.max(low - z).max(z - high)
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -105,8 +126,8 @@ pub(super) struct Bodies {
     top: f64,
     /// Corner radius, for what may hide between points.
     pub corner_mm: f64,
-    /// Radius, lower and upper end of shank and holder.
-    cylinders: Vec<[f64; 3]>,
+    /// Shank and sections of the holder.
+    above: Vec<Frustum>,
 }
 
 impl Bodies {
@@ -154,18 +175,20 @@ impl Bodies {
                 (Profile::Meridian(pieces), widest)
             }
         };
-        let mut cylinders = Vec::new();
+        let mut above = Vec::new();
         if top < length {
-            cylinders.push([widest, top, length]);
+            above.push(Frustum { radii: [widest; 2], ends: [top, length] });
         }
         let mut low = length;
         for part in &tool.holder {
             size("holder diameter_mm", part.diameter_mm, part.diameter_mm > 0.0)?;
             size("holder length_mm", part.length_mm, part.length_mm > 0.0)?;
-            cylinders.push([0.5 * part.diameter_mm, low, low + part.length_mm]);
+            size("holder upper_diameter_mm", part.upper_diameter_mm, part.upper_diameter_mm > 0.0)?;
+            let radii = [0.5 * part.diameter_mm, 0.5 * part.upper_diameter_mm];
+            above.push(Frustum { radii, ends: [low, low + part.length_mm] });
             low += part.length_mm;
         }
-        Ok(Self { profile, top, corner_mm, cylinders })
+        Ok(Self { profile, top, corner_mm, above })
     }
 
     /// Signed distance from the cutter.
@@ -185,8 +208,7 @@ impl Bodies {
 
     /// Signed distance from shank and holder, a lower bound beside their rims; infinite where there are none.
     pub fn holder(&self, rho: f64, z: f64) -> f64 {
-        let from = |c: &[f64; 3]| (rho - c[0]).max(c[1] - z).max(z - c[2]);
-        self.cylinders.iter().map(from).fold(f64::INFINITY, f64::min)
+        self.above.iter().map(|f| f.distance(rho, z)).fold(f64::INFINITY, f64::min)
     }
 
     /// Share of a line at which the cutter, grown by `grown`, is met first, from `0` on and before `limit`.

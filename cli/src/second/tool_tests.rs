@@ -203,8 +203,8 @@ fn shank_and_holder_stand_above() {
     let mut t = tool(Shape::Ball, 6.0);
     t.flute_mm = Some(10.0);
     t.holder = vec![
-        HolderPart { diameter_mm: 20.0, length_mm: 5.0 },
-        HolderPart { diameter_mm: 40.0, length_mm: 9.0 },
+        HolderPart { diameter_mm: 20.0, upper_diameter_mm: 20.0, length_mm: 5.0 },
+        HolderPart { diameter_mm: 40.0, upper_diameter_mm: 40.0, length_mm: 9.0 },
     ];
     let b = Bodies::of(&t).unwrap();
     is(b.cutter(0.0, 12.0), 2.0);
@@ -212,6 +212,16 @@ fn shank_and_holder_stand_above() {
     is(b.holder(8.0, 42.0), -2.0);
     is(b.holder(18.0, 47.0), -2.0);
     is(b.holder(0.0, 55.0), 1.0);
+    // A cone that opens by 45 degrees, and closes again at half that slope.
+    t.holder = vec![
+        HolderPart { diameter_mm: 20.0, upper_diameter_mm: 40.0, length_mm: 10.0 },
+        HolderPart { diameter_mm: 40.0, upper_diameter_mm: 30.0, length_mm: 10.0 },
+    ];
+    let b = Bodies::of(&t).unwrap();
+    let (half, [across, along]) = (0.5f64.sqrt(), [2.0 / 5f64.sqrt(), 1.0 / 5f64.sqrt()]);
+    is(b.holder(15.0 + half, 45.0 - half), 1.0);
+    is(b.holder(17.5 + across, 55.0 + along), 1.0);
+    is(b.holder(17.5 - 0.5 * across, 55.0 - 0.5 * along), -0.5);
     assert_eq!(bodies(Shape::Ball, 6.0).holder(0.0, 50.0), f64::INFINITY);
 }
 
@@ -229,7 +239,10 @@ fn what_is_no_tool_is_refused() {
     ];
     let ball = tool(Shape::Ball, 6.0);
     bad.push(Tool { flute_mm: Some(50.0), ..ball.clone() });
-    bad.push(Tool { holder: vec![HolderPart { diameter_mm: 0.0, length_mm: 5.0 }], ..ball });
+    bad.push(Tool {
+        holder: vec![HolderPart { diameter_mm: 0.0, upper_diameter_mm: 0.0, length_mm: 5.0 }],
+        ..ball
+    });
     for t in bad {
         assert!(matches!(Bodies::of(&t), Err(NoOpinion::Tool { .. })), "{t:?}");
     }

@@ -7,10 +7,10 @@ use crate::work::rough;
 use crate::work::stock::{self, RawMaterial};
 use osculate_geom::{Offset, Surface};
 use osculate_surfaces::TrimmedSurface;
-use osculate_tools::Cutter;
 use osculate_tools::removal::{
     Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Looks,
 };
+use osculate_tools::{Cutter, Holder};
 
 /// Most samples where the job does not say.
 const MAX_SAMPLES: usize = 1_000_000;
@@ -23,7 +23,7 @@ struct Held {
     cutter: Cutter,
     flutes: Cutter,
     shank: Option<Cutter>,
-    holder: Option<Cutter>,
+    holder: Option<Holder>,
     teeth: Option<u32>,
     spindle_rpm: Option<f64>,
 }
@@ -35,7 +35,7 @@ impl Held {
             cutter: job.cutter(),
             flutes,
             shank,
-            holder: job.holder(),
+            holder: job.holder().cloned(),
             teeth: job.tool().teeth(),
             spindle_rpm: job.spindle_rpm(),
         }

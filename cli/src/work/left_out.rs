@@ -23,7 +23,7 @@ pub fn of(job: &Job, faces: &Part, passes: &Passes) -> Result<LeftOut, Failure> 
         faces: &names(&faces.faces),
         check: &names(&faces.check),
         cutter: &job.cutter(),
-        holder: holder.as_ref(),
+        holder,
         tolerance: job.tolerance(),
         keep_off_mm: job.strategy().keep_off_mm,
     };

@@ -42,7 +42,7 @@ impl Look {
         let motions = Swept::along(&linked.path);
         let work = removal::Job {
             cutter: &cutter,
-            holder: holder.as_ref(),
+            holder,
             changes: &[],
             motions: &motions,
             samples: &samples,

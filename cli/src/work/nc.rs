@@ -113,7 +113,7 @@ impl Motions {
 
 /// From the spindle's nose to the tip of the tool in hand, mm.
 pub fn gauge_mm(job: &Job) -> f64 {
-    job.cutter().length_mm() + job.holder().map_or(0.0, |h| h.length_mm())
+    job.cutter().length_mm() + job.holder().map_or(0.0, osculate_tools::Holder::length_mm)
 }
 
 /// The state of the control that jobs mean their program to run in, each for the tool that it has in hand.

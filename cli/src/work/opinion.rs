@@ -157,16 +157,21 @@ fn tool(job: &Job) -> Tool {
             (Shape::Apt { corner_radius_mm, bottom_angle_deg, side_angle_deg }, diameter_mm, length_mm)
         }
     };
-    let holder = job.tool().holder_spec();
     // The verification takes the whole length as cutting where it looks at faces.
     Tool {
         shape,
         diameter_mm,
         length_mm,
         flute_mm: None,
-        holder: holder
+        holder: job
+            .tool()
+            .holder_sections()
             .iter()
-            .map(|h| HolderPart { diameter_mm: h.diameter_mm, length_mm: h.length_mm })
+            .map(|h| HolderPart {
+                diameter_mm: h.diameter_mm,
+                upper_diameter_mm: h.upper_diameter_mm.unwrap_or(h.diameter_mm),
+                length_mm: h.length_mm,
+            })
             .collect(),
     }
 }

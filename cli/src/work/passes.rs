@@ -50,7 +50,7 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
         dip_mm: INTO_WALLS * job.tolerance().gouge_mm,
         layer_mm: job.layer_mm(),
         cutter: *cutter,
-        holder: job.holder(),
+        holder: job.holder().cloned(),
         feed_mm_min,
         plunge_mm_min: 0.5 * feed_mm_min,
         rates: rates(job.control()),
@@ -154,7 +154,7 @@ pub fn linked(job: &Job, faces: &Part, all: &Stretches) -> Result<Linked, Failur
 pub fn cl_path(job: &Job, linked: &Linked) -> ClPath {
     let mut cl = linked.path.clone();
     cl.cutter = Some(job.cutter_spec());
-    cl.holder = job.tool().holder_spec();
+    cl.holder = job.tool().holder_sections().to_vec();
     cl.spindle_rpm = job.spindle_rpm();
     cl
 }
@@ -212,7 +212,7 @@ pub fn each_face(
         least_rad: way.lean.lead_rad,
         most_rad: LocalLead::MOST_RAD,
         rate_rad_per_mm: job.lead_rate_rad_per_mm(),
-        holder: holder.as_ref(),
+        holder,
         around: around.as_ref(),
     };
     let n = faces.faces.len();

@@ -39,7 +39,7 @@ pub fn bytes(job: &Job, faces: &Part, motions: &[Swept], spacing_mm: f64) -> Res
     }
     let work = removal::Job {
         cutter: &cutter,
-        holder: holder.as_ref(),
+        holder,
         changes: &[],
         motions,
         samples: &samples,

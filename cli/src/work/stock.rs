@@ -1,7 +1,7 @@
 //! The `[stock]` and `[fixture]` tables: raw material and what holds the part.
 
 use crate::failure::{Failure, read};
-use crate::job::{Blank as Raw, Job};
+use crate::job::{Blank as Raw, Job, Source};
 use crate::part::{self, Part};
 use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
@@ -103,6 +103,38 @@ impl StockCollision {
     }
 }
 
+/// What a saved stock says that it is of: the part by its fingerprint, and by the name of its file for people.
+pub fn of_part(job: &Job, faces: &Part) -> String {
+    let name = match job.part().source() {
+        Source::File { path, .. } => path.file_name().map(|n| n.to_string_lossy().into_owned()),
+        Source::Builtin(_) | Source::Ruled(_) => None,
+    };
+    format!("part {} {}", faces.part.fingerprint(), name.unwrap_or_else(|| "built in".to_owned()))
+}
+
+/// A stock that was saved.
+///
+/// # Errors
+/// Where the file is none, or is of another part.
+fn saved(path: &Path, job: &Job, faces: &Part) -> Result<Stock, Failure> {
+    let again = "copy it again from where it was planned, or plan that job again: stock-N.stock is what its operation N left";
+    let (stock, of) = Stock::read(&read(path)?).map_err(|e| Failure::file(path, format!("{e}; {again}")))?;
+    let own = of_part(job, faces);
+    let print = |text: &str| text.split(' ').nth(1).map(ToOwned::to_owned);
+    if print(&of) != print(&own) {
+        let name = |text: &str| text.splitn(3, ' ').nth(2).unwrap_or_default().to_owned();
+        let what = format!(
+            "file = \"{}\" is what was left of another part ({}; that of this job is {}): where its shape is meant all the same name its mesh, \
+             the .stl beside it",
+            path.display(),
+            name(&of),
+            name(&own)
+        );
+        return Err(job.refuse("stock", "file", what));
+    }
+    Ok(stock)
+}
+
 fn mesh(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
     read_stl(&read(path)?).map_err(|e| Failure::file(path, e))
 }
@@ -192,6 +224,7 @@ pub fn bounds(job: &Job, faces: &Part) -> Result<Option<Box3>, Failure> {
         Raw::File { path, layer_mm } => {
             Box3::around(mesh(path)?.iter().flatten()).grown(layer_mm.unwrap_or(0.0))
         }
+        Raw::Saved(path) => *saved(path, job, faces)?.bounds(),
         Raw::Layer(thickness_mm) => around(faces).grown(*thickness_mm),
     }))
 }
@@ -226,6 +259,9 @@ fn round_leaves(axis: &Unit3, (radius, [low, high]): (f64, [f64; 2]), from: &Poi
 pub struct RawMaterial<'a> {
     blank: &'a Raw,
     triangles: Vec<[Point3; 3]>,
+    /// The box around it.
+    bounds: Box3,
+    saved: Option<Stock>,
     resolution: Resolution,
     words: String,
 }
@@ -234,7 +270,13 @@ impl<'a> RawMaterial<'a> {
     /// The raw material of a job, where it declares one.
     pub fn of(job: &'a Job, faces: &Part) -> Result<Option<Self>, Failure> {
         let Some(given) = job.stock() else { return Ok(None) };
+        let mut left = None;
         let (triangles, words) = match &given.blank {
+            Raw::Saved(path) => {
+                left = Some(saved(path, job, faces)?);
+                let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+                (Vec::new(), format!("what was left as {name} has it"))
+            }
             Raw::Box(b) => (Vec::new(), format!("a box, {} mm", corners(b))),
             Raw::Cylinder { axis, diameter_mm, along_mm: [from, to] } => (
                 prism(*axis, *diameter_mm, [*from, *to]),
@@ -258,15 +300,21 @@ impl<'a> RawMaterial<'a> {
         };
         let size = match &given.blank {
             Raw::Box(b) => *b,
+            Raw::Saved(_) => left.as_ref().map_or_else(Box3::empty, |stock| *stock.bounds()),
             _ => Box3::around(triangles.iter().flatten()),
         };
+        let cells = || (size.max - size.min).amax() / DEFAULT_CELLS;
         let resolution = Resolution {
-            cell_mm: given.cell_mm.unwrap_or((size.max - size.min).amax() / DEFAULT_CELLS),
+            cell_mm: given.cell_mm.or(left.as_ref().map(Stock::cell_mm)).unwrap_or_else(cells),
             tri: true,
             // Beyond what a machine can address there is no limit.
             budget_bytes: (given.memory_mb * 1e6).min(1e15) as usize,
         };
-        Ok(Some(Self { blank: &given.blank, triangles, resolution, words }))
+        let bounds = match &given.blank {
+            Raw::File { layer_mm, .. } => size.grown(layer_mm.unwrap_or(0.0)),
+            _ => size,
+        };
+        Ok(Some(Self { blank: &given.blank, triangles, bounds, saved: left, resolution, words }))
     }
 
     /// In words.
@@ -284,10 +332,8 @@ impl<'a> RawMaterial<'a> {
             Raw::Cylinder { axis, diameter_mm, along_mm } => {
                 round_leaves(axis, (0.5 * diameter_mm, *along_mm), from, along)
             }
-            Raw::File { layer_mm, .. } => {
-                let bounds = Box3::around(self.triangles.iter().flatten()).grown(layer_mm.unwrap_or(0.0));
-                leaves(&bounds, from, along)
-            }
+            Raw::File { .. } => leaves(&self.bounds, from, along),
+            Raw::Saved(_) => self.saved.as_ref().map_or(0.0, |stock| stock.beyond_mm(from, along)),
         }
     }
 
@@ -313,6 +359,7 @@ impl<'a> RawMaterial<'a> {
             Raw::Box(b) => Blank::Box(*b),
             Raw::File { layer_mm: Some(thickness_mm), .. } => layer(*thickness_mm, true),
             Raw::Layer(thickness_mm) => layer(*thickness_mm, false),
+            Raw::Saved(_) => self.saved.as_ref().map_or(Blank::Mesh(&self.triangles), Blank::Left),
             Raw::Cylinder { .. } | Raw::File { .. } => Blank::Mesh(&self.triangles),
         };
         GoalStock::Declared { blank, resolution: self.resolution, layer_mm, words: &self.words }

@@ -148,7 +148,9 @@ fn bodies(job: &Job) -> Result<Vec<Body>, Box<dyn Error>> {
         part_mm: -job.tolerance().gouge_mm,
         other_mm: CLEARANCE_MM,
     };
-    let holder = job.tool().holder_spec().ok_or("a tool without a holder")?;
+    let [holder] = job.tool().holder_sections() else {
+        return Err("a holder of one section is needed".into());
+    };
     let holder = Body {
         radius_mm: 0.5 * holder.diameter_mm,
         corner_mm: 0.0,

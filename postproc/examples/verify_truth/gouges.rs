@@ -78,7 +78,7 @@ fn posted(
             motion: if k == 0 { Motion::Rapid } else { Motion::Feed(500.0) },
         })
         .collect();
-    let path = ClPath { cutter: Some(spec), holder: None, spindle_rpm: Some(6000.0), moves };
+    let path = ClPath { cutter: Some(spec), holder: Vec::new(), spindle_rpm: Some(6000.0), moves };
     let options = PostOptions::new(Dialect::Sinumerik, FeedMode::Kv { fgref_mm: None });
     let text = post(&path, own, &good, &options).expect("within reach").text;
     let back =

@@ -105,7 +105,7 @@ impl ReadBack {
     #[must_use]
     pub fn cl_path(&self) -> ClPath {
         let moves = self.moves.iter().map(|m| ClMove { pose: m.pose, motion: m.motion }).collect();
-        ClPath { cutter: None, holder: None, spindle_rpm: self.spindle_rpm, moves }
+        ClPath { cutter: None, holder: Vec::new(), spindle_rpm: self.spindle_rpm, moves }
     }
 
     /// The blocks as [`crate::motion::program_time`] takes them.

@@ -4,15 +4,15 @@ use super::around::Around;
 use crate::ideal::Patch;
 use crate::plan::{Strategy, Tolerance};
 use osculate_geom::Unit3;
-use osculate_tools::{Cutter, Lean};
+use osculate_tools::{Cutter, Holder, Lean};
 
 /// A tool to choose from.
 #[derive(Clone, Copy)]
 pub struct Tool<'a> {
     /// The cutter.
     pub cutter: &'a Cutter,
-    /// The holder, a cylinder that begins where the cutter ends.
-    pub holder: Option<&'a Cutter>,
+    /// The holder, whose nose sits where the cutter ends.
+    pub holder: Option<&'a Holder>,
     /// Feed, mm/min.
     pub feed_mm_min: f64,
 }

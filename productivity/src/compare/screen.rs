@@ -6,7 +6,7 @@ use crate::ideal::{Place, shared_places};
 use crate::plan::LocalLead;
 use osculate_geom::{Axis, Forms, Jet2, Surface, Unit3};
 use osculate_tools::strip::{self, Chart, ChartError, StripError, Within};
-use osculate_tools::{Contact, Cutter, FeedLine, Lean, Pose};
+use osculate_tools::{Contact, Cutter, FeedLine, Lean};
 use rayon::prelude::*;
 
 /// Places over all faces, about.
@@ -192,9 +192,8 @@ fn posture(
     if let Some((depth, face)) = setting.around.met(tool.cutter, &pose, t.gouge_mm + t.scallop_mm) {
         return There::Body(depth, face);
     }
-    if let Some(holder) = tool.holder {
-        let tip = pose.tip + pose.axis.into_inner() * tool.cutter.length_mm();
-        if let Some((depth, face)) = setting.around.met(holder, &Pose { tip, axis: pose.axis }, 0.0) {
+    for (body, at) in tool.holder.iter().flat_map(|h| h.posed(tool.cutter, &pose)) {
+        if let Some((depth, face)) = setting.around.met(body, &at, 0.0) {
             return There::Holder(depth, face);
         }
     }

@@ -16,7 +16,7 @@ use crate::axis::sunk;
 use osculate_geom::Surface;
 use osculate_tools::reach::Obstacles;
 use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept, beside_edges};
-use osculate_tools::{Cutter, Pose};
+use osculate_tools::{Cutter, Holder, Pose};
 use rayon::prelude::*;
 
 /// Most samples that the tool is held against, over all faces, and fewest of one face.
@@ -57,8 +57,8 @@ pub struct Guard<'a> {
     pub check: &'a [Named<'a>],
     /// The cutter with its shank.
     pub cutter: &'a Cutter,
-    /// The holder, a body whose lower end sits where the cutter's length ends.
-    pub holder: Option<&'a Cutter>,
+    /// The holder, whose nose sits where the cutter's length ends.
+    pub holder: Option<&'a Holder>,
     /// What must hold: the cutter may go as deep into faces to machine as its gouges say.
     pub tolerance: Tolerance,
     /// What cutter and holder keep from check faces, and the holder from faces to machine. Zero: nothing, and they may go in by the
@@ -201,8 +201,8 @@ impl<'a> Watch<'a> {
         self.faces.sunk[depth as usize].is_within(cutter, pose, self.aside_mm)
             || beside(cutter, pose)
             || holder.is_some_and(|h| {
-                let pose = pose.retracted(cutter.length_mm());
-                meets(&self.faces, h, &pose) || beside(h, &pose)
+                let mut sections = h.posed(cutter, pose);
+                sections.any(|(body, at)| meets(&self.faces, body, &at) || beside(body, &at))
             })
     }
 

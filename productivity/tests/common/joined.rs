@@ -1,7 +1,7 @@
 //! Passes over one face, joined to a path around the face's box.
 
 use osculate_geom::{Box3, Surface};
-use osculate_productivity::plan::{Links, Pass, Walls, link};
+use osculate_productivity::plan::{Links, Pass, Rates, Walls, link};
 use osculate_tools::Cutter;
 use osculate_tools::cl::ClPath;
 

@@ -1,6 +1,7 @@
 //! What is moved: a cutter and what is mounted above it.
 
 use crate::cutter::Cutter;
+use crate::holder::{Holder, HolderSection};
 
 /// Most bodies above a cutter: one word of bits tells which of them a point can still meet.
 const MOST: usize = 31;
@@ -52,9 +53,11 @@ pub struct Tool {
 impl Tool {
     /// A cutter with a holder that sits where the cutter's length ends.
     #[must_use]
-    pub fn new(cutter: Cutter, holder: Option<Cutter>) -> Self {
-        let height_mm = cutter.length_mm();
-        Self { cutter, mounted: holder.map(|body| Mounted { body, height_mm }).into_iter().collect() }
+    pub fn new(cutter: Cutter, holder: Option<&Holder>) -> Self {
+        let sections = holder.map(Holder::sections).unwrap_or_default();
+        let mounted =
+            |s: &HolderSection| Mounted { body: s.body, height_mm: cutter.length_mm() + s.above_mm };
+        Self { cutter, mounted: sections.iter().map(mounted).collect() }
     }
 
     /// The tool with one more body above its cutter.

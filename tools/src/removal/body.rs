@@ -1,10 +1,11 @@
-//! The rigid bodies that move: the cutter, and the holder above it.
+//! The rigid bodies that move: the cutter, and the sections of the holder above it.
 //!
-//! Both are convex bodies of revolution about the tool axis, so their signed distance is a convex function of
+//! All are convex bodies of revolution about the tool axis, so their signed distance is a convex function of
 //! the point with slope at most one. Every bound of this module rests on these two facts.
 
 use super::job::Job;
 use crate::cutter::Cutter;
+use crate::holder::Holder;
 use osculate_geom::Vec3;
 
 /// A body of revolution whose lower end is `above_mm` up the axis from the tool tip.
@@ -44,7 +45,10 @@ impl<'a> Body<'a> {
         let tools = std::iter::once(first).chain(job.changes.iter().map(|c| (c.cutter, c.holder)));
         for (tool, (cutter, holder)) in tools.enumerate() {
             bodies.push(Self { cutter, above_mm: 0.0, tool });
-            bodies.extend(holder.map(|holder| Self { cutter: holder, above_mm: cutter.length_mm(), tool }));
+            for section in holder.map(Holder::sections).unwrap_or_default() {
+                let above_mm = cutter.length_mm() + section.above_mm;
+                bodies.push(Self { cutter: &section.body, above_mm, tool });
+            }
         }
         bodies
     }

@@ -28,6 +28,8 @@ pub const DIVISIONS: u32 = 3;
 const STRAY: f64 = 0.1;
 /// Halvings of a piece at most, each to a quarter of what it strays by.
 const HALVINGS: u32 = 6;
+/// Groups of samples that are asked about together before each is by itself.
+const TOGETHER: usize = 32;
 /// Turn of the relative curvature over a cell, rad, up to which the quick bound is of second order.
 const MOST_TURN: f64 = 0.5;
 
@@ -73,29 +75,52 @@ impl<'a> Digs<'a> {
         surfaces: &[&dyn Surface],
         (patches, cuts): (&[Option<Patch>], &[Cut]),
     ) -> Result<Vec<Depth>, JobError> {
-        let of = |group: &Cluster| self.of_group(group, surfaces, (patches, cuts));
-        Ok(clusters(self.job.samples)?.par_iter().flat_map_iter(of).collect())
+        let bodies = Body::all(self.job);
+        let of = |groups: &[Cluster]| self.of_groups(&bodies, groups, surfaces, (patches, cuts));
+        Ok(clusters(self.job.samples)?.par_chunks(TOGETHER).flat_map_iter(of).collect())
     }
 
-    fn of_group(
+    /// Of groups next to each other: mostly nothing intrudes into any of them.
+    fn of_groups(
         &self,
-        group: &Cluster,
+        bodies: &[Body<'a>],
+        groups: &[Cluster],
         surfaces: &[&dyn Surface],
         (patches, cuts): (&[Option<Patch>], &[Cut]),
     ) -> Vec<Depth> {
-        let bodies = Body::all(self.job);
-        let cells: Vec<(usize, Patch, Back)> = group
-            .members
+        let cell = |k: usize| patches[k].map(|patch| (k, patch, self.back(surfaces, k, &patch)));
+        let cells: Vec<Vec<(usize, Patch, Back)>> = groups
             .iter()
-            .map(|k| *k as usize)
-            .filter_map(|k| patches[k].map(|patch| (k, patch, self.back(surfaces, k, &patch))))
+            .map(|group| group.members.iter().filter_map(|k| cell(*k as usize)).collect())
             .collect();
-        let normal = |k: usize| self.job.samples[k].normal;
-        let Some(first) = cells.first() else { return Vec::new() };
-        let corners = cells.iter().flat_map(|(_, _, back)| back.target.corners());
-        let whole = Target::around(corners, &normal(first.0));
-        // Mostly none, and what the cutter is known not to do need not be asked then.
-        let intrudes = !self.near(&bodies, &whole, Which::Intruding).is_empty();
+        let any = self.intrudes(bodies, cells.iter().flatten());
+        let of = |own: &Vec<(usize, Patch, Back)>| {
+            let intrudes = any && self.intrudes(bodies, own.iter());
+            self.of_group((bodies, intrudes), own, surfaces, cuts)
+        };
+        cells.iter().flat_map(of).collect()
+    }
+
+    /// Whether a rapid, or a body that is not to cut, comes near any of some cells.
+    fn intrudes<'c>(
+        &self,
+        bodies: &[Body<'a>],
+        mut cells: impl Iterator<Item = &'c (usize, Patch, Back)> + Clone,
+    ) -> bool {
+        let corners = cells.clone().flat_map(|(_, _, back)| back.target.corners());
+        let Some((first, ..)) = cells.next() else { return false };
+        let whole = Target::around(corners, &self.job.samples[*first].normal);
+        !self.near(bodies, &whole, Which::Intruding).is_empty()
+    }
+
+    /// Of one group, of which it is known whether anything intrudes.
+    fn of_group(
+        &self,
+        (bodies, intrudes): (&[Body<'a>], bool),
+        cells: &[(usize, Patch, Back)],
+        surfaces: &[&dyn Surface],
+        cuts: &[Cut],
+    ) -> Vec<Depth> {
         let depth = |(sample, patch, back): &(usize, Patch, Back)| {
             let level = self.level(patch, back.radius) - cuts[*sample].standoff_mm;
             let which = match (level <= self.depth_mm, intrudes) {
@@ -109,7 +134,7 @@ impl<'a> Digs<'a> {
                 let all = patch.parts().into_iter().flat_map(|p| p.parts());
                 parts.extend(all.filter(|p| p.raster().any(|place| surface.contains(place))));
             } else {
-                let comers = self.near(&bodies, &back.target, which);
+                let comers = self.near(bodies, &back.target, which);
                 self.divide(surfaces, *sample, patch, &comers, (DIVISIONS, &mut parts));
             }
             parts.retain(|part| !self.is_beside(surfaces, *sample, part));
@@ -120,7 +145,7 @@ impl<'a> Digs<'a> {
             } else if quick.is_finite() {
                 quick
             } else {
-                self.known(&bodies, surfaces, *sample, patch)
+                self.known(bodies, surfaces, *sample, patch)
             };
             let most_mm = quick.min(known);
             Depth { sample: *sample, most_mm, parts }

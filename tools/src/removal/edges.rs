@@ -196,7 +196,7 @@ mod tests {
             let (sin, cos) = inner_rad.sin_cos();
             let (down, out) = (Vec3::new(-cos, 0.0, -sin), Vec3::new(sin, 0.0, -cos));
             let at = Placement::new(Point3::new(6.0, 0.0, 0.0), Unit3::new_normalize(out), Some(down));
-            let wall = Placed { surface: flat.clone(), placement: at };
+            let wall = Placed { surface: flat, placement: at };
             let surfaces: [&dyn Surface; 2] = [&flat, &wall];
             let sample = |face: u32, at: Uv| {
                 let jet = surfaces[face as usize].jet2(at);

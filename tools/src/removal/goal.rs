@@ -7,6 +7,7 @@
 use super::job::{Sample, Swept};
 use super::stock::{Blank, Resolution};
 use crate::cutter::Cutter;
+use crate::holder::Holder;
 use osculate_geom::{Surface, Uv};
 use std::ops::Range;
 
@@ -42,7 +43,7 @@ pub struct GoalTool<'a> {
     /// What is above the part that cuts, up to the cutter's length.
     pub shank: Option<&'a Cutter>,
     /// The holder.
-    pub holder: Option<&'a Cutter>,
+    pub holder: Option<&'a Holder>,
     /// Cutting edges; where nothing says how many, tooth marks are those of a single one.
     pub teeth: Option<u32>,
     /// Revolutions a minute. Without it tooth marks are not known.

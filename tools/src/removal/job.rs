@@ -2,6 +2,7 @@
 
 use crate::cl::{ClPath, Motion};
 use crate::cutter::Cutter;
+use crate::holder::Holder;
 use crate::pose::Pose;
 use osculate_geom::{Point3, Unit3, Uv};
 
@@ -58,8 +59,8 @@ impl Swept {
 pub struct Job<'a> {
     /// The cutter. Its whole length cuts.
     pub cutter: &'a Cutter,
-    /// The holder, a body whose lower end sits where the cutter's length ends.
-    pub holder: Option<&'a Cutter>,
+    /// The holder, whose nose sits where the cutter's length ends.
+    pub holder: Option<&'a Holder>,
     /// Tools that take over from these, in the order of the motions.
     pub changes: &'a [Change<'a>],
     /// The motions in the order in which they happen.
@@ -80,7 +81,7 @@ pub struct Change<'a> {
     /// Its cutter.
     pub cutter: &'a Cutter,
     /// Its holder.
-    pub holder: Option<&'a Cutter>,
+    pub holder: Option<&'a Holder>,
 }
 
 impl Job<'_> {

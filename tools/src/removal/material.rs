@@ -1,7 +1,6 @@
 //! Declared raw material on the way of a program: what is left of it at the end, and at stops.
 
 use super::goal::GoalStock;
-use super::job::Body;
 use super::stock::{Carved, Stock, StockJob, Upper};
 use super::trial::{ProveError, Trial};
 use super::verdict::StockFound;
@@ -86,14 +85,7 @@ impl Trial<'_> {
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Carved, ProveError> {
         let tool = &self.goal.tools[self.program.tool_of(begin)];
-        let mut uppers = Vec::new();
-        let mut above_mm = tool.flutes.length_mm();
-        for (body, kind) in [(tool.shank, Body::Shank), (tool.holder, Body::Holder)] {
-            if let Some(body) = body {
-                uppers.push(Upper { body, above_mm, kind });
-                above_mm += body.length_mm();
-            }
-        }
+        let uppers = Upper::all(tool.flutes, tool.shank, tool.holder);
         let motions = &self.program.motions[begin..end];
         Ok(stock.carve(&StockJob { cutter: tool.flutes, uppers: &uppers, motions, touch_mm }, progress)?)
     }

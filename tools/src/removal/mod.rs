@@ -47,6 +47,7 @@ mod answer;
 mod body;
 mod boundary;
 mod cluster;
+mod conclude;
 mod crest;
 mod cut;
 mod deepest;

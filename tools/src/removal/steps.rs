@@ -4,9 +4,9 @@
 //! nothing is measured twice. One whose faces are not those of the whole, such as a roughing that is judged outside by its allowance,
 //! has samples of its own. Either way it is not looked at between samples, as the whole is.
 
+use super::conclude::{Closing, check, concluded, looked_at};
 use super::goal::{Goal, Program};
 use super::job::{Change, Cut, Sample};
-use super::prove::{Closing, check, concluded, looked_at};
 use super::trial::{ProveError, Sampled, Trial, changes_of, unbounded};
 use super::verdict::{StockFound, Verdict};
 use std::ops::Range;

@@ -5,7 +5,7 @@ use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::reach::{
     ObstacleKind, ObstaclePoint, Obstacles, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
 };
-use osculate_tools::{Cutter, CutterSpec};
+use osculate_tools::{Cutter, CutterSpec, Holder};
 
 const AT: Place =
     Place { point: Point3::new(0.0, 0.0, 0.0), normal: Unit3::new_unchecked(Vec3::new(0.0, 0.0, 1.0)) };
@@ -91,8 +91,8 @@ fn a_wall_stops_what_leans_over_its_edge() {
 fn a_holder_over_a_plane() {
     let directions = sphere(4);
     let (radius, length, wide, clearance_mm) = (2.0, 12.0, 10.0, 0.5);
-    let holder = Cutter::cylinder(2.0 * wide, 5.0).unwrap();
-    let tool = Tool::new(*ball(radius, length).cutter(), Some(holder));
+    let holder = Holder::cylinder(2.0 * wide, 5.0).unwrap();
+    let tool = Tool::new(*ball(radius, length).cutter(), Some(&holder));
     let step = 0.25;
     let points = (-120..=120)
         .flat_map(|i| (-120..=120).map(move |j| Point3::new(step * f64::from(i), step * f64::from(j), 0.0)));

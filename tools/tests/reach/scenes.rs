@@ -5,7 +5,7 @@ use osculate_tools::reach::{
     Bits, Directions, Met, ObstacleKind, ObstaclePoint, Obstacles, Place, Reach, ReachLimits, ReachProblem,
     Tool,
 };
-use osculate_tools::{Cutter, CutterSpec, pose_with_axis};
+use osculate_tools::{Cutter, CutterSpec, Holder, pose_with_axis};
 use std::f64::consts::TAU;
 
 pub const WIDE: ReachLimits = ReachLimits {
@@ -49,7 +49,7 @@ pub fn tool(kind: usize) -> Tool {
     let cutter = cutter(kind);
     let nut = Cutter::cylinder(18.0, 10.0).unwrap();
     let height_mm = cutter.length_mm() + 5.0;
-    Tool::new(cutter, Some(Cutter::cylinder(12.0, 30.0).unwrap()))
+    Tool::new(cutter, Some(&Holder::cylinder(12.0, 30.0).unwrap()))
         .with(osculate_tools::reach::Mounted { body: nut, height_mm })
         .unwrap()
 }

@@ -1,10 +1,10 @@
 //! What must not touch: holder, rapids, and what does not touch though it seems to.
 
 use crate::common::{ball, flat, run, sample, through, upright};
-use osculate_tools::Cutter;
 use osculate_tools::removal::{Body, Cut, Job, JobError, Sample, Swept, cut};
+use osculate_tools::{Cutter, Holder, HolderSpec};
 
-fn with_holder(cutter: &Cutter, holder: &Cutter, motions: &[Swept], samples: &[Sample]) -> Vec<Cut> {
+fn with_holder(cutter: &Cutter, holder: &Holder, motions: &[Swept], samples: &[Sample]) -> Vec<Cut> {
     let job =
         Job { cutter, holder: Some(holder), changes: &[], motions, samples, stock_mm: 0.3, depth_mm: 2.0 };
     cut(&job, &|_| ()).expect("a good job")
@@ -14,7 +14,7 @@ fn with_holder(cutter: &Cutter, holder: &Cutter, motions: &[Swept], samples: &[S
 fn a_holder_that_hits_a_step() {
     // A floor at z = 0 and, 8 mm beside the tool, the top of a step.
     let cutter = Cutter::cylinder(6.0, 20.0).unwrap();
-    let holder = Cutter::cylinder(30.0, 40.0).unwrap();
+    let holder = Holder::cylinder(30.0, 40.0).unwrap();
     let motions = through(&[upright(0.0, 0.0, 0.0), upright(10.0, 0.0, 0.0)]);
     let floor = sample([5.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     for (step, gouge) in [(20.5, 0.5), (19.0, -1.0)] {
@@ -28,6 +28,45 @@ fn a_holder_that_hits_a_step() {
             assert_eq!(cuts[1].by.unwrap().body, Body::Holder);
         } else {
             assert!(cuts[1].holder.is_none() && cuts[1].by.is_none() && cuts[1].standoff_mm == 0.3);
+        }
+    }
+}
+
+/// A nose of 12 mm, a cone from there to 40 mm, and a cylinder: beside a step each section reaches as far as its meridian says, where the
+/// cylinder around all of them would take everything above the nose.
+#[test]
+fn a_stepped_holder_clears_where_a_cylinder_around_it_would_not() {
+    let section = |diameter_mm: f64, upper_diameter_mm: Option<f64>, length_mm: f64| HolderSpec {
+        diameter_mm,
+        length_mm,
+        upper_diameter_mm,
+    };
+    let cutter = Cutter::cylinder(6.0, 20.0).unwrap();
+    let sections = [section(12.0, None, 30.0), section(12.0, Some(40.0), 14.0), section(40.0, None, 20.0)];
+    let stepped = Holder::new(&sections).unwrap();
+    let around = Holder::cylinder(40.0, 64.0).unwrap();
+    let motions = through(&[upright(0.0, 0.0, 0.0), upright(10.0, 0.0, 0.0)]);
+    // The meridian's height above the tip at a distance from the axis.
+    for (off, height) in [(5.0, 20.0), (8.0, 52.0), (13.0, 57.0), (19.0, 63.0)] {
+        for (above, meets) in [(0.05, true), (-0.05, false)] {
+            // The top of a step stands so much above the holder's lower side, with a hair of raw material on it.
+            let top = sample([5.0, off, height + above], [0.0, 0.0, 1.0]);
+            let job = Job {
+                cutter: &cutter,
+                holder: Some(&stepped),
+                changes: &[],
+                motions: &motions,
+                samples: &[top],
+                stock_mm: 0.01,
+                depth_mm: 2.0,
+            };
+            let got = cut(&job, &|_| ()).unwrap()[0];
+            assert_eq!(got.holder.is_some(), meets, "{off} {above}: {got:?}");
+            if meets {
+                assert!((got.standoff_mm + above).abs() < 1e-9, "{got:?}");
+            }
+            let other = cut(&Job { holder: Some(&around), ..job }, &|_| ()).unwrap()[0];
+            assert_eq!(other.holder.is_some(), off > 6.0 || meets);
         }
     }
 }

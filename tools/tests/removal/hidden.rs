@@ -7,7 +7,7 @@ use osculate_tools::removal::{
     Cut, Job, Measured, Patch, Refined, Sample, Sampling, Swept, Wanted, cut, hidden, refine,
     sample_boundary, sample_surface,
 };
-use osculate_tools::{Cutter, Pose};
+use osculate_tools::{Cutter, Holder, Pose};
 
 fn square(side: f64) -> Plane {
     let i = Interval::new(0.0, side);
@@ -279,6 +279,7 @@ fn gouges_as_sharp_as_a_corner_are_found() {
 fn gouges_of_rapids_and_holders_are_found_on_check_faces() {
     let (surface, depth, limit) = (square(3.0), 0.02, 0.005);
     let holder = toroidal(10.0, 0.0);
+    let held_by = Holder::from(holder);
     // The holder begins where the cutter ends: its own tip is so much higher up the axis.
     let short = toroidal(2.0, 0.5);
     let [from, to] = aside(&holder, 0.3, depth)
@@ -286,7 +287,7 @@ fn gouges_of_rapids_and_holders_are_found_on_check_faces() {
     let held = [Swept { from, to, rapid: false, block: 1 }];
     let [from, to] = aside(&holder, 0.3, depth);
     let rapid = [Swept { from, to, rapid: true, block: 1 }];
-    for (cutter, holder, motions) in [(&short, Some(&holder), &held), (&holder, None, &rapid)] {
+    for (cutter, holder, motions) in [(&short, Some(&held_by), &held), (&holder, None, &rapid)] {
         let mut sampling = sample_surface(&surface, 0, 0.3, 1_000_000).unwrap();
         for sample in &mut sampling.samples {
             sample.check_only = true;

@@ -5,10 +5,10 @@ use osculate_geom::analytic::Plane;
 use osculate_geom::{Box3, Domain, Interval, Point3};
 use osculate_tools::removal::stock::{Blank, Resolution};
 use osculate_tools::removal::{
-    Answer, Change, Cut, Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Job, JobError, Looks,
-    Program, ProveError, Sample, Swept, Verdict, carve, cut, prove,
+    Answer, Change, Cut, Goal, GoalControl, GoalFace, GoalLimits, GoalStep, GoalStock, GoalTool, Job,
+    JobError, Looks, Program, ProveError, Sample, Swept, Verdict, cut, prove, prove_in_steps,
 };
-use osculate_tools::{Cutter, Pose};
+use osculate_tools::{Cutter, Holder, Pose};
 use proptest::prelude::*;
 
 /// Passes along x between two y, `step` apart, with the tip at a height.
@@ -31,7 +31,7 @@ fn samples() -> Vec<Sample> {
 
 /// What two tools leave, the second from motion `first` on.
 fn both(
-    tools: [(&Cutter, Option<&Cutter>); 2],
+    tools: [(&Cutter, Option<&Holder>); 2],
     motions: &[Swept],
     first: usize,
     samples: &[Sample],
@@ -87,7 +87,7 @@ proptest! {
 #[test]
 fn each_tool_has_its_own_holder() {
     let (long, short) = (flat(6.0), Cutter::cylinder(6.0, 4.0).unwrap());
-    let holder = Cutter::cylinder(30.0, 20.0).unwrap();
+    let holder = Holder::cylinder(30.0, 20.0).unwrap();
     let floor = sample([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
     // A wall beside, as high as the nose of the short tool's holder lies deep.
     let top = sample([8.0, 0.0, 5.0], [0.0, 0.0, 1.0]);
@@ -164,14 +164,13 @@ impl Plate {
         Self { tools, motions, times_min, first }
     }
 
-    fn judged(&self, changes: &[usize], from: usize, blank: Blank<'_>) -> Result<Verdict, ProveError> {
-        self.with(changes, from, blank, |goal, program| prove(goal, program, &|_| ()))
+    fn judged(&self, changes: &[usize], blank: Blank<'_>) -> Result<Verdict, ProveError> {
+        self.with(changes, blank, |goal, program| prove(goal, program, &|_| ()))
     }
 
     fn with<T>(
         &self,
         changes: &[usize],
-        from: usize,
         blank: Blank<'_>,
         ask: impl FnOnce(&Goal<'_>, Program<'_>) -> T,
     ) -> T {
@@ -194,7 +193,6 @@ impl Plate {
             stock: GoalStock::Declared {
                 blank,
                 resolution: Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 },
-                from,
                 layer_mm: 0.5,
                 words: "a plate",
             },
@@ -215,7 +213,7 @@ fn plate() -> Blank<'static> {
 #[test]
 fn a_plate_is_finished_by_two_tools() {
     let whole = Plate::new([[-2.0, 4.03], [5.0, 8.5]]);
-    let verdict = whole.judged(&[whole.first], 0, plate()).unwrap();
+    let verdict = whole.judged(&[whole.first], plate()).unwrap();
     assert_eq!(verdict.answer(), Answer::Held, "{verdict}");
     let text = verdict.to_string();
     assert!(
@@ -229,38 +227,68 @@ fn a_plate_is_finished_by_two_tools() {
     assert!(mark >= two_circles(2.0, 0.025) && mark < two_circles(0.5, 0.05) + 1e-5, "{mark}");
 
     let apart = Plate::new([[-2.0, 2.0], [7.0, 8.5]]);
-    let verdict = apart.judged(&[apart.first], 0, plate()).unwrap();
+    let verdict = apart.judged(&[apart.first], plate()).unwrap();
     assert_eq!(verdict.answer(), Answer::NotHeld);
     assert!(verdict.why().iter().any(|w| w.contains("uncut area")), "{verdict}");
 
-    let none = whole.judged(&[], 0, plate());
+    let none = whole.judged(&[], plate());
     assert_eq!(none.unwrap_err(), ProveError::Tools { tools: 2, changes: 0 });
-    let late = whole.judged(&[usize::MAX], 0, plate());
+    let late = whole.judged(&[usize::MAX], plate());
     assert!(matches!(late, Err(ProveError::Tools { .. })));
 }
 
-/// Stock carried from one tool to the next is the stock that both go through.
+/// What is left when the first of two operations ends is what the second begins from and what both have left; each is judged as it is
+/// then, on what is measured for the whole, whose verdict stays the same.
 #[test]
-fn stock_is_carried_to_the_next_tool() {
+fn operations_are_judged_when_they_end() {
     let both = Plate::new([[-2.0, 4.03], [5.0, 8.5]]);
-    let whole = both.judged(&[both.first], 0, plate()).unwrap();
-    let whole = whole.figures().stock.as_ref().unwrap();
-    let first = Plate {
-        motions: both.motions[..both.first].to_vec(),
-        times_min: both.times_min[..both.first].to_vec(),
-        ..Plate::new([[-2.0, 4.03], [5.0, 8.5]])
-    };
-    // By itself the first leaves so much that nothing is looked at closer; what it leaves is known all the same.
-    assert!(first.judged(&[both.first], 0, plate()).unwrap().figures().stock.is_none());
-    let halfway = first
-        .with(&[both.first], 0, plate(), |goal, program| carve(goal, program, &|_| ()).unwrap().unwrap());
-    let carried = both.judged(&[both.first], both.first, Blank::Left(&halfway.stock)).unwrap();
-    let carried = carried.figures().stock.as_ref().unwrap();
-    assert_eq!(carried.stock, whole.stock);
-    assert_eq!(carried.before, halfway.left);
-    assert!(carried.carved.volume_mm3() > 1.0);
-    let sum = halfway.carved.volume_mm3() + carried.carved.volume_mm3();
+    let (first, all) = (both.first, both.motions.len());
+    let alone = both.judged(&[first], plate()).unwrap();
+    let proved = both.with(&[first], plate(), |goal, program| {
+        let own = |tools: usize| Goal {
+            machined: goal.machined.clone(),
+            checked: Vec::new(),
+            unseen: Vec::new(),
+            fixtures: Vec::new(),
+            tools: goal.tools[..tools].to_vec(),
+            stock: goal.stock,
+            limits: GoalLimits { at_samples: true, ..goal.limits },
+            looks: Looks { between: false, ..goal.looks },
+            roughing_mm: None,
+            control: GoalControl::default(),
+        };
+        let steps =
+            [GoalStep { goal: own(1), motions: 0..first }, GoalStep { goal: own(2), motions: first..all }];
+        let wrong = prove_in_steps(goal, program, (&[all, first], &steps), &|_| ());
+        assert!(matches!(wrong, Err(ProveError::Stops { .. })));
+        prove_in_steps(goal, program, (&[first, all], &steps), &|_| ()).unwrap()
+    });
+    assert_eq!(proved.whole.answer(), Answer::Held);
+    assert_eq!((proved.whole.to_string(), proved.whole.cuts()), (alone.to_string(), alone.cuts()));
+    let of = |v: &Verdict| v.figures().stock.clone().unwrap();
+    let (whole, halfway, after) = (of(&proved.whole), of(&proved.steps[0]), of(&proved.steps[1]));
+    assert_eq!(whole, of(&alone));
+    assert_eq!((&after.stock, after.before), (&whole.stock, halfway.left));
+    assert!(halfway.carved.volume_mm3() > 1.0 && after.carved.volume_mm3() > 1.0);
+    let sum = halfway.carved.volume_mm3() + after.carved.volume_mm3();
     assert!((sum - whole.carved.volume_mm3()).abs() < 1e-9 * sum);
     // Motions and blocks are those of the whole program.
-    assert!(carried.carved.work.iter().all(|w| w.motion as usize >= both.first));
+    assert!(after.carved.work.iter().all(|w| w.motion as usize >= first));
+    // The first leaves nearly half of the plate, and harms nothing; at its samples it has left what its motions alone leave there.
+    let [one, two] = &proved.steps[..] else { panic!("two operations") };
+    assert!(one.answer() == Answer::NotHeld && one.leaves_only(), "{one}");
+    assert!((one.figures().tally.uncut_area_mm2 - 8.0 * (8.0 - 4.03 - 2.5)).abs() < 2.0, "{one}");
+    let tool = &both.tools[0];
+    let job = Job {
+        cutter: tool,
+        holder: None,
+        changes: &[],
+        motions: &both.motions[..first],
+        samples: one.samples(),
+        stock_mm: 0.5,
+        depth_mm: 3.0,
+    };
+    assert_eq!(one.cuts(), cut(&job, &|_| ()).unwrap());
+    assert_eq!(two.answer(), Answer::Held, "{two}");
+    assert_eq!(two.figures().tally.worst, proved.whole.figures().tally.worst);
 }

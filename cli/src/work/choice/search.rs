@@ -99,11 +99,7 @@ impl<'a> Choice<'a> {
         let holders = jobs.iter().map(Job::holder).collect::<Vec<_>>();
         let mut tools = Vec::with_capacity(jobs.len());
         for (k, one) in jobs.iter().enumerate() {
-            tools.push(Tool {
-                cutter: &cutters[k],
-                holder: holders[k].as_ref(),
-                feed_mm_min: one.feed_mm_min(),
-            });
+            tools.push(Tool { cutter: &cutters[k], holder: holders[k], feed_mm_min: one.feed_mm_min() });
         }
         let all = faces.faces.iter().chain(&faces.check);
         let around = Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str())));

@@ -169,15 +169,7 @@ impl Behind {
         let mut slowed = 0;
         if let Some(stock) = &mut self.stock {
             let (flutes, shank) = job.flutes();
-            let holder = job.holder();
-            let mut uppers = Vec::new();
-            let mut above_mm = flutes.length_mm();
-            for (body, kind) in [(&shank, Body::Shank), (&holder, Body::Holder)] {
-                if let Some(body) = body {
-                    uppers.push(Upper { body, above_mm, kind });
-                    above_mm += body.length_mm();
-                }
-            }
+            let uppers = Upper::all(&flutes, shank.as_ref(), job.holder());
             let t = job.tolerance();
             let touch_mm = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
             let motions = Swept::along(&linked.path);

@@ -81,16 +81,6 @@ fn named(text: &str) -> Vec<(usize, String, Option<u32>)> {
     out
 }
 
-/// The operation of a program that names none, as one of a single operation does: the first of its setup with its tool.
-fn lone(list: &Operations, setup: usize, tool: Option<u32>) -> Result<Option<String>, Failure> {
-    for operation in list.all().iter().filter(|o| o.setup == setup) {
-        if operation.judged()?.each_tool().iter().any(|j| tool.is_none_or(|t| t == j.tool().number())) {
-            return Ok(Some(operation.name.clone()));
-        }
-    }
-    Ok(None)
-}
-
 /// Where the part of a setup sits, as the head of its program says it.
 fn place(job: &Job, part: &Part, text: &str) -> (Setup, Vec<Diagnostic>) {
     let dialect = job.control().dialect;
@@ -134,11 +124,7 @@ impl Course {
             out.diagnostics.extend(read.diagnostics);
             let (begin, clock) = (out.motions.len(), out.times_min.last().copied().unwrap_or(0.0));
             out.take_calls(text.file, begin, &read.calls, &tools)?;
-            let mut names = named(text.text);
-            if names.is_empty() {
-                let tool = read.calls.first().and_then(|c| c.number);
-                names.extend(lone(list, out.setups.len(), tool)?.map(|name| (0, name, tool)));
-            }
+            let names = named(text.text);
             for (k, (line, name, tool)) in names.iter().enumerate() {
                 let first = |line: usize| read.motions.partition_point(|m| (m.block as usize) < line);
                 let from = if k == 0 { 0 } else { first(*line) };

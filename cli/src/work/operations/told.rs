@@ -14,11 +14,11 @@ use crate::work::operations::course::Course;
 use crate::work::operations::posted::Program;
 use crate::work::operations::standing;
 use crate::work::operations::step::Step;
-use crate::work::passes;
 use crate::work::plan::{Plan, PlanFile, Times, summary_of};
 use crate::work::program::{Planned, WallS};
 use crate::work::summary::{OperationSummary, SetupSummary, Summary};
 use crate::work::verify::Verified;
+use crate::work::{passes, stock};
 use osculate_geom::Diagnostic;
 use osculate_postproc::nc::Dialect;
 use osculate_productivity::plan::{Linked, Passes};
@@ -125,10 +125,12 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         let text = nc::cl_text(&cl, step.job.tool().number(), &step.operation.name).map_err(Failure::job)?;
         files.push(PlanFile::of_text(format!("path-{}.cl", k + 1), text));
     }
+    let of = stock::of_part(list.whole(), part);
     for (k, left) in judged.iter().enumerate().filter_map(|(k, j)| Some((k, j.left.as_ref()?))) {
         let mesh = left.mesh(CUBES);
         files.push(PlanFile { name: format!("stock-{}.stl", k + 1), bytes: mesh.stl() });
         files.push(PlanFile { name: format!("stock-{}.ply", k + 1), bytes: mesh.ply() });
+        files.push(PlanFile { name: format!("stock-{}.stock", k + 1), bytes: left.saved(&of) });
     }
     files.push(PlanFile::of_text("job.resolved.toml", list.text_anywhere()));
     if let Some(text) = tool_table(list) {

@@ -161,7 +161,7 @@ pub fn good(recipe: Recipe) -> Good {
             }
         }
     }
-    let path = ClPath { cutter: Some(spec), holder: None, spindle_rpm: Some(6000.0), moves };
+    let path = ClPath { cutter: Some(spec), holder: Vec::new(), spindle_rpm: Some(6000.0), moves };
     let machine = Machine::built_in(recipe.machine).expect("built in");
     let setup = Setup::at(Vec3::new(0.0, 0.0, 30.0), 40.0);
     let posted =

@@ -7,7 +7,7 @@ use crate::rectangle::Rectangle;
 use crate::spline::Spline;
 use osculate_geom::{Darboux, Forms, Jet2, Uv, Vec3};
 use osculate_tools::sweep::Moving;
-use osculate_tools::{ContactError, Cutter, Lean, moving_with_axis};
+use osculate_tools::{ContactError, Cutter, Holder, Lean, moving_with_axis};
 
 /// How a local lead is found. Angles rad, rates rad/mm.
 #[derive(Clone, Copy)]
@@ -20,8 +20,8 @@ pub struct LocalLead<'a> {
     pub most_rad: f64,
     /// Greatest change of the lead per mm of the face; times the feed it bounds the angular rate that the lead adds.
     pub rate_rad_per_mm: f64,
-    /// The holder, a cylinder that begins where the cutter ends.
-    pub holder: Option<&'a Cutter>,
+    /// The holder, whose nose sits where the cutter ends.
+    pub holder: Option<&'a Holder>,
     /// What else the tool must stay out of.
     pub around: Option<&'a Around>,
 }

@@ -253,23 +253,23 @@ impl<'a> Clearance<'a> {
         // Roughness and the coarse points' own distance from the face are not meant.
         let slack = task.tolerance.gouge_mm + task.tolerance.scallop_mm;
         let beyond = (NEAR * cutter.radius_mm()).powi(2);
-        let holder = self.local.holder.map(|h| {
-            (h, Pose { tip: pose.tip + pose.axis.into_inner() * cutter.length_mm(), axis: pose.axis })
-        });
+        let holder: Vec<(&Cutter, Pose)> =
+            self.local.holder.iter().flat_map(|h| h.posed(cutter, pose)).collect();
         for (middle, reach, points) in &self.far {
             let clear = |body: &Cutter, at: &Pose| body.distance(at, middle) > *reach;
-            if clear(cutter, pose) && holder.as_ref().is_none_or(|(body, at)| clear(body, at)) {
+            if clear(cutter, pose) && holder.iter().all(|(body, at)| clear(body, at)) {
                 continue;
             }
             for p in points.iter().filter(|p| (*p - stand.frame.point).norm_squared() > beyond) {
                 lowest = lowest.min(cutter.distance(pose, p) + slack);
-                if let Some((body, at)) = &holder {
+                for (body, at) in &holder {
                     lowest = lowest.min(body.distance(at, p));
                 }
             }
         }
         if let Some(around) = self.local.around {
-            let bodies = [(cutter, *pose, slack)].into_iter().chain(holder.map(|(h, at)| (h, at, 0.0)));
+            let above = holder.into_iter().map(|(body, at)| (body, at, 0.0));
+            let bodies = [(cutter, *pose, slack)].into_iter().chain(above);
             for (body, at, slack) in bodies {
                 if let Some((depth, _)) = around.met(body, &at, slack) {
                     lowest = lowest.min(slack - depth);

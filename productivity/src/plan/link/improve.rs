@@ -4,8 +4,8 @@
 //! turned, or a few passes that follow each other go elsewhere, turned or not. A move is made where it saves time. Where passes may
 //! not be turned only the second is left, and keeps them as they are.
 
+use super::ends::{Ends, Placed};
 use super::near::Places;
-use super::order::{Ends, Placed};
 use rayon::prelude::*;
 
 /// Ends near each end that moves are tried with.

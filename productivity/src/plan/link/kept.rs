@@ -67,7 +67,7 @@ pub(super) struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    /// A cutter, and a holder where it ends, on ways that begin and end at poses. They may go as deep into the faces that are
+    /// A cutter, and what stands on it, each where the one before ends, on ways that begin and end at poses. They may go as deep into the faces that are
     /// machined as they are at the ends, or as deep as `dip_mm`.
     pub fn new(
         bodies: impl Iterator<Item = &'a Cutter>,

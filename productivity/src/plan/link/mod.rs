@@ -8,9 +8,11 @@
 //! to the pole of the next pass and down again. Moves are rapid where nothing may stand near the tool (`left` knows the raw material),
 //! and fed elsewhere.
 
+mod ends;
 mod improve;
 mod kept;
 mod left;
+mod links;
 mod near;
 mod order;
 mod rates;
@@ -19,49 +21,17 @@ mod walls;
 mod ways;
 
 use super::{CcPoint, Pass};
+pub use ends::Freedom;
 use left::Left;
-pub use order::{Freedom, ordered};
-use osculate_geom::Box3;
+pub use links::Links;
+use links::contacts;
+pub use order::ordered;
+use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
-use osculate_tools::{Cutter, Pose};
 pub use rates::Rates;
 use rayon::prelude::*;
-use tree::{Dot, Dots};
 pub use walls::{Keeping, Walls};
 use ways::{Finder, Way};
-
-/// How passes are linked. Lengths mm, feeds mm/min.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Links {
-    /// Box of everything the tool must stay clear of on rapid moves.
-    pub obstacles: Box3,
-    /// Clearance above the sphere around the obstacles.
-    pub clearance_mm: f64,
-    /// Distance from the surface at which a rapid approach changes to feed.
-    pub approach_mm: f64,
-    /// The least lift of a hop; one that is not clear is doubled until it is, up to `approach_mm`.
-    pub hop_mm: f64,
-    /// How deep ways straight along the surface may go into the faces to machine.
-    pub dip_mm: f64,
-    /// Whether the tool touches the part where passes say it does: those along waterlines know the height of the tool, and of
-    /// what it touches the slope nearby only.
-    pub contacts: bool,
-    /// Whether the tool keeps its axis and stands nowhere lower than all faces let it: then nothing is in its way straight up, whereas
-    /// points of the faces may miss an edge that it would meet on a way aside.
-    pub dropped: bool,
-    /// Material that may stand on the faces yet: rapids do not go into it.
-    pub layer_mm: f64,
-    /// The cutter.
-    pub cutter: Cutter,
-    /// The holder, a body whose lower end sits where the cutter's length ends.
-    pub holder: Option<Cutter>,
-    /// Feed of the tip on the part.
-    pub feed_mm_min: f64,
-    /// Feed on approaches.
-    pub plunge_mm_min: f64,
-    /// How fast the machine goes between passes.
-    pub rates: Rates,
-}
 
 /// A linked path with the share of cutting in it.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -75,11 +45,6 @@ pub struct Linked {
     /// Length of all other moves along the tip, mm.
     pub air_length_mm: f64,
 }
-
-/// Ways straight along the surface are no longer than so many radii.
-const STRAIGHT: f64 = 2.0;
-/// Distance of the points along passes that stand for the part, in radii of the cutter.
-const NEAR_POINTS: f64 = 0.25;
 
 impl Linked {
     /// Adds a move, unless it leads nowhere.
@@ -104,29 +69,6 @@ impl Linked {
             self.go(leg.pose, leg.motion, None);
         }
     }
-}
-
-/// The contacts of passes, as points of the part, where they are.
-fn contacts(passes: &[Pass], links: &Links) -> Dots {
-    let spacing_mm = NEAR_POINTS * links.cutter.radius_mm();
-    let passes = if links.contacts { passes } else { &[] };
-    let mut out: Vec<Dot> = Vec::new();
-    for pass in passes {
-        let mut last: Option<&CcPoint> = None;
-        for p in &pass.points {
-            if let Some(last) = last {
-                let step = p.point - last.point;
-                let pieces = (step.norm() / spacing_mm).ceil().max(1.0);
-                out.extend(
-                    (1..pieces as usize)
-                        .map(|k| Dot { at: last.point + step * (k as f64 / pieces), normal: p.normal }),
-                );
-            }
-            out.push(Dot { at: p.point, normal: p.normal });
-            last = Some(p);
-        }
-    }
-    Dots::new(out)
 }
 
 /// Joins passes in their order, by ways that keep off `walls`.

@@ -3,9 +3,9 @@
 use super::*;
 use crate::plan::Named;
 use osculate_geom::analytic::Line;
-use osculate_geom::{Extruded, Interval, Point3, Unit3, Vec3, uv};
-use osculate_tools::CutterSpec;
+use osculate_geom::{Box3, Extruded, Interval, Point3, Unit3, Vec3, uv};
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
+use osculate_tools::{Cutter, CutterSpec, Holder};
 
 const TROUGH_MM: f64 = 4.0;
 const BALL_MM: f64 = 3.0;
@@ -204,7 +204,7 @@ fn a_hop_keeps_off_a_wall_that_is_not_machined() {
 fn a_holder_keeps_off_a_wall_too() {
     let passes = over_plane(6.0, 4.0);
     let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 10.0 }).unwrap();
-    let with = |holder: Option<Cutter>| Links {
+    let with = |holder: Option<Holder>| Links {
         obstacles: Box3 { min: Point3::new(-3.0, 0.0, 0.0), max: Point3::new(9.0, 12.2, 20.0) },
         clearance_mm: 5.0,
         approach_mm: 1.2,
@@ -227,7 +227,7 @@ fn a_holder_keeps_off_a_wall_too() {
     let walls = Walls::of(&[Named { face: "post", surface: &post }], &[], &keeping).unwrap();
     let without = link(&passes, &with(None), &walls);
     assert_eq!(without, link(&passes, &with(None), &Walls::default()));
-    let holder = Some(Cutter::cylinder(9.0, 30.0).unwrap());
-    assert_eq!(link(&passes, &with(holder), &Walls::default()), without);
+    let holder = Some(Holder::cylinder(9.0, 30.0).unwrap());
+    assert_eq!(link(&passes, &with(holder.clone()), &Walls::default()), without);
     assert_ne!(link(&passes, &with(holder), &walls), without);
 }

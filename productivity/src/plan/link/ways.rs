@@ -6,9 +6,10 @@
 
 use super::kept::{Around, Kept};
 use super::left::Left;
+use super::links::{Links, STRAIGHT};
 use super::rates::Step;
 use super::tree::Dots;
-use super::{Links, STRAIGHT, Walls};
+use super::walls::Walls;
 use crate::plan::CcPoint;
 use osculate_geom::{Point3, Unit3};
 use osculate_tools::Pose;
@@ -88,8 +89,7 @@ impl<'a> Finder<'a> {
 
     /// The tool on ways that begin and end at poses.
     fn kept(&self, ends: [Pose; 2]) -> Kept<'a> {
-        let bodies = [&self.links.cutter].into_iter().chain(&self.links.holder);
-        Kept::new(bodies, ends, self.around, self.links.dip_mm)
+        Kept::new(self.links.bodies(), ends, self.around, self.links.dip_mm)
     }
 
     /// The pose on the axis of `pose` whose tip is on the safe plane, never below `pose` itself.
@@ -122,7 +122,7 @@ impl<'a> Finder<'a> {
     fn is_free(&self, pose: &Pose, k: u32) -> bool {
         let off_mm = self.links.layer_mm + RAPID_OFF * self.links.hop_mm;
         let mut up_mm = 0.0;
-        [&self.links.cutter].into_iter().chain(&self.links.holder).all(|body| {
+        self.links.bodies().all(|body| {
             let pose = pose.retracted(up_mm);
             up_mm += body.length_mm();
             !self.around.is_within(body, &pose, off_mm)
@@ -225,7 +225,8 @@ impl<'a> Finder<'a> {
                 let clear = |mm: f64| kept.room(&way(mm)).is_some_and(|r| r >= 1.0);
                 if clear(lift) && (lift >= highest || clear((1.0 - SPARE) * lift)) {
                     let way = way(lift);
-                    return Some(if lift > 0.0 { self.through(&way, k) } else { self.direct(&way[..1], to) });
+                    let on = if lift > 0.0 { &way[..] } else { &[from.pose, to.pose][..] };
+                    return Some(if is_graze { self.grazing(on) } else { self.through(on, k) });
                 }
                 if lift == 0.0 {
                     break;
@@ -238,10 +239,11 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// At feed to a contact.
-    fn direct(&self, from: &[Pose], to: &CcPoint) -> Way {
+    /// Straight along the surface: the tool cuts there, across the passes, where teeth mark the crests between them more than those of
+    /// the passes do; it goes no faster than into material.
+    fn grazing(&self, poses: &[Pose]) -> Way {
         let mut way = Way { clear: true, ..Way::default() };
-        from.iter().for_each(|from| self.fed(&mut way, (from, &to.pose), self.links.feed_mm_min));
+        poses.windows(2).for_each(|w| self.fed(&mut way, (&w[0], &w[1]), self.links.plunge_mm_min));
         way
     }
 

@@ -12,7 +12,8 @@
 //! the distance in closed form: the least x takes one or two steps.
 
 use super::ENDS_MM;
-use crate::removal::body::{Body, Local};
+use super::instant::{Instant, Lowest};
+use crate::removal::body::Body;
 use crate::removal::piece::Approach;
 use osculate_geom::{Point3, Unit3, Vec3, any_perpendicular};
 
@@ -72,27 +73,6 @@ pub(super) struct View {
 pub(super) struct Ray {
     foot: Vec3,
     way: Vec3,
-}
-
-/// D, its derivatives, and where the point is.
-#[derive(Clone, Copy)]
-struct Instant {
-    x: f64,
-    local: Local,
-    by_x: f64,
-    by_s: f64,
-    place: Vec3,
-    rate: Vec3,
-}
-
-/// f with a slope and the second derivative of it, and the x where it is.
-#[derive(Clone, Copy)]
-struct Lowest {
-    x: f64,
-    value: f64,
-    slope: f64,
-    /// Zero where it is not known: at kinks.
-    bend: f64,
 }
 
 /// D and its derivatives at an x.
@@ -164,12 +144,26 @@ impl<'a> Glide<'a> {
         Instant { x, local, by_x, by_s, place, rate }
     }
 
-    /// f at `s`, the search beginning at `guess`; any x where D is at most `enough` will do.
-    fn lowest(&self, ray: &Ray, s: f64, guess: f64, enough: f64) -> Lowest {
+    /// The ray's direction as seen from the tool at an instant.
+    fn along_at(&self, x: f64) -> Vec3 {
+        self.along + self.cross * x
+    }
+
+    /// Whether nothing is covered from an instant on, so far along the ray: by the plane that touches D there, which D nowhere lies below
+    /// but for the term `x s c`.
+    #[inline]
+    fn is_clear(&self, here: &Instant, sign: f64, room: f64) -> bool {
+        let by_x = here.by_x * (here.x + 0.5 * here.by_x.signum());
+        let by_s = (-sign * here.by_s).max(0.0) * room;
+        here.local.distance - by_x - by_s - self.skew * room > LEVEL_MM
+    }
+
+    /// f at `s`, the search beginning at an instant there; any x where D is at most `enough` will do.
+    fn lowest(&self, ray: &Ray, s: f64, guess: Instant, enough: f64) -> Lowest {
         let (mut left, mut right): (Option<Side>, Option<Side>) = (None, None);
-        let mut x = guess;
+        let mut here = guess;
         for step in 0..MOST_STILL {
-            let here = self.at(ray, x, s);
+            let x = here.x;
             let (distance, by_x) = (here.local.distance, here.by_x);
             let room = match (&left, &right) {
                 (Some(side), _) if by_x > 0.0 => x - side.x,
@@ -178,12 +172,12 @@ impl<'a> Glide<'a> {
                 _ => 0.5 - x,
             };
             if distance <= enough {
-                return here.lowest(self);
+                return here.inside();
             }
-            let bend = here.second(&here.rate, &here.rate);
+            let bend = here.bend_along(&here.rate);
             // What Newton's step gains.
             if 0.5 * by_x * by_x <= FLAT_MM * bend {
-                return here.lowest(self);
+                return here.lowest(&self.along_at(here.x));
             }
             let side = Side { x, distance, by_x, by_s: here.by_s };
             if by_x.abs() * room <= FLAT_MM {
@@ -191,7 +185,7 @@ impl<'a> Glide<'a> {
                 return match (&left, &right) {
                     (Some(left), _) if by_x > 0.0 => Self::between(left, &side),
                     (_, Some(right)) if by_x <= 0.0 => Self::between(&side, right),
-                    _ => here.lowest(self),
+                    _ => here.lowest(&self.along_at(here.x)),
                 };
             }
             if by_x > 0.0 {
@@ -202,7 +196,7 @@ impl<'a> Glide<'a> {
             let lo = left.map_or(-0.5, |i| i.x);
             let hi = right.map_or(0.5, |i| i.x);
             let newton = x - by_x / bend;
-            x = match (&left, &right) {
+            let x = match (&left, &right) {
                 _ if newton > lo && newton < hi && step < MOST_NEWTON => newton,
                 (Some(a), Some(b)) => {
                     let best = Self::between(a, b);
@@ -214,11 +208,12 @@ impl<'a> Glide<'a> {
                 (None, _) => -0.5,
                 (_, None) => 0.5,
             };
+            here = self.at(ray, x, s);
         }
         // At rounding: the bracket's two sides still bound f from below.
         match (&left, &right) {
             (Some(a), Some(b)) => Self::between(a, b),
-            _ => self.at(ray, x, s).lowest(self),
+            _ => here.lowest(&self.along_at(here.x)),
         }
     }
 
@@ -250,7 +245,8 @@ impl<'a> Glide<'a> {
     fn beside(&self, ray: &Ray, [lo, hi]: [f64; 2]) -> Option<[f64; 2]> {
         let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
         // Half of what the place moves over the piece, at most.
-        let moves = (ray.way + self.cross * middle).abs() * 0.5 + self.cross.abs() * half;
+        let moves = |k: usize| 0.5 * (ray.way[k] + self.cross[k] * middle).abs() + self.cross[k].abs() * half;
+        let moves = [moves(0), moves(1), moves(2)];
         let (radius, base) = (self.body.cutter.radius_mm(), self.body.above_mm);
         let slabs = [[-radius, radius], [-radius, radius], [base, base + self.body.cutter.length_mm()]];
         let (mut lo, mut hi) = (lo, hi);
@@ -267,7 +263,7 @@ impl<'a> Glide<'a> {
         }
         // |foot + s along| = reach in the plane across the axis.
         let (x, y, a, b) = (ray.foot.x, ray.foot.y, self.along.x, self.along.y);
-        let reach = radius + moves.x + moves.y;
+        let reach = radius + moves[0] + moves[1];
         let (square, cross) = (a * a + b * b, x * b - y * a);
         let room = reach * reach * square - cross * cross;
         if square > 0.0 {
@@ -284,7 +280,11 @@ impl<'a> Glide<'a> {
     fn first(&self, ray: &Ray, [start, end]: [f64; 2], guess: f64) -> Option<Found> {
         let sign = (end - start).signum();
         let mut s = start;
-        let mut here = self.lowest(ray, s, guess, LEVEL_MM - AT_LEVEL_MM);
+        let glance = self.at(ray, guess, s);
+        if self.is_clear(&glance, sign, (end - start).abs()) {
+            return None;
+        }
+        let mut here = self.lowest(ray, s, glance, LEVEL_MM - AT_LEVEL_MM);
         if here.value <= LEVEL_MM - AT_LEVEL_MM {
             return Some(Found { s, x: here.x });
         }
@@ -314,7 +314,7 @@ impl<'a> Glide<'a> {
             };
             s += sign * step.min(room);
             // From within a tangent leads outside again.
-            here = self.lowest(ray, s, here.x, LEVEL_MM - AT_LEVEL_MM);
+            here = self.lowest(ray, s, self.at(ray, here.x, s), LEVEL_MM - AT_LEVEL_MM);
             if (here.value - LEVEL_MM).abs() <= AT_LEVEL_MM || (here.value < LEVEL_MM && !bold) {
                 return Some(Found { s, x: here.x });
             }
@@ -359,48 +359,6 @@ impl<'a> Glide<'a> {
 struct Found {
     s: f64,
     x: f64,
-}
-
-impl Instant {
-    /// Second derivative of the distance in two directions: the meridian's curvature along it, and around the axis the
-    /// circle's.
-    #[inline]
-    fn second(&self, v: &Vec3, w: &Vec3) -> f64 {
-        let Self { local, place, .. } = self;
-        let rho2 = place.x * place.x + place.y * place.y;
-        let flat = v.x * w.x + v.y * w.y;
-        if rho2 == 0.0 {
-            return local.outwards * flat;
-        }
-        // Components outwards times rho.
-        let [a, b] = [v, w].map(|v| place.x * v.x + place.y * v.y);
-        let around = local.outwards * (flat - a * b / rho2);
-        if local.bend == 0.0 {
-            return around;
-        }
-        let inverse = 1.0 / rho2.sqrt();
-        let by_rho = local.outwards * rho2 * inverse;
-        let tangential = |v: &Vec3, a: f64| by_rho * v.z - local.by_z * a * inverse;
-        around + local.bend * tangential(v, a) * tangential(w, b)
-    }
-
-    /// f, where D is least at this x.
-    #[inline]
-    fn lowest(&self, glide: &Glide<'_>) -> Lowest {
-        Lowest { x: self.x, value: self.local.distance, slope: self.by_s, bend: self.bend(glide) }
-    }
-
-    /// f'': D_ss - D_xs^2 / D_xx where the least x is free, D_ss at an end.
-    #[inline]
-    fn bend(&self, glide: &Glide<'_>) -> f64 {
-        let along = glide.along + glide.cross * self.x;
-        let own = self.second(&along, &along);
-        if self.x.abs() >= 0.5 {
-            return own;
-        }
-        let (mixed, still) = (self.second(&along, &self.rate), self.second(&self.rate, &self.rate));
-        if still > 0.0 { own - mixed * mixed / still } else { own }
-    }
 }
 
 #[cfg(test)]

@@ -17,20 +17,24 @@
 //! A block's cost does not depend on the size of the stock: rays stand in tiles, tiles ask a tree over the motions for
 //! those that come near what is left in them.
 
+mod beyond;
 mod blank;
 mod carve;
 mod glide;
+mod instant;
 mod lattice;
 mod mesh;
 mod query;
 mod rays;
 mod report;
+mod saved;
 mod stl;
 mod world;
 
 pub use blank::{Blank, BlankError, Made, Resolution};
 pub use mesh::Mesh;
 pub use report::{Carved, Collision, Volume, Work};
+pub use saved::{SavedError, sum_of};
 pub use stl::{StlError, read_stl};
 pub use world::{StockJob, Upper};
 

@@ -174,14 +174,17 @@ impl<'a> Rays<'a> {
             return;
         }
         let along = self.lattice.axis;
+        let near = |&[lo, hi]: &[f64; 2]| {
+            let near = [lo.max(extent.min[along]), hi.min(extent.max[along])];
+            (near[0] < near[1]).then_some(near)
+        };
+        if !self.spans[ray].iter().any(|span| near(span).is_some()) {
+            return;
+        }
         let line = glide.ray(&self.lattice.point(at, 0.0));
         let mut covered = std::mem::take(&mut self.covered);
         covered.clear();
-        for &[lo, hi] in &self.spans[ray] {
-            let near = [lo.max(extent.min[along]), hi.min(extent.max[along])];
-            if near[0] >= near[1] {
-                continue;
-            }
+        for near in self.spans[ray].iter().filter_map(near) {
             if let Some(found) = glide.covered(&line, near, guess) {
                 if found.whole {
                     covered.push([found.from, found.to]);

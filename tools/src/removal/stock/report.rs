@@ -100,6 +100,32 @@ pub(super) struct Bite {
 
 /// Sectors around the axis in which material is noted.
 pub(super) const SECTORS: f64 = 64.0;
+/// Tangents of the angles at which the sectors of an eighth of a turn end.
+const ENDS: [f64; 7] = [
+    0.098_491_403_357_164_25,
+    0.198_912_367_379_658,
+    0.303_346_683_607_342_4,
+    0.414_213_562_373_095_03,
+    0.534_511_135_950_791_6,
+    0.668_178_637_919_298_9,
+    0.820_678_790_828_660_5,
+];
+
+/// The sector of a direction, by comparing: a fraction of what the angle would cost.
+fn sector(x: f64, y: f64) -> u32 {
+    let (a, b) = (x.abs(), y.abs());
+    let (low, high) = (a.min(b), a.max(b));
+    // Directions without length count as along x.
+    let eighth = ENDS.iter().filter(|t| low > **t * high).count() as u32;
+    // From x towards y within a quarter, then around.
+    let quarter = if b > a { 15 - eighth } else { eighth };
+    match (x >= 0.0, y >= 0.0) {
+        (true, true) => quarter,
+        (false, true) => 31 - quarter,
+        (false, false) => 32 + quarter,
+        (true, false) => 63 - quarter,
+    }
+}
 
 impl Bite {
     pub fn none(motion: u32, body: u8) -> Self {
@@ -115,9 +141,7 @@ impl Bite {
             (self.deepest, self.at) = (length, middle());
         }
         self.height = [self.height[0].min(met.z), self.height[1].max(met.z)];
-        let turn = met.y.atan2(met.x) / std::f64::consts::TAU + 0.5;
-        // A whole turn counts as none.
-        self.sectors |= 1u64 << ((turn * SECTORS) as u32).min(63);
+        self.sectors |= 1u64 << sector(met.x, met.y);
     }
 
     pub fn merge(&mut self, other: &Self) {
@@ -127,5 +151,25 @@ impl Bite {
         if other.deepest > self.deepest {
             (self.deepest, self.at) = (other.deepest, other.at);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sectors are those of the angle, all sixty-four of them, wherever no rounding decides.
+    #[test]
+    fn sectors_go_around() {
+        let mut seen = 0u64;
+        for k in 0..640 {
+            let angle = (f64::from(k) + 0.5) * std::f64::consts::TAU / 640.0;
+            let wanted = (angle / std::f64::consts::TAU * SECTORS) as u32;
+            for size in [1e-6, 1.0, 1e6] {
+                assert_eq!(sector(size * angle.cos(), size * angle.sin()), wanted, "{angle}");
+            }
+            seen |= 1 << wanted;
+        }
+        assert_eq!(seen, u64::MAX);
     }
 }

@@ -1,11 +1,12 @@
 //! What carves, and what every tile of rays is carved by.
 
 use crate::cutter::Cutter;
+use crate::holder::Holder;
 use crate::removal::body::Body as Moved;
 use crate::removal::tree::Ways;
 use crate::removal::{Body, Swept};
 
-/// A body above the cutter: a shank or a holder.
+/// A body above the cutter: a shank or a section of a holder.
 #[derive(Clone, Copy, Debug)]
 pub struct Upper<'a> {
     /// Its shape.
@@ -14,6 +15,23 @@ pub struct Upper<'a> {
     pub above_mm: f64,
     /// Which it is.
     pub kind: Body,
+}
+
+impl<'a> Upper<'a> {
+    /// Shank and holder above the part of a tool that cuts, in ascending order.
+    #[must_use]
+    pub fn all(flutes: &Cutter, shank: Option<&'a Cutter>, holder: Option<&'a Holder>) -> Vec<Self> {
+        let top_mm = flutes.length_mm();
+        let nose_mm = top_mm + shank.map_or(0.0, Cutter::length_mm);
+        let mut out: Vec<Self> =
+            shank.map(|body| Self { body, above_mm: top_mm, kind: Body::Shank }).into_iter().collect();
+        out.extend(holder.map(Holder::sections).unwrap_or_default().iter().map(|s| Self {
+            body: &s.body,
+            above_mm: nose_mm + s.above_mm,
+            kind: Body::Holder,
+        }));
+        out
+    }
 }
 
 /// What carves.

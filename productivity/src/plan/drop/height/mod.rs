@@ -215,6 +215,14 @@ impl<'a> Drops<'a> {
         at[2] - if b.is_finite() { a + (b - a) * f } else { a }
     }
 
+    /// Height that a piece of a rim holds the tip at. Pieces beside each other differ by less than the table knows of a side that is as
+    /// good as upright.
+    fn held_by_rim(&self, s: &Seed, c: [f64; 2]) -> f64 {
+        let at = s.nearest(c);
+        let side = lower_side(self.cutter, at[0] - c[0], at[1] - c[1]);
+        side.map_or(f64::NEG_INFINITY, |(g, _)| at[2] - g)
+    }
+
     /// Whether any seed holds the tip over `c` above a height; between seeds it may be held higher.
     pub(super) fn is_above(&self, c: [f64; 2], height: f64) -> bool {
         let (mut floor, mut above) = (height, false);
@@ -290,7 +298,7 @@ impl<'a> Drops<'a> {
         let mut best = self.below_axis(c);
         let mut near: Vec<(f64, &Seed)> = Vec::with_capacity(128);
         self.each(c, &mut (best - slack), |s, least| {
-            let h = self.held(s, c);
+            let h = if s.is_rim() { self.held_by_rim(s, c) } else { self.held(s, c) };
             if h >= *least && h > f64::NEG_INFINITY {
                 near.push((h, s));
                 best = best.max(h);

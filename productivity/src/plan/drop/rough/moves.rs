@@ -57,7 +57,7 @@ pub(super) struct Moves<'a> {
     /// Discs under the tool, the tool as rapids keep off, and the holder.
     pub(super) under: Disc,
     pub(super) wide: Disc,
-    held: Option<Disc>,
+    held: Vec<(Disc, f64)>,
 }
 
 /// What the moves came to.
@@ -98,7 +98,8 @@ impl<'a> Moves<'a> {
     pub fn new(site: &'a Site<'a>, pace: Pace, manner: Manner<'a>) -> Self {
         let cell = site.grid.cell;
         let wide = Disc::new(site.tool.bare.radius_mm + site.blur_mm + cell, cell);
-        let held = site.tool.holder.map(|[radius, _]| Disc::new(radius, cell));
+        let held =
+            site.tool.holder.iter().map(|[radius, above]| (Disc::new(*radius, cell), *above)).collect();
         Self {
             site,
             columns: site.columns.clone(),
@@ -228,10 +229,9 @@ impl<'a> Moves<'a> {
 
     /// How low the material lets the holder come over a node.
     fn holder_stands_on(&self, k: usize) -> f64 {
-        match (&self.held, self.site.tool.holder) {
-            (Some(disc), Some([_, above])) => self.columns.top_in(&self.site.grid, disc, k) - above,
-            _ => f64::NEG_INFINITY,
-        }
+        let stands =
+            self.held.iter().map(|(disc, above)| self.columns.top_in(&self.site.grid, disc, k) - above);
+        stands.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// How low the tool may go over a straight way in rapid.

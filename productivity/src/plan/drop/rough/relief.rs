@@ -26,8 +26,8 @@ pub(super) struct Rougher {
     /// The cutter everywhere larger by the allowance.
     pub grown: Underside,
     pub allowance_mm: f64,
-    /// Radius of the holder with what it keeps off, and how far above the tip it begins; none where there is no holder.
-    pub holder: Option<[f64; 2]>,
+    /// Radius of each section of the holder with what it keeps off, and how far above the tip it begins.
+    pub holder: Vec<[f64; 2]>,
 }
 
 /// A part seen along a direction.
@@ -102,13 +102,11 @@ impl Relief {
             .zip(&sides)
             .map(|(rest, side)| if *rest > f64::NEG_INFINITY { rest + tool.allowance_mm } else { *side })
             .collect();
-        let holder = match tool.holder {
-            Some([radius, above]) => {
-                let under = grid.highest(&top, &Disc::new(radius, cell));
-                under.into_iter().map(|h| h - above).collect()
-            }
-            None => vec![f64::NEG_INFINITY; grid.len()],
-        };
+        let mut holder = vec![f64::NEG_INFINITY; grid.len()];
+        for [radius, above] in &tool.holder {
+            let under = grid.highest(&top, &Disc::new(*radius, cell));
+            holder.iter_mut().zip(under).for_each(|(low, h)| *low = low.max(h - above));
+        }
         let stands: Vec<f64> = tip.iter().zip(&holder).map(|(t, h)| -t.max(*h)).collect();
         let bare = &tool.bare;
         let reached = if bare.is_flat() {

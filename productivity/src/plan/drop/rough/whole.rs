@@ -17,7 +17,7 @@ use osculate_geom::{Diagnostic, Surface, Unit3, Vec3};
 use osculate_tools::cl::ClMove;
 use osculate_tools::removal::stock::{Stock, StockJob};
 use osculate_tools::removal::{SamplingError, Swept, sample_surface};
-use osculate_tools::{Cutter, CutterSpec, Pose};
+use osculate_tools::{Cutter, CutterSpec, HolderSection, Pose};
 use rayon::prelude::*;
 
 /// Where findings are.
@@ -69,7 +69,10 @@ fn known<'a>(task: &'a RoughTask<'a>) -> Result<Known<'a>, PlanError> {
     let grown = grown(task.cutter, s.allowance_mm)?;
     let surfaces: Vec<&dyn Surface> = task.faces.iter().chain(task.check).map(|n| n.surface).collect();
     let keep = task.links.approach_mm;
-    let holder = task.links.holder.map(|h| [h.radius_mm() + keep, task.cutter.length_mm() - keep]);
+    // A section that opens upwards counts as wide as it is at its end.
+    let wide = |body: &Cutter| body.outline_mm(0.1).iter().map(|p| p[0]).fold(body.radius_mm(), f64::max);
+    let section = |s: &HolderSection| [wide(&s.body) + keep, task.cutter.length_mm() + s.above_mm - keep];
+    let holder = task.links.holder.iter().flat_map(|h| h.sections()).map(section).collect();
     let rougher = Rougher {
         bare: Underside::of(task.cutter),
         grown: Underside::of(&grown),

@@ -1,0 +1,76 @@
+//! What links are asked for.
+
+use super::rates::Rates;
+use super::tree::{Dot, Dots};
+use crate::plan::{CcPoint, Pass};
+use osculate_geom::Box3;
+use osculate_tools::{Cutter, Holder};
+
+/// How passes are linked. Lengths mm, feeds mm/min.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Links {
+    /// Box of everything the tool must stay clear of on rapid moves.
+    pub obstacles: Box3,
+    /// Clearance above the sphere around the obstacles.
+    pub clearance_mm: f64,
+    /// Distance from the surface at which a rapid approach changes to feed.
+    pub approach_mm: f64,
+    /// The least lift of a hop; one that is not clear is doubled until it is, up to `approach_mm`.
+    pub hop_mm: f64,
+    /// How deep ways straight along the surface may go into the faces to machine.
+    pub dip_mm: f64,
+    /// Whether the tool touches the part where passes say it does: those along waterlines know the height of the tool, and of
+    /// what it touches the slope nearby only.
+    pub contacts: bool,
+    /// Whether the tool keeps its axis and stands nowhere lower than all faces let it: then nothing is in its way straight up, whereas
+    /// points of the faces may miss an edge that it would meet on a way aside.
+    pub dropped: bool,
+    /// Material that may stand on the faces yet: rapids do not go into it.
+    pub layer_mm: f64,
+    /// The cutter.
+    pub cutter: Cutter,
+    /// The holder, whose nose sits where the cutter's length ends.
+    pub holder: Option<Holder>,
+    /// Feed of the tip on the part.
+    pub feed_mm_min: f64,
+    /// Feed on approaches.
+    pub plunge_mm_min: f64,
+    /// How fast the machine goes between passes.
+    pub rates: Rates,
+}
+
+impl Links {
+    /// What the tool is of, each standing on the one before: the cutter, and the sections of its holder.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = &Cutter> {
+        let sections = self.holder.as_ref().map(Holder::sections).unwrap_or_default();
+        std::iter::once(&self.cutter).chain(sections.iter().map(|s| &s.body))
+    }
+}
+
+/// Ways straight along the surface are no longer than so many radii.
+pub(super) const STRAIGHT: f64 = 2.0;
+/// Distance of the points along passes that stand for the part, in radii of the cutter.
+const NEAR_POINTS: f64 = 0.25;
+
+/// The contacts of passes, as points of the part, where they are.
+pub(super) fn contacts(passes: &[Pass], links: &Links) -> Dots {
+    let spacing_mm = NEAR_POINTS * links.cutter.radius_mm();
+    let passes = if links.contacts { passes } else { &[] };
+    let mut out: Vec<Dot> = Vec::new();
+    for pass in passes {
+        let mut last: Option<&CcPoint> = None;
+        for p in &pass.points {
+            if let Some(last) = last {
+                let step = p.point - last.point;
+                let pieces = (step.norm() / spacing_mm).ceil().max(1.0);
+                out.extend(
+                    (1..pieces as usize)
+                        .map(|k| Dot { at: last.point + step * (k as f64 / pieces), normal: p.normal }),
+                );
+            }
+            out.push(Dot { at: p.point, normal: p.normal });
+            last = Some(p);
+        }
+    }
+    Dots::new(out)
+}
