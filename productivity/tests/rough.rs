@@ -9,7 +9,7 @@ use heights::{Done, Heights};
 use osculate_geom::analytic::{Placed, Placement, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Search, Sizes, Way, rough,
+    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Search, Sizes, rough,
 };
 use osculate_tools::removal::Swept;
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
@@ -52,7 +52,6 @@ fn rectangle(corner: [f64; 3], normal: [f64; 3], x: [f64; 3], size: [f64; 2]) ->
 #[derive(Clone, Copy)]
 struct How<'a> {
     from: Headings<'a>,
-    way: Way,
     entry: Entry,
     plunges: bool,
     rate: f64,
@@ -61,7 +60,7 @@ struct How<'a> {
 impl How<'_> {
     fn upright() -> Self {
         let from = Headings::Along(Vec3::z_axis());
-        Self { from, way: Way::Rows, entry: Entry::Auto, plunges: false, rate: f64::INFINITY }
+        Self { from, entry: Entry::Auto, plunges: false, rate: f64::INFINITY }
     }
 }
 
@@ -92,7 +91,6 @@ fn planned(faces: &[Placed<Plane>], block: Box3, stock: &Stock, how: How<'_>) ->
         stock,
         repeat: None,
         sizes: SIZES,
-        way: how.way,
         entry: how.entry,
         plunges: how.plunges,
         volume_rate_mm3_min: how.rate,
@@ -144,15 +142,14 @@ fn a_pocket_is_taken_by_its_volume() {
     let a = SIZES.allowance_mm;
     let area = (20.0 - 2.0 * a) * (16.0 - 2.0 * a) - (4.0 - PI) * RADIUS * RADIUS;
     let want = area * (6.0 - a);
-    for way in [Way::Rows, Way::Offset] {
+    {
         for entry in [Entry::Auto, Entry::Helix, Entry::Ramp] {
-            let how = How { way, entry, ..How::upright() };
-            let plan =
-                planned(&faces, block, &stock, how).unwrap_or_else(|e| panic!("{way:?} {entry:?}: {e}"));
+            let how = How { entry, ..How::upright() };
+            let plan = planned(&faces, block, &stock, how).unwrap_or_else(|e| panic!("{entry:?}: {e}"));
             let done = heights_of(block, &plan);
-            assert!((done.taken_mm3 / want - 1.0).abs() < 0.02, "{way:?} {entry:?}: {done:?}, {want}");
-            assert!(done.rapid_mm < 1e-6, "{way:?} {entry:?}: {done:?}");
-            assert!(done.dive_mm < SLIVER, "{way:?} {entry:?}: {done:?}");
+            assert!((done.taken_mm3 / want - 1.0).abs() < 0.02, "{entry:?}: {done:?}, {want}");
+            assert!(done.rapid_mm < 1e-6, "{entry:?}: {done:?}");
+            assert!(done.dive_mm < SLIVER, "{entry:?}: {done:?}");
             let told: f64 = plan.headings.iter().map(|h| h.volume_mm3).sum();
             assert!((told / want - 1.0).abs() < 0.05, "{told} {want}");
 
@@ -189,10 +186,10 @@ fn a_closed_pocket_needs_a_way_in() {
 fn the_feed_follows_the_volume_rate() {
     let (faces, block) = pocket();
     let stock = filled(block);
-    for way in [Way::Rows, Way::Offset] {
+    {
         let most = 2500.0;
-        let free = heights_of(block, &planned(&faces, block, &stock, How { way, ..How::upright() }).unwrap());
-        let how = How { way, rate: most, ..How::upright() };
+        let free = heights_of(block, &planned(&faces, block, &stock, How::upright()).unwrap());
+        let how = How { rate: most, ..How::upright() };
         let held = heights_of(block, &planned(&faces, block, &stock, how).unwrap());
         assert!(free.rate_mm3_min > 1.5 * most, "{free:?}");
         // Sections are known to a node, a seventh of the tool's radius.

@@ -5,7 +5,7 @@
 use osculate_geom::analytic::{Paraboloid, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Surface, Vec3};
 use osculate_productivity::plan::{
-    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Sizes, Way, rough as roughed,
+    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Sizes, rough as roughed,
 };
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
@@ -53,7 +53,6 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         stock: &stock,
         repeat: None,
         sizes,
-        way: Way::Rows,
         entry: Entry::Auto,
         plunges: false,
         volume_rate_mm3_min: f64::INFINITY,

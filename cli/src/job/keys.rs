@@ -3,7 +3,7 @@
 use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns, WayWord,
+    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_postproc::built_in_names;
 use osculate_postproc::nc::Dialect;
@@ -121,7 +121,6 @@ static OWN: &[Table] = &[
         may("axis", Kind::Direction, "rough: [0, 0, 1]", "[0, 0, 1]", "rough: the tool's axis, from tip to holder"),
         may("directions", DIRECTIONS, "rough: one, axis", "\"auto\"", "rough: axes found from where most is reached; no more than so many"),
         may("least_share", SHARE, "0.02", "0.02", "rough: a found axis that takes less than this share is not taken"),
-        may("way", Kind::Word(WayWord::WORDS), "rows", "\"offset\"", "rough: straight rows, or lines around along the walls"),
         may("entry", Kind::Word(EntryWord::WORDS), "auto", "\"helix\"", "rough: the way into material where none leads in from outside"),
         may("ramp_deg", RAMP, "3", "3", "rough: steepest way down into material"),
         may("volume_rate_mm3_min", Kind::Number(RATE, "mm3/min"), "no limit", "12000",
@@ -203,7 +202,6 @@ pub static TABLES: &[Table] = &[
         may("ramp_deg", RAMP, "3", "3", "z_level: steepest way down into material"),
         may("directions", DIRECTIONS, "one, axis", "\"auto\"", "z_level: axes found from where most is reached; no more than so many"),
         may("least_share", SHARE, "0.02", "0.02", "z_level: a found axis that takes less than this share is not taken"),
-        may("way", Kind::Word(WayWord::WORDS), "rows", "\"offset\"", "z_level: straight rows, or lines around along the walls"),
         may("entry", Kind::Word(EntryWord::WORDS), "auto", "\"helix\"", "z_level: the way into material where none leads in from outside"),
         may("volume_rate_mm3_min", Kind::Number(RATE, "mm3/min"), "no limit", "12000",
             "z_level: most that is taken a minute; the feed follows"),

@@ -2,7 +2,7 @@
 
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns, WayWord,
+    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;
@@ -166,7 +166,6 @@ pub struct Strategy {
     pub ramp_deg: Option<f64>,
     pub directions: Option<DirectionsKey>,
     pub least_share: Option<f64>,
-    pub way: Option<WayWord>,
     pub entry: Option<EntryWord>,
     pub volume_rate_mm3_min: Option<f64>,
     pub gouges: Gouges,
@@ -328,7 +327,6 @@ pub struct Operation {
     pub ramp_deg: Option<f64>,
     pub directions: Option<DirectionsKey>,
     pub least_share: Option<f64>,
-    pub way: Option<WayWord>,
     pub entry: Option<EntryWord>,
     pub volume_rate_mm3_min: Option<f64>,
     pub overlap_mm: Option<f64>,

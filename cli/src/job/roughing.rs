@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::job::SHARES;
 use crate::job::problem::Places;
 use crate::job::raw::{self, Raw};
-use crate::job::words::{AxisKey, DirectionsKey, EntryWord, StrategyWord, WayWord};
+use crate::job::words::{AxisKey, DirectionsKey, EntryWord, StrategyWord};
 
 /// Steepest way down into material where the job gives none, degrees.
 const RAMP_DEG: f64 = 3.0;
@@ -35,8 +35,6 @@ pub struct Layers {
     pub allowance_mm: f64,
     /// Steepest way down into material.
     pub ramp_rad: f64,
-    /// How it goes over a layer.
-    pub way: WayWord,
     /// How it comes into material.
     pub entry: EntryWord,
     /// Greatest volume rate; none without it.
@@ -68,7 +66,6 @@ pub(super) fn layers(places: &Places, t: &raw::Strategy) -> Result<Layers, Failu
         stepover_mm: needed("stepover_mm", t.stepover_mm)?,
         allowance_mm: t.allowance_mm.unwrap_or(0.0),
         ramp_rad: t.ramp_deg.unwrap_or(RAMP_DEG).to_radians(),
-        way: t.way.unwrap_or_default(),
         entry: t.entry.unwrap_or_default(),
         volume_rate_mm3_min: t.volume_rate_mm3_min,
         directions: t.directions.map(|d| match d {
@@ -87,7 +84,6 @@ pub(super) fn own_key(own: &raw::Operation) -> Option<&'static str> {
         ("axis", own.axis.is_some()),
         ("directions", own.directions.is_some()),
         ("least_share", own.least_share.is_some()),
-        ("way", own.way.is_some()),
         ("entry", own.entry.is_some()),
         ("ramp_deg", own.ramp_deg.is_some()),
         ("volume_rate_mm3_min", own.volume_rate_mm3_min.is_some()),
@@ -114,7 +110,6 @@ pub(super) fn rough(
     s.axis = own.axis.map(AxisKey::Given).or(s.axis);
     s.directions = own.directions.or(s.directions);
     s.least_share = own.least_share.or(s.least_share);
-    s.way = own.way.or(s.way);
     s.entry = own.entry.or(s.entry);
     s.ramp_deg = own.ramp_deg.or(s.ramp_deg);
     s.volume_rate_mm3_min = own.volume_rate_mm3_min.or(s.volume_rate_mm3_min);

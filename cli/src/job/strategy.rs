@@ -185,7 +185,6 @@ impl Strategy {
             ("ramp_deg", layers, "z_level"),
             ("directions", layers, "z_level"),
             ("least_share", layers, "z_level"),
-            ("way", layers, "z_level"),
             ("entry", layers, "z_level"),
             ("volume_rate_mm3_min", layers, "z_level"),
             ("lead_rate_deg_per_mm", !keeps_axis, "strategies that lean"),

@@ -122,17 +122,6 @@ words! {
 }
 
 words! {
-    /// How a roughing goes over a layer.
-    WayWord {
-        /// To and fro in straight rows.
-        #[default]
-        Rows = "rows",
-        /// Around, at even distances from the walls.
-        Offset = "offset",
-    }
-}
-
-words! {
     /// How a roughing comes into the material.
     EntryWord {
         /// From outside, else by a helix, else down a ramp, else straight down with a tool that plunges.

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::job::roughing::Layers;
-use crate::job::words::{EntryWord, WayWord};
+use crate::job::words::EntryWord;
 use crate::part::{LoadedFace, Part};
 use crate::work::drop;
 use crate::work::extras::Extras;
@@ -84,10 +84,6 @@ pub fn planned(
         stock,
         repeat,
         sizes: sizes(job, layers),
-        way: match layers.way {
-            WayWord::Rows => plan::Way::Rows,
-            WayWord::Offset => plan::Way::Offset,
-        },
         entry: match layers.entry {
             EntryWord::Auto => plan::Entry::Auto,
             EntryWord::Helix => plan::Entry::Helix,

@@ -5,7 +5,7 @@
 //! stretches that take nothing are left out.
 
 use super::grid::{Disc, Grid};
-use super::layer::{Cut, Layer, Masks, Walls};
+use super::layer::{Cut, Sheet};
 use super::moves::Moves;
 use std::collections::BTreeMap;
 
@@ -22,13 +22,6 @@ pub(super) struct Part {
     /// How many parts above it are not cut yet, and which lie below.
     above: usize,
     below: Vec<usize>,
-}
-
-/// A layer with everything that is known of it.
-pub(super) struct Sheet {
-    pub layer: Layer,
-    pub masks: Masks,
-    pub walls: Walls,
 }
 
 /// The parts of all layers, from the top, each knowing those below it.

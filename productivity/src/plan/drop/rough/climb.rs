@@ -1,7 +1,6 @@
 //! Lines taken apart so that the tool goes up walls and never dives into material: what leads down steeply is run the other way.
 
-use super::clear::Sheet;
-use super::layer::THIN;
+use super::layer::{Sheet, THIN};
 use super::moves::{Moves, apart, between};
 
 /// A stretch that leads down, or up, by less than this share of a step down is level.

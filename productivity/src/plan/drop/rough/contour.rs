@@ -78,7 +78,8 @@ pub(super) fn lines(
 }
 
 /// The lines on which a field has a level, with what lies above it on their left; where the field is no number nothing is known.
-pub(super) fn level(grid: &Grid, field: &[f64], level: f64) -> Vec<Line> {
+#[cfg(test)]
+fn level(grid: &Grid, field: &[f64], level: f64) -> Vec<Line> {
     let inside = |k: usize| (!field[k].is_nan()).then_some(field[k] > level);
     lines(grid, inside, |a, b| {
         let share = ((field[a] - level) / (field[a] - field[b])).clamp(0.0, 1.0);

@@ -1,7 +1,7 @@
 //! How the tool comes into the material: from the air beside it, by a helix, down a ramp along the line, or straight down.
 
-use super::clear::Sheet;
 use super::grid::Disc;
+use super::layer::Sheet;
 use super::moves::Moves;
 use super::task::Entry;
 use std::f64::consts::TAU;

@@ -2,14 +2,14 @@
 
 use super::super::ground::{DropTask, Ground, Lines};
 use super::super::height::{Drops, Seed};
-use super::clear::{self, Sheet};
-use super::layer::{Layer, Masks, Walls};
+use super::clear;
+use super::layer::{Layer, Masks, Sheet, Walls};
 use super::material::Material;
 use super::moves::{Manner, Moved, Moves};
 use super::pace::Pace;
 use super::relief::{Points, Rougher};
 use super::site::{Sight, Site};
-use super::task::{Heading, Places, RoughTask, Way};
+use super::task::{Heading, Places, RoughTask};
 use super::ways;
 use crate::plan::{CcPoint, Linked, Pass, PlanError};
 use osculate_geom::{Surface, Unit3};
@@ -68,24 +68,17 @@ pub(super) fn along(
     let Some([top, low]) = site.heights() else { return Ok(None) };
     let floors = heights([top, low], s.stepdown_mm, &drop)?;
     let step = (top - low) / floors.len() as f64;
-    let rows = matches!(task.way, Way::Rows).then(|| ways::rows(&site, s.stepover_mm));
-    let close = rows.is_some();
+    let rows = ways::rows(&site, s.stepover_mm);
     let found: Vec<(Sheet, _)> = floors
         .par_iter()
         .map(|floor| {
             let layer = Layer { ceiling: floor + step, floor: *floor };
             let [thin, steps] = layer.thin(s.stands_mm);
             // Rows go up slopes, and leave none in steps.
-            let masks = Masks::of(&site, layer, [thin, if close { thin } else { steps }]);
+            let masks = Masks::of(&site, layer, [thin; 2]);
             let walls = Walls::of(&site, layer, &masks, s.chord_mm);
-            let lines = match &rows {
-                Some(rows) => {
-                    let mut lines = ways::of_rows(rows, layer, site.grid.cell);
-                    lines.extend(ways::along_walls(&site, layer, (&masks, &walls), (1.0, [steps; 2])));
-                    lines
-                }
-                None => ways::around(&site, layer, (&masks, &walls), s),
-            };
+            let mut lines = ways::of_rows(&rows, layer, site.grid.cell);
+            lines.extend(ways::along_walls(&site, layer, (&masks, &walls), (1.0, [steps; 2])));
             (Sheet { layer, masks, walls }, lines)
         })
         .collect();

@@ -147,6 +147,13 @@ impl Walls {
     }
 }
 
+/// A layer with everything that is known of it.
+pub(super) struct Sheet {
+    pub layer: Layer,
+    pub masks: Masks,
+    pub walls: Walls,
+}
+
 /// A line at the height of a layer, or on the faces where these are higher. One along a wall may be on the floor with a node beside it that
 /// is not; others are there where all nodes around are.
 pub(super) fn lifted(

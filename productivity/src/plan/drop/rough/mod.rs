@@ -30,5 +30,5 @@ mod task;
 mod ways;
 mod whole;
 
-pub use task::{Entry, Heading, Headings, Places, RoughTask, Roughing, Search, Sizes, Way};
+pub use task::{Entry, Heading, Headings, Places, RoughTask, Roughing, Search, Sizes};
 pub use whole::rough;

@@ -24,8 +24,6 @@ pub struct RoughTask<'a> {
     pub repeat: Option<Places>,
     /// How much is taken and left.
     pub sizes: Sizes,
-    /// How the tool goes over a layer.
-    pub way: Way,
     /// How it comes into the material.
     pub entry: Entry,
     /// Whether the tool may go straight down into material.
@@ -65,15 +63,6 @@ pub struct Places {
     pub axis: TurnAxis,
     /// How many, the first one counted.
     pub count: usize,
-}
-
-/// How the tool goes over a layer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Way {
-    /// To and fro in straight rows.
-    Rows,
-    /// Around, at even distances from the walls, from within.
-    Offset,
 }
 
 /// How the tool comes into the material where it cannot come from outside.

@@ -1,17 +1,13 @@
-//! The lines of a layer: rows, or lines at even distances from the walls.
+//! The lines of a layer: rows, and lines along the walls.
 
 use super::super::course::Course;
 use super::super::trace;
-use super::contour::{self, Line};
+use super::contour::Line;
 use super::layer::{Cut, Layer, Masks, THIN, Walls, lifted};
 use super::moves::stations;
 use super::profile::{below, raised};
-use super::site::{Site, slope};
-use super::task::Sizes;
+use super::site::Site;
 use rayon::prelude::*;
-
-/// Most levels of lines around.
-const MOST_LEVELS: usize = 10_000;
 
 /// A row: its position across the feed, and stretches of places along it with the tip's height.
 pub(super) struct Row {
@@ -85,52 +81,6 @@ pub(super) fn of_rows(rows: &[Row], layer: Layer, step: f64) -> Vec<Cut> {
         }
     }
     out
-}
-
-/// Lines around at even distances from the walls, those farthest from them first. Lines no further apart than the tool's radius leave
-/// nothing between them. On slopes they are as near as what may stand there requires.
-pub(super) fn around(
-    site: &Site<'_>,
-    layer: Layer,
-    (masks, walls): (&Masks, &Walls),
-    sizes: &Sizes,
-) -> Vec<Cut> {
-    let apart_mm = sizes.stepover_mm.min(site.tool.bare.radius_mm);
-    let useful: Vec<usize> =
-        (0..site.grid.len()).filter(|k| masks.useful[*k] && !walls.depth[*k].is_nan()).collect();
-    let deepest = useful.iter().map(|k| walls.depth[*k]).fold(0.0, f64::max);
-    let steepest = useful.iter().map(|k| walls.depth[*k]).fold(0.0, f64::min);
-    let on_slope = slope_apart_mm(site, masks, &useful, sizes.stands_mm).min(apart_mm);
-    let levels = |least: f64, most: f64, step: f64| {
-        let all = (1..MOST_LEVELS).map(move |n| step * n as f64);
-        all.take_while(move |d| (least..=most).contains(d))
-    };
-    let mut out = Vec::new();
-    let thin = layer.thin(sizes.stands_mm);
-    for depth in levels(0.0, deepest, apart_mm).chain(levels(steepest, 0.0, -on_slope)) {
-        for line in contour::level(&site.grid, &walls.depth, depth) {
-            let places = lifted(site, layer, masks, (&line, false));
-            out.push(Cut { places, closed: line.closed, order: -depth, thin });
-        }
-    }
-    out.extend(along_walls(site, layer, (masks, walls), (0.0, thin)));
-    out
-}
-
-/// How near lines along a slope are so that steps between them stand no higher than is accepted, mm: by the steep ones of its nodes.
-fn slope_apart_mm(site: &Site<'_>, masks: &Masks, useful: &[usize], stands_mm: f64) -> f64 {
-    let mut sines: Vec<f64> = useful
-        .iter()
-        .filter(|k| !masks.flat[**k])
-        .map(|k| slope(&site.grid, &site.tip, *k))
-        .filter(|slope| slope.is_finite())
-        .map(|slope| slope / slope.hypot(1.0))
-        .collect();
-    if sines.is_empty() {
-        return f64::INFINITY;
-    }
-    sines.sort_by(f64::total_cmp);
-    stands_mm / sines[(sines.len() - 1) * 4 / 5].max(1e-3)
 }
 
 /// The lines along the walls.
