@@ -210,6 +210,24 @@ fn a_list_is_derived_and_runs_again_from_where_it_was_written() {
     }
 }
 
+/// A list that only roughs is planned, and its part is not held. The same once more finds nothing to take.
+#[test]
+fn a_second_roughing_knows_what_the_first_left() {
+    let scratch = Scratch::new();
+    scratch.write("bar.stl", &bar([-3.0, -3.0, -3.0], [3.0, 3.0, 3.0]));
+    let head = LIST.split("[[operation]]").next().unwrap();
+    let rough = |name: &str, keys: &str| {
+        format!(
+            "[[operation]]\nname = \"{name}\"\nkind = \"rough\"\ntools = [4]\nallowance_mm = 0.3\nstepdown_mm = 1\n{keys}"
+        )
+    };
+    let once = planned(&scratch, &(head.to_owned() + &rough("once", ""))).json();
+    assert_eq!(once["verdict"]["answer"], "not_held", "{}", once["verdict"]);
+    assert_eq!(once["operations"][0]["step"], "held", "{}", once["operations"][0]["verdict"]);
+    let twice = head.to_owned() + &rough("once", "") + &rough("again", "");
+    planned(&scratch, &twice).refused(&["again", "nothing stands on it"]);
+}
+
 #[test]
 fn what_cannot_be_meant_is_refused_at_once() {
     let scratch = Scratch::new();
@@ -256,7 +274,17 @@ fn what_cannot_be_meant_is_refused_at_once() {
         format!("{head}[[operation]]\nkind = \"{kind}\"\ntools = [4]\n")
     };
     refused(&only("rest"), &["kind = \"rest\" cuts what operations before it left: there is none"]);
-    refused(&only("rough"), &["F1 is machined by nothing"]);
+    let rough = |keys: &str| LIST.replace("kind = \"rough\"", &format!("kind = \"rough\"\n{keys}"));
+    refused(
+        &rough("axis = [0, 0, 1]\ndirections = \"auto\""),
+        &["directions finds the axes, and axis gives one"],
+    );
+    refused(&rough("least_share = 0.1"), &["least_share is for found axes"]);
+    refused(&rough("entry = \"spiral\""), &["entry = \"spiral\"", "helix"]);
+    refused(
+        &LIST.replace("kind = \"finish\"", "kind = \"finish\"\nentry = \"ramp\""),
+        &["entry is for kind = \"rough\""],
+    );
     let none = LIST.split("[[operation]]").next().unwrap();
     refused(&none.replace(&format!("[stock]\n{stock}"), ""), &["has no [[operation]]", "add one of the two"]);
     let setup = "[[setup]]\nname = \"a\"\n[[setup]]\nname = \"a\"\n";

@@ -173,8 +173,4 @@ fn what_cannot_be_repeated_is_refused_before_planning() {
         &LIST.replace("faces = [\"F1\"]", "faces = [\"F1\", \"F3\"]"),
         &["F1 turned by 180.0000 deg lies on F3", "which is turned itself"],
     );
-    refused(
-        &LIST.replace("kind = \"rough\"", "kind = \"rough\"\nrepeat = 4"),
-        &["goes over all places", "leave repeat out"],
-    );
 }

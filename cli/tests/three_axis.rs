@@ -51,5 +51,5 @@ fn roughing_leaves_its_allowance_and_wants_raw_material() {
     planned(&with(BULL, LAYERS)).refused(&["z_level needs the raw material", "[stock]"]);
     planned(&(with(BULL, "kind = \"z_level\"\nstepover_mm = 2") + STOCK)).refused(&["needs stepdown_mm"]);
     let below = STOCK.replace("7, 7, 2.5", "7, 7, -1.5");
-    planned(&(with(BULL, LAYERS) + &below)).refused(&["not below the raw material's top"]);
+    planned(&(with(BULL, LAYERS) + &below)).refused(&["nothing stands on it that the tool reaches"]);
 }

@@ -45,14 +45,15 @@ pub struct Outline {
     meridians: usize,
 }
 
-/// Turn of the outline on an arc from node to node: areas are good to its square over 24.
-const TURN_RAD: f64 = 0.02;
+/// Turn of the outline on an arc from node to node, at least and at most: areas are good to its square over 24.
+const TURN_RAD: [f64; 2] = [0.02, 0.25];
 
 impl Outline {
     /// The outline of a cutter.
     #[must_use]
     pub fn new(cutter: &Cutter, fineness: Fineness) -> Self {
-        let corners = cutter.outline_mm(TURN_RAD);
+        let turn_rad = (fineness.step_mm / cutter.corner_mm()).clamp(TURN_RAD[0], TURN_RAD[1]);
+        let corners = cutter.outline_mm(turn_rad);
         let mut nodes: Vec<[f64; 2]> = Vec::with_capacity(corners.len());
         for pair in corners.windows(2) {
             let [a, b] = [pair[0], pair[1]];
@@ -79,11 +80,24 @@ impl Outline {
             let out = e1 * c + e2 * s;
             let point = |n: [f64; 2]| moving.pose.tip + out * n[0] + axis * n[1];
             let mut sum = 0.0;
-            let mut last: Option<([f64; 2], f64)> = None;
-            for node in &self.nodes {
-                let depth = depth_mm(&point(*node));
-                if let Some((from, before)) = last {
-                    let (drho, dz) = (node[0] - from[0], node[1] - from[1]);
+            // The depth at a node, where it was asked for.
+            let mut last: Option<f64> = None;
+            for pair in self.nodes.windows(2) {
+                let [from, node] = [pair[0], pair[1]];
+                let (drho, dz) = (node[0] - from[0], node[1] - from[1]);
+                let normal = out * dz - axis * drho;
+                let into = |at: [f64; 2]| {
+                    normal.dot(&(moving.tip_rate + moving.turn.cross(&(point(at) - moving.pose.tip))))
+                };
+                // Where neither end moves outward nothing between them does.
+                if into(from) <= 0.0 && into(node) <= 0.0 {
+                    last = None;
+                    continue;
+                }
+                let before = last.unwrap_or_else(|| depth_mm(&point(from)));
+                let depth = depth_mm(&point(node));
+                last = Some(depth);
+                {
                     // The stretch in material, as shares of the step.
                     let cross = before / (before - depth);
                     let [lo, hi] = match (before > 0.0, depth > 0.0) {
@@ -95,11 +109,8 @@ impl Outline {
                     let middle = 0.5 * (lo + hi);
                     let at = [from[0] + drho * middle, from[1] + dz * middle];
                     // Outward: the meridian goes up from the tip.
-                    let normal = out * dz - axis * drho;
-                    let velocity = moving.tip_rate + moving.turn.cross(&(point(at) - moving.pose.tip));
-                    sum += (hi - lo) * at[0] * normal.dot(&velocity).max(0.0);
+                    sum += (hi - lo) * at[0] * into(at).max(0.0);
                 }
-                last = Some((*node, depth));
             }
             sum
         });

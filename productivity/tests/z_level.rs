@@ -4,13 +4,21 @@
 
 use osculate_geom::analytic::{Paraboloid, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Surface, Vec3};
-use osculate_productivity::plan::{Links, Named, PlanError, Rates, RoughTask, Roughing, Sizes, z_level};
+use osculate_productivity::plan::{
+    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Sizes, rough as roughed,
+};
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
 use osculate_tools::{Cutter, CutterSpec};
 
-const SIZES: Sizes =
-    Sizes { stepdown_mm: 2.0, stepover_mm: 1.5, allowance_mm: 0.4, ramp_rad: 0.1, chord_mm: 0.01 };
+const SIZES: Sizes = Sizes {
+    stepdown_mm: 2.0,
+    stepover_mm: 1.5,
+    allowance_mm: 0.4,
+    ramp_rad: 0.1,
+    chord_mm: 0.01,
+    stands_mm: 0.5,
+};
 
 fn toroid() -> Cutter {
     Cutter::try_from(CutterSpec::Toroidal { diameter_mm: 6.0, corner_radius_mm: 1.0, length_mm: 40.0 })
@@ -34,15 +42,20 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         plunge_mm_min: 400.0,
     };
     let faces = [Named { face: "F1", surface: face }];
-    let (axis, feed) = (Vec3::z_axis(), Vec3::x());
-    z_level(&RoughTask {
+    let resolution = Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 };
+    let stock = Stock::fill(&Blank::Box(blank), &resolution).unwrap().stock;
+    roughed(&RoughTask {
         faces: &faces,
         check: &[],
         cutter,
-        axis,
-        feed,
-        blank,
+        from: Headings::Along(Vec3::z_axis()),
+        feed: Vec3::x(),
+        stock: &stock,
+        repeat: None,
         sizes,
+        entry: Entry::Auto,
+        plunges: false,
+        volume_rate_mm3_min: f64::INFINITY,
         links: &links,
         progress: &|_| {},
     })
@@ -95,7 +108,7 @@ fn a_hill_and_a_dish_keep_an_even_allowance() {
         carves(&plan, &cutter, blank);
         // Every layer lies at most a step down below the last.
         let mut above = blank.max.z;
-        for z in &plan.layers {
+        for z in &plan.headings[0].layers {
             assert!(above - z <= SIZES.stepdown_mm + 1e-9 && *z < above);
             above = *z;
         }

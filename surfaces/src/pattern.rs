@@ -287,6 +287,17 @@ impl<'a> Pattern<'a> {
         Ok(image)
     }
 
+    /// Whether faces lie on themselves again when they are turned by one place: they go all the way around, and each turn does the same.
+    #[must_use]
+    pub fn goes_around(&self, own: &[usize], circle: &Circle) -> bool {
+        let motion = circle.turn(1);
+        let on_own = |(p, n): &(Point3, Option<Unit3>)| {
+            let at = (motion * p, n.map(|n| Unit3::new_normalize(motion * n.into_inner())));
+            own.iter().any(|o| self.lies_on(*o, &at))
+        };
+        circle.count > 1 && own.iter().all(|f| self.faces[*f].samples.iter().all(on_own))
+    }
+
     /// The face that is nearest to a place and looks the same way there; of all faces where none does.
     fn nearest(&self, at: &(Point3, Option<Unit3>)) -> Near {
         let least = |at: &(Point3, Option<Unit3>)| {

@@ -240,6 +240,10 @@ fn check(kind: &Kind, value: &DeValue<'_>) -> Result<(), Wrong> {
     let good = match kind {
         Kind::Number(r, _) => within(r, value),
         Kind::Whole(a, b) | Kind::WholeOrTable(a, b) => whole(value).is_some_and(|x| (*a..=*b).contains(&x)),
+        Kind::WholeOr(a, b, _) => {
+            whole(value).is_some_and(|x| (*a..=*b).contains(&x))
+                || value.as_str().is_some_and(|w| words.contains(&w))
+        }
         Kind::Wholes(a, b) => each(value.as_array(), |v| whole(v).is_some_and(|x| (*a..=*b).contains(&x))),
         Kind::Flag => value.as_bool().is_some(),
         Kind::Sign => whole(value).is_some_and(|x| x.abs() == 1),

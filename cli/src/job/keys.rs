@@ -2,8 +2,8 @@
 
 use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
-    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey,
-    Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
+    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_postproc::built_in_names;
 use osculate_postproc::nc::Dialect;
@@ -23,6 +23,10 @@ const MOST_PLACES: i64 = 1000;
 const MM: Kind = Kind::Number(ABOVE, "mm");
 const MM_OR_ZERO: Kind = Kind::Number(NOT_BELOW, "mm");
 const SMALL: Kind = Kind::Number(FINE, "mm");
+const RATE: Range = Range { least: 0.0, most: 1e9, open: [true, false] };
+const RAMP: Kind = Kind::Number(Range { least: 0.0, most: 45.0, open: [true, false] }, "deg");
+const SHARE: Kind = Kind::Number(Range { least: 0.0, most: 1.0, open: [true, false] }, "");
+const DIRECTIONS: Kind = Kind::WholeOr(1, 100, DirectionsKey::WORDS);
 const TRIPLE: Kind = Kind::Numbers(3, FAR, "mm");
 
 /// A key that must be given where its table is.
@@ -114,6 +118,13 @@ static OWN: &[Table] = &[
         may("allowance_mm", MM_OR_ZERO, "rough: 0.5", "0.5", "what it leaves on the faces on purpose"),
         may("stepdown_mm", MM, "rough: a quarter of the diameter", "3", "deepest cut along the axis"),
         may("stepover_mm", MM, "rough: 0.4 of the diameter", "5", "distance of rows"),
+        may("axis", Kind::Direction, "rough: [0, 0, 1]", "[0, 0, 1]", "rough: the tool's axis, from tip to holder"),
+        may("directions", DIRECTIONS, "rough: one, axis", "\"auto\"", "rough: axes found from where most is reached; no more than so many"),
+        may("least_share", SHARE, "0.02", "0.02", "rough: a found axis that takes less than this share is not taken"),
+        may("entry", Kind::Word(EntryWord::WORDS), "auto", "\"helix\"", "rough: the way into material where none leads in from outside"),
+        may("ramp_deg", RAMP, "3", "3", "rough: steepest way down into material"),
+        may("volume_rate_mm3_min", Kind::Number(RATE, "mm3/min"), "no limit", "12000",
+            "rough: most that is taken a minute; the feed follows"),
         may("overlap_mm", MM, "rest: a tenth of the diameter", "0.5", "how far passes go beyond what stands too high"),
         may("scallop_mm", SMALL, "that of the job; rough: stepdown", "0.02", "highest material left standing, above the allowance"),
         may("gouge_mm", SMALL, "that of the job; rough: a fifth of the allowance", "0.01", "deepest undercut, into the allowance of a roughing"),
@@ -157,6 +168,7 @@ pub static TABLES: &[Table] = &[
         may("bottom_angle_deg", Kind::Number(LEAN, "deg"), "0", "2", "apt: rise of the bottom"),
         may("side_angle_deg", Kind::Number(LEAN, "deg"), "0", "5", "apt: opening of the side"),
         may("teeth", Kind::Whole(1, 1000), "", "4", "number of teeth, for feed_per_tooth_mm"),
+        may("plunges", Kind::Flag, "false", "true", "whether it may go straight down into material"),
     ]),
     table("tool.holder", false, "a cylinder or cone above the cutter; holder = [{ ... }, { ... }] are several, from the nose upwards", &[
         must("diameter_mm", MM, "40", "diameter, at the lower end"),
@@ -187,8 +199,12 @@ pub static TABLES: &[Table] = &[
         may("stepdown_mm", MM, "", "3", "z_level: deepest cut along the axis"),
         may("stepover_mm", MM, "", "5", "z_level: distance of rows"),
         may("allowance_mm", MM_OR_ZERO, "0", "0.5", "z_level: what it leaves on the faces"),
-        may("ramp_deg", Kind::Number(Range { least: 0.0, most: 45.0, open: [true, false] }, "deg"), "3", "3",
-            "z_level: steepest way down into material"),
+        may("ramp_deg", RAMP, "3", "3", "z_level: steepest way down into material"),
+        may("directions", DIRECTIONS, "one, axis", "\"auto\"", "z_level: axes found from where most is reached; no more than so many"),
+        may("least_share", SHARE, "0.02", "0.02", "z_level: a found axis that takes less than this share is not taken"),
+        may("entry", Kind::Word(EntryWord::WORDS), "auto", "\"helix\"", "z_level: the way into material where none leads in from outside"),
+        may("volume_rate_mm3_min", Kind::Number(RATE, "mm3/min"), "no limit", "12000",
+            "z_level: most that is taken a minute; the feed follows"),
         may("gouges", Kind::Word(Gouges::WORDS), "report", "\"leave_out\"", "places where the tool would go into the part"),
         may("keep_off_mm", MM_OR_ZERO, "0", "0.5", "gouges = \"leave_out\": distance kept from check faces"),
     ]),

@@ -12,6 +12,7 @@ pub mod problem;
 mod raw;
 pub mod reference;
 mod repeat;
+pub mod roughing;
 pub mod schema;
 mod setup;
 pub mod stock;

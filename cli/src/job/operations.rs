@@ -8,18 +8,10 @@ use crate::job::problem::Places;
 use crate::job::raw::{self, Raw, RawList};
 use crate::job::repeat::Repeat;
 use crate::job::words::{AxisKey, Gouges, OperationWord, StrategyWord};
-use crate::job::{Job, SHARES, check, keys, repeat, schema};
+use crate::job::{Job, SHARES, check, keys, roughing, schema};
 use crate::words::number;
 use std::path::Path;
 
-/// What a roughing leaves where nothing says it, mm.
-const ALLOWANCE_MM: f64 = 0.5;
-/// Its deepest cut and the distance of its rows, of the tool's diameter.
-const STEPDOWN: f64 = 0.25;
-const STEPOVER: f64 = 0.4;
-/// How far it may go into its allowance, and how far straight moves may be off, of the allowance.
-const INTO_ALLOWANCE: f64 = 0.2;
-const CHORD_OF_ALLOWANCE: f64 = 0.1;
 /// How far rest passes go beyond what stands too high, of the tool's diameter.
 const OVERLAP: f64 = 0.1;
 
@@ -380,7 +372,9 @@ fn composed(
     raw.strategy = own.strategy.clone();
     let diameter_mm = tools.iter().map(|k| list.tool[*k].diameter_mm).fold(0.0, f64::max);
     match own.kind {
-        OperationWord::Rough => rough(&mut raw, own, diameter_mm).map_err(|(key, what)| refuse(key, what))?,
+        OperationWord::Rough => {
+            roughing::rough(&mut raw, own, diameter_mm).map_err(|(key, what)| refuse(key, what))?;
+        }
         OperationWord::Finish | OperationWord::Rest => {
             fine(&places, &mut raw, own).map_err(|(key, what)| refuse(key, what))?;
         }
@@ -438,29 +432,6 @@ fn chosen_tools(list: &RawList, named: Option<&[u32]>) -> Result<Vec<usize>, Str
 /// A key with what is wrong about it.
 type Wrong = (&'static str, String);
 
-/// Roughing in layers, with sizes from the tool where nothing says them.
-fn rough(raw: &mut Raw, own: &raw::Operation, diameter_mm: f64) -> Result<(), Wrong> {
-    let s = &mut raw.strategy;
-    if !matches!(s.kind, StrategyWord::Auto | StrategyWord::ZLevel) {
-        return Err(("kind", format!("kind = \"rough\" goes in layers (z_level), not by {}", s.kind.word())));
-    }
-    if own.repeat.is_some() {
-        return Err(("repeat", repeat::OF_ROUGHING.to_owned()));
-    }
-    s.kind = StrategyWord::ZLevel;
-    let stepdown = own.stepdown_mm.or(s.stepdown_mm).unwrap_or(STEPDOWN * diameter_mm);
-    let allowance = own.allowance_mm.or(s.allowance_mm).unwrap_or(ALLOWANCE_MM);
-    s.stepdown_mm = Some(stepdown);
-    s.stepover_mm = own.stepover_mm.or(s.stepover_mm).or(Some(STEPOVER * diameter_mm));
-    s.allowance_mm = Some(allowance);
-    let t = &mut raw.tolerance;
-    let gouge = t.gouge_mm.unwrap_or(SHARES[0] * t.scallop_mm);
-    t.chord_mm = Some(t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm).max(CHORD_OF_ALLOWANCE * allowance));
-    t.gouge_mm = Some(own.gouge_mm.unwrap_or_else(|| gouge.max(INTO_ALLOWANCE * allowance)));
-    t.scallop_mm = own.scallop_mm.unwrap_or(stepdown);
-    Ok(())
-}
-
 /// Finishing, and what is left of it.
 fn fine(places: &Places, raw: &mut Raw, own: &raw::Operation) -> Result<(), Wrong> {
     if own.allowance_mm.is_some_and(|a| a > 0.0) {
@@ -470,10 +441,8 @@ fn fine(places: &Places, raw: &mut Raw, own: &raw::Operation) -> Result<(), Wron
         );
         return Err(("allowance_mm", what));
     }
-    for (key, given) in [("stepdown_mm", own.stepdown_mm), ("stepover_mm", own.stepover_mm)] {
-        if given.is_some() {
-            return Err((key, format!("{key} is for kind = \"rough\": leave it out")));
-        }
+    if let Some(key) = roughing::own_key(own) {
+        return Err((key, format!("{key} is for kind = \"rough\": leave it out")));
     }
     let (s, t) = (&mut raw.strategy, &mut raw.tolerance);
     if matches!(s.kind, StrategyWord::ZLevel | StrategyWord::Flank) {

@@ -1,8 +1,8 @@
 //! The tables of a job file as written; what they mean is made of them in [`crate::job::Job`].
 
 use crate::job::words::{
-    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, FeedWord, FlankShape, Gouges, LeadKey,
-    Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
+    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;
@@ -110,6 +110,8 @@ pub struct Tool {
     pub bottom_angle_deg: Option<f64>,
     pub side_angle_deg: Option<f64>,
     pub teeth: Option<u32>,
+    #[serde(default)]
+    pub plunges: bool,
     pub holder: Option<Holder>,
     /// In a list of operations only, as all that follows here.
     pub name: Option<String>,
@@ -162,6 +164,10 @@ pub struct Strategy {
     pub stepover_mm: Option<f64>,
     pub allowance_mm: Option<f64>,
     pub ramp_deg: Option<f64>,
+    pub directions: Option<DirectionsKey>,
+    pub least_share: Option<f64>,
+    pub entry: Option<EntryWord>,
+    pub volume_rate_mm3_min: Option<f64>,
     pub gouges: Gouges,
     pub keep_off_mm: Option<f64>,
 }
@@ -317,6 +323,12 @@ pub struct Operation {
     pub allowance_mm: Option<f64>,
     pub stepdown_mm: Option<f64>,
     pub stepover_mm: Option<f64>,
+    pub axis: Option<[f64; 3]>,
+    pub ramp_deg: Option<f64>,
+    pub directions: Option<DirectionsKey>,
+    pub least_share: Option<f64>,
+    pub entry: Option<EntryWord>,
+    pub volume_rate_mm3_min: Option<f64>,
     pub overlap_mm: Option<f64>,
     pub scallop_mm: Option<f64>,
     pub gouge_mm: Option<f64>,

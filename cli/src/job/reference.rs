@@ -52,7 +52,9 @@ impl Row {
             | Kind::NumberOr(r, unit, _)
             | Kind::Numbers(_, r, unit)
             | Kind::Between(r, unit) => ([finite(r.least), finite(r.most)], unit),
-            Kind::Whole(a, b) | Kind::WholeOrTable(a, b) => ([Some(a as f64), Some(b as f64)], ""),
+            Kind::Whole(a, b) | Kind::WholeOrTable(a, b) | Kind::WholeOr(a, b, _) => {
+                ([Some(a as f64), Some(b as f64)], "")
+            }
             Kind::Corners(unit) => ([None; 2], unit),
             _ => ([None; 2], ""),
         };

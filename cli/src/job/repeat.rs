@@ -3,10 +3,6 @@
 use crate::job::raw;
 use osculate_geom::{Point3, TurnAxis, Unit3, Vec3};
 
-/// Why a roughing has none.
-pub(super) const OF_ROUGHING: &str =
-    "repeat: kind = \"rough\" goes over all places in one layer after the other: leave repeat out";
-
 /// Equal places in a circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repeat {

@@ -58,6 +58,8 @@ pub enum Kind {
     Numbers(usize, Range, &'static str),
     /// Three numbers that are not all zero.
     Direction,
+    /// A whole number within bounds, or one of these words.
+    WholeOr(i64, i64, &'static [&'static str]),
     /// Three numbers that are not all zero, or one of these words.
     DirectionOr(&'static [&'static str]),
     /// A lower and a greater number.
@@ -89,7 +91,9 @@ impl Kind {
     #[must_use]
     pub fn words(&self) -> Vec<&'static str> {
         match self {
-            Self::NumberOr(_, _, w) | Self::DirectionOr(w) | Self::Word(w) => w.to_vec(),
+            Self::NumberOr(_, _, w) | Self::WholeOr(_, _, w) | Self::DirectionOr(w) | Self::Word(w) => {
+                w.to_vec()
+            }
             Self::Name(names) => names(),
             _ => Vec::new(),
         }
@@ -105,6 +109,7 @@ impl Kind {
             Self::Whole(a, b) if a == b => format!("{a}: this version reads format = {a}"),
             Self::Whole(a, b) => format!("a whole number from {a} to {b}"),
             Self::WholeOrTable(a, b) => format!("a whole number from {a} to {b}, or a table with the number as count"),
+            Self::WholeOr(a, b, w) => format!("a whole number from {a} to {b} or one of {}", list(w)),
             Self::Wholes(a, b) => format!("a list of whole numbers from {a} to {b}"),
             Self::Sign => "1 or -1".to_owned(),
             Self::Flag => "true or false".to_owned(),

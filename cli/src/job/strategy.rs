@@ -3,14 +3,13 @@
 use crate::failure::Failure;
 use crate::job::problem::Places;
 use crate::job::raw;
+use crate::job::roughing::{Layers, layers};
 use crate::job::words::{AlongWord, AxisKey, ClimbWord, Gouges, LeadKey, StrategyWord};
 use osculate_geom::{Axis, Unit3, Vec3};
 use osculate_productivity::plan::{self, Along, Milling, Senses};
 
 /// Greatest change of a local lead where the job says none: at 2000 mm/min some 30 degrees a second, as rotary axes can.
 const LEAD_RATE_DEG_PER_MM: f64 = 1.0;
-/// Steepest way down into material where the job gives none, degrees.
-const RAMP_DEG: f64 = 3.0;
 /// Less than a degree away from the axis a direction says nothing about the passes.
 const ACROSS: f64 = 0.0175;
 
@@ -41,19 +40,6 @@ pub enum Drop {
     Gradient,
     /// At constant heights.
     Waterlines,
-}
-
-/// The sizes of a roughing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Layers {
-    /// Deepest cut along the axis.
-    pub stepdown_mm: f64,
-    /// Distance of rows.
-    pub stepover_mm: f64,
-    /// What it leaves on the faces.
-    pub allowance_mm: f64,
-    /// Steepest way down into material.
-    pub ramp_rad: f64,
 }
 
 /// How a job cuts.
@@ -110,6 +96,9 @@ impl Strategy {
     #[must_use]
     pub fn kept_axis(&self) -> Option<Unit3> {
         use StrategyWord as W;
+        if self.layers().is_some_and(|l| l.directions.is_some()) {
+            return None;
+        }
         let keeps =
             [W::Gradient3c, W::Isoplanar3c, W::Waterline3c, W::ZLevel, W::Contour2cl].contains(&self.word);
         keeps.then_some(self.axis)
@@ -183,8 +172,8 @@ impl Strategy {
         let is = |all: &[W]| all.contains(&self.word);
         let drops = is(&[W::Gradient3c, W::Isoplanar3c, W::ZLevel]);
         let around = is(&[W::Waterline3c]);
-        let keeps_axis = self.kept_axis().is_some();
         let layers = is(&[W::ZLevel]);
+        let keeps_axis = layers || self.kept_axis().is_some();
         let lined = is(&[W::Isoparametric, W::Regions]);
         let rows = [
             ("along", lined, "isoparametric and regions"),
@@ -194,6 +183,10 @@ impl Strategy {
             ("stepover_mm", layers, "z_level"),
             ("allowance_mm", layers, "z_level"),
             ("ramp_deg", layers, "z_level"),
+            ("directions", layers, "z_level"),
+            ("least_share", layers, "z_level"),
+            ("entry", layers, "z_level"),
+            ("volume_rate_mm3_min", layers, "z_level"),
             ("lead_rate_deg_per_mm", !keeps_axis, "strategies that lean"),
             ("one_way", self.axis_field, "axis = \"field\""),
             ("climb", self.axis_field || around, "waterline_3c, and axis = \"field\""),
@@ -276,17 +269,4 @@ pub(super) fn direction(d: [f64; 3]) -> Unit3 {
     // Scaled first: squares of great or small numbers leave the range of numbers.
     let most = d.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
     Unit3::new_normalize(Vec3::from(d.map(|x| x / most)))
-}
-
-fn layers(places: &Places, t: &raw::Strategy) -> Result<Layers, Failure> {
-    let needed = |key: &str, value: Option<f64>| {
-        let what = format!("{} needs {key}, a positive number", t.kind.word());
-        value.ok_or_else(|| places.refuse(TABLE, "kind", what))
-    };
-    Ok(Layers {
-        stepdown_mm: needed("stepdown_mm", t.stepdown_mm)?,
-        stepover_mm: needed("stepover_mm", t.stepover_mm)?,
-        allowance_mm: t.allowance_mm.unwrap_or(0.0),
-        ramp_rad: t.ramp_deg.unwrap_or(RAMP_DEG).to_radians(),
-    })
 }

@@ -34,6 +34,7 @@ pub struct Tool {
     holder: Option<Holder>,
     sections: Vec<HolderSpec>,
     teeth: Option<u32>,
+    plunges: bool,
     words: String,
     feeding: raw::Cutting,
 }
@@ -67,6 +68,7 @@ impl Tool {
             holder: holder.transpose()?,
             sections,
             teeth: t.teeth,
+            plunges: t.plunges,
             words: t.name.clone().unwrap_or_else(|| {
                 format!("{} {}{}", t.kind.word(), t.diameter_mm, corner.unwrap_or_default())
             }),
@@ -107,6 +109,12 @@ impl Tool {
     #[must_use]
     pub const fn flutes(&self) -> (Cutter, Option<Cutter>) {
         (self.cutting, self.shank)
+    }
+
+    /// Whether it may go straight down into material.
+    #[must_use]
+    pub const fn plunges(&self) -> bool {
+        self.plunges
     }
 
     /// The holder.

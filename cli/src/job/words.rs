@@ -122,6 +122,21 @@ words! {
 }
 
 words! {
+    /// How a roughing comes into the material.
+    EntryWord {
+        /// From outside, else by a helix, else down a ramp, else straight down with a tool that plunges.
+        #[default]
+        Auto = "auto",
+        /// From outside, else by a helix.
+        Helix = "helix",
+        /// From outside, else down a ramp along the pass.
+        Ramp = "ramp",
+        /// From outside only.
+        Outside = "outside",
+    }
+}
+
+words! {
     /// How chips are cut.
     ClimbWord {
         /// As it comes.
@@ -328,6 +343,38 @@ impl<'de> Deserialize<'de> for AxisKey {
             Raw::Word(w) => Err(serde::de::Error::custom(format!(
                 "expected a direction, \"feed\" or \"field\", got \"{w}\""
             ))),
+        }
+    }
+}
+
+/// From how many directions a part is roughed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DirectionsKey {
+    /// As many as are worth it.
+    Auto,
+    /// No more than so many.
+    Most(usize),
+}
+
+impl DirectionsKey {
+    /// The words that stand for a number.
+    pub const WORDS: &'static [&'static str] = &["auto"];
+}
+
+impl<'de> Deserialize<'de> for DirectionsKey {
+    fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Raw {
+            Number(usize),
+            Word(String),
+        }
+        match Raw::deserialize(d)? {
+            Raw::Number(n) => Ok(Self::Most(n)),
+            Raw::Word(w) if w == "auto" => Ok(Self::Auto),
+            Raw::Word(w) => {
+                Err(serde::de::Error::custom(format!("expected a whole number or \"auto\", got \"{w}\"")))
+            }
         }
     }
 }

@@ -16,15 +16,16 @@ pub struct TurnedFaces {
     pub images: Vec<Vec<String>>,
 }
 
-/// The images of faces about an axis: the given one, or one that the part shows and that serves, beginning with z through the origin.
+/// The images of faces about an axis: the given one, or one that the part shows and that serves, beginning with z through the origin. Where
+/// they `may_go_around` faces of all places will do, each of which is its own image then.
 ///
 /// # Errors
 /// In words, where there is none.
 pub fn turned(
     part: &Loaded,
     ids: &[String],
-    axis: Option<TurnAxis>,
-    count: usize,
+    (axis, count): (Option<TurnAxis>, usize),
+    may_go_around: bool,
 ) -> Result<TurnedFaces, String> {
     let size_mm = part.faces.iter().fold(Box3::empty(), |b, f| b.union(&f.surface.bbox(2))).diagonal_mm();
     let tolerance_mm = ONE_PLACE * size_mm;
@@ -53,6 +54,10 @@ pub fn turned(
                 let id = |k: &usize| part.faces[*k].id.clone();
                 let images = images.iter().map(|all| all.iter().map(id).collect()).collect();
                 return Ok(TurnedFaces { circle, images });
+            }
+            Err(_) if may_go_around && pattern.goes_around(&own, &circle) => {
+                let all: Vec<String> = own.iter().map(|k| part.faces[*k].id.clone()).collect();
+                return Ok(TurnedFaces { circle, images: vec![all; count - 1] });
             }
             Err(why) => first = first.or(Some(why)),
         }

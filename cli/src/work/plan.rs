@@ -388,7 +388,7 @@ pub fn planned(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
     match &job.strategy().kind {
-        Kind::Layers(layers) => rough::planned(job, faces, layers, progress),
+        Kind::Layers(layers) => rough::of_raw(job, faces, layers, progress),
         _ => Laid::of(job, faces, watch, progress)?.linked(job, faces),
     }
 }

@@ -2,17 +2,27 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::job::strategy::Layers;
+use crate::job::roughing::Layers;
+use crate::job::words::EntryWord;
 use crate::part::{LoadedFace, Part};
 use crate::work::drop;
 use crate::work::extras::Extras;
 use crate::work::passes;
 use crate::work::program::Planned;
-use crate::work::stock;
-use osculate_geom::Offset;
-use osculate_productivity::plan::{RoughTask, Sizes, z_level};
+use crate::work::setup;
+use crate::work::stock::RawMaterial;
+use osculate_geom::{Offset, Unit3};
+use osculate_postproc::Orienting;
+use osculate_productivity::plan::{self, Headings, Places, RoughTask, Search, Sizes};
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::Lean;
+use osculate_tools::reach::Directions;
+use osculate_tools::removal::stock::Stock;
+
+/// Axes of a machine with one rotary joint are tried so far apart, rad.
+const LINE_RAD: f64 = 0.05;
+/// The level of the even set of axes that are tried on a machine with two rotary joints: 4.3 degrees apart.
+const LEVEL: u32 = 4;
 
 /// Whether a job roughs.
 pub fn is(job: &Job) -> bool {
@@ -34,35 +44,58 @@ fn sizes(job: &Job, layers: &Layers) -> Sizes {
         allowance_mm: layers.allowance_mm,
         ramp_rad: layers.ramp_rad,
         chord_mm: job.tolerance().chord_mm,
+        stands_mm: job.tolerance().scallop_mm,
     }
 }
 
-/// The path of a roughing.
+/// The axes that the job's machine reaches, with the part as it stands before a path is known.
+fn candidates(job: &Job, faces: &Part) -> Result<Vec<Unit3>, Failure> {
+    let (setup, _) = setup::of(job, faces, None);
+    let joints = Orienting::new(&job.control().machine, &setup.part_zero.rotation);
+    if let Some(line) = joints.line(LINE_RAD) {
+        return Ok(line);
+    }
+    let all = Directions::icosphere(LEVEL).map_err(Failure::job)?;
+    Ok(all.all().iter().filter(|axis| joints.reaches(axis)).copied().collect())
+}
+
+/// The path of a roughing, out of what operations before have left.
 pub fn planned(
     job: &Job,
     faces: &Part,
-    layers: &Layers,
+    (layers, stock, repeat): (&Layers, &Stock, Option<Places>),
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
     let (axis, feed) = drop::directions(job, faces);
     let cutter = job.cutter();
     let links = passes::links(job, faces, &cutter);
-    let Some(blank) = stock::bounds(job, faces)? else {
-        return Err(job.refuse("strategy", "kind", "a roughing needs the raw material: add [stock]"));
-    };
     let (named, check) = (drop::names(&faces.faces), drop::names(&faces.check));
+    let found: Vec<Unit3> = if layers.directions.is_some() { candidates(job, faces)? } else { Vec::new() };
+    let from = match layers.directions {
+        Some(most) => Headings::Found(Search { candidates: &found, most, least_share: layers.least_share }),
+        None => Headings::Along(axis),
+    };
     let task = RoughTask {
         faces: &named,
         check: &check,
         cutter: &cutter,
-        axis,
+        from,
         feed,
-        blank,
+        stock,
+        repeat,
         sizes: sizes(job, layers),
+        entry: match layers.entry {
+            EntryWord::Auto => plan::Entry::Auto,
+            EntryWord::Helix => plan::Entry::Helix,
+            EntryWord::Ramp => plan::Entry::Ramp,
+            EntryWord::Outside => plan::Entry::Outside,
+        },
+        plunges: job.tool().plunges(),
+        volume_rate_mm3_min: layers.volume_rate_mm3_min.unwrap_or(f64::INFINITY),
         links: &links,
         progress,
     };
-    let rough = z_level(&task).map_err(|e| Failure::file(job.path(), e))?;
+    let rough = plan::rough(&task).map_err(|e| Failure::file(job.path(), e))?;
     Ok(Planned {
         passes: rough.passes,
         skipped: Vec::new(),
@@ -73,4 +106,17 @@ pub fn planned(
         extras: Extras::default(),
         with_strips: false,
     })
+}
+
+/// The path of a roughing out of the raw material of a job of one operation.
+pub fn of_raw(
+    job: &Job,
+    faces: &Part,
+    layers: &Layers,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Planned<'static>, Failure> {
+    let Some(raw) = RawMaterial::of(job, faces)? else {
+        return Err(job.refuse("strategy", "kind", "a roughing needs the raw material: add [stock]"));
+    };
+    planned(job, faces, (layers, &raw.filled()?, None), progress)
 }

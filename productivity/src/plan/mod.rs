@@ -32,7 +32,10 @@ mod task;
 mod walk;
 
 pub use contour::contour_2cl;
-pub use drop::{DropTask, RoughTask, Roughing, Sizes, drop_cutter, gradient_3c, waterline_3c, z_level};
+pub use drop::{
+    DropTask, Entry, Heading, Headings, Places, RoughTask, Roughing, Search, Sizes, drop_cutter, gradient_3c,
+    rough, waterline_3c,
+};
 pub use isoparametric::isoparametric;
 pub use lead::{LeadField, Leaning, LocalLead};
 pub use leave_out::{Guard, LeaveOutError, LeftOut, leave_out};

@@ -16,19 +16,26 @@ const MARKED: usize = 100_000;
 
 /// An operation of a program.
 pub struct GoalStep<'a> {
-    /// What must be so when it ends, with the tools of the program up to there. Of a roughing those of its own motions.
+    /// What must be so when it ends, with the tools of the program up to there. Of a roughing those of the motions from `from` on.
     pub goal: Goal<'a>,
     /// Its motions in the whole program.
     pub motions: Range<usize>,
+    /// The first motion by which a roughing is judged: that of the first of the roughings that lead up to it and leave no less.
+    pub from: usize,
 }
 
 /// Where a face of the whole goal is among those of a step: its number there, and whether it is to be machined.
 type Seat = Option<(u32, bool)>;
 
 impl GoalStep<'_> {
-    /// Whether it is judged by its own motions alone: faces that are finished already have no allowance any more.
+    /// Whether it is a roughing, judged by the roughings up to it alone: faces that are finished already have no allowance any more.
     const fn is_alone(&self) -> bool {
         self.goal.roughing_mm.is_some()
+    }
+
+    /// The first motion by which it is judged.
+    const fn begin(&self) -> usize {
+        if self.is_alone() { self.from } else { 0 }
     }
 
     /// Where the faces of the whole goal are in the step; None where it has samples of its own.
@@ -48,7 +55,7 @@ impl GoalStep<'_> {
 
     /// What of the program it is judged by.
     fn stretch<'p>(&self, program: &Program<'p>, changes: &'p [usize]) -> Program<'p> {
-        let begin = if self.is_alone() { self.motions.start } else { 0 };
+        let begin = self.begin();
         let motions = &program.motions[begin..self.motions.end];
         let times_min =
             if program.times_min.is_empty() { &[][..] } else { &program.times_min[begin..self.motions.end] };
@@ -57,7 +64,7 @@ impl GoalStep<'_> {
 
     /// Changes of tools in what it is judged by, counted from its first motion.
     fn changes(&self, program: &Program<'_>) -> Vec<usize> {
-        let begin = if self.is_alone() { self.motions.start } else { 0 };
+        let begin = self.begin();
         let within = |c: &&usize| **c > begin && **c < self.motions.end;
         program.changes.iter().filter(within).map(|c| c - begin).collect()
     }

@@ -158,6 +158,11 @@ impl Behind {
         self.stock.as_ref().map(|stock| stock.ends().into())
     }
 
+    /// What is left of the raw material, where some is declared.
+    pub const fn stock(&self) -> Option<&Stock> {
+        self.stock.as_ref()
+    }
+
     /// Goes on with an operation. Its rapid moves that would go through material are made at the feed of plunges; how many they are
     /// comes back.
     pub fn take(&mut self, job: &Job, linked: &mut Linked) -> Result<usize, Failure> {
@@ -187,7 +192,8 @@ impl Behind {
         Ok(slowed)
     }
 
-    /// How high material stands at samples, mm; nowhere higher than `most_mm`.
+    /// How high material stands at samples, mm; nowhere higher than `most_mm`. What stands high is taken from the stock, to its cells: only
+    /// close to the faces the tools themselves are asked.
     fn heights_mm(&self, samples: &[Sample], most_mm: f64) -> Result<Vec<f64>, Failure> {
         let Some(((_, cutter), later)) = self.tools.split_first() else {
             return Ok(vec![most_mm; samples.len()]);

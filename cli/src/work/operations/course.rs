@@ -221,8 +221,8 @@ impl Course {
     }
 
     /// The verdict on the finished part, on all faces from the raw material as declared, and on each of its steps, on its own faces when its
-    /// last motion is made: by what is measured for the part. A roughing is judged by itself, since what is finished has no
-    /// allowance any more.
+    /// last motion is made: by what is measured for the part. A roughing is judged with those just before it that leave no less,
+    /// and by nothing else, since what is finished has no allowance any more.
     ///
     /// # Errors
     /// Where they cannot be judged.
@@ -237,16 +237,16 @@ impl Course {
         let aim = Aim::of_tools(list.whole(), part, stretch.tools, self.fixtures(list, part, &all)?)?;
         let mut aims = Vec::with_capacity(steps.len());
         for (k, (step, section)) in steps.iter().zip(&self.sections).enumerate() {
-            let alone = step.job.strategy().layers().is_some();
-            let range = if alone { section.motions.start } else { 0 }..section.motions.end;
+            let range = self.begin_of(steps, k)..section.motions.end;
             let begun = k.checked_sub(1).map(|before| format!("what {} left", self.sections[before].name));
             let own = self.stretch(range.clone());
             let fixtures = self.fixtures(list, part, &range)?;
             aims.push((Aim::of_tools(&step.job, step.part, own.tools, fixtures)?.of_step(begun), own));
         }
-        let goals = aims.iter().zip(&self.sections).map(|((aim, own), section)| {
+        let goals = aims.iter().zip(&self.sections).enumerate().map(|(k, ((aim, own), section))| {
             let Reading { control, speeds_rpm, .. } = own.reading(&self.control);
-            GoalStep { goal: aim.goal(control, &speeds_rpm), motions: section.motions.clone() }
+            let from = self.begin_of(steps, k);
+            GoalStep { goal: aim.goal(control, &speeds_rpm), motions: section.motions.clone(), from }
         });
         let goals: Vec<GoalStep<'_>> = goals.collect();
         let stops: Vec<usize> = self.sections.iter().map(|s| s.motions.end).collect();
@@ -257,14 +257,22 @@ impl Course {
         let finishers = finishers(list, part)?;
         let named = |verified: Verified, from: usize| self.named(verified, from, &finishers);
         let whole = named(Verified::of(&aim, proved.whole, source), 0);
-        let judged = proved.steps.into_iter().zip(&aims).zip(steps.iter().zip(&self.sections));
-        let judged = judged.map(|((verdict, (aim, _)), (step, section))| {
-            let from = if step.job.strategy().layers().is_some() { section.motions.start } else { 0 };
+        let judged = proved.steps.into_iter().zip(&aims).enumerate();
+        let judged = judged.map(|(k, (verdict, (aim, _)))| {
+            let from = self.begin_of(steps, k);
             let left = verdict.figures().stock.as_ref().map(|f| Arc::clone(&f.stock));
             let verified = named(Verified::of(aim, verdict, source), from);
             Judged { verified, left }
         });
         Ok((whole, judged.collect()))
+    }
+
+    /// The first motion by which a step is judged: of a roughing that of the first of those just before it that leave no less.
+    fn begin_of(&self, steps: &[StepOf<'_>], k: usize) -> usize {
+        let leaves = |s: &StepOf<'_>| s.job.strategy().layers().map(|l| l.allowance_mm);
+        let Some(own) = leaves(&steps[k]) else { return 0 };
+        let first = (0..k).rev().take_while(|j| leaves(&steps[*j]).is_some_and(|left| left >= own)).last();
+        self.sections[first.unwrap_or(k)].motions.start
     }
 
     /// Which operation makes a motion.

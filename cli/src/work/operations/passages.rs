@@ -1,7 +1,7 @@
 //! The places in which an operation is done: that of its faces, which is planned, and those that it is repeated in by turns.
 
 use crate::failure::Failure;
-use crate::job::{Job, Operation, Repeat};
+use crate::job::{Job, Operation, OperationWord, Repeat};
 use crate::part::{self, Part, TurnedFaces};
 use crate::work::operations::behind::{Behind, TooHigh};
 use crate::work::passes;
@@ -9,7 +9,7 @@ use crate::work::program::Planned;
 use crate::work::stock::RawMaterial;
 use nalgebra::Isometry3;
 use osculate_geom::{Diagnostic, Point3, Unit3};
-use osculate_productivity::plan::{Stretches, repeated};
+use osculate_productivity::plan::{Places, Stretches, repeated};
 use std::sync::Arc;
 
 /// An axis that leans off that of the turns by more than this, as a sine, is another one in every place.
@@ -23,7 +23,7 @@ pub struct Passages {
     turns: Vec<Isometry3<f64>>,
     /// The part with the faces of all places to machine, where there is more than one.
     all: Option<Part>,
-    axis: Option<Unit3>,
+    circle: Option<Places>,
 }
 
 impl Passages {
@@ -34,20 +34,27 @@ impl Passages {
     pub fn of(operation: &Operation, job: &Job, whole: &Part) -> Result<Self, Failure> {
         let own = whole.seen_by(job).map_err(|why| why.in_operation(&operation.name))?;
         let Some(Repeat { axis, count }) = operation.repeat else {
-            return Ok(Self { each: vec![own], turns: vec![Isometry3::identity()], all: None, axis: None });
+            return Ok(Self { each: vec![own], turns: vec![Isometry3::identity()], all: None, circle: None });
         };
         let refuse = |why: String| operation.refuse("repeat", format!("repeat: {why}"));
         let ids: Vec<String> = own.faces.iter().map(|f| f.id.clone()).collect();
-        let TurnedFaces { circle, images } = part::turned(&whole.part, &ids, axis, count).map_err(refuse)?;
+        let TurnedFaces { circle, images } = {
+            let may_go_around = operation.kind == OperationWord::Rough;
+            part::turned(&whole.part, &ids, (axis, count), may_go_around).map_err(refuse)?
+        };
         let mut all = ids;
         let mut each = vec![own];
         for image in images {
             each.push(whole.with_faces(job, image.clone())?);
             all.extend(image);
         }
+        // Faces that go all the way around are their own images.
+        let mut seen = std::collections::BTreeSet::new();
+        all.retain(|id| seen.insert(id.clone()));
         let all = whole.with_faces(job, all)?;
         let turns = (0..count).map(|k| circle.turn(k)).collect();
-        Ok(Self { each, turns, all: Some(all), axis: Some(circle.axis.direction) })
+        let circle = Places { axis: circle.axis, count };
+        Ok(Self { each, turns, all: Some(all), circle: Some(circle) })
     }
 
     /// The same in the raw material that is left, as points of its surface.
@@ -62,6 +69,16 @@ impl Passages {
     }
 
     /// The part with the faces to machine of all places.
+    pub fn all(&self) -> &Part {
+        self.all.as_ref().unwrap_or(&self.each[0])
+    }
+
+    /// The circle of the places, where there is more than one.
+    pub const fn circle(&self) -> Option<Places> {
+        self.circle
+    }
+
+    /// The part with the faces to machine of all places.
     pub fn into_all(mut self) -> Part {
         self.all.unwrap_or_else(|| self.each.swap_remove(0))
     }
@@ -69,7 +86,7 @@ impl Passages {
     /// The axis that a job's tool keeps in all places, where it is one.
     pub fn kept_axis(&self, job: &Job) -> Option<Unit3> {
         let own = job.strategy().kept_axis()?;
-        self.axis.is_none_or(|about| about.cross(&own).norm() < ALONG).then_some(own)
+        self.circle.is_none_or(|c| c.axis.direction.cross(&own).norm() < ALONG).then_some(own)
     }
 
     /// How high material stands in the place in which it stands highest, mm: what was left need not be the same in all of them.

@@ -9,8 +9,9 @@ use crate::work::choice::{self, Choice, Row};
 use crate::work::operations::behind::{Behind, OnFace};
 use crate::work::operations::kept::Kept;
 use crate::work::operations::passages::Passages;
-use crate::work::plan::{Laid, planned};
+use crate::work::plan::Laid;
 use crate::work::program::{Planned, WallS};
+use crate::work::rough;
 use crate::work::stock::RawMaterial;
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_productivity::plan::{Rest, rest_of};
@@ -95,13 +96,20 @@ pub fn plan<'a>(
     let stage = Stage::begin(watch, "plan");
     let job = operation.judged()?;
     let places = Passages::of(operation, &job, whole)?.in_stock(behind.left());
-    let part = places.first();
+    let (part, whole_place) = (places.first(), places.all());
     let standing_mm = raw.map(|raw| places.standing_mm(behind, &job, raw)).transpose()?;
     let job = operation.planned(standing_mm)?;
     let (mut job, mut too_high_mm2, mut compared) = (job, None, Vec::new());
     let progress = |f: f64| stage.at(f);
     let planned = match operation.kind {
-        OperationWord::Rough => planned(&job, part, watch, &progress).map_err(here)?,
+        OperationWord::Rough => {
+            let (Some(layers), Some(stock)) = (job.strategy().layers(), behind.stock()) else {
+                return Err(here(operation.refuse("kind", "a roughing needs the raw material: add [stock]")));
+            };
+            // All places are planned as one: what a direction takes in one of them is not taken again from the next.
+            let places = places.circle();
+            rough::planned(&job, whole_place, (layers, stock, places), &progress).map_err(here)?
+        }
         OperationWord::Rest => {
             let high = places.too_high(behind, &job, operation.overlap_mm)?;
             if high.places.is_empty() {
@@ -140,7 +148,10 @@ pub fn plan<'a>(
             laid(&job, part, watch, &progress).map_err(here)?.linked(&job, part).map_err(here)?
         }
     };
-    let planned = places.repeat(&job, planned).map_err(here)?;
+    let planned = match operation.kind {
+        OperationWord::Rough => planned,
+        OperationWord::Finish | OperationWord::Rest => places.repeat(&job, planned).map_err(here)?,
+    };
     let plan_s = stage.end();
     Ok(Planning::Path(Box::new(Step {
         operation,

@@ -7,17 +7,15 @@
 //! asked again with a shorter reach.
 
 mod circle;
-mod clear;
 mod course;
 mod frame;
 mod gradient;
 mod ground;
 mod height;
 mod laid;
-mod layers;
-mod pieces;
 mod planes;
 mod rims;
+mod rough;
 mod rounds;
 mod trace;
 mod wants;
@@ -25,7 +23,6 @@ mod waterline;
 
 pub use gradient::gradient_3c;
 pub use ground::DropTask;
-pub use layers::z_level;
-pub use pieces::{RoughTask, Roughing, Sizes};
 pub use planes::drop_cutter;
+pub use rough::{Entry, Heading, Headings, Places, RoughTask, Roughing, Search, Sizes, rough};
 pub use waterline::waterline_3c;

@@ -7,7 +7,6 @@
 //! cell.
 
 use super::Stock;
-use super::lattice::SIDE;
 use osculate_geom::Point3;
 
 /// A closed triangle mesh.
@@ -112,27 +111,8 @@ impl<'a> Corners<'a> {
         Point3::new(x(0), x(1), x(2))
     }
 
-    /// The stretches of the ray of a direction that runs through a corner's cell.
-    fn ray(&self, field: usize, p: &Point3) -> &[[f64; 2]] {
-        let field = &self.stock.fields[field];
-        let lattice = &field.lattice;
-        let across = lattice.others();
-        let [i, j] = [0, 1].map(|k| {
-            let at = ((p[across[k]] - lattice.origin[across[k]]) / lattice.cell[k]).floor().max(0.0);
-            (at as usize).min(lattice.count[k] - 1)
-        });
-        let wide = lattice.count[0].div_ceil(SIDE);
-        field.tiles[(j / SIDE) * wide + i / SIDE].of((j % SIDE) * SIDE + i % SIDE)
-    }
-
     fn is_inside(&self, at: [usize; 3]) -> bool {
-        let p = self.point(at);
-        let fields = self.stock.fields.len();
-        let held = (0..fields).filter(|f| {
-            let s = p[self.stock.fields[*f].lattice.axis];
-            self.ray(*f, &p).iter().any(|[a, b]| (*a..=*b).contains(&s))
-        });
-        2 * held.count() > fields
+        self.stock.is_material(&self.point(at))
     }
 
     /// Where the edge from a corner to the next along an axis leaves the material.
@@ -142,7 +122,7 @@ impl<'a> Corners<'a> {
         let own = (0..self.stock.fields.len()).find(|f| self.stock.fields[*f].lattice.axis == axis);
         // The material ends within the box, so that a ray through the next corner is one through this.
         let inner = self.point([0, 1, 2].map(|k| at[k].clamp(1, self.count[k] - 2)));
-        let ends = own.into_iter().flat_map(|f| self.ray(f, &inner).iter().flatten());
+        let ends = own.into_iter().flat_map(|f| self.stock.fields[f].ray(&inner).iter().flatten());
         let middle = 0.5 * (from + to);
         let nearest = ends
             .filter(|s| (from..=to).contains(*s))

@@ -24,6 +24,7 @@ mod glide;
 mod instant;
 mod lattice;
 mod mesh;
+mod query;
 mod rays;
 mod report;
 mod saved;

@@ -1,0 +1,238 @@
+//! Roughing against closed forms and against a dense model of heights: what is taken of a known pocket, that nothing is met in rapid or
+//! straight down, that what is cleared is not cut again, and that a leaning axis clears what an upright one cannot.
+#![allow(clippy::unwrap_used)]
+
+#[path = "common/heights.rs"]
+mod heights;
+
+use heights::{Done, Heights};
+use osculate_geom::analytic::{Placed, Placement, Plane};
+use osculate_geom::{Box3, Domain, Interval, Point3, Unit3, Vec3};
+use osculate_productivity::plan::{
+    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Search, Sizes, rough,
+};
+use osculate_tools::removal::Swept;
+use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
+use osculate_tools::{Cutter, CutterSpec};
+use std::f64::consts::PI;
+
+const SIZES: Sizes = Sizes {
+    stepdown_mm: 2.0,
+    stepover_mm: 2.4,
+    allowance_mm: 0.4,
+    ramp_rad: 0.1,
+    chord_mm: 0.01,
+    stands_mm: 0.5,
+};
+const RADIUS: f64 = 3.0;
+const FEED: f64 = 1000.0;
+
+fn flat() -> Cutter {
+    Cutter::try_from(CutterSpec::Flat { diameter_mm: 2.0 * RADIUS, length_mm: 40.0 }).unwrap()
+}
+
+fn boxed(low: [f64; 3], high: [f64; 3]) -> Box3 {
+    Box3 { min: Point3::from(low), max: Point3::from(high) }
+}
+
+fn filled(block: Box3) -> Stock {
+    let resolution = Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 };
+    Stock::fill(&Blank::Box(block), &resolution).unwrap().stock
+}
+
+/// A rectangle from a corner, along x and across the normal.
+fn rectangle(corner: [f64; 3], normal: [f64; 3], x: [f64; 3], size: [f64; 2]) -> Placed<Plane> {
+    let frame =
+        Placement::new(Point3::from(corner), Unit3::new_normalize(Vec3::from(normal)), Some(Vec3::from(x)));
+    let side = |s: f64| Interval::new(0.0, s);
+    Placed { surface: Plane::new(Domain { u: side(size[0]), v: side(size[1]) }), placement: frame }
+}
+
+/// How it is roughed.
+#[derive(Clone, Copy)]
+struct How<'a> {
+    from: Headings<'a>,
+    entry: Entry,
+    plunges: bool,
+    rate: f64,
+}
+
+impl How<'_> {
+    fn upright() -> Self {
+        let from = Headings::Along(Vec3::z_axis());
+        Self { from, entry: Entry::Auto, plunges: false, rate: f64::INFINITY }
+    }
+}
+
+fn planned(faces: &[Placed<Plane>], block: Box3, stock: &Stock, how: How<'_>) -> Result<Roughing, PlanError> {
+    let cutter = flat();
+    let links = Links {
+        obstacles: block,
+        clearance_mm: 5.0,
+        approach_mm: 1.0,
+        hop_mm: 1.0,
+        contacts: true,
+        dropped: false,
+        layer_mm: 0.0,
+        dip_mm: 0.0,
+        rates: Rates::default(),
+        cutter,
+        holder: None,
+        feed_mm_min: FEED,
+        plunge_mm_min: 0.5 * FEED,
+    };
+    let named: Vec<Named<'_>> = faces.iter().map(|f| Named { face: "F1", surface: f }).collect();
+    rough(&RoughTask {
+        faces: &named,
+        check: &[],
+        cutter: &cutter,
+        from: how.from,
+        feed: Vec3::x(),
+        stock,
+        repeat: None,
+        sizes: SIZES,
+        entry: how.entry,
+        plunges: how.plunges,
+        volume_rate_mm3_min: how.rate,
+        links: &links,
+        progress: &|_| {},
+    })
+}
+
+/// Takes from stock what a path takes; its volume and whether something was met in rapid.
+fn carved(stock: &mut Stock, plan: &Roughing) -> f64 {
+    let motions = Swept::along(&plan.linked.path);
+    let cutter = flat();
+    let job = StockJob { cutter: &cutter, uppers: &[], motions: &motions, touch_mm: 0.02 };
+    let carved = stock.carve(&job, &|_| ()).unwrap();
+    assert!(carved.collisions.is_empty(), "{:?}", carved.collisions);
+    carved.volume_mm3()
+}
+
+/// A pocket of 20 x 16, 6 deep, in a block: floor, walls and the top around.
+fn pocket() -> (Vec<Placed<Plane>>, Box3) {
+    let (floor, up) = ([-10.0, -8.0, -6.0], [0.0, 0.0, 1.0]);
+    let x = [1.0, 0.0, 0.0];
+    let faces = vec![
+        rectangle(floor, up, x, [20.0, 16.0]),
+        rectangle(floor, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [16.0, 6.0]),
+        rectangle([10.0, 8.0, -6.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [16.0, 6.0]),
+        rectangle([10.0, -8.0, -6.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [20.0, 6.0]),
+        rectangle([-10.0, 8.0, -6.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [20.0, 6.0]),
+        rectangle([-16.0, -14.0, 0.0], up, x, [32.0, 6.0]),
+        rectangle([-16.0, 8.0, 0.0], up, x, [32.0, 6.0]),
+        rectangle([-16.0, -8.0, 0.0], up, x, [6.0, 16.0]),
+        rectangle([10.0, -8.0, 0.0], up, x, [6.0, 16.0]),
+    ];
+    (faces, boxed([-16.0, -14.0, -8.0], [16.0, 14.0, 0.0]))
+}
+
+fn heights_of(block: Box3, plan: &Roughing) -> Done {
+    Heights::of(&block, RADIUS).run(&plan.linked.path, SIZES.ramp_rad)
+}
+
+/// What may be met straight down: slivers that the layers leave on purpose.
+const SLIVER: f64 = 0.05;
+
+/// Less the allowance all around, with the tool's radius in the corners, down to the allowance on the floor.
+#[test]
+fn a_pocket_is_taken_by_its_volume() {
+    let (faces, block) = pocket();
+    let stock = filled(block);
+    let a = SIZES.allowance_mm;
+    let area = (20.0 - 2.0 * a) * (16.0 - 2.0 * a) - (4.0 - PI) * RADIUS * RADIUS;
+    let want = area * (6.0 - a);
+    {
+        for entry in [Entry::Auto, Entry::Helix, Entry::Ramp] {
+            let how = How { entry, ..How::upright() };
+            let plan = planned(&faces, block, &stock, how).unwrap_or_else(|e| panic!("{entry:?}: {e}"));
+            let done = heights_of(block, &plan);
+            assert!((done.taken_mm3 / want - 1.0).abs() < 0.02, "{entry:?}: {done:?}, {want}");
+            assert!(done.rapid_mm < 1e-6, "{entry:?}: {done:?}");
+            assert!(done.dive_mm < SLIVER, "{entry:?}: {done:?}");
+            let told: f64 = plan.headings.iter().map(|h| h.volume_mm3).sum();
+            assert!((told / want - 1.0).abs() < 0.05, "{told} {want}");
+
+            // Nothing of it is left for the same again.
+            let mut rest = stock.clone();
+            let taken = carved(&mut rest, &plan);
+            assert!((taken / want - 1.0).abs() < 0.02, "{taken} {want}");
+            match planned(&faces, block, &rest, how) {
+                Err(PlanError::Nothing { .. }) => {}
+                Ok(again) => {
+                    let more = carved(&mut rest.clone(), &again);
+                    assert!(more < 0.01 * want, "{more} {want}");
+                }
+                Err(e) => panic!("{e}"),
+            }
+        }
+    }
+}
+
+/// From outside nothing leads into it; straight down a tool goes that may.
+#[test]
+fn a_closed_pocket_needs_a_way_in() {
+    let (faces, block) = pocket();
+    let stock = filled(block);
+    let how = How { entry: Entry::Outside, ..How::upright() };
+    assert!(matches!(planned(&faces, block, &stock, how), Err(PlanError::Nothing { .. })));
+    let how = How { plunges: true, ..How::upright() };
+    let plan = planned(&faces, block, &stock, how).unwrap();
+    assert!(heights_of(block, &plan).rapid_mm < 1e-6);
+}
+
+/// No more is taken in a minute than the job allows, and without a limit more is.
+#[test]
+fn the_feed_follows_the_volume_rate() {
+    let (faces, block) = pocket();
+    let stock = filled(block);
+    {
+        let most = 2500.0;
+        let free = heights_of(block, &planned(&faces, block, &stock, How::upright()).unwrap());
+        let how = How { rate: most, ..How::upright() };
+        let held = heights_of(block, &planned(&faces, block, &stock, how).unwrap());
+        assert!(free.rate_mm3_min > 1.5 * most, "{free:?}");
+        // Sections are known to a node, a seventh of the tool's radius.
+        assert!(held.rate_mm3_min < 1.15 * most, "{held:?}");
+        assert!((held.taken_mm3 / free.taken_mm3 - 1.0).abs() < 0.01, "{held:?} {free:?}");
+    }
+}
+
+/// A face that leans over a floor: what lies under it an upright tool does not reach, a leaning one does.
+#[test]
+fn a_leaning_axis_clears_under_an_overhang() {
+    let (reach, high, long) = (9.0_f64, 12.0, 16.0);
+    let slant = reach.hypot(high);
+    let faces = vec![
+        rectangle([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [24.0, long]),
+        rectangle([0.0, long, 0.0], [high, 0.0, -reach], [reach, 0.0, high], [slant, long]),
+        rectangle([0.0, 0.0, high], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [reach, long]),
+    ];
+    let block = boxed([0.0, 0.0, -1.0], [24.0, long, high]);
+    let stock = filled(block);
+    let lean = Unit3::new_normalize(Vec3::new(reach, 0.0, high));
+    let under = 0.5 * reach * high * long;
+
+    let mut upright = stock.clone();
+    let plan = planned(&faces, block, &stock, How::upright()).unwrap();
+    let first = carved(&mut upright, &plan);
+    // It comes no nearer than its radius beside the upper edge, and to the allowance over the floor.
+    let a = SIZES.allowance_mm;
+    assert!(first < (24.0 - reach) * long * (high - a), "{first}");
+
+    let how = How { from: Headings::Along(lean), ..How::upright() };
+    let plan = planned(&faces, block, &upright, how).unwrap();
+    let mut both = upright.clone();
+    let second = carved(&mut both, &plan);
+    assert!(second > 0.6 * under, "{second} {under}");
+
+    // Both are found, with the upright one as good as any to begin with, and nothing worth it is left.
+    let candidates = [Vec3::z_axis(), Vec3::x_axis(), lean];
+    let search = Search { candidates: &candidates, most: 5, least_share: 0.02 };
+    let how = How { from: Headings::Found(search), ..How::upright() };
+    let plan = planned(&faces, block, &stock, how).unwrap();
+    let mut found = stock.clone();
+    let all = carved(&mut found, &plan);
+    assert!(all > 0.97 * (first + second), "{all} {first} {second}");
+    assert!(plan.headings.len() <= 3, "{:?}", plan.headings);
+}
