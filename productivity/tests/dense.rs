@@ -13,10 +13,11 @@ mod cutting;
 use osculate_geom::analytic::{Paraboloid, Sphere, Torus};
 use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Along, DropTask, Links, Named, Pass, Passes, PlanError, Rates, RoughTask, Sizes, Strategy, Task,
-    Tolerance, drop_cutter, gradient_3c, run, z_level,
+    Along, DropTask, Entry, Headings, Links, Named, Pass, Passes, PlanError, Rates, RoughTask, Sizes,
+    Strategy, Task, Tolerance, drop_cutter, gradient_3c, rough, run,
 };
 use osculate_tools::removal::Swept;
+use osculate_tools::removal::stock::{Blank, Resolution, Stock};
 use osculate_tools::{Cutter, CutterSpec, Lean};
 use rayon::prelude::*;
 
@@ -193,8 +194,14 @@ fn dropped_cutters_on_a_saddle() {
 #[test]
 fn roughing_keeps_its_allowance() {
     let saddle = Paraboloid::new([0.02, -0.03], 8.0).unwrap();
-    let sizes =
-        Sizes { stepdown_mm: 1.5, stepover_mm: 2.0, allowance_mm: 0.4, ramp_rad: 0.1, chord_mm: 0.01 };
+    let sizes = Sizes {
+        stepdown_mm: 1.5,
+        stepover_mm: 2.0,
+        allowance_mm: 0.4,
+        ramp_rad: 0.1,
+        chord_mm: 0.01,
+        stands_mm: 0.5,
+    };
     let blank = Box3 { min: Point3::new(-9.0, -9.0, -4.0), max: Point3::new(9.0, 9.0, 3.0) };
     let links = Links {
         obstacles: blank,
@@ -211,14 +218,20 @@ fn roughing_keeps_its_allowance() {
         feed_mm_min: 1000.0,
         plunge_mm_min: 400.0,
     };
-    let rough = z_level(&RoughTask {
+    let resolution = Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 };
+    let stock = Stock::fill(&Blank::Box(blank), &resolution).unwrap().stock;
+    let rough = rough(&RoughTask {
         faces: &[Named { face: "F1", surface: &saddle }],
         check: &[],
         cutter: &TOROIDAL.cutter(),
-        axis: Vec3::z_axis(),
+        from: Headings::Along(Vec3::z_axis()),
         feed: Vec3::x(),
-        blank,
+        stock: &stock,
+        repeat: None,
         sizes,
+        entry: Entry::Auto,
+        plunges: false,
+        volume_rate_mm3_min: f64::INFINITY,
         links: &links,
         progress: &|_| {},
     })

@@ -257,8 +257,10 @@ fn operations_are_judged_when_they_end() {
             roughing_mm: None,
             control: GoalControl::default(),
         };
-        let steps =
-            [GoalStep { goal: own(1), motions: 0..first }, GoalStep { goal: own(2), motions: first..all }];
+        let steps = [
+            GoalStep { goal: own(1), from: 0, motions: 0..first },
+            GoalStep { goal: own(2), from: first, motions: first..all },
+        ];
         let wrong = prove_in_steps(goal, program, (&[all, first], &steps), &|_| ());
         assert!(matches!(wrong, Err(ProveError::Stops { .. })));
         prove_in_steps(goal, program, (&[first, all], &steps), &|_| ()).unwrap()
