@@ -21,6 +21,8 @@ const STEPS: usize = 8;
 const BENEATH: u32 = 4;
 /// ... and places in it that are looked at, at most.
 const LOOKS: usize = 128;
+/// A face is off a chord of it by so many times what it is off its middle at most.
+const BEND: f64 = 2.0;
 /// What is said to be deep may be this share of the limit less.
 const CLOSE: f64 = 0.02;
 /// Depths below this share of the limit are left as they seem.
@@ -40,6 +42,13 @@ pub fn beside_edges(
 ) -> Vec<bool> {
     let edges = Edges::new(surfaces, samples, apart_mm);
     samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
+}
+
+/// The nearest place of other faces that was found: how far it is, and the face and place on it.
+#[derive(Clone, Copy, Debug)]
+struct Foot {
+    mm: f64,
+    on: Option<(u32, Uv)>,
 }
 
 /// Of each box of space the samples in it: face and place on it.
@@ -84,6 +93,11 @@ impl<'a> Edges<'a> {
 
     /// The distance of a point from faces other than one of them, as far as it is found; looking ends where it is below `enough_mm`.
     fn distance_mm(&self, q: &Point3, face: u32, enough_mm: f64) -> f64 {
+        self.foot(q, face, enough_mm).mm
+    }
+
+    /// The nearest place of faces other than one of them, in the same way.
+    fn foot(&self, q: &Point3, face: u32, enough_mm: f64) -> Foot {
         let [x, y, z] = self.key(q);
         let hints = self.hints();
         // Of each face around, the nearest sample.
@@ -104,38 +118,59 @@ impl<'a> Edges<'a> {
             }
         }
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut least = f64::INFINITY;
+        let mut least = Foot { mm: f64::INFINITY, on: None };
         for (away, other, at) in near {
-            least = least.min(away).min(nearest_mm(self.surfaces[other as usize], at, q));
-            if least < enough_mm {
+            let found = nearest(self.surfaces[other as usize], at, q);
+            for (mm, at) in [(away, at), found] {
+                if mm < least.mm {
+                    least = Foot { mm, on: Some((other, at)) };
+                }
+            }
+            if least.mm < enough_mm {
                 break;
             }
         }
         least
     }
 
+    /// The greatest depth between two depths along the normal, with their feet. Over the depth t the depth is that of `min(t, d(t))`. d, a
+    /// distance, changes no faster than t: it is nowhere more than half of the sum of both and of the way between them. Where both feet
+    /// are on one face the points of the chord between these are no farther than the farther of the two, and the face is off the
+    /// chord by no more than twice what it is off its middle, if it bends about evenly.
+    fn most_mm(&self, [a, b]: [&(f64, Foot); 2]) -> f64 {
+        let slow = 0.5 * (a.1.mm + b.1.mm + b.0 - a.0);
+        let beside = match (a.1.on, b.1.on) {
+            (Some((face, from)), Some((other, to))) if face == other => {
+                let surface = self.surfaces[face as usize];
+                let (p, q) = (surface.point(from), surface.point(to));
+                let middle = p + 0.5 * (q - p);
+                let start = Uv { u: 0.5 * (from.u + to.u), v: 0.5 * (from.v + to.v) };
+                a.1.mm.max(b.1.mm) + BEND * nearest(surface, start, &middle).0
+            }
+            _ => f64::INFINITY,
+        };
+        b.0.min(slow).min(beside)
+    }
+
     /// How deep the deepest point beneath a sample is that was taken, where the tool went so far along its normal: no less, and more by
-    /// a share of the limit at most, as long as looks suffice. Over the depth t along the normal the depth is that of `min(t, d(t))`, and d, a
-    /// distance, changes no faster than t: between two places it is nowhere more than half of the sum of their distances and
-    /// of the way between them.
+    /// a share of the limit at most, as long as looks suffice.
     fn depth_mm(&self, s: &Sample, along_mm: f64, limit_mm: f64) -> f64 {
-        let distance = |t: f64| self.distance_mm(&(s.point - s.normal.into_inner() * t), s.face, 0.0);
-        let most = |[a, b]: [(f64, f64); 2]| b.0.min(0.5 * (a.1 + b.1 + b.0 - a.0));
-        let at = |k: u32| along_mm * f64::from(k) / f64::from(BENEATH);
-        let places: Vec<(f64, f64)> = (0..=BENEATH).map(|k| (at(k), distance(at(k)))).collect();
-        let mut pieces: Vec<[(f64, f64); 2]> = places.windows(2).map(|w| [w[0], w[1]]).collect();
-        let mut found = places.iter().map(|p| p.0.min(p.1)).fold(0.0, f64::max);
+        let look = |t: f64| (t, self.foot(&(s.point - s.normal.into_inner() * t), s.face, 0.0));
+        let places: Vec<(f64, Foot)> =
+            (0..=BENEATH).map(|k| look(along_mm * f64::from(k) / f64::from(BENEATH))).collect();
+        let piece = |a: (f64, Foot), b: (f64, Foot)| (self.most_mm([&a, &b]), a, b);
+        let mut pieces: Vec<_> = places.windows(2).map(|w| piece(w[0], w[1])).collect();
+        let mut found = places.iter().map(|p| p.0.min(p.1.mm)).fold(0.0, f64::max);
         for _ in places.len()..LOOKS {
-            let highest = (0..pieces.len()).max_by(|a, b| most(pieces[*a]).total_cmp(&most(pieces[*b])));
-            let Some(k) = highest.filter(|k| most(pieces[*k]) > found + CLOSE * limit_mm) else { break };
-            let [a, b] = pieces[k];
-            let t = 0.5 * (a.0 + b.0);
-            let middle = (t, distance(t));
-            found = found.max(t.min(middle.1));
-            pieces[k] = [a, middle];
-            pieces.push([middle, b]);
+            let highest = (0..pieces.len()).max_by(|a, b| pieces[*a].0.total_cmp(&pieces[*b].0));
+            let Some(k) = highest.filter(|k| pieces[*k].0 > found + CLOSE * limit_mm) else { break };
+            let (_, a, b) = pieces[k];
+            let middle = look(0.5 * (a.0 + b.0));
+            found = found.max(middle.0.min(middle.1.mm));
+            pieces[k] = piece(a, middle);
+            pieces.push(piece(middle, b));
         }
-        pieces.iter().map(|p| most(*p)).fold(found, f64::max)
+        pieces.iter().map(|p| p.0).fold(found, f64::max)
     }
 
     /// Measures anew what seems deeper than a share of a limit.
@@ -151,9 +186,9 @@ impl<'a> Edges<'a> {
     }
 }
 
-/// The distance of a point from the place of a face that Newton's method comes to from a place near it; infinite where that is
-/// not on the face.
-fn nearest_mm(surface: &dyn Surface, from: Uv, q: &Point3) -> f64 {
+/// The distance of a point from the place of a face that Newton's method comes to from a place near it, and that place; infinite where
+/// it is not on the face.
+fn nearest(surface: &dyn Surface, from: Uv, q: &Point3) -> (f64, Uv) {
     let domain = surface.domain();
     let mut at = from;
     for _ in 0..STEPS {
@@ -171,13 +206,13 @@ fn nearest_mm(surface: &dyn Surface, from: Uv, q: &Point3) -> f64 {
         }
         at = next;
     }
-    if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }
+    (if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }, at)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use osculate_geom::analytic::{Placed, Placement, Plane};
+    use osculate_geom::analytic::{Cylinder, Placed, Placement, Plane};
     use osculate_geom::{Domain, Interval, Vec3, uv};
     use proptest::prelude::*;
 
@@ -218,10 +253,46 @@ mod tests {
             let beneath = |t: f64| t.min((e * sin - t * cos).abs());
             let want = (0..=20_000).map(|k| beneath(along * f64::from(k) / 2e4)).fold(0.0, f64::max);
             prop_assert!(found >= want - 1e-9, "{found} of {want}");
-            // Looks suffice for limits that are not much less than what was taken.
-            if along < 4.0 * limit {
-                prop_assert!(found <= want + CLOSE * limit + 1e-9, "{found} of {want}");
+            prop_assert!(found <= want + CLOSE * limit + 1e-9, "{found} of {want}");
+        }
+    }
+
+    /// A flat end goes flush over a face, round or not, and far beyond its edge: beneath the rim of the wall nothing is taken, however far
+    /// that goes along the wall's normal.
+    #[test]
+    fn what_is_flush_is_not_deep() {
+        let i = Interval::new(0.0, 6.0);
+        let flat = Plane::new(Domain { u: i, v: i });
+        let round = Cylinder::new(20.0, i).unwrap();
+        // The wall x = 0 below the plane, and that across the cylinder at its end.
+        let down = Placement::new(Point3::origin(), -Vec3::x_axis(), Some(-Vec3::z()));
+        let wall = Placed { surface: flat, placement: down };
+        let end = Plane::new(Domain { u: Interval::new(-20.0, 20.0), v: Interval::new(-20.0, 20.0) });
+        for (other, own, normal, rim) in [
+            (&flat as &dyn Surface, &wall as &dyn Surface, -Vec3::x_axis(), Point3::new(0.0, 3.0, 0.0)),
+            (&round, &end, -Vec3::z_axis(), Point3::new(20.0, 0.0, 0.0)),
+        ] {
+            let surfaces = [own, other];
+            let d = other.domain();
+            let mut samples = Vec::new();
+            for k in 0..=120 {
+                for j in 0..=120 {
+                    let at = d.at(f64::from(k) / 120.0, f64::from(j) / 120.0);
+                    let jet = other.jet2(at);
+                    samples.push(Sample {
+                        point: jet.point,
+                        normal,
+                        face: 1,
+                        uv: at,
+                        area_mm2: 0.01,
+                        check_only: false,
+                    });
+                }
             }
+            let s =
+                Sample { point: rim, normal, face: 0, uv: uv(0.0, 0.0), area_mm2: 0.01, check_only: false };
+            let found = Edges::new(&surfaces, &samples, 1.5).depth_mm(&s, 4.0, 0.01);
+            assert!(found <= CLOSE * 0.01, "{found}");
         }
     }
 }
