@@ -124,9 +124,11 @@ fn a_fillet_is_cleared_by_smaller_and_smaller_balls() {
     }
     // The block is 6 mm high; the roughing leaves its allowance at least.
     assert!(on(0, "before", "fillet")[0] > 4.0 && on(0, "after", "floor")[0] > 0.39);
-    // The ball of 8 mm leaves what it does not come into. Its passes may stay off both planes by the scallop, not more.
+    // The ball of 8 mm leaves what it does not come into. Its passes lie to both sides of the middle of the fillet, and may stay off either
+    // plane by the scallop there: off both by twice that, not more.
     let (least, [_, from]) = closed_form(4.0, 0.0, SCALLOP_MM);
-    let (most, [fillet, to]) = closed_form(4.0, SCALLOP_MM, SCALLOP_MM);
+    let (most, [_, to]) = closed_form(4.0, 2.0 * SCALLOP_MM, SCALLOP_MM);
+    let (_, [fillet, _]) = closed_form(4.0, SCALLOP_MM, SCALLOP_MM);
     let [high, area] = on(1, "after", "fillet");
     assert!(high > least - 1e-3 && high < most, "{least} {high} {most}");
     assert!((area - fillet * LONG_MM).abs() < 0.01 * area, "{area} {}", fillet * LONG_MM);

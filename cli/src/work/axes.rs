@@ -17,8 +17,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Axes of a machine with one rotary joint are tried so far apart, rad.
 const LINE_RAD: f64 = 0.02;
-/// Share of the gouge tolerance that axes may use: chords and words need the rest.
+/// Share of the gouge tolerance that axes may use: chords and words need the rest, and they need more next to the least lean, which a
+/// ball does not keep to.
 const ACCEPTED: f64 = 0.3;
+const ACCEPTED_OF_BALLS: f64 = 0.6;
 /// Axes lean off the normal by a right angle less this at most, rad.
 const UPRIGHT_RAD: f64 = 0.035;
 /// A flat bottom leans so much at least, rad: else it rubs where it should cut.
@@ -151,11 +153,12 @@ fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surroundings
     fn named(all: &[LoadedFace]) -> Vec<Named<'_>> {
         all.iter().map(|f| Named { face: &f.id, surface: &*f.surface }).collect()
     }
+    let accepted = if cutter.is_ball() { ACCEPTED_OF_BALLS } else { ACCEPTED };
     let around = Around {
         faces: &named(&faces.faces),
         check: &named(&faces.check),
         cutter,
-        gouge_mm: ACCEPTED * job.tolerance().gouge_mm,
+        gouge_mm: accepted * job.tolerance().gouge_mm,
     };
     Surroundings::of(&around).map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))
 }

@@ -6,7 +6,7 @@ use super::joints::Joints;
 use super::lattice::{Feed, Lattice, Node};
 use super::rim::Rim;
 use super::search::{Asked, Possible, Search};
-use super::settle::settle;
+use super::settle::{Leaning, settle};
 use crate::plan::extended::Extended;
 use crate::width::WIDEST;
 use osculate_geom::{Point3, Surface, Unit3, Uv};
@@ -223,7 +223,7 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
             &mut field,
             (&face, rough.then_some(look_mm)),
             (&between, wish.scallop_mm),
-            (&clear, &held),
+            (&clear, &held, if cutter.is_ball() { Leaning::Any } else { Leaning::Least }),
         );
         let unreached = unreached.clone();
         Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, between.len()] })

@@ -40,6 +40,8 @@ const WAYS_BEGUN: usize = 8;
 const APART: f64 = 0.35;
 /// Steps of nodes, rad, and most sweeps with one of them.
 const STEPS: [f64; 8] = [0.16, 0.08, 0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125];
+/// As many of them as a ball needs.
+const OF_BALLS: usize = 6;
 /// Steps after which only the best start goes on; sweeps after which the best few do, and how many these are.
 const COARSE: usize = 2;
 const SWEEPS: usize = 16;
@@ -377,7 +379,9 @@ impl<'a> Search<'a> {
         });
         let relaxed: Vec<(f64, Vec<Unit3>)> = relaxed.collect();
         let (_, mut axes) = relaxed.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
-        self.relax(&mut axes, &STEPS[COARSE..], SWEEPS);
+        // A ball's strip says nothing of the last ones.
+        let last = if self.asked.cutter.is_ball() { OF_BALLS } else { STEPS.len() };
+        self.relax(&mut axes, &STEPS[COARSE..last], SWEEPS);
         Some(axes)
     }
 }

@@ -14,6 +14,8 @@ use std::f64::consts::PI;
 const ROUNDS: u32 = 30;
 /// Rings around an axis that is not clear, rad: the spacing of directions and what is finer.
 const RINGS: [f64; 9] = [0.001, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.12, 0.16];
+/// So many of them are finer than a ball needs.
+const FINER: usize = 2;
 /// Axes on a ring.
 const AROUND: usize = 12;
 /// Halvings between an axis that is not clear and one on a ring that is.
@@ -43,7 +45,7 @@ struct Asked {
 
 impl Asked {
     /// Whether the tool is clear with an axis; if not, the nearest with which it is becomes known.
-    fn is_clear(&mut self, axis: &Unit3, (clear, held): (&Clear<'_>, &Held<'_>)) -> bool {
+    fn is_clear(&mut self, axis: &Unit3, (clear, held, leaning): How<'_>) -> bool {
         if self.clear.is_some_and(|last| last.angle(axis) < SAME) {
             return true;
         }
@@ -53,8 +55,13 @@ impl Asked {
             return true;
         }
         if self.known.is_none_or(|(from, _)| from.angle(axis) > KNOWN) {
-            let next = raised(&self.normal, axis, held, &is_clear);
-            self.known = Some((*axis, next.or_else(|| nearest_clear(axis, held, &is_clear))));
+            let next = match leaning {
+                Leaning::Least => raised(&self.normal, axis, held, &is_clear).or_else(|| {
+                    between(axis, &nearest_clear(axis, &RINGS, held, &is_clear)?, held, &is_clear)
+                }),
+                Leaning::Any => nearest_clear(axis, &RINGS[FINER..], held, &is_clear),
+            };
+            self.known = Some((*axis, next));
         }
         false
     }
@@ -78,6 +85,17 @@ pub(super) type Clear<'a> = dyn Fn(&Point3, &Unit3, &Unit3) -> bool + Sync + 'a;
 /// Brings an axis to where the joints can take it.
 pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 
+/// How far an axis that is not clear is brought from where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Leaning {
+    /// As little as is clear: the strips of flat and toroidal ends are widest there.
+    Least,
+    /// To a ring where it is: a ball's strip is the same at any lean, and it is better farther off.
+    Any,
+}
+
+type How<'a> = (&'a Clear<'a>, &'a Held<'a>, Leaning);
+
 /// Moves the poles of a field until the tool is clear at places of a face; how many of them it is not at.
 ///
 /// `held` brings an axis to where the joints can take it. A place at which no axis near the field's is clear is asked with the tool
@@ -86,9 +104,8 @@ pub(super) fn settle(
     field: &mut AxisField,
     (face, look_mm): (&Extended<'_>, Option<f64>),
     (places, lift_mm): (&[Uv], f64),
-    (clear, held): (&Clear<'_>, &Held<'_>),
+    how: How<'_>,
 ) -> usize {
-    let how = (clear, held);
     let mut all: Vec<Asked> = places
         .par_iter()
         .filter_map(|at| {
@@ -143,14 +160,15 @@ pub(super) fn settle(
         } else {
             asked = (0..all.len()).collect();
         }
-        move_poles(field, short.iter().flatten());
+        let least = if how.2 == Leaning::Least { LEAST_WEIGHT } else { 0.0 };
+        move_poles(field, short.iter().flatten(), least);
     }
     field.spline.poles = best.1;
     best.0
 }
 
 /// Moves the poles around places by the mean of what these lack, as they weigh there.
-fn move_poles<'a>(field: &mut AxisField, short: impl Iterator<Item = &'a Short>) {
+fn move_poles<'a>(field: &mut AxisField, short: impl Iterator<Item = &'a Short>, least_weight: f64) {
     let n = field.spline.poles.len();
     let mut sums = vec![(Vec3::zeros(), 0.0); n];
     for s in short {
@@ -164,7 +182,7 @@ fn move_poles<'a>(field: &mut AxisField, short: impl Iterator<Item = &'a Short>)
     }
     for (pole, (sum, all)) in field.spline.poles.iter_mut().zip(sums) {
         if all > 0.0 {
-            let moved = *pole + sum / all.max(LEAST_WEIGHT) * (1.0 + BEYOND);
+            let moved = *pole + sum / all.max(least_weight) * (1.0 + BEYOND);
             *pole = moved / moved.norm().max(f64::MIN_POSITIVE);
         }
     }
@@ -201,20 +219,29 @@ fn raised(normal: &Unit3, axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) 
 }
 
 /// The nearest clear axis on rings around one.
-fn nearest_clear(axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) -> bool) -> Option<Unit3> {
+fn nearest_clear(
+    axis: &Unit3,
+    rings: &[f64],
+    held: &Held<'_>,
+    clear: &dyn Fn(&Unit3) -> bool,
+) -> Option<Unit3> {
     let x = any_perpendicular(axis);
     let y = axis.cross(&x);
-    let found = RINGS.iter().find_map(|ring| {
+    rings.iter().find_map(|ring| {
         (0..AROUND)
             .map(|k| {
                 let (s, c) = (2.0 * PI * k as f64 / AROUND as f64).sin_cos();
                 held(Unit3::new_normalize(axis.into_inner() + (x.into_inner() * c + y * s) * ring.tan()))
             })
             .find(|a| clear(a))
-    })?;
-    let (mut bad, mut good) = (*axis, found);
+    })
+}
+
+/// The axis nearest to one that is not clear, on the way to one that is.
+fn between(bad: &Unit3, good: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) -> bool) -> Option<Unit3> {
+    let (mut bad, mut good) = (*bad, *good);
     for _ in 0..HALVINGS {
-        let middle = held(Unit3::new_normalize(bad.into_inner() + good.into_inner()));
+        let middle = held(Unit3::try_new(bad.into_inner() + good.into_inner(), 1e-9)?);
         if clear(&middle) { good = middle } else { bad = middle }
     }
     Some(good)

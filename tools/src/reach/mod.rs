@@ -16,14 +16,15 @@
 //! use osculate_tools::reach::{
 //!     Directions, ObstacleKind, ObstaclePoint, Obstacles, Place, Reach, ReachLimits, ReachProblem, Tool,
 //! };
-//! use osculate_tools::{Cutter, CutterSpec};
+//! use osculate_tools::{Cutter, CutterSpec, Holder};
 //! // A wall 20 mm high, 5 mm beside the place.
 //! let lattice = (-40..=40).flat_map(|i| (0..=40).map(move |j| (0.5 * f64::from(i), 0.5 * f64::from(j))));
 //! let wall = lattice.map(|(y, z)| Point3::new(5.0, y, z));
 //! let obstacles =
 //!     Obstacles::new(wall.map(|point| ObstaclePoint { point, owner: 0, kind: ObstacleKind::Part }))?;
 //! let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 25.0 })?;
-//! let tool = Tool::new(cutter, Some(Cutter::cylinder(30.0, 50.0)?));
+//! let holder = Holder::cylinder(30.0, 50.0)?;
+//! let tool = Tool::new(cutter, Some(&holder));
 //! let limits = ReachLimits {
 //!     gouge_mm: 0.01,
 //!     clearance_mm: 1.0,

@@ -1,6 +1,6 @@
 //! Passes by their ends: what it takes to go from one to another, and which is reached soonest.
 
-use super::links::{Links, STRAIGHT};
+use super::links::{GRAZING, Links, STRAIGHT};
 use super::near::Places;
 use super::rates::Step;
 use super::ways::Finder;
@@ -141,7 +141,7 @@ impl<'a> Ends<'a> {
         let l = self.links;
         let step = Step { length_mm: (b.tip - a.tip).norm(), turn_rad: a.axis.angle(&b.axis) };
         let fed = if step.length_mm <= STRAIGHT * l.cutter.radius_mm() {
-            l.rates.feed_min(Step { length_mm: l.grazed_mm(step), ..step }, l.plunge_mm_min)
+            l.rates.feed_min(Step { length_mm: l.grazed_mm(step), ..step }, GRAZING * l.plunge_mm_min)
         } else {
             l.rates.feed_min(step, l.feed_mm_min) + 2.0 * l.hop_mm / l.feed_mm_min
         };

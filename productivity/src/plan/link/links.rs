@@ -54,6 +54,8 @@ impl Links {
     }
 }
 
+/// What touches goes on ways along the surface at this part of the feed of plunges: teeth mark the crests that are crossed.
+pub(super) const GRAZING: f64 = 0.5;
 /// Ways straight along the surface are no longer than so many radii.
 pub(super) const STRAIGHT: f64 = 2.0;
 /// Distance of the points along passes that stand for the part, in radii of the cutter.

@@ -1,6 +1,6 @@
 //! Orders against all orders that there are, and against what is plain to see.
 
-use super::links::STRAIGHT;
+use super::links::{GRAZING, STRAIGHT};
 use super::*;
 use crate::plan::Stretches;
 use osculate_geom::{Box3, Point3, Vec3, uv};
@@ -120,7 +120,7 @@ proptest! {
             // As `min`, from end to end; a way of two passes alone takes what it takes among others.
             ends.windows(2).map(|w| (w[1][0].point - w[0][1].point).norm()).map(|far| {
                 let l = links();
-                let fed = if far > STRAIGHT * RADIUS { (far + 2.0 * l.hop_mm) / l.feed_mm_min } else { far / l.plunge_mm_min };
+                let fed = if far > STRAIGHT * RADIUS { (far + 2.0 * l.hop_mm) / l.feed_mm_min } else { far / (GRAZING * l.plunge_mm_min) };
                 let over = l.approach_mm / l.feed_mm_min + l.approach_mm / l.plunge_mm_min;
                 fed.min(over + l.rates.rapid_min(rates::Step { length_mm: far, turn_rad: 0.0 }))
             }).sum::<f64>()

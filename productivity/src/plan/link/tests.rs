@@ -150,7 +150,7 @@ fn a_hop_keeps_off_a_wall_that_is_not_machined() {
         cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 }).unwrap(),
         holder: None,
         feed_mm_min: 5000.0,
-        plunge_mm_min: 5000.0,
+        plunge_mm_min: 10000.0,
     };
     // A thin wall on the plane x = 0, between the first two passes.
     let joined = |height: f64, clearance: f64| {

@@ -6,7 +6,7 @@
 
 use super::kept::{Around, Kept};
 use super::left::Left;
-use super::links::{Links, STRAIGHT};
+use super::links::{GRAZING, Links, STRAIGHT};
 use super::rates::Step;
 use super::tree::Dots;
 use super::walls::Walls;
@@ -241,14 +241,14 @@ impl<'a> Finder<'a> {
     }
 
     /// Straight along the surface: the tool cuts there, across the passes, where teeth mark the crests between them more than those of
-    /// the passes do; what touches goes no faster than into material.
+    /// the passes do; what touches goes slower than into material.
     fn grazing(&self, poses: &[Pose]) -> Way {
         let mut way = Way { clear: true, ..Way::default() };
         for w in poses.windows(2) {
             let whole = step(&w[0], &w[1]);
             let share = whole.length_mm / self.links.grazed_mm(whole).max(f64::MIN_POSITIVE);
             if whole.length_mm > 0.0 {
-                self.fed(&mut way, (&w[0], &w[1]), share * self.links.plunge_mm_min);
+                self.fed(&mut way, (&w[0], &w[1]), share * GRAZING * self.links.plunge_mm_min);
             }
         }
         way
