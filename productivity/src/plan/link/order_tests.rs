@@ -22,7 +22,7 @@ fn links() -> Links {
         cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 }).unwrap(),
         holder: None,
         feed_mm_min: 1500.0,
-        plunge_mm_min: 750.0,
+        plunge_mm_min: 3000.0,
         rates: Rates::default(),
     }
 }

@@ -103,7 +103,7 @@ fn a_hop_rises_by_no_more_than_is_clear() {
         cutter,
         holder: None,
         feed_mm_min: 5000.0,
-        plunge_mm_min: 2500.0,
+        plunge_mm_min: 10000.0,
     };
     // Of the hop from the first pass to the second.
     let top = |linked: &Linked| {
