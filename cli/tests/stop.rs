@@ -65,8 +65,8 @@ fn a_stopped_plan_says_how_far_it_came_and_leaves_no_half_file() {
         assert_eq!(code, Some(1), "{message}");
         let (name, percent) = stage(&message);
         assert!((0.0..=100.0).contains(&percent), "{message}");
-        // A slow machine may be at another stage; what it says must fit what is there.
-        if ["start", "import", "plan"].contains(&name.as_str()) {
+        // A slow machine may be at another stage; what it says must fit what is there. Where the plan ends either may be so.
+        if name == "start" || name == "import" || name == "plan" && left.is_empty() {
             assert!(message.contains("nothing was written") && left.is_empty(), "{message} {left:?}");
             continue;
         }

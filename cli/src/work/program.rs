@@ -82,16 +82,17 @@ impl Posted {
     ) -> Result<Self, Failure> {
         let control = job.control().clone();
         let control_notes = job.control_notes();
-        let stage = Stage::begin(watch, "post");
         let cl = passes::cl_path(job, &planned.linked);
-        let along = Along { path: &cl, axes: &axes_of(planned) };
-        let (base, mut setup_notes) = setup::of(job, faces, Some(along));
         let title = passes::title(job);
         let cl_text = nc::cl_text(&cl, job.tool().number(), &title).map_err(Failure::job)?;
+        // Before the stage is named, so that a run stopped in it has a path to save.
         if watch.wants_partial() {
             let text = cl_text.clone();
             watch.partial(Box::new(move || Ok(text)), "the whole path".to_owned());
         }
+        let stage = Stage::begin(watch, "post");
+        let along = Along { path: &cl, axes: &axes_of(planned) };
+        let (base, mut setup_notes) = setup::of(job, faces, Some(along));
         let options = nc::job_options(job, &control, &title);
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
             let program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
