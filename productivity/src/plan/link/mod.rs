@@ -29,6 +29,7 @@ pub use order::ordered;
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 pub use rates::Rates;
+pub(in crate::plan) use rates::Step;
 use rayon::prelude::*;
 pub use walls::{Keeping, Walls};
 use ways::{Finder, Way};

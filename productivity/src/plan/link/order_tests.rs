@@ -55,7 +55,7 @@ fn min(passes: &[Pass]) -> f64 {
             let length_mm = (w[1].pose.tip - w[0].pose.tip).norm();
             match w[1].motion {
                 Motion::Feed(feed) => length_mm / feed,
-                Motion::Rapid => links().rates.rapid_min(rates::Step { length_mm, turn_rad: 0.0 }),
+                Motion::Rapid => links().rates.rapid_min(Step { length_mm, turn_rad: 0.0 }),
             }
         })
         .sum()
@@ -122,7 +122,7 @@ proptest! {
                 let l = links();
                 let fed = if far > STRAIGHT * RADIUS { (far + 2.0 * l.hop_mm) / l.feed_mm_min } else { far / (GRAZING * l.plunge_mm_min) };
                 let over = l.approach_mm / l.feed_mm_min + l.approach_mm / l.plunge_mm_min;
-                fed.min(over + l.rates.rapid_min(rates::Step { length_mm: far, turn_rad: 0.0 }))
+                fed.min(over + l.rates.rapid_min(Step { length_mm: far, turn_rad: 0.0 }))
             }).sum::<f64>()
         }).fold(f64::INFINITY, f64::min);
         // Moves of two kinds between five passes get stuck now and then, and low ways come down at the feed of plunges.

@@ -31,7 +31,7 @@ impl Default for Rates {
 
 /// A way of the tip with the turn of the axis on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step {
+pub(in crate::plan) struct Step {
     pub length_mm: f64,
     pub turn_rad: f64,
 }
@@ -46,7 +46,7 @@ fn from_rest(way: f64, speed: f64, acceleration: f64) -> f64 {
 
 impl Rates {
     /// Time of a rapid move, min.
-    pub(super) fn rapid_min(&self, step: Step) -> f64 {
+    pub(in crate::plan) fn rapid_min(&self, step: Step) -> f64 {
         let way = from_rest(step.length_mm, self.rapid_mm_min, self.rapid_mm_min2);
         way.max(from_rest(step.turn_rad, self.turn_rad_min, self.turn_rad_min2))
     }

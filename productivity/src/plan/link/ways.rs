@@ -203,7 +203,8 @@ impl<'a> Finder<'a> {
     }
 
     /// A way off the surface by little, straight along it where the contacts lie beside each other: as low as may be, along the normals
-    /// rather than along the axes, but in a narrow place there may be no other way than along them.
+    /// rather than along the axes, but in a narrow place there may be no other way than along them. What goes straight along the
+    /// surface is slow: just off it may be faster.
     fn low(&self, kept: &Kept<'_>, (from, to): (&CcPoint, &CcPoint), k: u32) -> Option<Way> {
         let across = step(&from.pose, &to.pose);
         let dropped = self.links.dropped;
@@ -211,6 +212,7 @@ impl<'a> Finder<'a> {
         let highest = self.links.approach_mm;
         let beside = across.length_mm <= STRAIGHT * self.links.cutter.radius_mm();
         let mut lift = if beside { self.graze_mm().min(highest) } else { self.links.hop_mm.min(highest) };
+        let mut grazed: Option<Way> = None;
         loop {
             let is_graze = lift < self.links.hop_mm;
             for along in ways {
@@ -226,15 +228,21 @@ impl<'a> Finder<'a> {
                 let clear = |mm: f64| room(&way(mm)).is_some_and(|r| r >= 1.0);
                 if clear(lift) && (lift >= highest || clear((1.0 - SPARE) * lift)) {
                     let way = way(lift);
+                    if !is_graze {
+                        let off = self.through(&way, k);
+                        return Some(grazed.filter(|way| way.min <= off.min).unwrap_or(off));
+                    }
                     let on = if lift > 0.0 { &way[..] } else { &[from.pose, to.pose][..] };
-                    return Some(if is_graze { self.grazing(on) } else { self.through(on, k) });
+                    grazed = Some(self.grazing(on));
+                    break;
                 }
                 if lift == 0.0 {
                     break;
                 }
             }
-            if lift >= highest {
-                return None;
+            // Higher than just off the surface is slower still.
+            if lift >= highest || (grazed.is_some() && !is_graze) {
+                return grazed;
             }
             lift = if is_graze { self.links.hop_mm } else { 2.0 * lift }.min(highest);
         }

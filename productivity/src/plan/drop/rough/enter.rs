@@ -22,6 +22,8 @@ const BEEN: f64 = 2.5;
 const MOST_BEEN: usize = 12;
 /// A ramp uses no more of a line than this, in radii of the tool: longer ways to and fro clear less than the line does.
 const LONG_RAMP: f64 = 12.0;
+/// The way down into material goes slower from so far above it on, of the approach distance, and no less than it is known to.
+const TOUCH: f64 = 0.125;
 /// Most times that a ramp goes to and fro.
 const MOST_TURNS: f64 = 40.0;
 
@@ -29,21 +31,22 @@ impl Moves<'_> {
     /// Comes to the start of a line from elsewhere; false, without a move, where no way in fits.
     pub(super) fn come_in(&mut self, sheet: &Sheet, stations: &[[f64; 3]]) -> bool {
         let Some(start) = stations.first().copied() else { return false };
-        // Where the tool has been it comes down in rapid, and from there it goes on through the layer.
+        let thin = self.thin(sheet);
+        let stands = self.stands_at([start[0], start[1]]);
+        if stands <= start[2] + thin {
+            self.drop_to(start, thin);
+            return true;
+        }
+        // Where the tool has been it comes down, and from there it goes on through the layer.
         let been = self.been_near(start, sheet.layer.floor);
         let led = been.into_iter().find_map(|from| Some((from, self.straight(sheet, from, start)?)));
         if let Some((from, way)) = led {
-            self.back_to(from);
+            self.back_to(from, thin);
             self.feed(&way, self.manner.links.feed_mm_min, None);
             return true;
         }
-        let stands = self.stands_at([start[0], start[1]]);
-        if stands <= start[2] + self.thin(sheet) {
-            self.drop_to(start);
-            return true;
-        }
         if let Some(air) = self.air_near(sheet, start) {
-            self.drop_to(air);
+            self.drop_to(air, thin);
             if let Some(way) = self.straight(sheet, air, start) {
                 self.feed(&way, self.manner.links.feed_mm_min, None);
                 return true;
@@ -53,7 +56,9 @@ impl Moves<'_> {
             Entry::Outside => false,
             Entry::Helix => self.helix(sheet, start),
             Entry::Ramp => self.ramp(stations, stands),
-            Entry::Auto => self.helix(sheet, start) || self.ramp(stations, stands) || self.plunge(start),
+            Entry::Auto => {
+                self.helix(sheet, start) || self.ramp(stations, stands) || self.plunge(start, thin)
+            }
         }
     }
 
@@ -68,11 +73,16 @@ impl Moves<'_> {
     }
 
     /// Straight down; false where the tool may not.
-    fn plunge(&mut self, start: [f64; 3]) -> bool {
+    fn plunge(&mut self, start: [f64; 3], thin: f64) -> bool {
         if self.manner.plunges {
-            self.drop_to(start);
+            self.drop_to(start, thin);
         }
         self.manner.plunges
+    }
+
+    /// How far above material the way down into it goes slower.
+    fn touch_mm(&self) -> f64 {
+        (TOUCH * self.manner.links.approach_mm).max(self.site.blur_mm)
     }
 
     fn thin(&self, sheet: &Sheet) -> f64 {
@@ -97,18 +107,6 @@ impl Moves<'_> {
         found.sort_by(|a, b| away(a).total_cmp(&away(b)));
         found.truncate(MOST_BEEN);
         found
-    }
-
-    /// Over to a place where the tool has been, and down in rapid but for the approach.
-    fn back_to(&mut self, at: [f64; 3]) {
-        self.above(at, at[2]);
-        self.feed(&[at], self.plunge_mm_min(), None);
-    }
-
-    /// Over to a place and straight down; through what stands there at the feed of plunges.
-    fn drop_to(&mut self, at: [f64; 3]) {
-        self.over_to(at);
-        self.feed(&[at], self.plunge_mm_min(), None);
     }
 
     /// The nearest place from which the tool comes to a start on its layer, and where it takes nothing on the way down.
@@ -186,7 +184,7 @@ impl Moves<'_> {
         let top = stands.fold(self.stands_at([at[0], at[1]]), f64::max).max(at[2]);
         let pitch = TAU * radius * self.manner.sizes.ramp_rad.tan();
         let steps = ((top - at[2]) / pitch * CORNERS as f64).ceil() as usize;
-        self.over_to(corner(0, top));
+        self.drop_to(corner(0, top + self.touch_mm()), 0.0);
         let down = (0..=steps).map(|k| corner(k, top + (at[2] - top) * k as f64 / steps.max(1) as f64));
         // Once more around, on the floor.
         let last = (1..=CORNERS).map(|k| corner(steps + k, at[2]));
@@ -214,7 +212,7 @@ impl Moves<'_> {
             return false;
         }
         let far = (0.5 * whole / turns).min(long);
-        self.over_to([start[0], start[1], stands]);
+        self.drop_to([start[0], start[1], stands + self.touch_mm()], 0.0);
         let ends = along.iter().take_while(|s| **s < far).count();
         let Some(tip) = stations.get(ends) else { return false };
         let (a, b) = (along[ends - 1], along[ends.min(along.len() - 1)]);

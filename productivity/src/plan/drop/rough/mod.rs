@@ -9,6 +9,7 @@
 //!
 //! Where axes are to be found ([`directions`]) the one that takes most comes first, and the next is sought for what is left then.
 
+mod across;
 mod clear;
 mod climb;
 mod columns;

@@ -223,7 +223,12 @@ impl<'a> Moves<'a> {
 
     /// Whether part and material let the holder come so low over a node.
     pub(super) fn holder_lets(&self, k: usize, height: f64) -> bool {
-        self.holder_stands_on(k).max(self.site.holder[k]) <= height
+        self.holder_stops(k) <= height
+    }
+
+    /// How low part and material let the holder come over a node.
+    pub(super) fn holder_stops(&self, k: usize) -> f64 {
+        self.holder_stands_on(k).max(self.site.holder[k])
     }
 
     /// How low the material lets the holder come over a node.
@@ -231,47 +236,6 @@ impl<'a> Moves<'a> {
         let stands =
             self.held.iter().map(|(disc, above)| self.columns.top_in(&self.site.grid, disc, k) - above);
         stands.fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// How low the tool may go over a straight way in rapid.
-    fn clear_over(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
-        let (site, long) = (self.site, (to[0] - from[0]).hypot(to[1] - from[1]));
-        let steps = (long / (2.0 * site.grid.cell)).ceil().max(1.0) as usize;
-        let mut out = f64::NEG_INFINITY;
-        for s in 0..=steps {
-            let f = s as f64 / steps as f64;
-            let Some(k) = site.grid.near([0, 1].map(|a| from[a] + (to[a] - from[a]) * f)) else {
-                return self.manner.safe;
-            };
-            let stands = self.columns.top_in(&site.grid, &self.wide, k);
-            let holder = self.holder_stands_on(k).max(site.holder[k]);
-            let part = if site.tip[k] < f64::INFINITY { site.tip[k] } else { f64::NEG_INFINITY };
-            out = out.max(stands).max(holder).max(part);
-        }
-        out
-    }
-
-    /// Goes over to a place through the air, and down to where material may stand. The rest of the way down is fed.
-    pub(super) fn over_to(&mut self, at: [f64; 3]) {
-        let stands = self.clear_over([at[0], at[1]], [at[0], at[1]]);
-        self.above(at, stands);
-    }
-
-    /// Goes over to a place through the air, and down to where something stands there.
-    pub(super) fn above(&mut self, at: [f64; 3], stands: f64) {
-        let (safe, approach) = (self.manner.safe, self.manner.links.approach_mm);
-        let high = match self.here {
-            Some(from) => {
-                let clear = self.clear_over([from[0], from[1]], [at[0], at[1]]) + approach;
-                let high = clear.max(at[2] + approach).max(from[2]).min(safe);
-                self.rapid([from[0], from[1], high]);
-                high
-            }
-            None => safe,
-        };
-        self.rapid([at[0], at[1], high]);
-        let low = stands.max(at[2]) + approach;
-        self.rapid([at[0], at[1], low.min(high)]);
     }
 
     /// Goes straight on to a place through the layer where that is near and free all the way.
