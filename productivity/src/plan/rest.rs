@@ -142,6 +142,20 @@ mod tests {
         }
     }
 
+    /// Three-axis passes do not know their strips: they are cut where places are no farther than the overlap.
+    #[test]
+    fn passes_without_strips_remain_where_places_are() {
+        let pass = straight(0.0, 100, f64::NAN);
+        let places = [Point3::new(20.0, 0.1, 0.0), Point3::new(70.0, 0.0, 0.0)];
+        let got = rest_of(&[pass], &Rest { places: &places, overlap_mm: 0.5, hop_mm: 0.3 }).unwrap().passes;
+        let ends: Vec<[f64; 2]> =
+            got.iter().map(|p| [p.points[0].point.x, p.points[p.points.len() - 1].point.x]).collect();
+        assert_eq!(got.len(), 2, "{ends:?}");
+        for (at, [a, b]) in places.iter().zip(ends) {
+            assert!(a < at.x && at.x < b && b - a <= 1.01, "{a} {b}");
+        }
+    }
+
     #[test]
     fn without_places_nothing_remains_and_with_all_of_them_everything() {
         let passes = [straight(0.0, 10, 1.0), straight(1.0, 10, 1.0)];

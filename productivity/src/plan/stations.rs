@@ -92,8 +92,9 @@ pub(super) fn pieces(pass: &Pass, stations: &[Station], out: &[bool], short: f64
         all.filter(|k| stations[*k].of_pass || *k == from || *k == to).map(|k| stations[k].point).collect()
     };
     let made = runs.into_iter().map(|run| (run, Pass { points: points(run), closed: false }));
-    let long: Vec<([usize; 2], Pass)> =
-        made.filter(|(_, p)| p.points.len() > 1 && p.length_mm() >= short * p.mean_width_mm()).collect();
+    // Strips that are not known are no reason to drop a piece.
+    let is_short = |p: &Pass| p.length_mm() < short * p.mean_width_mm();
+    let long: Vec<([usize; 2], Pass)> = made.filter(|(_, p)| p.points.len() > 1 && !is_short(p)).collect();
     let next = long.iter().skip(1).map(|(run, _)| Some(run[0])).chain([None]);
     let skipped = long
         .iter()
