@@ -4,13 +4,20 @@
 //! of a face this is read off by how far the tool goes beneath a sample, but for samples beside an outer edge: there the points
 //! beneath lie next to the other face as well. A tool that goes a thousandth too deep over a face takes nearly a tenth of a
 //! millimetre from the rim of the wall below it, as measured along the wall's normal, and no point of that is deeper than the
-//! thousandth. So such places are measured by the distance from the other face too. Distances are to points that were found on
-//! the other faces: they are never too small, and neither are depths. At inner and at smooth edges nothing changes.
+//! thousandth. So such places are measured by the distance from the other face too. At inner and at smooth edges nothing changes.
+//!
+//! Over t beneath a sample the depth is that of `min(t, d(t))`, d the distance from the other faces. Distances are to points that were
+//! found on these: none is too small. Between two places that were looked at each of the two points found there is as near as it is,
+//! whatever the faces do between them: of the way from one place to the other the first point serves up to where both are as far, the
+//! second from there, and a distance from a point is greatest at the ends of a way. So bounds rest on points of faces alone, and on
+//! nothing about how faces bend. They come near where places are as close together as the depth that is enough: along a wall of 4 mm
+//! that is two thousand of them, most of which cost one point of the face between two that are known.
 
+use super::foot::{Foot, Place, most_mm, nearest};
 use super::job::{Cut, Sample};
 use osculate_geom::{Point3, Surface, Unit3, Uv};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::OnceLock;
 
 /// What lies beneath is nearer to another face than this share of the depth that is asked for; at an inner edge it is as far.
@@ -20,12 +27,14 @@ const STEPS: usize = 8;
 /// Pieces of what was taken beneath a sample at first ...
 const BENEATH: u32 = 4;
 /// ... and places in it that are looked at, at most.
-const LOOKS: usize = 128;
-/// A face is off a chord of it by so many times what it is off its middle at most.
-const BEND: f64 = 2.0;
+const LOOKS: usize = 32_768;
+/// At so many of them all faces around are looked at, at others only the one that is near the places next to them.
+const AROUND: usize = 128;
+/// Steps towards the nearest point from one between two nearest points.
+const STEPS_BETWEEN: usize = 3;
 /// What is said to be deep may be this share of the limit less.
 const CLOSE: f64 = 0.02;
-/// Depths below this share of the limit are left as they seem.
+/// Depths below this share of the limit are left as they seem, and others need not be told apart from it where they are below.
 const DEEP: f64 = 0.25;
 /// Samples that are measured anew at most: beyond it a program is far off wherever it goes.
 const MOST: usize = 50_000;
@@ -42,13 +51,6 @@ pub fn beside_edges(
 ) -> Vec<bool> {
     let edges = Edges::new(surfaces, samples, apart_mm);
     samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
-}
-
-/// The nearest place of other faces that was found: how far it is, and the face and place on it.
-#[derive(Clone, Copy, Debug)]
-struct Foot {
-    mm: f64,
-    on: Option<(u32, Uv)>,
 }
 
 /// Of each box of space the samples in it: face and place on it.
@@ -120,10 +122,11 @@ impl<'a> Edges<'a> {
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut least = Foot { mm: f64::INFINITY, on: None };
         for (away, other, at) in near {
-            let found = nearest(self.surfaces[other as usize], at, q);
+            let surface = self.surfaces[other as usize];
+            let found = nearest(surface, at, q, STEPS);
             for (mm, at) in [(away, at), found] {
                 if mm < least.mm {
-                    least = Foot { mm, on: Some((other, at)) };
+                    least = Foot { mm, on: Some((other, at, surface.point(at))) };
                 }
             }
             if least.mm < enough_mm {
@@ -133,87 +136,82 @@ impl<'a> Edges<'a> {
         least
     }
 
-    /// The greatest depth between two depths along the normal, with their feet. Over the depth t the depth is that of `min(t, d(t))`. d, a
-    /// distance, changes no faster than t: it is nowhere more than half of the sum of both and of the way between them. Where both feet
-    /// are on one face the points of the chord between these are no farther than the farther of the two, and the face is off the
-    /// chord by no more than twice what it is off its middle, if it bends about evenly.
-    fn most_mm(&self, [a, b]: [&(f64, Foot); 2]) -> f64 {
-        let slow = 0.5 * (a.1.mm + b.1.mm + b.0 - a.0);
-        let beside = match (a.1.on, b.1.on) {
-            (Some((face, from)), Some((other, to))) if face == other => {
-                let surface = self.surfaces[face as usize];
-                let (p, q) = (surface.point(from), surface.point(to));
-                let middle = p + 0.5 * (q - p);
-                let start = Uv { u: 0.5 * (from.u + to.u), v: 0.5 * (from.v + to.v) };
-                a.1.mm.max(b.1.mm) + BEND * nearest(surface, start, &middle).0
+    /// A point of the face that two feet are on, and whether it is as near as it was found to come: one between the two where that is no
+    /// farther than `enough_mm`.
+    fn foot_between(&self, q: &Point3, feet: [&Foot; 2], enough_mm: f64) -> Option<(Foot, bool)> {
+        let [Some((face, from, _)), Some((other, to, _))] = feet.map(|f| f.on) else { return None };
+        if face != other {
+            return None;
+        }
+        let surface = self.surfaces[face as usize];
+        let at = Uv { u: 0.5 * (from.u + to.u), v: 0.5 * (from.v + to.v) };
+        if surface.contains(at) {
+            let point = surface.point(at);
+            let mm = (point - q).norm();
+            if mm <= enough_mm {
+                return Some((Foot { mm, on: Some((face, at, point)) }, false));
             }
-            _ => f64::INFINITY,
-        };
-        b.0.min(slow).min(beside)
+        }
+        let (mm, at) = nearest(surface, at, q, STEPS_BETWEEN);
+        mm.is_finite().then(|| (Foot { mm, on: Some((face, at, surface.point(at))) }, true))
     }
 
-    /// How deep the deepest point beneath a sample is that was taken, where the tool went so far along its normal: no less, and more by
-    /// a share of the limit at most, as long as looks suffice.
-    fn depth_mm(&self, s: &Sample, along_mm: f64, limit_mm: f64) -> f64 {
-        let look = |t: f64| (t, self.foot(&(s.point - s.normal.into_inner() * t), s.face, 0.0));
-        let places: Vec<(f64, Foot)> =
+    /// No less than how deep the deepest point beneath a sample is that was taken, where the tool went so far along its normal; more by a
+    /// share of the limit at most, or no more than `enough_mm`, as long as looks suffice.
+    fn depth_mm(&self, s: &Sample, along_mm: f64, (limit_mm, enough_mm): (f64, f64)) -> f64 {
+        let beneath = |t: f64| s.point - s.normal.into_inner() * t;
+        let look = |t: f64| (t, self.foot(&beneath(t), s.face, 0.0));
+        let places: Vec<Place> =
             (0..=BENEATH).map(|k| look(along_mm * f64::from(k) / f64::from(BENEATH))).collect();
-        let piece = |a: (f64, Foot), b: (f64, Foot)| (self.most_mm([&a, &b]), a, b);
-        let mut pieces: Vec<_> = places.windows(2).map(|w| piece(w[0], w[1])).collect();
+        let piece = |a: Place, b: Place| (most_mm(s, [&a, &b]), a, b);
+        let mut pieces: VecDeque<_> = places.windows(2).map(|w| piece(w[0], w[1])).collect();
         let mut found = places.iter().map(|p| p.0.min(p.1.mm)).fold(0.0, f64::max);
-        for _ in places.len()..LOOKS {
-            let highest = (0..pieces.len()).max_by(|a, b| pieces[*a].0.total_cmp(&pieces[*b].0));
-            let Some(k) = highest.filter(|k| pieces[*k].0 > found + CLOSE * limit_mm) else { break };
-            let (_, a, b) = pieces[k];
-            let middle = look(0.5 * (a.0 + b.0));
-            found = found.max(middle.0.min(middle.1.mm));
-            pieces[k] = piece(a, middle);
-            pieces.push(piece(middle, b));
+        let (mut most, mut looks) = (0.0f64, 0);
+        // Wide ones first: what is found in them may do for the others.
+        while let Some((bound, a, b)) = pieces.pop_front() {
+            let enough = enough_mm.max(found + CLOSE * limit_mm);
+            if bound <= enough || looks == LOOKS {
+                most = most.max(bound);
+                continue;
+            }
+            looks += 1;
+            let t = 0.5 * (a.0 + b.0);
+            let between = self.foot_between(&beneath(t), [&a.1, &b.1], 0.5 * enough);
+            let (foot, nearest) = match between {
+                Some(known) if !known.1 || looks > AROUND => known,
+                _ => (look(t).1, true),
+            };
+            if nearest {
+                found = found.max(t.min(foot.mm));
+            }
+            let middle = (t, foot);
+            pieces.push_back(piece(a, middle));
+            pieces.push_back(piece(middle, b));
         }
-        pieces.iter().map(|p| p.0).fold(found, f64::max)
+        most.max(found)
     }
 
     /// Measures anew what seems deeper than a share of a limit.
     pub fn measure(&self, samples: &[Sample], cuts: &mut [Cut], limit_mm: f64) {
-        let deep = samples.iter().zip(cuts).filter(|(_, c)| -c.standoff_mm > DEEP * limit_mm);
-        for (s, c) in deep.take(MOST) {
+        let enough_mm = DEEP * limit_mm;
+        let deep = samples.iter().zip(cuts).filter(|(_, c)| -c.standoff_mm > enough_mm);
+        let deep: Vec<(&Sample, &mut Cut)> = deep.take(MOST).collect();
+        deep.into_par_iter().for_each(|(s, c)| {
             let along_mm = limit_mm.min(-c.standoff_mm);
             let own = (s.face as usize) < self.surfaces.len();
             if own && self.is_beside((&s.point, &s.normal), s.face, along_mm) {
-                c.standoff_mm = -self.depth_mm(s, -c.standoff_mm, limit_mm);
+                c.standoff_mm = -self.depth_mm(s, -c.standoff_mm, (limit_mm, enough_mm));
             }
-        }
+        });
     }
-}
-
-/// The distance of a point from the place of a face that Newton's method comes to from a place near it, and that place; infinite where
-/// it is not on the face.
-fn nearest(surface: &dyn Surface, from: Uv, q: &Point3) -> (f64, Uv) {
-    let domain = surface.domain();
-    let mut at = from;
-    for _ in 0..STEPS {
-        let jet = surface.jet2(at);
-        let off = q - jet.point;
-        let (a, b, c) = (jet.du.norm_squared(), jet.du.dot(&jet.dv), jet.dv.norm_squared());
-        let (e, f) = (off.dot(&jet.du), off.dot(&jet.dv));
-        let det = a * c - b * b;
-        if det.is_nan() || det <= 0.0 {
-            break;
-        }
-        let next = domain.bring(Uv { u: at.u + (e * c - f * b) / det, v: at.v + (f * a - e * b) / det });
-        if next == at {
-            break;
-        }
-        at = next;
-    }
-    (if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }, at)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use osculate_geom::analytic::Torus;
     use osculate_geom::analytic::{Cylinder, Placed, Placement, Plane};
-    use osculate_geom::{Domain, Interval, Vec3, uv};
+    use osculate_geom::{Axis, Domain, Interval, Jet2, Patch, Series, Side, Taylor, Vec3, uv};
     use proptest::prelude::*;
 
     proptest! {
@@ -249,7 +247,7 @@ mod tests {
                 }
             }
             let edges = Edges::new(&surfaces, &samples, 1.0);
-            let found = edges.depth_mm(&own, along, limit);
+            let found = edges.depth_mm(&own, along, (limit, 0.0));
             let beneath = |t: f64| t.min((e * sin - t * cos).abs());
             let want = (0..=20_000).map(|k| beneath(along * f64::from(k) / 2e4)).fold(0.0, f64::max);
             prop_assert!(found >= want - 1e-9, "{found} of {want}");
@@ -291,8 +289,176 @@ mod tests {
             }
             let s =
                 Sample { point: rim, normal, face: 0, uv: uv(0.0, 0.0), area_mm2: 0.01, check_only: false };
-            let found = Edges::new(&surfaces, &samples, 1.5).depth_mm(&s, 4.0, 0.01);
+            let found = Edges::new(&surfaces, &samples, 1.5).depth_mm(&s, 4.0, (0.01, 0.0));
             assert!(found <= CLOSE * 0.01, "{found}");
+        }
+    }
+
+    /// A face over a rectangle, its height a formula.
+    struct Sheet<F>(Domain, F);
+
+    impl<F: Fn(Series, Series) -> Series + Send + Sync> Surface for Sheet<F> {
+        fn domain(&self) -> Domain {
+            self.0
+        }
+        fn jet2(&self, uv: Uv) -> Jet2 {
+            self.taylor(uv, 2).jet2()
+        }
+        fn point(&self, uv: Uv) -> Point3 {
+            let [x, y, z] = self.taylor(uv, 0).coordinates.map(|c| c.coefficient(0, 0));
+            Point3::new(x, y, z)
+        }
+        fn taylor(&self, uv: Uv, order: usize) -> Taylor {
+            let (x, y) = (Series::variable(Axis::U, uv.u, order), Series::variable(Axis::V, uv.v, order));
+            Taylor { uv, side: Side::Along, coordinates: [x, y, (self.1)(x, y)] }
+        }
+    }
+
+    /// How far a tool goes along x, the normal of the wall x = 0 turned about.
+    const ALONG: f64 = 4.0;
+
+    /// What is found beneath the origin along x beside a face, and what a search finds at so many places: from the best of a grid
+    /// ever closer around the best place so far.
+    fn along_x(
+        face: &dyn Surface,
+        (places, [along, across]): (u32, [u32; 2]),
+        limit: f64,
+    ) -> ([f64; 2], f64) {
+        let i = Interval::new(0.0, 6.0);
+        let own = Plane::new(Domain { u: i, v: i });
+        let surfaces: [&dyn Surface; 2] = [&own, face];
+        let d = face.domain();
+        let mut samples = Vec::new();
+        for k in 0..=along {
+            for j in 0..=across {
+                let at = d.at(f64::from(k) / f64::from(along), f64::from(j) / f64::from(across));
+                let (point, normal) = (face.point(at), Vec3::z_axis());
+                samples.push(Sample { point, normal, face: 1, uv: at, area_mm2: 0.01, check_only: false });
+            }
+        }
+        let s = Sample {
+            point: Point3::origin(),
+            normal: -Vec3::x_axis(),
+            face: 0,
+            uv: uv(0.0, 0.0),
+            area_mm2: 0.01,
+            check_only: false,
+        };
+        let edges = Edges::new(&surfaces, &samples, 0.25);
+        let found = [0.0, DEEP * limit].map(|enough| edges.depth_mm(&s, ALONG, (limit, enough)));
+        let deep = |k: u32| {
+            let t = ALONG * f64::from(k) / f64::from(places);
+            let q = Point3::new(t, 0.0, 0.0);
+            let mut best = samples
+                .iter()
+                .map(|s| ((s.point - q).norm(), s.uv))
+                .fold((f64::INFINITY, uv(0.0, 0.0)), |a, b| if b.0 < a.0 { b } else { a });
+            let mut step = [d.u.length() / f64::from(along), d.v.length() / f64::from(across)];
+            for _ in 0..26 {
+                for [du, dv] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+                    let at = d.bring(uv(best.1.u + du * step[0], best.1.v + dv * step[1]));
+                    let away = (face.point(at) - q).norm();
+                    if away < best.0 {
+                        best = (away, at);
+                    }
+                }
+                step = step.map(|s| 0.5 * s);
+            }
+            t.min(best.0)
+        };
+        (found, (0..=places).into_par_iter().map(deep).reduce(|| 0.0, f64::max))
+    }
+
+    fn strip() -> Domain {
+        Domain { u: Interval::new(-0.5, 5.0), v: Interval::new(-0.5, 0.5) }
+    }
+
+    fn check(face: &dyn Surface, places: (u32, [u32; 2]), limit: f64) -> Result<(), TestCaseError> {
+        let (found, want) = along_x(face, places, limit);
+        for (found, enough) in found.into_iter().zip([0.0, DEEP * limit]) {
+            prop_assert!(found >= want - 1e-9, "{found} of {want}");
+            prop_assert!(
+                found <= (want + CLOSE * limit + 0.5 * ALONG / f64::from(places.0)).max(enough),
+                "{found} of {want}"
+            );
+        }
+        Ok(())
+    }
+
+    /// Waves that the line meets at the ends and in the middle of every quarter, and twice as short ones: chords say nothing of them.
+    #[test]
+    fn a_face_that_bends_both_ways_is_no_less_deep() {
+        for waves in [4.0, 8.0, 12.0] {
+            let turns = waves * std::f64::consts::TAU / ALONG;
+            let face = Sheet(strip(), move |x: Series, _| (x * turns).sin_cos().0 * 0.02);
+            check(&face, (20_000, [1200, 2]), 0.01).unwrap();
+        }
+    }
+
+    /// A bump or a hollow in a flat face, off the places that are looked at first and off the middles between them.
+    #[test]
+    fn a_bump_off_the_middle_is_no_less_deep() {
+        for (at, wide, high) in [(1.23, 0.1, 0.02), (2.7, 0.03, -0.05), (0.8, 0.2, 0.3)] {
+            let face = Sheet(strip(), move |x: Series, _| {
+                let off = (x + Series::constant(-at, x.order())) * (1.0 / wide);
+                (off * off + Series::constant(1.0, x.order())).recip() * high
+            });
+            check(&face, (20_000, [1200, 2]), 0.01).unwrap();
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn saddles_are_no_less_deep(
+            bends in prop::array::uniform3(-0.05..0.05f64),
+            [height, tilt] in [-0.1..0.1f64, -0.05..0.05f64],
+        ) {
+            let [a, b, c] = bends;
+            let face = Sheet(strip(), move |x: Series, y: Series| {
+                let off = x + Series::constant(-2.0, x.order());
+                Series::constant(height, x.order()) + off * tilt + off * off * a + x * y * b + y * y * c
+            });
+            check(&face, (400, [240, 24]), 0.02)?;
+        }
+
+        /// A cubic patch by its control points.
+        #[test]
+        fn cubic_patches_are_no_less_deep(
+            heights in prop::array::uniform16(-1.0..1.0f64),
+            scale in 0.001..1.0f64,
+        ) {
+            let face = Sheet(strip(), move |x: Series, y: Series| {
+                let basis = |t: Series| {
+                    let one = Series::constant(1.0, t.order());
+                    let r = one - t;
+                    [r * r * r, r * r * t * 3.0, r * t * t * 3.0, t * t * t]
+                };
+                let d = strip();
+                let share = |t: Series, i: Interval| {
+                    (t - Series::constant(i.lo, t.order())) * (1.0 / i.length())
+                };
+                let (of_u, of_v) = (basis(share(x, d.u)), basis(share(y, d.v)));
+                (0..16).fold(Series::constant(0.0, x.order()), |sum, k| {
+                    sum + of_u[k / 4] * of_v[k % 4] * (heights[k] * scale)
+                })
+            });
+            check(&face, (400, [240, 24]), 0.02)?;
+        }
+
+        #[test]
+        fn tori_are_no_less_deep(major in 8.0..20.0f64, minor in 1.0..2.5f64, lower in -0.05..0.05f64) {
+            // The line runs above the outermost circle's top from beside it.
+            let torus = Torus::new(major, minor).unwrap();
+            let surface = Patch {
+                surface: torus,
+                domain: Domain { u: Interval::new(1.0, 2.0), v: Interval::new(0.9, 2.2) },
+                side: Side::Along,
+            };
+            let origin = Point3::new(1.0, -major, -minor + lower);
+            let placement = Placement::new(origin, Vec3::z_axis(), Some(Vec3::x()));
+            check(&Placed { surface, placement }, (400, [240, 24]), 0.02)?;
         }
     }
 }

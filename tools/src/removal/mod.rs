@@ -54,6 +54,7 @@ mod deepest;
 mod density;
 mod digs;
 mod edges;
+mod foot;
 mod goal;
 mod grid;
 mod hidden;
