@@ -104,6 +104,12 @@ impl Strategy {
         keeps.then_some(self.axis)
     }
 
+    /// Whether its passes go around upright walls.
+    #[must_use]
+    pub fn goes_around_walls(&self) -> bool {
+        self.word == StrategyWord::Waterline3c
+    }
+
     /// Whether it is to be chosen.
     #[must_use]
     pub const fn is_open(&self) -> bool {

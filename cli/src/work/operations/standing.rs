@@ -7,10 +7,11 @@ use crate::words::number;
 use crate::work::operations::step::Step;
 use crate::work::verify::Verified;
 use osculate_geom::{Point3, Surface, Unit3};
+use osculate_tools::removal::Sample;
 use serde::Serialize;
 
-/// Normals that lean off a kept axis by more than this, as a cosine, are not reached along it.
-const SEEN: f64 = 0.02;
+/// Within this of upright, as the cosine between normal and kept axis, a wall is: rows along the axis miss it, waterlines do not.
+const UPRIGHT: f64 = 0.02;
 /// A ball is to be smaller than the hollow that it goes into by this much.
 const WITHIN: f64 = 0.9;
 /// Areas below this are told as nothing, mm2.
@@ -34,9 +35,11 @@ pub struct LeftStanding {
 /// What was seen of one face.
 struct Seen {
     area_mm2: f64,
-    /// Of it in hollows that no tool fits into, and in such as look away from all axes that tools keep.
+    /// Of it in hollows that no tool fits into, in such as look away from all axes that tools keep, and in walls upright along them
+    /// that no waterlines go around.
     hollow_mm2: f64,
     away_mm2: f64,
+    upright_mm2: f64,
     /// The smallest radius of those hollows, mm.
     radius_mm: f64,
     highest: (f64, Point3),
@@ -55,10 +58,17 @@ pub fn left(list: &Operations, part: &Part, steps: &[Step<'_>], whole: &Verified
             .collect();
         let tool_mm = on_it.iter().map(|s| smallest(&s.job)).fold(f64::INFINITY, f64::min);
         let axes: Option<Vec<Unit3>> = on_it.iter().map(|s| s.kept_axis).collect();
+        let waterlines = on_it.iter().any(|s| s.job.strategy().goes_around_walls());
+        // How far a place looks along that of the kept axes which it looks along most.
+        let lean = |s: &Sample| {
+            let each = axes.iter().flatten().map(|a| s.normal.dot(a));
+            if axes.is_some() { each.fold(f64::NEG_INFINITY, f64::max) } else { 1.0 }
+        };
         let mut seen = Seen {
             area_mm2: 0.0,
             hollow_mm2: 0.0,
             away_mm2: 0.0,
+            upright_mm2: 0.0,
             radius_mm: f64::INFINITY,
             highest: (0.0, Point3::origin()),
         };
@@ -72,8 +82,10 @@ pub fn left(list: &Operations, part: &Part, steps: &[Step<'_>], whole: &Verified
             if bend * tool_mm > 1.0 {
                 seen.hollow_mm2 += s.area_mm2;
                 seen.radius_mm = seen.radius_mm.min(1.0 / bend);
-            } else if axes.as_ref().is_some_and(|all| all.iter().all(|a| s.normal.dot(a) < SEEN)) {
+            } else if lean(s) < -UPRIGHT {
                 seen.away_mm2 += s.area_mm2;
+            } else if lean(s) < UPRIGHT && !waterlines {
+                seen.upright_mm2 += s.area_mm2;
             }
         }
         if seen.area_mm2 > LEAST_MM2 {
@@ -91,16 +103,19 @@ pub fn left(list: &Operations, part: &Part, steps: &[Step<'_>], whole: &Verified
 }
 
 fn why(seen: &Seen, tool_mm: f64) -> String {
-    let beside_mm2 = seen.area_mm2 - seen.hollow_mm2 - seen.away_mm2;
+    let beside_mm2 = seen.area_mm2 - seen.hollow_mm2 - seen.away_mm2 - seen.upright_mm2;
     if !tool_mm.is_finite() {
         return "no finishing goes there".to_owned();
     }
-    if seen.hollow_mm2 >= seen.away_mm2.max(beside_mm2) {
+    if seen.hollow_mm2 >= seen.away_mm2.max(seen.upright_mm2).max(beside_mm2) {
         let diameter = number(2.0 * WITHIN * seen.radius_mm, 3);
         return format!(
             "hollow to a radius of {} mm: a ball of {diameter} mm in diameter would do",
             number(seen.radius_mm, 3)
         );
+    }
+    if seen.upright_mm2 >= seen.away_mm2.max(beside_mm2) {
+        return "upright along the axes that tools keep: waterline_3c would do".to_owned();
     }
     if seen.away_mm2 >= beside_mm2 {
         return "looks away from the axes that tools keep: another setup, or axis = \"field\", would do"
