@@ -39,9 +39,11 @@ pub(super) fn looked_at(
     let coarse = is_hopeless(trial, &look.tally);
     if !coarse {
         look = trial.look(spacing, &[], (none, progress))?;
-        trial.give_up(&mut look, spacing)?;
     }
-    let marks = trial.marks(&look.measured, usize::MAX);
+    let mut marks = trial.marks(&look.measured, usize::MAX);
+    if !coarse {
+        trial.give_up(&mut look, &mut marks, spacing)?;
+    }
     let crest_median_mm = trial.crests(&look.measured)?;
     let closing = Closing { coarse, refined: unbounded(), stock, notes };
     Ok(concluded(trial, look, (&marks, crest_median_mm), closing))

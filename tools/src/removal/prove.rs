@@ -90,7 +90,6 @@ pub fn prove_in_steps(
     };
     if !coarse {
         look = trial.look(spacing, stops, (&mut at_stop, &|f| within(2, f)))?;
-        trial.give_up(&mut look, spacing)?;
     } else if seats.iter().any(Option::is_some) {
         // What is far off in the end need not be so where an operation ends.
         let spacing = trial.spacing_of_mm(OF_STEPS).max(spacing);
@@ -101,15 +100,18 @@ pub fn prove_in_steps(
         *judged = Some(step.on_its_own(&program, found.take(), &|_| {})?);
     }
     let mut marks = trial.marks(&look.measured, usize::MAX);
+    if !coarse {
+        trial.give_up(&mut look, &mut marks, spacing)?;
+    }
     let crest_median_mm = trial.crests(&look.measured)?;
     let bounds = goal.looks.between && !coarse;
     let mut refined = if bounds { trial.refine(&mut look, &mut marks)? } else { unbounded() };
     // Samples that were added may stand too high where an area that does is accepted.
     for _ in 0..GIVEN_UP {
-        if !bounds || !trial.is_to_give_up(&look) {
+        if !bounds || !trial.is_to_give_up(&look, &marks) {
             break;
         }
-        trial.give_up(&mut look, spacing)?;
+        trial.give_up(&mut look, &mut marks, spacing)?;
         refined = trial.refine(&mut look, &mut marks)?;
     }
     within(3, 1.0);

@@ -313,20 +313,20 @@ impl<'a> Trial<'a> {
         Ok(cut(&work, &|_| {})?.into_iter().map(|c| c.later(shift)).collect())
     }
 
-    /// Whether a sample stands too high where the goal accepts an area that does.
-    pub fn is_to_give_up(&self, look: &Look) -> bool {
+    /// Whether a sample stands too high with its mark where the goal accepts an area that does.
+    pub fn is_to_give_up(&self, look: &Look, marks: &Marks) -> bool {
         let Measured { samples, cuts, .. } = &look.measured;
-        let high = |(s, c): (&Sample, &Cut)| {
-            !s.check_only && c.by.is_some() && c.standoff_mm > self.limits.scallop_mm
+        let high = |((s, c), mark): ((&Sample, &Cut), &f64)| {
+            !s.check_only && c.by.is_some() && c.standoff_mm + mark > self.limits.scallop_mm
         };
-        self.goal.limits.unreached_mm2 > 0.0 && samples.iter().zip(cuts).any(high)
+        self.goal.limits.unreached_mm2 > 0.0 && samples.iter().zip(cuts).zip(&marks.each).any(high)
     }
 
     /// Where the goal accepts an area that is not reached: takes what stands too high, and what is around it, as never touched.
-    pub fn give_up(&self, look: &mut Look, spacing: f64) -> Result<(), ProveError> {
+    pub fn give_up(&self, look: &mut Look, marks: &mut Marks, spacing: f64) -> Result<(), ProveError> {
         if self.goal.limits.unreached_mm2 > 0.0 {
             let Measured { samples, cuts, .. } = &mut look.measured;
-            give_up(samples, cuts, self.limits.scallop_mm, spacing);
+            give_up(samples, (cuts, &mut marks.each), self.limits.scallop_mm, spacing);
             look.tally = self.tally(samples, cuts, &look.density)?;
         }
         Ok(())

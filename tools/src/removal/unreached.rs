@@ -1,8 +1,9 @@
 //! Places that stand too high where a goal accepts that some area does.
 //!
 //! Beside what a tool cannot reach, such as a sharp inner edge, its strips fade out: what stands grows from nothing to all of it.
-//! Where a goal accepts an area all that stands higher than the scallop counts into it, with the samples around: between a sample that is low
-//! enough and one that is not nothing can be shown. These samples are taken as never touched; all others are judged as ever.
+//! Where a goal accepts an area all that stands higher than the scallop, with the mark that a tooth may leave there, counts into it, with
+//! the samples around: between a sample that is low enough and one that is not nothing can be shown. These samples are taken as never
+//! touched; all others are judged as ever.
 
 use super::job::{Cut, Sample};
 use osculate_geom::Point3;
@@ -48,19 +49,22 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// Takes machined samples that stand higher than `scallop_mm`, and those of their face around them, as never touched.
-pub(super) fn give_up(samples: &[Sample], cuts: &mut [Cut], scallop_mm: f64, spacing_mm: f64) {
+/// Takes machined samples that stand higher than `scallop_mm` with their marks, and those of their face around them, as never touched.
+pub(super) fn give_up(
+    samples: &[Sample],
+    (cuts, marks): (&mut [Cut], &mut [f64]),
+    scallop_mm: f64,
+    spacing_mm: f64,
+) {
     let grid = Grid::new(samples, AROUND * spacing_mm);
-    let is_high = |k: &usize| {
-        let cut = &cuts[*k];
-        !samples[*k].check_only && (cut.by.is_none() || cut.standoff_mm > scallop_mm)
-    };
+    let height = |k: usize| cuts[k].standoff_mm + marks[k];
+    let is_high = |k: &usize| !samples[*k].check_only && (cuts[*k].by.is_none() || height(*k) > scallop_mm);
     let mut given: Vec<bool> = (0..samples.len()).map(|k| is_high(&k)).collect();
     let mut rim: Vec<usize> = (0..samples.len()).filter(is_high).collect();
     for round in 0..=ROUNDS {
         let mut next = Vec::new();
         for k in rim.iter().flat_map(|k| grid.near(*k)) {
-            let joins = round == ROUNDS || cuts[k].standoff_mm > SKIRT * scallop_mm;
+            let joins = round == ROUNDS || height(k) > SKIRT * scallop_mm;
             if joins && !given[k] {
                 given[k] = true;
                 next.push(k);
@@ -69,9 +73,10 @@ pub(super) fn give_up(samples: &[Sample], cuts: &mut [Cut], scallop_mm: f64, spa
         // The last round goes around all that was found.
         rim = if round + 1 == ROUNDS { (0..samples.len()).filter(|k| given[*k]).collect() } else { next };
     }
-    for (cut, given) in cuts.iter_mut().zip(given) {
+    for ((cut, mark), given) in cuts.iter_mut().zip(marks).zip(given) {
         if given {
             cut.by = None;
+            *mark = 0.0;
         }
     }
 }
@@ -101,11 +106,21 @@ mod tests {
         let samples: Vec<Sample> = (0..10).map(|k| sample(k, k == 8)).collect();
         let heights = [0.0, 0.01, 0.0, 0.0, 0.0, 0.03, 0.0, 0.0, 0.0, 0.0];
         let mut cuts: Vec<Cut> = heights.iter().map(|h| cut(*h)).collect();
-        give_up(&samples, &mut cuts, 0.02, 1.0);
-        let gone: Vec<usize> = (0..10).filter(|k| cuts[*k].by.is_none()).collect();
-        assert_eq!(gone, [3, 4, 5, 6, 7]);
-        let mut cuts: Vec<Cut> = heights.iter().map(|h| cut(h.min(0.02))).collect();
-        give_up(&samples, &mut cuts, 0.02, 1.0);
+        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, 1.0);
+        let gone = |cuts: &[Cut]| (0..10).filter(|k| cuts[*k].by.is_none()).collect::<Vec<usize>>();
+        assert_eq!(gone(&cuts), [3, 4, 5, 6, 7]);
+        let low = || -> Vec<Cut> { heights.iter().map(|h| cut(h.min(0.02))).collect() };
+        let mut cuts = low();
+        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, 1.0);
         assert!(cuts.iter().all(|c| c.by.is_some()));
+        // The mark of a tooth stands on what is left.
+        let mut marks = [0.001; 10];
+        marks[1] = 0.011;
+        let mut cuts = low();
+        give_up(&samples, (&mut cuts, &mut marks), 0.021, 1.0);
+        assert!(cuts.iter().all(|c| c.by.is_some()));
+        give_up(&samples, (&mut cuts, &mut marks), 0.0205, 1.0);
+        assert_eq!(gone(&cuts), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert!(marks.iter().zip(&cuts).all(|(m, c)| (*m == 0.0) == c.by.is_none()));
     }
 }
