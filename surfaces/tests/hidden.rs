@@ -68,11 +68,9 @@ fn a_post_in_a_plate() {
 fn a_post_over_the_edge_of_a_plate() {
     for part in turned() {
         // Its axis is 3 from the side y = 0 of the plate.
-        let faces = [
-            block(&part, [100.0, 80.0, 10.0]),
-            post(&within(&part, &at(50.0, 3.0, -5.0)), 8.0, 36.0),
-        ]
-        .concat();
+        let faces =
+            [block(&part, [100.0, 80.0, 10.0]), post(&within(&part, &at(50.0, 3.0, -5.0)), 8.0, 36.0)]
+                .concat();
         let (r, d): (f64, f64) = (8.0, 3.0);
         let half = (d / r).acos();
         let segment = r * r * (half - half.sin() * half.cos());
@@ -158,7 +156,8 @@ fn a_body_within_another() {
         let faces = [block(&part, [40.0, 40.0, 30.0]), ball(&within(&part, &own), 9.0)].concat();
         assert_hidden(&faces, &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0 * PI * 81.0]);
         // The wall of a void is no body: it is where the material ends.
-        let faces = [block(&part, [40.0, 40.0, 30.0]), vec![ball(&within(&part, &own), 9.0)[0].clone().flipped()]];
+        let faces =
+            [block(&part, [40.0, 40.0, 30.0]), vec![ball(&within(&part, &own), 9.0)[0].clone().flipped()]];
         assert_hidden(&faces.concat(), &[0.0; 7]);
     }
 }
@@ -211,7 +210,8 @@ fn one_body_alone_hides_nothing_and_threads_do_not_matter() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
         let found = pool.install(|| found(&faces));
         let areas: Vec<u64> = found.faces.iter().map(|f| f.hidden_mm2.to_bits()).collect();
-        let loops: Vec<_> = found.faces.iter().filter_map(|f| f.visible.as_ref()).map(|v| v.loops().to_vec()).collect();
+        let loops: Vec<_> =
+            found.faces.iter().filter_map(|f| f.visible.as_ref()).map(|v| v.loops().to_vec()).collect();
         (areas, loops, found.unknown)
     };
     assert!(with(1) == with(4));
@@ -249,7 +249,10 @@ fn any_solid() -> impl Strategy<Value = (Solid, [f64; 3], [f64; 3], [f64; 3])> {
         (5.0..12.0_f64).prop_map(Solid::Ball),
     ];
     let place = prop::array::uniform3(-10.0..10.0_f64);
-    let way = || prop::array::uniform3(-1.0..1.0_f64).prop_filter("long", |d| d.iter().map(|c| c * c).sum::<f64>() > 0.1);
+    let way = || {
+        prop::array::uniform3(-1.0..1.0_f64)
+            .prop_filter("long", |d| d.iter().map(|c| c * c).sum::<f64>() > 0.1)
+    };
     (size, place, way(), way())
 }
 

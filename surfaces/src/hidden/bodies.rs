@@ -47,7 +47,8 @@ pub(super) fn bodies(faces: &[&Face], known: &[bool], uncertainty_mm: Option<f64
         if !meets(k) {
             continue;
         }
-        let of: Vec<(&Face, Side)> = group.faces.iter().zip(&group.sides).map(|(f, s)| (faces[*f], *s)).collect();
+        let of: Vec<(&Face, Side)> =
+            group.faces.iter().zip(&group.sides).map(|(f, s)| (faces[*f], *s)).collect();
         let Some(sign) = volume_sign(&of) else { continue };
         let turn = if sign < 0.0 { Side::Against } else { Side::Along };
         let outer = group.faces.iter().zip(&group.sides).map(|(f, s)| (*f, s.seen(turn)));
@@ -62,7 +63,9 @@ pub(super) fn bodies(faces: &[&Face], known: &[bool], uncertainty_mm: Option<f64
         }
     }
     for (around, wall) in voids {
-        let holds = |b: &&mut Body| (0..3).all(|k| b.around.min[k] <= around.min[k] && b.around.max[k] >= around.max[k]);
+        let holds = |b: &&mut Body| {
+            (0..3).all(|k| b.around.min[k] <= around.min[k] && b.around.max[k] >= around.max[k])
+        };
         let size = |b: &Body| b.around.diagonal_mm();
         let home = solids.iter_mut().filter(holds).min_by(|a, b| size(a).total_cmp(&size(b)));
         if let Some(body) = home {

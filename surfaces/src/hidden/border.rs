@@ -66,7 +66,8 @@ impl<'a> Border<'a> {
         [Axis::U, Axis::V].iter().any(|axis| {
             let i = self.domain.get(*axis);
             let on = |side: f64| {
-                (a.get(*axis) - side).abs() <= SIDE * i.length() && (b.get(*axis) - side).abs() <= SIDE * i.length()
+                (a.get(*axis) - side).abs() <= SIDE * i.length()
+                    && (b.get(*axis) - side).abs() <= SIDE * i.length()
             };
             i.periodic && (on(i.lo) || on(i.hi))
         })
@@ -122,12 +123,8 @@ impl<'a> Border<'a> {
         let mut best: Option<(Segment, f64, f64)> = None;
         for shift in self.shifts(at) {
             for (segment, ends) in self.segments() {
-                let [a, b] = ends.map(|e| uv(e.u + shift.u - at.u, e.v + shift.v - at.v));
-                let e = uv(b.u - a.u, b.v - a.v);
-                let square = metric.product(e, e);
-                let way = if square > 0.0 { (-metric.product(a, e) / square).clamp(0.0, 1.0) } else { 0.0 };
-                let d = uv(a.u + way * e.u, a.v + way * e.v);
-                let distance_mm = metric.product(d, d).max(0.0).sqrt();
+                let ends = ends.map(|e| uv(e.u + shift.u, e.v + shift.v));
+                let (way, distance_mm) = metric.to_segment(at, ends);
                 if best.is_none_or(|b| distance_mm < b.2) {
                     best = Some((segment, way, distance_mm));
                 }
@@ -149,6 +146,15 @@ impl Metric {
     fn product(self, a: Uv, b: Uv) -> f64 {
         let Self([e, f, g]) = self;
         e * a.u * b.u + f * (a.u * b.v + a.v * b.u) + g * a.v * b.v
+    }
+
+    /// The part of the way along a segment where it is nearest to a place, and its distance there, mm.
+    pub(super) fn to_segment(self, at: Uv, ends: [Uv; 2]) -> (f64, f64) {
+        let [a, b] = ends.map(|e| uv(e.u - at.u, e.v - at.v));
+        let e = uv(b.u - a.u, b.v - a.v);
+        let square = self.product(e, e);
+        let way = if square > 0.0 { (-self.product(a, e) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (way, self.length_mm(uv(a.u + way * e.u, a.v + way * e.v)))
     }
 
     /// Length of a small step, mm.

@@ -1,6 +1,6 @@
 //! What another body leaves of a face.
 
-use super::border::Border;
+use super::border::{Border, Metric};
 use super::inside::{Solid, Where, patches};
 use super::pieces::{Joins, Piece, loops, pieces};
 use super::seeds::{Seed, seeds};
@@ -92,7 +92,9 @@ pub(super) fn cut(surface: &TrimmedSurface, solid: &Solid<'_>, scale: Scale) -> 
         Left::Nothing
     };
     match wrong(surface, solid, &left) {
-        Some(other) => Err(Stuck { other, why: "rays do not agree with what the lines of intersection leave" }),
+        Some(other) => {
+            Err(Stuck { other, why: "rays do not agree with what the lines of intersection leave" })
+        }
         None => Ok(left),
     }
 }
@@ -109,7 +111,8 @@ fn lines(surface: &TrimmedSurface, solid: &Solid<'_>, scale: Scale) -> Result<Ve
     for of in found.chunk_by(|a, b| a.other == b.other) {
         let Some(wall) = of.first().map(|s| solid.walls[s.other]) else { continue };
         let borders = [Border::new(surface, true), Border::new(wall.surface, false)];
-        let pair = Pair { sheets: [Sheet::new(surface), Sheet::new(wall.surface)], close_mm: CLOSE * size_mm };
+        let pair =
+            Pair { sheets: [Sheet::new(surface), Sheet::new(wall.surface)], close_mm: CLOSE * size_mm };
         let faces = Faces { pair, borders: [&borders[0], &borders[1]] };
         let mine = out.len();
         for seed in of {
@@ -117,7 +120,7 @@ fn lines(surface: &TrimmedSurface, solid: &Solid<'_>, scale: Scale) -> Result<Ve
                 return Err(Stuck { other: wall.face, why: "they meet in too many lines" });
             }
             let Some(place) = settled(&faces, seed, near_mm, size_mm) else { continue };
-            if out[mine..].iter().any(|l| passes(l, &place, 4.0 * march.chord_mm)) {
+            if out[mine..].iter().any(|l| passes(&faces.pair.sheets[0], l, &place, 4.0 * march.chord_mm)) {
                 continue;
             }
             let line = line(&faces, wall.face, place, march);
@@ -139,17 +142,13 @@ fn settled(faces: &Faces<'_, '_>, seed: &Seed, near_mm: f64, size_mm: f64) -> Op
     (moved && on(0) && on(1) && faces.pair.along(place.at, LEAST_SINE).is_some()).then_some(place)
 }
 
-/// Whether a line passes a place.
-fn passes(line: &Line, place: &Meet, within_mm: f64) -> bool {
+/// Whether a line passes a place, in the parameters of the face: there its chords are within the chord tolerance.
+fn passes(sheet: &Sheet<'_>, line: &Line, place: &Meet, within_mm: f64) -> bool {
+    let metric = Metric::new(&sheet.at(place.at[0]));
     let p = &line.places;
     let count = if line.closed { p.len() } else { p.len() - 1 };
-    (0..count).any(|k| {
-        let (a, b) = (p[k].point, p[(k + 1) % p.len()].point);
-        let d = b - a;
-        let square = d.norm_squared();
-        let way = if square > 0.0 { ((place.point - a).dot(&d) / square).clamp(0.0, 1.0) } else { 0.0 };
-        (place.point - (a + d * way)).norm() <= within_mm
-    })
+    (0..count)
+        .any(|k| metric.to_segment(place.at[0], [p[k].at[0], p[(k + 1) % p.len()].at[0]]).1 <= within_mm)
 }
 
 /// Asks what is beside pieces.
@@ -168,7 +167,8 @@ impl Beside<'_> {
             let Some((at, across)) = self.place(piece, way) else { continue };
             let sides = [1.0, -1.0].map(|sign| self.side(at, uv(sign * across.u, sign * across.v)));
             let clear = |s: &Option<Where>| matches!(s, Some(Where::Inside | Where::Outside));
-            let enough = if piece.other.is_some() { sides.iter().all(clear) } else { sides.iter().any(clear) };
+            let enough =
+                if piece.other.is_some() { sides.iter().all(clear) } else { sides.iter().any(clear) };
             last = Some(sides);
             if enough {
                 break;
@@ -241,7 +241,8 @@ fn trimmed(surface: &TrimmedSurface, loops: Vec<Vec<Uv>>) -> Option<TrimmedSurfa
     let chains: Vec<Chain> = loops.into_iter().map(closed).collect();
     let known = Known { below_out: true, above_out: true, oriented: false };
     let region = Region::new(surface.domain(), [false, false], &chains, known);
-    TrimmedSurface::from_region(surface.carrier().clone(), surface.domain(), region, surface.side(), count).ok()
+    TrimmedSurface::from_region(surface.carrier().clone(), surface.domain(), region, surface.side(), count)
+        .ok()
 }
 
 /// The face of the body nearest to a place at which rays say something else than what is left of a face.

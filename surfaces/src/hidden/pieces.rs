@@ -49,7 +49,8 @@ impl Nodes<'_> {
 
     /// The nearest node within a distance, or a new one.
     fn of(&mut self, at: Uv, within_mm: f64, border: Option<(Segment, f64)>) -> usize {
-        let near = (0..self.at.len()).map(|k| (self.distance_mm(at, self.at[k]), k)).filter(|n| n.0 <= within_mm);
+        let near =
+            (0..self.at.len()).map(|k| (self.distance_mm(at, self.at[k]), k)).filter(|n| n.0 <= within_mm);
         match near.min_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((_, k)) => k,
             None => {
@@ -124,7 +125,8 @@ pub(super) fn pieces(
 fn border_pieces(border: &Border<'_>, nodes: &Nodes<'_>) -> Vec<Piece> {
     let mut out = Vec::new();
     for (chain, points) in border.loops.iter().enumerate() {
-        let on = |k: usize| nodes.border[k].filter(|(s, _)| s.chain == chain).map(|(s, way)| (s.first, way, k));
+        let on =
+            |k: usize| nodes.border[k].filter(|(s, _)| s.chain == chain).map(|(s, way)| (s.first, way, k));
         let mut cuts: Vec<(usize, f64, usize)> = (0..nodes.at.len()).filter_map(on).collect();
         cuts.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         if cuts.is_empty() {

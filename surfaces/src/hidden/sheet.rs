@@ -140,7 +140,9 @@ impl Pair<'_> {
         // A side that is a single point, as the pole of a sphere, is met there or not at all.
         let here = between(p, q, way.clamp(0.0, 1.0));
         let a = self.sheets[which].at(here);
-        if (a.du * d.u + a.dv * d.v).norm() <= POLE * (a.du.norm() * d.u.abs()).max(a.dv.norm() * length.sqrt()) {
+        if (a.du * d.u + a.dv * d.v).norm()
+            <= POLE * (a.du.norm() * d.u.abs()).max(a.dv.norm() * length.sqrt())
+        {
             let (other, foot) = self.sheets[1 - which].foot(&a.point, other, self.close_mm)?;
             let at = if which == 0 { [here, other] } else { [other, here] };
             let met = (foot - a.point).norm() <= NEAR_POLE * self.close_mm;

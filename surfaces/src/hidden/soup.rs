@@ -111,7 +111,9 @@ impl Soup {
                     for patch in from..from + count {
                         let t = &self.patches[patch];
                         let w = foot(p, &t.corners);
-                        let q = t.corners[0].coords * w[0] + t.corners[1].coords * w[1] + t.corners[2].coords * w[2];
+                        let q = t.corners[0].coords * w[0]
+                            + t.corners[1].coords * w[1]
+                            + t.corners[2].coords * w[2];
                         let distance_mm = (p.coords - q).norm();
                         if best.is_none_or(|b| distance_mm < b.distance_mm) {
                             best = Some(Nearest { patch, distance_mm, at: blend(&t.at, w) });
@@ -126,10 +128,7 @@ impl Soup {
 
 /// The parameters that weights of the corners make.
 pub(super) fn blend(at: &[Uv; 3], w: [f64; 3]) -> Uv {
-    uv(
-        at[0].u * w[0] + at[1].u * w[1] + at[2].u * w[2],
-        at[0].v * w[0] + at[1].v * w[1] + at[2].v * w[2],
-    )
+    uv(at[0].u * w[0] + at[1].u * w[1] + at[2].u * w[2], at[0].v * w[0] + at[1].v * w[1] + at[2].v * w[2])
 }
 
 /// Whether two boxes have a point in common.

@@ -4,7 +4,7 @@
 //! chord in the parameters of the first face stays within the chord tolerance of the line. Where a step would leave one of the
 //! faces, the line ends on that segment of its border: there again both surfaces are met exactly.
 
-use super::border::{Border, Crossing};
+use super::border::{Border, Crossing, Metric};
 use super::sheet::{Across, Meet, Pair, between};
 use osculate_geom::{Uv, Vec3};
 
@@ -96,7 +96,7 @@ fn half(faces: &Faces<'_, '_>, from: Meet, sense: f64, march: March) -> Result<(
     let (mut here, mut ahead) = (from, start);
     let mut step_mm = 0.1 * march.step_mm;
     while places.len() < POINTS {
-        if places.len() > 2 && comes_home(&here, &ahead, &from, &start, step_mm) {
+        if places.len() > 2 && comes_home(faces, [&here, &from], [&ahead, &start], step_mm) {
             return Ok((places, End::Closed));
         }
         match step(faces, &here, &ahead, step_mm, march)? {
@@ -113,11 +113,19 @@ fn half(faces: &Faces<'_, '_>, from: Meet, sense: f64, march: March) -> Result<(
     Err(Lost::Long)
 }
 
-/// Whether the start is just ahead.
-fn comes_home(here: &Meet, ahead: &Vec3, start: &Meet, way: &Vec3, step_mm: f64) -> bool {
+/// Whether the start is just ahead, also in the parameters of the first face: there a seam lies between.
+fn comes_home(
+    faces: &Faces<'_, '_>,
+    [here, start]: [&Meet; 2],
+    [ahead, way]: [&Vec3; 2],
+    step_mm: f64,
+) -> bool {
     let to = start.point - here.point;
     let on = to.dot(ahead);
-    on > 0.0 && on <= step_mm && (to - ahead * on).norm() <= HOME * on && way.dot(ahead) > TURN
+    let straight =
+        on > 0.0 && on <= step_mm && (to - ahead * on).norm() <= HOME * on && way.dot(ahead) > TURN;
+    let metric = Metric::new(&faces.pair.sheets[0].at(here.at[0]));
+    straight && metric.to_segment(here.at[0], [start.at[0]; 2]).1 <= 1.5 * on
 }
 
 /// What a step comes to.
@@ -126,20 +134,29 @@ enum Step {
     Left(Meet),
 }
 
-fn step(faces: &Faces<'_, '_>, here: &Meet, ahead: &Vec3, longest_mm: f64, march: March) -> Result<Step, Lost> {
+fn step(
+    faces: &Faces<'_, '_>,
+    here: &Meet,
+    ahead: &Vec3,
+    longest_mm: f64,
+    march: March,
+) -> Result<Step, Lost> {
     let pair = &faces.pair;
     let mut step_mm = longest_mm;
     for _ in 0..HALVINGS {
         let guess = [0, 1].map(|k| {
             let t = pair.sheets[k].at(here.at[k]);
-            pair.sheets[k].step(&t, &(ahead * step_mm)).map(|d| osculate_geom::uv(here.at[k].u + d.u, here.at[k].v + d.v))
+            pair.sheets[k]
+                .step(&t, &(ahead * step_mm))
+                .map(|d| osculate_geom::uv(here.at[k].u + d.u, here.at[k].v + d.v))
         });
         let [Some(a), Some(b)] = guess else { return Err(Lost::Step) };
         if let Some(last) = leaves(faces, here, ahead, [a, b], [step_mm, march.chord_mm]) {
             return Ok(Step::Left(last));
         }
         let plane = |f: f64| Across { through: here.point + ahead * (f * step_mm), normal: *ahead };
-        let reached = pair.in_plane([a, b], &plane(1.0)).filter(|m| (m.point - here.point).norm() <= 2.0 * step_mm);
+        let reached =
+            pair.in_plane([a, b], &plane(1.0)).filter(|m| (m.point - here.point).norm() <= 2.0 * step_mm);
         let crossed = reached.map(|m| [0, 1].map(|k| faces.borders[k].crossing(here.at[k], m.at[k])));
         if let (Some(m), Some([None, None])) = (reached, crossed) {
             let next = pair.along(m.at, LEAST_SINE).ok_or(Lost::Touch)?;
