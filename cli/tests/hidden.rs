@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// Half of the block's sides, mm.
 const HALF: f64 = 14.0;
 /// Radius of the ball, and how far it comes out of the block, mm.
-const BALL: [f64; 2] = [12.0, 0.4];
+const BALL: [f64; 2] = [12.0, 0.15];
 
 /// A ball that stands a little out of a block of 28 x 28 x 26: F6 is the block's top at z = 0, F7 the ball.
 fn part() -> String {
@@ -83,7 +83,10 @@ fn a_plan_misses_nothing_of_what_is_hidden() {
     close(&summary["area_mm2"], 4.0 * HALF * HALF - top + 2.0 * TAU * BALL[0] * BALL[0] - within);
     let scope = &summary["verdict"]["scope"]["hidden"];
     assert!(scope.as_str().unwrap().contains("of F6 in F7"), "{summary}");
-    assert!(summary["diagnostics"].to_string().contains("neither machined nor counted as uncut"), "{summary}");
+    assert!(
+        summary["diagnostics"].to_string().contains("neither machined nor counted as uncut"),
+        "{summary}"
+    );
 }
 
 /// A face that lies wholly in another body is left out of the faces to machine; where there is no other the job is refused.

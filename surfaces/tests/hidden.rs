@@ -4,7 +4,7 @@
 
 mod bodies;
 
-use bodies::{ball, block, frame, post, within};
+use bodies::{ball, block, frame, post, splined, within};
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Surface};
 use osculate_surfaces::Face;
@@ -177,6 +177,48 @@ fn three_bodies() {
             [130.0, 130.0, 12.0, 12.0, 120.0, 36.0],
         ];
         assert_hidden(&faces, wanted.as_flattened());
+    }
+}
+
+/// Faces on splines, where steps beyond a side end at it.
+#[test]
+fn faces_on_splines() {
+    for part in turned() {
+        let own = frame([30.0, 41.0, 4.0], [0.1, 0.2, 1.0], [1.0, 0.0, 0.0]);
+        let exact = [
+            block(&part, [100.0, 80.0, 10.0]),
+            post(&within(&part, &own), 8.0, 36.0),
+            ball(&within(&part, &at(70.0, 40.0, 8.0)), 9.0),
+        ]
+        .concat();
+        let areas = |faces: &[Face]| {
+            let got = found(faces);
+            assert!(got.unknown.is_empty(), "{:?}", got.unknown);
+            got.faces.iter().map(|f| (f.face, f.hidden_mm2)).collect::<Vec<_>>()
+        };
+        let (wanted, got) = (areas(&exact), areas(&exact.iter().map(splined).collect::<Vec<_>>()));
+        assert_eq!(wanted.len(), got.len());
+        for (w, g) in wanted.iter().zip(&got) {
+            assert!(w.0 == g.0 && (w.1 - g.1).abs() <= AREA * w.1, "{w:?} {g:?}");
+        }
+    }
+}
+
+/// Without a word of the file on sides: bodies are told by the volume that they close around.
+#[test]
+fn sides_need_not_be_known() {
+    let faces =
+        [block(&at(0.0, 0.0, 0.0), [100.0, 80.0, 10.0]), post(&at(30.0, 41.0, 4.0), 8.0, 36.0)].concat();
+    let turned: Vec<Face> = faces
+        .iter()
+        .enumerate()
+        .map(|(k, f)| if k % 3 == 0 { f.clone().flipped() } else { f.clone() })
+        .collect();
+    let got = hidden(&turned.iter().collect::<Vec<_>>(), &[false; 9], None);
+    let known = found(&faces);
+    assert_eq!((got.faces.len(), known.faces.len()), (3, 3));
+    for (g, k) in got.faces.iter().zip(&known.faces) {
+        assert!(g.face == k.face && (g.hidden_mm2 - k.hidden_mm2).abs() <= 1e-9 * k.hidden_mm2);
     }
 }
 

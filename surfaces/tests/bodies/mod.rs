@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, dead_code)]
 
-use osculate_geom::analytic::Placement;
+use osculate_geom::analytic::{Cylinder, Placed, Placement, Plane, Sphere};
 use osculate_geom::{Domain, Interval, Point3, Side, Surface, Unit3, Uv, Vec3, uv};
-use osculate_surfaces::{Analytic, Face, FaceKind, FaceSurface, Shape, TrimmedSurface};
+use osculate_surfaces::{Analytic, Face, FaceKind, FaceSurface, Shape, ToNurbs, TrimmedSurface};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -84,4 +84,26 @@ pub fn post(at: &Placement, radius_mm: f64, height: f64) -> Vec<Face> {
 pub fn ball(at: &Placement, radius_mm: f64) -> Vec<Face> {
     let whole = Analytic::new(Shape::Sphere { radius_mm }, *at).unwrap();
     vec![face(Shape::Sphere { radius_mm }, *at, whole.domain(), &[], Side::Along)]
+}
+
+/// The same face on a spline: a seam is then a side of it as any other.
+pub fn splined(face: &Face) -> Face {
+    let FaceSurface::Analytic(a) = &face.carrier else { panic!("made of analytic faces") };
+    let (domain, placement) = (a.domain(), *a.placement());
+    let spline = match a.shape() {
+        Shape::Plane => Placed { surface: Plane::new(domain), placement }.to_nurbs(domain),
+        Shape::Cylinder { radius_mm } => {
+            Placed { surface: Cylinder::new(radius_mm, domain.v).unwrap(), placement }.to_nurbs(domain)
+        }
+        Shape::Sphere { radius_mm } => {
+            Placed { surface: Sphere::new(radius_mm).unwrap(), placement }.to_nurbs(domain)
+        }
+        other => panic!("{other:?}"),
+    };
+    let spline = Arc::new(spline.unwrap());
+    let trimmed = face.surface.is_trimmed();
+    let loops: Vec<Vec<Uv>> =
+        face.surface.loops().iter().filter(|_| trimmed).map(|l| l.points.clone()).collect();
+    let surface = TrimmedSurface::new(spline.clone(), &loops, face.surface.side()).unwrap();
+    Face { carrier: FaceSurface::Nurbs(spline), surface: Arc::new(surface), ..face.clone() }
 }
