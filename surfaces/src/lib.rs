@@ -24,6 +24,7 @@
 
 pub mod fit;
 pub mod gallery;
+pub mod hidden;
 pub mod iges;
 mod import;
 pub mod json;

@@ -3,6 +3,7 @@
 use crate::screen::args::PartArgs;
 use crate::screen::render;
 use osculate::failure::{Done, Outcome};
+use osculate::part::hidden::{self, Found};
 use osculate::part::{self, Loaded, LoadedFace};
 use osculate::words;
 use osculate::words::{Table, number};
@@ -26,7 +27,12 @@ struct FaceRow {
     poles: Vec<usize>,
     rational: bool,
     trimmed: bool,
+    /// All of it, with what is hidden.
     area_mm2: f64,
+    /// Within other bodies of the part.
+    hidden_mm2: f64,
+    /// Each of these bodies, by its faces.
+    hidden_in: Vec<String>,
     bbox_mm: Vec<f64>,
     /// Least and greatest; empty where no point of the face has a tangent plane.
     principal_curvature_per_mm: Vec<f64>,
@@ -112,6 +118,8 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
         rational: source.and_then(|f| f.is_rational()).unwrap_or(false),
         trimmed: source.is_some_and(|f| f.trimmed()),
         area_mm2: part::area(face),
+        hidden_mm2: 0.0,
+        hidden_in: Vec::new(),
         bbox_mm: corners(&b),
         principal_curvature_per_mm: part::curvature_range(&*face.surface)
             .map_or_else(Vec::new, |r| r.to_vec()),
@@ -124,20 +132,27 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
 /// Runs the verb.
 pub fn run(args: &PartArgs, json: bool) -> Outcome {
     let part = args.load()?;
-    let answer = answer(&part);
+    let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
+    let found = hidden::find(&part, &oriented);
+    let answer = answer(&part, &found);
     if json {
         render::json(&answer)?;
     } else {
-        render::text(&describe(&answer, &part));
+        render::text(&describe(&answer, &part, &found));
     }
     // What could be read is shown all the same.
     part::whole(part).map(|_| Done::Yes)
 }
 
-fn answer(part: &Loaded) -> Answer {
+fn answer(part: &Loaded, found: &Found) -> Answer {
     let rows: Vec<(FaceRow, Box3)> = part.faces.par_iter().map(row).collect();
     let whole = rows.iter().fold(Box3::empty(), |b, r| b.union(&r.1));
-    let faces: Vec<FaceRow> = rows.into_iter().map(|r| r.0).collect();
+    let mut faces: Vec<FaceRow> = rows.into_iter().map(|r| r.0).collect();
+    for row in &mut faces {
+        if let Some(of) = found.faces.iter().find(|f| f.id == row.id) {
+            (row.hidden_mm2, row.hidden_in) = (of.hidden_mm2, of.bodies.clone());
+        }
+    }
     Answer {
         format: part.format,
         unit: part.unit.clone(),
@@ -148,7 +163,7 @@ fn answer(part: &Loaded) -> Answer {
         products: products(&faces),
         faces,
         not_used: part.not_used.iter().map(not_used).collect(),
-        diagnostics: part.diagnostics.iter().map(ToString::to_string).collect(),
+        diagnostics: part.diagnostics.iter().chain(&found.diagnostics).map(ToString::to_string).collect(),
     }
 }
 
@@ -192,7 +207,7 @@ fn face_table(faces: &[FaceRow]) -> String {
     t.render()
 }
 
-fn describe(a: &Answer, part: &Loaded) -> String {
+fn describe(a: &Answer, part: &Loaded, found: &Found) -> String {
     let unit = if a.unit.is_empty() { "no unit stated".to_owned() } else { format!("unit {}", a.unit) };
     let mut out = format!("\n  {} file, {unit}", a.format);
     if !a.schema.is_empty() {
@@ -204,6 +219,14 @@ fn describe(a: &Answer, part: &Loaded) -> String {
     }
     if !a.faces.is_empty() {
         out.push_str(&format!("\n{}", face_table(&a.faces)));
+    }
+    if !found.faces.is_empty() {
+        let mut t = Table::new(["face", "hidden mm2", "of it", "in"]);
+        for f in a.faces.iter().filter(|f| !f.hidden_in.is_empty()) {
+            let share = format!("{:.1} %", 100.0 * f.hidden_mm2 / f.area_mm2);
+            t.row([f.id.clone(), number(f.hidden_mm2, 6), share, f.hidden_in.join("; ")]);
+        }
+        out.push_str(&format!("\n{}", t.render()));
     }
     if a.products.iter().any(|p| p.instances > 1) || a.products.len() > 1 {
         let mut t = Table::new(["product", "faces", "instances"]);
@@ -219,8 +242,9 @@ fn describe(a: &Answer, part: &Loaded) -> String {
         }
         out.push_str(&format!("\n{}", t.render()));
     }
-    if !part.diagnostics.is_empty() {
-        out.push_str(&format!("\n{}", words::findings(&part.diagnostics)));
+    let findings = [part.diagnostics.as_slice(), &found.diagnostics].concat();
+    if !findings.is_empty() {
+        out.push_str(&format!("\n{}", words::findings(&findings)));
     }
     out.push('\n');
     out

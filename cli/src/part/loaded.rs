@@ -1,6 +1,7 @@
 //! A part as it was read: its faces with names, and what was found on the way.
 
 use crate::failure::Failure;
+use crate::words::number;
 use osculate_geom::Diagnostic;
 use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface};
 use std::sync::Arc;
@@ -24,6 +25,32 @@ pub struct LoadedFace {
     pub part_of_it: Option<String>,
 }
 
+/// A face of which something is hidden.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InBodies {
+    /// Its id.
+    pub id: String,
+    /// The area within other bodies, mm2.
+    pub hidden_mm2: f64,
+    /// Whether that is all of it.
+    pub wholly: bool,
+    /// Each of the bodies, by the ids of its faces.
+    pub bodies: Vec<String>,
+}
+
+impl InBodies {
+    /// What is hidden and where, in words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let bodies = self.bodies.join(" and in ");
+        if self.wholly {
+            format!("all of {} in {bodies}", self.id)
+        } else {
+            format!("{} mm2 of {} in {bodies}", number(self.hidden_mm2, 5), self.id)
+        }
+    }
+}
+
 /// A part ready for work.
 #[derive(Clone)]
 pub struct Loaded {
@@ -35,8 +62,10 @@ pub struct Loaded {
     pub schema: String,
     /// What the file says of its own exactness, mm.
     pub uncertainty_mm: Option<f64>,
-    /// Faces.
+    /// Faces; those that lie wholly in other bodies are not among them where a job reads the part.
     pub faces: Vec<LoadedFace>,
+    /// What of the faces lies in other bodies, where that was looked for.
+    pub hidden: Vec<InBodies>,
     /// What the file has that is not used.
     pub not_used: Vec<NotUsed>,
     /// The message for a file that ends too early.
@@ -66,6 +95,11 @@ impl Loaded {
 
     /// The face of this id.
     pub fn face(&self, id: &str) -> Result<&LoadedFace, Failure> {
+        if let Some(hidden) = self.hidden.iter().find(|h| h.wholly && h.id == id) {
+            let text =
+                format!("{}: it lies in the material there, and no tool has to reach it", hidden.words());
+            return Err(Failure::job(text));
+        }
         self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
             let ids: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).take(12).collect();
             let more = if self.faces.len() > ids.len() { ", ..." } else { "" };

@@ -1,11 +1,12 @@
 //! Parts as commands see them: faces with names, from a file or built in.
 
 mod fingerprint;
+pub mod hidden;
 mod loaded;
 mod sides;
 mod turned;
 
-pub use loaded::{Loaded, LoadedFace};
+pub use loaded::{InBodies, Loaded, LoadedFace};
 pub use turned::{TurnedFaces, turned};
 
 use crate::failure::{Failure, read};
@@ -35,6 +36,7 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         schema: String::new(),
         uncertainty_mm: None,
         faces: vec![face],
+        hidden: Vec::new(),
         not_used: Vec::new(),
         truncated: None,
         diagnostics: Vec::new(),
@@ -87,6 +89,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         schema: part.schema,
         uncertainty_mm: part.uncertainty_mm,
         faces,
+        hidden: Vec::new(),
         not_used: part.not_used,
         truncated: part.truncated.then(|| {
             let what =
@@ -180,8 +183,11 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
     let chosen = machined(job, &part)?;
-    let open: Vec<String> =
-        sides::settle(job, &mut part, &chosen).into_iter().map(|k| part.faces[k].id.clone()).collect();
+    let sideless = sides::settle(job, &mut part, &chosen);
+    let open: Vec<String> = sideless.iter().map(|k| part.faces[*k].id.clone()).collect();
+    hidden::hide(&mut part, &sideless);
+    // Of the faces named, those that are left.
+    let chosen = if part.hidden.is_empty() { chosen } else { machined(job, &part)? };
     sorted(job, part, chosen, open)
 }
 
@@ -223,6 +229,9 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
     if !allowed.is_empty() {
         unseen.push(Unseen::MayBeHit(allowed));
     }
+    if !part.hidden.is_empty() {
+        unseen.push(Unseen::Hidden(part.hidden.iter().map(InBodies::words).collect()));
+    }
     let no_side = ids(&mut check.iter().filter(|f| open.contains(&f.id)));
     if !no_side.is_empty() {
         unseen.push(Unseen::NoSide(no_side));
@@ -257,7 +266,12 @@ fn choose(part: &Loaded, choice: Option<&FaceChoice>, key: &str) -> Result<Vec<L
         None => Ok(part.faces.clone()),
         Some(FaceChoice::Word(w)) if w == "all" => Ok(part.faces.clone()),
         Some(FaceChoice::Word(id)) => Ok(vec![part.face(id)?.clone()]),
-        Some(FaceChoice::Ids(ids)) => ids.iter().map(|id| part.face(id).cloned()).collect(),
+        Some(FaceChoice::Ids(ids)) => {
+            // One that is wholly hidden is left out, unless there is no other.
+            let gone = |id: &String| part.hidden.iter().any(|h| h.wholly && h.id == *id);
+            let all = ids.iter().all(gone);
+            ids.iter().filter(|id| all || !gone(id)).map(|id| part.face(id).cloned()).collect()
+        }
         Some(FaceChoice::Largest(l)) => {
             if l.largest == 0 || l.largest > part.faces.len() {
                 return Err(Failure::job(format!(

@@ -5,11 +5,11 @@ use osculate_geom::Side;
 
 /// Faces that hang together.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Joined {
+pub(crate) struct Joined {
     /// Numbers of the faces, ascending.
-    pub(super) faces: Vec<usize>,
+    pub(crate) faces: Vec<usize>,
     /// The side of each relative to the first one.
-    pub(super) sides: Vec<Side>,
+    pub(crate) sides: Vec<Side>,
 }
 
 /// Numbers joined to classes, each with its side relative to the one above it.

@@ -9,6 +9,9 @@ mod link;
 mod rim;
 mod shell;
 mod tree;
+
+pub(crate) use shell::volume_sign;
+pub(crate) use tree::Tree;
 mod vote;
 
 use crate::mesh::{Mesh, tessellate};
@@ -31,7 +34,7 @@ const JOIN: f64 = 1e-5;
 const GAP: f64 = 5e-4;
 
 /// Share of the rims of faces that close that other faces go on from: the rest is folds and places where more than two meet.
-const CLOSED: f64 = 0.95;
+pub(crate) const CLOSED: f64 = 0.95;
 
 /// What settles the sides of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,11 +96,11 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
     if !(size_mm.is_finite() && size_mm > 0.0) {
         return Sides { of: (0..faces.len()).map(told).collect(), ..Sides::default() };
     }
-    let (joined, rims_mm, conflicts) = joined(faces, size_mm, uncertainty_mm);
+    let (joined, rims_mm, conflicts) = hanging(faces, size_mm, uncertainty_mm);
     let meshes: Vec<Mesh> = faces.par_iter().map(|f| tessellate(&f.surface, CHORD * size_mm, None)).collect();
     let at = |m: &Mesh, k: u32| Point3::from(m.positions[k as usize]);
     let soup = meshes.iter().flat_map(|m| m.triangles.iter().map(|t| t.map(|k| at(m, k))));
-    let part = tree::Tree::new(soup.collect());
+    let part = Tree::new(soup.collect());
     let mut out = Sides { of: (0..faces.len()).map(told).collect(), groups: Vec::new(), conflicts };
     for group in joined {
         let of: Vec<(&Mesh, Side)> =
@@ -117,7 +120,7 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
             let of: Vec<(&Face, Side)> =
                 group.faces.iter().zip(&group.sides).map(|(f, s)| (faces[*f], *s)).collect();
             let closes = met >= CLOSED * whole;
-            let sign = if closes { shell::volume_sign(&of) } else { None };
+            let sign = if closes { volume_sign(&of) } else { None };
             sign.map_or((1.0, Settled::Open), |sign| (sign, Settled::Closed))
         };
         let turn = if sign < 0.0 { Side::Against } else { Side::Along };
@@ -137,10 +140,10 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
 }
 
 /// Groups, the rims of each face as [`link::Links`] has them, and neighbours that do not fit.
-type Hanging = (Vec<groups::Joined>, Vec<[f64; 2]>, Vec<SideConflict>);
+pub(crate) type Hanging = (Vec<groups::Joined>, Vec<[f64; 2]>, Vec<SideConflict>);
 
 /// The groups of faces that hang together.
-fn joined(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> Hanging {
+pub(crate) fn hanging(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> Hanging {
     let bits: Vec<rim::Bit> = faces
         .par_iter()
         .enumerate()

@@ -12,7 +12,7 @@ const LEAK: f64 = 1e-3;
 const THIN: f64 = 1e-4;
 
 /// The sign of the volume behind faces on the sides given, where they close.
-pub(super) fn volume_sign(faces: &[(&Face, Side)]) -> Option<f64> {
+pub(crate) fn volume_sign(faces: &[(&Face, Side)]) -> Option<f64> {
     let around = faces.iter().fold(Box3::empty(), |b, f| b.union(&f.0.surface.bbox(1)));
     let (from, size_mm) = (around.centre(), around.diagonal_mm());
     let parts: Vec<(f64, Vec3, f64)> = faces.par_iter().map(|(f, side)| of(f, *side, &from)).collect();

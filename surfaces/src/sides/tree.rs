@@ -15,14 +15,14 @@ struct Node {
 
 /// Triangles with a tree over them.
 #[derive(Clone, Debug)]
-pub(super) struct Tree {
+pub(crate) struct Tree {
     nodes: Vec<Node>,
     triangles: Vec<[Point3; 3]>,
 }
 
 impl Tree {
     /// A tree over triangles; those that are not finite are left out.
-    pub(super) fn new(mut triangles: Vec<[Point3; 3]>) -> Self {
+    pub(crate) fn new(mut triangles: Vec<[Point3; 3]>) -> Self {
         triangles.retain(|t| t.iter().all(|p| p.coords.iter().all(|c| c.is_finite())));
         let mut tree = Self { nodes: Vec::new(), triangles };
         if !tree.triangles.is_empty() {
@@ -49,7 +49,7 @@ impl Tree {
     }
 
     /// How many triangles the ray from `p` along the unit vector `d` crosses farther off than `skip_mm`.
-    pub(super) fn crossings(&self, p: &Point3, d: &Vec3, skip_mm: f64) -> usize {
+    pub(crate) fn crossings(&self, p: &Point3, d: &Vec3, skip_mm: f64) -> usize {
         let inverse = d.map(|c| 1.0 / c);
         let mut found = 0;
         let mut waiting = vec![0];

@@ -127,7 +127,8 @@ impl Trial<'_> {
     pub fn only(&self) -> Option<String> {
         let names: Vec<String> = self.goal.machined.iter().map(|f| f.name.to_owned()).collect();
         let part = self.goal.machined.iter().any(|f| f.part_of_it.is_some());
-        (part || !self.goal.unseen.is_empty()).then(|| listed(&names))
+        let out = self.goal.unseen.iter().any(|u| !matches!(u, Unseen::Hidden(_)));
+        (part || out).then(|| listed(&names))
     }
 
     pub fn scope(&self, f: &Figures) -> Vec<ScopeRow> {
@@ -152,9 +153,19 @@ impl Trial<'_> {
                     others +=
                         &format!("; NOT looked at, as their material side is not known: {}", listed(faces));
                 }
+                Unseen::Hidden(_) => {}
             }
         }
         row("other faces", others);
+        let hidden =
+            goal.unseen.iter().filter_map(|u| if let Unseen::Hidden(words) = u { Some(words) } else { None });
+        let hidden: Vec<&str> = hidden.flatten().map(String::as_str).collect();
+        if !hidden.is_empty() {
+            row(
+                "hidden",
+                format!("in the material of other bodies, neither cut nor looked at: {}", hidden.join(", ")),
+            );
+        }
         if let Some(allowance) = goal.roughing_mm {
             row("roughing", format!("faces are judged {allowance} mm outside, by what stands above that"));
         }

@@ -31,6 +31,9 @@ pub enum Unseen {
     MayBeHit(Vec<String>),
     /// Nothing says on which side of them the material is.
     NoSide(Vec<String>),
+    /// They lie in the material of other bodies, wholly or in part: in words, each with its area. That leaves nothing of the
+    /// part's surface out.
+    Hidden(Vec<String>),
 }
 
 /// A tool that motions carry.
