@@ -40,7 +40,7 @@ pub(super) fn looked_at(
     if !coarse {
         look = trial.look(spacing, &[], (none, progress))?;
     }
-    let mut marks = trial.marks(&look.measured, usize::MAX);
+    let mut marks = trial.marks(&look.measured, usize::MAX)?;
     if !coarse {
         trial.give_up(&mut look, &mut marks, spacing)?;
     }

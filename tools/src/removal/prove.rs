@@ -99,7 +99,7 @@ pub fn prove_in_steps(
     for ((step, judged), found) in apart {
         *judged = Some(step.on_its_own(&program, found.take(), &|_| {})?);
     }
-    let mut marks = trial.marks(&look.measured, usize::MAX);
+    let mut marks = trial.marks(&look.measured, usize::MAX)?;
     if !coarse {
         trial.give_up(&mut look, &mut marks, spacing)?;
     }

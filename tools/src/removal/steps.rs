@@ -83,7 +83,7 @@ impl GoalStep<'_> {
         let trial = Trial::new(&self.goal, program, &tools);
         let (own, cuts) = taken(sampled, cuts, seats);
         let look = trial.seen(own, cuts)?;
-        let marks = trial.marks(&look.measured, MARKED);
+        let marks = trial.marks(&look.measured, MARKED)?;
         let stock = stock.map(|found| found.deeper_than(trial.limits.collision_mm));
         let closing = Closing { coarse: false, refined: unbounded(), stock, notes: Vec::new() };
         let crest_median_mm = trial.crests(&look.measured)?;

@@ -5,13 +5,17 @@
 //! the standoff is its least value. Whatever the phase, some tooth passes within the stretch of one period around that instant,
 //! and the worst phase leaves `e(a) = e(a + period)`, the two passes on either side as high as each other [R97, eq. 41, at a given
 //! feed]. The mark is that height above the standoff. Passes beside this one may cut some of it; the sum of standoff and mark is
-//! therefore a bound, which the lattice of passes and teeth reaches where their phases agree.
+//! therefore a bound, which the lattice of passes and teeth reaches where their phases agree. Where it is too high the other passes
+//! are asked as well, and the least that any of them leaves counts.
 //!
 //! Times are those of the read program, so that feeds that joints or the control cap are the capped ones, and a tool that turns
 //! makes its marks as it turns. Where a run of feed moves ends, or turns sharply, the tool stands still for a moment.
 
+use super::body::Body as Solid;
 use super::goal::Program;
-use super::job::{Body, Cut, Sample, Swept};
+use super::job::{Body, Cut, Job, JobError, Sample, Swept};
+use super::target::Target;
+use super::tree::{Ways, Which};
 use crate::cutter::{Cutter, Line};
 use crate::pose::Pose;
 use osculate_geom::Unit3;
@@ -26,6 +30,13 @@ const CORNER: f64 = 0.707;
 /// Halvings of the bracket of the worst phase: to a thousandth of a period and of the motion; of two heights at its ends the
 /// higher one is taken, so that what is left of it adds to the mark.
 const HALVINGS: u32 = 12;
+
+/// Samples are held against other passes where they stand higher than this share of the limit ...
+const HIGH: f64 = 0.5;
+/// ... of which the mark is no less than that share, ...
+const MARKED: f64 = 0.1;
+/// ... and where they are so few: more of them are no edges.
+const MOST_LOWERED: usize = 50_000;
 
 /// The teeth of a tool.
 #[derive(Clone, Copy)]
@@ -56,7 +67,55 @@ impl Teeth<'_> {
         let Some(by) = cut.by.filter(|by| !sample.check_only && !by.rapid && by.body == Body::Cutter) else {
             return 0.0;
         };
-        let motion = by.motion as usize;
+        (self.left_mm(sample, by.motion as usize, stock_mm) - cut.standoff_mm).max(0.0)
+    }
+
+    /// Lowers the marks with which samples stand next to a limit or above it, where other passes leave less. The pass that goes lowest may only graze a
+    /// place beside an edge, for less than the time from tooth to tooth, where the one before has left little: what a pass has taken no
+    /// later one puts back, so that the least of what they leave is a bound.
+    pub fn lower(
+        &self,
+        (samples, cuts): (&[Sample], &[Cut]),
+        marks: &mut [f64],
+        job: &Job<'_>,
+        limit_mm: f64,
+    ) -> Result<(), JobError> {
+        let high =
+            |k: &usize| marks[*k] > MARKED * limit_mm && cuts[*k].standoff_mm + marks[*k] > HIGH * limit_mm;
+        let high: Vec<usize> = (0..samples.len()).filter(high).collect();
+        if high.is_empty() || high.len() > MOST_LOWERED {
+            return Ok(());
+        }
+        let (ways, bodies) = (Ways::of_job(job)?, Solid::all(job));
+        let lowered: Vec<f64> = high
+            .par_iter()
+            .map(|k| {
+                let (sample, cut) = (&samples[*k], &cuts[*k]);
+                // Others are no help where they enter the normal above the limit.
+                let target = Target::segment(sample.point, &sample.normal, limit_mm);
+                let mut near: Vec<u32> = Vec::new();
+                ways.near(&bodies, &target, Which::Cutting, |piece, body, _| {
+                    let motion = ways.pieces[piece as usize].motion;
+                    if body.cuts() && !job.motions[motion as usize].rapid {
+                        near.push(motion);
+                    }
+                });
+                near.sort_unstable();
+                near.dedup();
+                let own = cut.standoff_mm + marks[*k];
+                let least =
+                    near.iter().map(|m| self.left_mm(sample, *m as usize, job.stock_mm)).fold(own, f64::min);
+                (least - cut.standoff_mm).max(0.0)
+            })
+            .collect();
+        for (k, mark) in high.into_iter().zip(lowered) {
+            marks[k] = mark;
+        }
+        Ok(())
+    }
+
+    /// What the worst phase of the teeth leaves at a sample when a motion passes it, mm above it; no more than `stock_mm`.
+    fn left_mm(&self, sample: &Sample, motion: usize, stock_mm: f64) -> f64 {
         let Edge { cutter, period_min } = self.tools[self.program.tool_of(motion)];
         let up = Line { origin: sample.point, direction: sample.normal };
         let top = sample.point + sample.normal.into_inner() * stock_mm;
@@ -83,7 +142,7 @@ impl Teeth<'_> {
             worst = worst.min(first.max(second));
             if first > second { low = a } else { high = a }
         }
-        (worst.min(stock_mm) - cut.standoff_mm).max(0.0)
+        worst.min(stock_mm)
     }
 
     fn begin(&self, motion: usize) -> f64 {

@@ -352,7 +352,7 @@ impl<'a> Trial<'a> {
     }
 
     /// The marks at samples; at so many of them at most, evenly chosen.
-    pub fn marks(&self, Measured { samples, cuts, .. }: &Measured, most: usize) -> Marks {
+    pub fn marks(&self, Measured { samples, cuts, .. }: &Measured, most: usize) -> Result<Marks, ProveError> {
         let tools: Option<Vec<Edge<'_>>> = self
             .goal
             .tools
@@ -360,12 +360,14 @@ impl<'a> Trial<'a> {
             .map(|t| Some(Edge { cutter: t.cutter, period_min: self.period_min(t)? }))
             .collect();
         let Some(tools) = tools else {
-            return Marks { each: vec![0.0; samples.len()], known: false };
+            return Ok(Marks { each: vec![0.0; samples.len()], known: false });
         };
         let teeth = Teeth { tools, program: self.program };
-        let stock_mm = self.goal.stock.layer_mm();
         let stride = samples.len().div_ceil(most).max(1);
-        Marks { each: teeth.marks((samples, cuts), stock_mm, stride), known: true }
+        let job = self.job_without();
+        let mut each = teeth.marks((samples, cuts), job.stock_mm, stride);
+        teeth.lower((samples, cuts), &mut each, &job, self.limits.scallop_mm)?;
+        Ok(Marks { each, known: true })
     }
 
     /// Adds samples where limits may be exceeded between those there are. What comes back of scallops is what nothing stands above
@@ -422,7 +424,7 @@ impl<'a> Trial<'a> {
             all.patches.append(&mut lot.patches);
             all.cuts.append(&mut lot.cuts);
         }
-        in_order.extend(self.marks(&more, usize::MAX).each);
+        in_order.extend(self.marks(&more, usize::MAX)?.each);
         marks.each = in_order;
         all.samples.append(&mut more.samples);
         all.patches.append(&mut more.patches);

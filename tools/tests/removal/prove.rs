@@ -53,6 +53,8 @@ struct Asked {
     unseen: Vec<Unseen>,
     remarks: Vec<Remark>,
     blend_mm: f64,
+    /// Places that the tool dips to after all passes, a thousandth deep, down and up again at 20 degrees.
+    dips: Vec<[f64; 2]>,
 }
 
 impl Default for Asked {
@@ -64,8 +66,29 @@ impl Default for Asked {
             unseen: Vec::new(),
             remarks: Vec::new(),
             blend_mm: 0.0,
+            dips: Vec::new(),
         }
     }
+}
+
+/// The motions of dips after others.
+fn dipped(mut motions: Vec<Swept>, dips: &[[f64; 2]]) -> Vec<Swept> {
+    let slope = 20f64.to_radians().tan();
+    let mut last = motions[motions.len() - 1].to;
+    let mut go = |x: f64, y: f64, z: f64, rapid: bool| {
+        let to = Pose { tip: Point3::new(x, y, z), axis: Vec3::z_axis() };
+        motions.push(Swept { from: last, to, rapid, block: 2 });
+        last = to;
+    };
+    for [x, y] in dips {
+        let (at, high) = (*x, 4.0 * slope);
+        go(at - 4.0, *y, 9.0, true);
+        go(at - 4.0, *y, high, true);
+        go(at, *y, -0.001, false);
+        go(at + 4.0, *y, high, false);
+        go(at + 4.0, *y, 9.0, true);
+    }
+    motions
 }
 
 fn judged(asked: Asked) -> Result<Verdict, ProveError> {
@@ -96,7 +119,7 @@ fn judged(asked: Asked) -> Result<Verdict, ProveError> {
         roughing_mm: None,
         control: GoalControl { words: String::new(), remarks: asked.remarks, blend_mm: asked.blend_mm },
     };
-    let motions = raster(asked.z);
+    let motions = dipped(raster(asked.z), &asked.dips);
     let times_min = times(&motions, asked.feed_mm_min);
     prove(&goal, Program { motions: &motions, times_min: &times_min, changes: &[] }, &|_| ())
 }
@@ -123,6 +146,19 @@ fn marks_on_a_plane_are_those_of_two_circles() {
         v.why().iter().any(|w| w.contains("tooth mark")) && v.figures().mark_max_mm.unwrap() > 0.45,
         "{v}"
     );
+}
+
+/// A pass that grazes a place for less than the time from tooth to tooth may leave much, but not more than the passes before it have left.
+#[test]
+fn what_other_passes_have_taken_bears_no_mark() {
+    let f = 0.2;
+    let asked = |dips: Vec<[f64; 2]>| Asked { feed_mm_min: 2000.0 * f, dips, ..Asked::default() };
+    let plain = judged(asked(Vec::new())).unwrap();
+    let dips = judged(asked(vec![[1.1, 1.3], [3.0, 2.9], [4.2, 1.7]])).unwrap();
+    assert!(plain.is_held() && dips.is_held(), "{:?} {:?}", plain.why(), dips.why());
+    // Alone a dip would leave f / 2 tan(20) = 0.036 mm; below half the limit nothing else is asked.
+    let [a, b] = [&plain, &dips].map(|v| v.figures().height_max_mm);
+    assert!(b <= a.max(0.5 * 0.02) + 1e-6, "{b} instead of {a}");
 }
 
 #[test]
