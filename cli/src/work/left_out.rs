@@ -75,8 +75,7 @@ pub fn linked(
         let found = faces.faces.iter().zip(area_mm2).filter(|(_, a)| *a > 0.0);
         extras.left_out = found.map(|(f, area_mm2)| FaceLeftOut { face: f.id.clone(), area_mm2 }).collect();
         let text = format!(
-            "{touched} of {} passes do not go where the tool would go into the part or a check face; {}, which counts as \
-             uncut",
+            "stretches of {touched} of {} passes, where the tool would go into the part or a check face, are not cut: {}",
             passes.passes.len(),
             words(&extras.left_out)
         );
@@ -99,9 +98,9 @@ pub fn linked(
 /// Faces and areas in words.
 pub fn words(left: &[FaceLeftOut]) -> String {
     if left.is_empty() {
-        return "nothing of the faces stays uncut for it".to_owned();
+        return "other passes cut all of the faces".to_owned();
     }
     let each: Vec<String> =
         left.iter().map(|f| format!("{} {} mm2", f.face, number(f.area_mm2, 4))).collect();
-    format!("left out: {}", each.join(", "))
+    format!("{}, which counts as uncut", each.join(", "))
 }
