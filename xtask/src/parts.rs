@@ -32,8 +32,8 @@ impl<'a> Options<'a> {
     }
 }
 
-const HEAD: &str = "# Whole parts from the block to finished\n\nMade by `cargo xtask parts`: every example that is a list of operations, by `osculate plan JOB --out DIR`, and its programs \
-judged again by `osculate verify`, which must say the same. *Uncut* is what an operation leaves higher than the finished part may have on the faces that it is for; \
+const HEAD: &str = "# Whole parts from the block to finished\n\nMade by `cargo xtask parts`, of which `--only TEXT` makes some: examples that are lists of operations, each by `osculate plan JOB --out DIR`, and \
+its programs judged again by `osculate verify`, which must say the same. *Uncut* is what an operation leaves higher than the finished part may have on the faces that it is for; \
 *stood* how high material stood on them before it. Minutes are those of the machine, wall and CPU seconds those of the program, on two cores.\n";
 
 /// Plans and verifies every whole part whose name has the text in it, and writes the page.
@@ -142,6 +142,8 @@ fn told(name: &str, s: &Value, ran: &Measured, same: bool) -> String {
     let _ = write!(out, "**{}**", words(&s["verdict"]["answer"]).replace('_', " "));
     if !why.is_empty() {
         let _ = write!(out, ": {why}");
+    } else if v["certain"] == false {
+        out.push_str(" at the samples, which the job takes as enough");
     }
     let _ = write!(
         out,

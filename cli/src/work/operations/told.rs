@@ -213,7 +213,7 @@ fn merged(steps: &[Step<'_>]) -> Planned<'static> {
         linked.cutting_length_mm += own.linked.cutting_length_mm;
         linked.air_length_mm += own.linked.air_length_mm;
         extras.left_out.clear();
-        if names.last() != Some(&own.strategy.as_str()) {
+        if !names.contains(&own.strategy.as_str()) {
             names.push(&own.strategy);
         }
     }
