@@ -11,7 +11,7 @@ use osculate_geom::analytic::{Line, Paraboloid};
 use osculate_geom::{
     Axis, Domain, Extruded, Interval, Jet2, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3,
 };
-use osculate_productivity::axis::{Around, AxisField, Found, Joints, Surroundings, Wish, find};
+use osculate_productivity::axis::{Around, AxisField, Found, Joints, Left, Surroundings, Wish, find};
 use osculate_productivity::plan::{
     Along, Leaning, Milling, Named, Senses, Task, Tolerance, isoparametric, run_in,
 };
@@ -157,13 +157,14 @@ fn along_v(_: Uv, jet: &Jet2) -> Option<Vec3> {
     Some(jet.dv)
 }
 
-fn found(tool: &Tool, machine: &Machine) -> Found {
+fn found(tool: &Tool, machine: &Machine, left: Left<'_>) -> Found {
     let [floor, wall] = corner();
     let around = Around {
         faces: &[Named { face: "floor", surface: &floor }],
         check: &[Named { face: "wall", surface: &wall }],
         cutter: tool.cutter(),
         gouge_mm: 0.005,
+        left,
     };
     let wish = Wish {
         surface: &floor,
@@ -182,7 +183,7 @@ fn found(tool: &Tool, machine: &Machine) -> Found {
 fn a_field_keeps_cutter_and_holder_off_a_wall_and_names_what_no_axis_reaches() {
     const RADIUS: f64 = 3.0;
     let (cutter, holder) = (ball(2.0 * RADIUS, 15.0), Holder::cylinder(16.0, 40.0).unwrap());
-    let found = found(&Tool::new(cutter, Some(&holder)), &Machine { fixed: None });
+    let found = found(&Tool::new(cutter, Some(&holder)), &Machine { fixed: None }, Left::default());
     let [floor, _] = corner();
     // The centre of the ball stands over its contact: no axis helps within a radius of the wall. Nodes are half a radius apart.
     let unreached: f64 = found.unreached.iter().map(|u| u.area_mm2).sum();
@@ -214,10 +215,44 @@ fn a_field_keeps_cutter_and_holder_off_a_wall_and_names_what_no_axis_reaches() {
     }
 }
 
+/// Raw material stands beyond a plane that an upright holder reaches over from the far end of the floor. The cutter may take it: a layer of
+/// it on the floor changes nothing.
+#[test]
+fn a_field_keeps_the_holder_off_raw_material_that_is_left() {
+    const BEYOND: f64 = 31.0;
+    const HOLDER: f64 = 8.0;
+    let cutter = ball(6.0, 15.0);
+    let tool = Tool::new(cutter, Some(&Holder::cylinder(2.0 * HOLDER, 40.0).unwrap()));
+    let lattice = |n: usize, m: usize| (0..n).flat_map(move |i| (0..m).map(move |j| (i as f64, j as f64)));
+    let wall = lattice(91, 61).map(|(y, z)| Point3::new(BEYOND, y - 30.0, z));
+    let layer = lattice(31, 31).map(|(x, y)| Point3::new(x, y, 0.8));
+    let raw: Vec<Point3> = wall.chain(layer).collect();
+    let [floor, _] = corner();
+    // How far the holder of the worst place is from the plane, as its lowest disc and the one in which it ends.
+    let room = |found: &Found| {
+        let places = (0..400).map(|k| [k % 20, k / 20].map(|k| (k as f64 + 0.5) / 20.0));
+        let rooms = places.map(|[s, t]| {
+            let at = floor.domain().at(s, t);
+            let (axis, _) = found.field.at(at);
+            let pose = pose_with_axis(&cutter, &floor.point(at), &Vec3::z_axis(), &axis);
+            let reach = HOLDER * (1.0 - axis.x * axis.x).sqrt();
+            let ends = [15.0, 55.0].map(|up| BEYOND - pose.retracted(up).tip.x - reach);
+            ends[0].min(ends[1])
+        });
+        rooms.fold(f64::INFINITY, f64::min)
+    };
+    let machine = Machine { fixed: None };
+    let free = found(&tool, &machine, Left::default());
+    assert!(room(&free) < -1.0, "{}", room(&free));
+    let kept = found(&tool, &machine, Left { points: &raw, apart_mm: 1.0 });
+    assert!(room(&kept) > 0.0, "{}", room(&kept));
+    assert_eq!(kept.unreached.len(), free.unreached.len());
+}
+
 #[test]
 fn a_machine_of_three_axes_has_a_field_of_one() {
     let up = Vec3::z_axis();
-    let found = found(&Tool::new(ball(6.0, 30.0), None), &Machine { fixed: Some(up) });
+    let found = found(&Tool::new(ball(6.0, 30.0), None), &Machine { fixed: Some(up) }, Left::default());
     for (u, v) in [(0.0, 0.0), (5.0, 7.0), (29.5, 30.0)] {
         let (axis, slope) = found.field.at(Uv { u, v });
         assert!(axis.angle(&up) < 1e-12 && slope.iter().all(|s| s.norm() < 1e-12));

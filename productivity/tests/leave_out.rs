@@ -3,6 +3,7 @@
 
 use osculate_geom::analytic::{Line, Plane};
 use osculate_geom::{Domain, Extruded, Interval, Point3, Surface, Vec3, uv};
+use osculate_productivity::axis::Left;
 use osculate_productivity::plan::{CcPoint, Guard, LeaveOutError, Named, Pass, Passes, Tolerance, leave_out};
 use osculate_tools::{Cutter, CutterSpec, Holder, Pose};
 
@@ -60,7 +61,7 @@ fn off(p: &Point3) -> f64 {
 
 fn guard<'a>(faces: &'a [Named<'a>], check: &'a [Named<'a>], cutter: &'a Cutter) -> Guard<'a> {
     let tolerance = Tolerance { scallop_mm: SCALLOP, gouge_mm: GOUGE, chord_mm: 0.005 };
-    Guard { faces, check, cutter, holder: None, tolerance, keep_off_mm: 0.0 }
+    Guard { faces, check, cutter, holder: None, tolerance, keep_off_mm: 0.0, left: Left::default() }
 }
 
 /// The least distance of passes from the wall's foot, their points and what lies between.
@@ -132,6 +133,17 @@ fn only_the_holder_is_in_the_way() {
     let with = leave_out(&whole, &Guard { holder: Some(&holder), ..guard }).unwrap();
     let near = nearest(&with.passes);
     assert!((HOLDER - 0.6 * GOUGE..=HOLDER + ENDS).contains(&near), "{near}");
+    // Raw material of the same shape that is left, as points: half their distance is kept from them.
+    let apart_mm = 0.2;
+    let across = (0..=(2.0 * WALL / apart_mm) as usize).map(|k| k as f64 * apart_mm - WALL);
+    let points: Vec<Point3> =
+        across.flat_map(|y| [1.0, 3.0, 6.0].map(|z| Point3::new(0.0, y, LENGTH + z))).collect();
+    let raw = Guard { check: &[], left: Left { points: &points, apart_mm }, ..guard };
+    assert_eq!(leave_out(&whole, &raw).unwrap().touched, 0);
+    let with = leave_out(&whole, &Guard { holder: Some(&holder), ..raw }).unwrap();
+    let near = nearest(&with.passes);
+    let kept = HOLDER + 0.5 * apart_mm;
+    assert!((kept - 0.01..=kept + ENDS).contains(&near), "{near}");
 }
 
 #[test]

@@ -139,6 +139,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let limits = ReachLimits {
             gouge_mm: 0.01,
             clearance_mm: 0.5,
+            stock_mm: 0.5,
             least_lean_rad,
             most_lean_rad: 85f64.to_radians(),
         };

@@ -13,6 +13,7 @@ use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
 use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
+use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::removal::Unseen;
@@ -118,6 +119,15 @@ pub fn built_in(keys: &str) -> Result<Loaded, Failure> {
     from_builtin(builtin::parse(keys).map_err(Failure::Usage)?)
 }
 
+/// Raw material that operations before have left.
+#[derive(Clone)]
+pub struct LeftMaterial {
+    /// Points of its surface.
+    pub points: Arc<[Point3]>,
+    /// How far they are apart, mm.
+    pub cell_mm: f64,
+}
+
 /// The part of a job: its faces, and which of them the job works on.
 pub struct Part {
     /// The whole part.
@@ -132,13 +142,18 @@ pub struct Part {
     pub open: Vec<String>,
     /// What links keep off, once it is asked for.
     pub walls: OnceLock<Arc<Walls>>,
-    /// Points of the surface of raw material that operations before have left, where that is known.
-    pub left: Option<Arc<[Point3]>>,
+    /// Raw material that operations before have left, where that is known.
+    pub left: Option<LeftMaterial>,
     /// Wall time of reading it, s; zero where nobody measured it.
     pub import_s: f64,
 }
 
 impl Part {
+    /// Raw material that is left; none where it is not known.
+    pub fn left(&self) -> Left<'_> {
+        self.left.as_ref().map_or_else(Left::default, |l| Left { points: &l.points, apart_mm: l.cell_mm })
+    }
+
     /// The same part as another job on it sees it: its own faces to machine, all others to be kept.
     ///
     /// # Errors

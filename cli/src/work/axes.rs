@@ -7,7 +7,7 @@ use crate::part::{self, LoadedFace, Part};
 use crate::work::setup;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv, Vec3};
 use osculate_postproc::{Machine, Orienting, Setup, in_travel};
-use osculate_productivity::axis::{self, Around, Feed, Found, Joints, Surroundings, Wish};
+use osculate_productivity::axis::{self, Around, Feed, Found, Joints, Left, Surroundings, Wish};
 use osculate_productivity::plan::{Along, Named, Strategy, Tolerance};
 use osculate_tools::reach::{Member, Tool};
 use osculate_tools::{Cutter, Pose};
@@ -159,6 +159,7 @@ fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surroundings
         check: &named(&faces.check),
         cutter,
         gouge_mm: accepted * job.tolerance().gouge_mm,
+        left: faces.left(),
     };
     Surroundings::of(&around).map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))
 }
@@ -199,10 +200,14 @@ fn told(faces: &Part, face: &LoadedFace, found: Found) -> Told {
                 |best| {
                     let (body, owner) = best.gap.met.map_or(("nothing", None), |met| {
                         let body = if met.member == Member::Cutter { "the cutter" } else { "the holder" };
-                        (body, Some(met.obstacle.owner as usize))
+                        (body, Some(met.obstacle.owner))
                     });
-                    let all = || faces.faces.iter().chain(&faces.check);
-                    let name = owner.and_then(|k| all().nth(k)).map_or("nothing", |f| f.id.as_str());
+                    let mut all = faces.faces.iter().chain(&faces.check);
+                    let name = match owner {
+                        Some(Left::OWNER) => "raw material that is left",
+                        Some(k) => all.nth(k as usize).map_or("nothing", |f| f.id.as_str()),
+                        None => "nothing",
+                    };
                     format!("{body} meets {name}")
                 },
             );

@@ -26,6 +26,7 @@ pub fn of(job: &Job, faces: &Part, passes: &Passes) -> Result<LeftOut, Failure> 
         holder,
         tolerance: job.tolerance(),
         keep_off_mm: job.strategy().keep_off_mm,
+        left: faces.left(),
     };
     leave_out(passes, &guard).map_err(|e| Failure::file(job.path(), e))
 }

@@ -96,7 +96,7 @@ fn walls_of(job: &Job, faces: &Part) -> Result<Walls, Failure> {
         .with_own(&rims(&faces.faces, apart_mm))
         .with(&fixtures, job.fixture().map_or(0.0, |f| f.spacing_mm), setup.check_clearance_mm);
     let left = match (&faces.left, RawMaterial::of(job, faces)?) {
-        (Some(left), _) => left.to_vec(),
+        (Some(left), _) => left.points.to_vec(),
         (None, Some(raw)) => raw.filled()?.ends(),
         (None, None) => Vec::new(),
     };

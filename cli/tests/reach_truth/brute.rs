@@ -51,7 +51,7 @@ impl Body {
     fn limit_mm(&self, kind: ObstacleKind) -> f64 {
         match kind {
             ObstacleKind::Part => self.part_mm,
-            ObstacleKind::Surroundings => self.other_mm,
+            ObstacleKind::Surroundings | ObstacleKind::Stock => self.other_mm,
         }
     }
 }

@@ -269,6 +269,7 @@ pub fn study(example: &Example, size: Size) -> Result<Figures, Box<dyn Error>> {
         limits: ReachLimits {
             gouge_mm: job.tolerance().gouge_mm,
             clearance_mm: CLEARANCE_MM,
+            stock_mm: CLEARANCE_MM,
             least_lean_rad: lean_rad[0],
             most_lean_rad: lean_rad[1],
         },

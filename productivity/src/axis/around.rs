@@ -33,6 +33,32 @@ pub struct Around<'a> {
     pub cutter: &'a Cutter,
     /// How deep it may go into faces along their normals, mm.
     pub gouge_mm: f64,
+    /// Raw material that is left: the cutter takes it, its holder must not meet it.
+    pub left: Left<'a>,
+}
+
+/// Raw material that is left, as points of its surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Left<'a> {
+    /// The points.
+    pub points: &'a [Point3],
+    /// How far they are apart, mm.
+    pub apart_mm: f64,
+}
+
+impl Left<'_> {
+    /// The owner of its points among obstacles: none of the faces.
+    pub const OWNER: u32 = u32::MAX;
+
+    /// The points as obstacles.
+    pub(crate) fn obstacles(&self) -> impl Iterator<Item = ObstaclePoint> + '_ {
+        self.points.iter().map(|p| ObstaclePoint { point: *p, owner: Self::OWNER, kind: ObstacleKind::Stock })
+    }
+
+    /// What a holder keeps from the points, mm.
+    pub(crate) const fn keep_mm(&self) -> f64 {
+        ADDED * self.apart_mm
+    }
 }
 
 /// Points of faces, and what the tool keeps from those that are not next to what it machines.
@@ -43,6 +69,8 @@ pub struct Surroundings {
     pub obstacles: Obstacles,
     /// What is kept from the others, mm.
     pub keep_mm: f64,
+    /// What is mounted above the cutter keeps from raw material, mm.
+    pub stock_mm: f64,
 }
 
 /// A sample sunk by so much along its normal.
@@ -106,9 +134,9 @@ impl Surroundings {
             }
         };
         let others = others.into_iter().flat_map(|f| f.samples).map(other);
-        let points: Vec<ObstaclePoint> = own.iter().map(sunk).chain(others).collect();
+        let points = own.iter().map(sunk).chain(others).chain(around.left.obstacles());
         // Samples have finite coordinates, and there are far fewer than an index can hold.
         let obstacles = Obstacles::new(points).unwrap_or_default();
-        Ok(Self { obstacles, keep_mm: ADDED * apart })
+        Ok(Self { obstacles, keep_mm: ADDED * apart, stock_mm: around.left.keep_mm() })
     }
 }

@@ -112,6 +112,7 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
     let limits = ReachLimits {
         gouge_mm: 0.0,
         clearance_mm: wish.around.keep_mm,
+        stock_mm: wish.around.stock_mm,
         least_lean_rad: wish.lean_rad[0],
         most_lean_rad: wish.lean_rad[1],
     };

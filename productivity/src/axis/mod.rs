@@ -15,7 +15,7 @@ mod search;
 mod settle;
 
 pub(crate) use around::sunk;
-pub use around::{Around, Surroundings};
+pub use around::{Around, Left, Surroundings};
 pub use field::AxisField;
 pub use find::{Found, NoField, Unreached, Wish, find};
 pub use joints::Joints;

@@ -12,7 +12,7 @@
 use super::samples::{Wanted, samples};
 use super::stations::{Stretches, pieces, stations};
 use super::{CcPoint, Named, Pass, Passes, Tolerance};
-use crate::axis::sunk;
+use crate::axis::{Left, sunk};
 use osculate_geom::Surface;
 use osculate_tools::reach::Obstacles;
 use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept, beside_edges};
@@ -64,6 +64,8 @@ pub struct Guard<'a> {
     /// What cutter and holder keep from check faces, and the holder from faces to machine. Zero: nothing, and they may go in by the
     /// gouge tolerance as verification accepts it.
     pub keep_off_mm: f64,
+    /// Raw material that is left, which the holder must not meet.
+    pub left: Left<'a>,
 }
 
 /// Passes with what was left out of them.
@@ -144,6 +146,8 @@ struct Watch<'a> {
     guard: &'a Guard<'a>,
     faces: Points,
     check: Points,
+    /// Raw material that is left.
+    left: Obstacles,
     /// What the side of the tool keeps from check faces further from its contact than its end reaches, mm: a side that is hardly in an edge
     /// goes deep along its normal between two points.
     apart_mm: f64,
@@ -183,7 +187,8 @@ impl<'a> Watch<'a> {
         let (of_faces, of_check) = beside.split_at(faces.len());
         let faces = Points::new(&faces, of_faces, own_mm);
         let check = Points::new(&check, of_check, others_mm);
-        Ok(Self { guard, faces, check, apart_mm: APART * check_apart, aside_mm, keep_mm })
+        let left = Obstacles::new(guard.left.obstacles()).unwrap_or_default();
+        Ok(Self { guard, faces, check, left, apart_mm: APART * check_apart, aside_mm, keep_mm })
     }
 
     /// Whether the tool is where it must not be.
@@ -202,7 +207,11 @@ impl<'a> Watch<'a> {
             || beside(cutter, pose)
             || holder.is_some_and(|h| {
                 let mut sections = h.posed(cutter, pose);
-                sections.any(|(body, at)| meets(&self.faces, body, &at) || beside(body, &at))
+                sections.any(|(body, at)| {
+                    meets(&self.faces, body, &at)
+                        || beside(body, &at)
+                        || self.left.is_within(body, &at, self.guard.left.keep_mm())
+                })
             })
     }
 

@@ -2,7 +2,7 @@
 //!
 //! A [`Tool`] touches a [`Place`] with its cutter; the axis is free. An axis is possible where the machine allows it, its lean
 //! is within the [`ReachLimits`], the cutter goes no deeper into the part than the gouge limit, and what is mounted above it
-//! keeps its clearance from everything. The part, the fixture and the stock are [`Obstacles`]: points, as near to each other
+//! keeps its clearance from everything. The part, the fixture and the stock that operations before have left are [`Obstacles`]: points, as near to each other
 //! as the tool may miss something between them. Axes are taken from [`Directions`], an even set that covers the sphere; the
 //! possible ones are [`Bits`] over it.
 //!
@@ -28,6 +28,7 @@
 //! let limits = ReachLimits {
 //!     gouge_mm: 0.01,
 //!     clearance_mm: 1.0,
+//!     stock_mm: 0.0,
 //!     least_lean_rad: 0.0,
 //!     most_lean_rad: 70f64.to_radians(),
 //! };

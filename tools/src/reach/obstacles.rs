@@ -1,7 +1,7 @@
 //! What the tool must keep out of: points in a binary tree of balls.
 //!
-//! Each ball holds all points of its node; the leaves are single points, balls of radius 0. Points of the part and points
-//! of what else is around stand in trees of their own, so that a node has one limit. Points of a face lie in a thin slab as well:
+//! Each ball holds all points of its node; the leaves are single points, balls of radius 0. Points of the part, of what
+//! else is around and of stock stand in trees of their own, so that a node has one limit. Points of a face lie in a thin slab as well:
 //! next to a tool that touches the face the slab says far more than the ball.
 
 use crate::cutter::Cutter;
@@ -12,13 +12,18 @@ use osculate_geom::{Point3, Vec3};
 const ROUNDING: f64 = 1e-14;
 
 /// What a point belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ObstacleKind {
     /// A face of the part: the cutter may go into it as deep as the gouge limit.
     Part,
     /// Fixture, table, stock that is to stay: cutter and holder alike keep their clearance.
     Surroundings,
+    /// Stock that the cutter may take; what is mounted above it keeps its clearance.
+    Stock,
 }
+
+/// All kinds, in the order of their trees.
+const KINDS: [ObstacleKind; 3] = [ObstacleKind::Part, ObstacleKind::Surroundings, ObstacleKind::Stock];
 
 /// A point that the tool must keep out of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,8 +117,8 @@ pub struct Obstacles {
     points: Vec<ObstaclePoint>,
     balls: Vec<Ball>,
     slabs: Vec<Slab>,
-    /// Where the balls of the surroundings begin.
-    surroundings: usize,
+    /// Where the balls of each kind end.
+    ends: [usize; KINDS.len()],
     /// Greatest coordinate of any point, mm.
     size_mm: f64,
 }
@@ -132,19 +137,22 @@ impl Obstacles {
         if points.len() > MOST {
             return Err(ObstaclesError::Count { count: points.len(), most: MOST });
         }
-        points.sort_by_key(|p| p.kind == ObstacleKind::Surroundings);
-        let of_part = points.partition_point(|p| p.kind == ObstacleKind::Part);
+        points.sort_by_key(|p| p.kind);
         let size_mm = points.iter().map(|p| p.point.coords.amax()).fold(0.0, f64::max);
         let mut all = Self {
             balls: Vec::with_capacity(2 * points.len()),
             slabs: Vec::new(),
             points,
-            surroundings: 0,
+            ends: [0; KINDS.len()],
             size_mm,
         };
-        all.add(0, of_part);
-        all.surroundings = all.balls.len();
-        all.add(of_part, all.points.len());
+        let mut from = 0;
+        for (k, kind) in KINDS.iter().enumerate() {
+            let to = all.points.partition_point(|p| p.kind <= *kind);
+            all.add(from, to);
+            all.ends[k] = all.balls.len();
+            from = to;
+        }
         Ok(all)
     }
 
@@ -225,9 +233,8 @@ impl Obstacles {
 
     /// The first balls of the trees.
     pub(super) fn roots(&self) -> impl Iterator<Item = u32> + '_ {
-        let starts = [0, self.surroundings];
-        let ends = [self.surroundings, self.balls.len()];
-        starts.into_iter().zip(ends).filter(|(start, end)| start < end).map(|(start, _)| start as u32)
+        let starts = std::iter::once(0).chain(self.ends);
+        starts.zip(self.ends).filter(|(start, end)| start < end).map(|(start, _)| start as u32)
     }
 
     /// The slab of a ball, where it has one.
@@ -237,7 +244,15 @@ impl Obstacles {
 
     /// The kind of all points in a ball.
     pub(super) const fn kind(&self, ball: u32) -> ObstacleKind {
-        if (ball as usize) < self.surroundings { ObstacleKind::Part } else { ObstacleKind::Surroundings }
+        let [part, surroundings, _] = self.ends;
+        let ball = ball as usize;
+        if ball < part {
+            ObstacleKind::Part
+        } else if ball < surroundings {
+            ObstacleKind::Surroundings
+        } else {
+            ObstacleKind::Stock
+        }
     }
 
     fn add(&mut self, from: usize, to: usize) {

@@ -15,6 +15,8 @@ pub struct ReachLimits {
     pub gouge_mm: f64,
     /// How far everything above the cutter stays from all points, and the cutter from those of the surroundings, mm.
     pub clearance_mm: f64,
+    /// How far everything above the cutter stays from points of stock that the cutter may take, mm.
+    pub stock_mm: f64,
     /// Least angle between axis and normal, rad: zero but for flat and toroidal ends.
     pub least_lean_rad: f64,
     /// Greatest angle between axis and normal, rad, a right angle at most.
@@ -61,7 +63,9 @@ pub enum ReachError {
 
 impl ReachLimits {
     fn checked(self) -> Result<Self, ReachError> {
-        for (what, got_mm) in [("gouge_mm", self.gouge_mm), ("clearance_mm", self.clearance_mm)] {
+        let lengths =
+            [("gouge_mm", self.gouge_mm), ("clearance_mm", self.clearance_mm), ("stock_mm", self.stock_mm)];
+        for (what, got_mm) in lengths {
             if !(got_mm.is_finite() && got_mm >= 0.0) {
                 return Err(ReachError::Length { what, got_mm });
             }
@@ -97,8 +101,8 @@ pub(super) struct Solid {
     pub shape: Cutter,
     /// Height of its lower end above the tip, mm.
     pub base_mm: f64,
-    /// Least distance from points of the part and of the surroundings, mm.
-    limits_mm: [f64; 2],
+    /// Least distance from points of each kind, mm; minus infinity where there is none to keep.
+    limits_mm: [f64; 3],
 }
 
 impl Solid {
@@ -109,7 +113,7 @@ impl Solid {
 
     /// Distance from the tip beyond which all points keep their limits, mm.
     fn extent_mm(&self, beside_mm: f64) -> f64 {
-        let apart = self.limits_mm[0].max(self.limits_mm[1]).max(0.0);
+        let apart = self.limits_mm.into_iter().fold(0.0, f64::max);
         let (wide, high) = (self.shape.radius_mm() + beside_mm, self.base_mm + self.shape.length_mm());
         (wide + apart).hypot(high + apart)
     }
@@ -149,13 +153,13 @@ impl<'a> Reach<'a> {
             member: Member::Cutter,
             shape: cutter,
             base_mm: 0.0,
-            limits_mm: [-limits.gouge_mm, apart],
+            limits_mm: [-limits.gouge_mm, apart, f64::NEG_INFINITY],
         }];
         solids.extend(tool.mounted().iter().enumerate().map(|(k, &Mounted { body, height_mm })| Solid {
             member: Member::Mounted(k),
             shape: body,
             base_mm: height_mm,
-            limits_mm: [apart; 2],
+            limits_mm: [apart, apart, limits.stock_mm],
         }));
         // Where a lean is out of a meridian's range, the arc that is taken does not reach its contact: by two of its radii.
         let arc = cutter.touching(FRAC_PI_2);

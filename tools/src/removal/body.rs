@@ -15,6 +15,8 @@ pub(super) struct Body<'a> {
     pub above_mm: f64,
     /// Which of the tools has it.
     pub tool: usize,
+    /// Whether it counts among what intrudes although it cuts.
+    pub intrudes: bool,
 }
 
 /// Signed distance, mm, and a subgradient of it (length at most one) in the frame of the arguments.
@@ -44,10 +46,10 @@ impl<'a> Body<'a> {
         let first = (job.cutter, job.holder);
         let tools = std::iter::once(first).chain(job.changes.iter().map(|c| (c.cutter, c.holder)));
         for (tool, (cutter, holder)) in tools.enumerate() {
-            bodies.push(Self { cutter, above_mm: 0.0, tool });
+            bodies.push(Self { cutter, above_mm: 0.0, tool, intrudes: false });
             for section in holder.map(Holder::sections).unwrap_or_default() {
                 let above_mm = cutter.length_mm() + section.above_mm;
-                bodies.push(Self { cutter: &section.body, above_mm, tool });
+                bodies.push(Self { cutter: &section.body, above_mm, tool, intrudes: true });
             }
         }
         bodies
@@ -143,7 +145,7 @@ mod tests {
                 }
             };
             let cutter = Cutter::try_from(spec).unwrap();
-            let body = Body { cutter: &cutter, above_mm: 3.0, tool: 0 };
+            let body = Body { cutter: &cutter, above_mm: 3.0, tool: 0, intrudes: false };
             let (p, q) = (Vec3::from(p), Vec3::from(q));
             let (at_p, at_q) = (body.near(&p, &axis), body.near(&q, &axis));
             let pose = Pose { tip: Point3::origin() + axis.into_inner() * 3.0, axis };

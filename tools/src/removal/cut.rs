@@ -115,7 +115,7 @@ impl World<'_> {
             let swept = &self.job.motions[piece.motion as usize];
             match which {
                 Which::Cutting if swept.rapid => return,
-                Which::Intruding if body.cuts() && !swept.rapid => return,
+                Which::Intruding if !body.intrudes && !swept.rapid => return,
                 _ => {}
             }
             let approach = Approach::new(swept, piece);

@@ -339,7 +339,7 @@ mod tests {
             let pose = |tip: [f64; 3]| Pose { tip: Point3::from(tip), axis };
             let swept = Swept { from: pose(from), to: pose(to), rapid: false, block: 0 };
             let passage = Passage {
-                body: Body { cutter: &cutter, above_mm: 0.0, tool: 0 },
+                body: Body { cutter: &cutter, above_mm: 0.0, tool: 0, intrudes: false },
                 swept: &swept,
                 piece: Piece { motion: 0, range: [0.0, 1.0] },
                 line: Line { origin: Point3::from(p), direction },

@@ -3,7 +3,7 @@
 //! Two bounds. At the bottom of a gouge the standoff is level, so that a sample r away from it stands higher by at most
 //! `K r^2 / 2`, K the relative curvature of cutter and part: quick, and near enough for a ball. The bottom of a toroidal end
 //! is as sharp as its corner, wherever on the tool its strip comes from, and that of a flat end or of a holder has no curvature
-//! at all. Cells of which this says too little are looked at themselves: a gouge deeper than h is a body that meets the
+//! at all: tools that are far sharper than others of a program count with the holders. Cells of which this says too little are looked at themselves: a gouge deeper than h is a body that meets the
 //! face set back by h, and where no motion brings a body to a box around a cell set back so, there is none. What comes near
 //! has the cell divided, up to [`DIVISIONS`] times: a convex body that keeps off the face itself leaves the box by the square
 //! of its size.
@@ -30,6 +30,8 @@ const STRAY: f64 = 0.1;
 const HALVINGS: u32 = 6;
 /// Groups of samples that are asked about together before each is by itself.
 const TOGETHER: usize = 32;
+/// A cutter is far sharper than another where its corner has less than this part of the other's radius.
+const SHARP: f64 = 0.25;
 /// Turn of the relative curvature over a cell, rad, up to which the quick bound is of second order.
 const MOST_TURN: f64 = 0.5;
 
@@ -68,6 +70,19 @@ struct Back {
     radius: f64,
 }
 
+/// Radius of a cutter's corner, mm: those with a meridian of their own may have edges anywhere.
+fn corner_mm(cutter: &Cutter) -> f64 {
+    if cutter.is_end_mill() { cutter.corner_mm() } else { 0.0 }
+}
+
+/// By how much a gouge of a cutter that does not intrude may be deeper than a sample so far away shows. Of several the sharpest counts.
+fn level_mm(bodies: &[Body<'_>], patch: &Patch, radius: f64) -> f64 {
+    let blunt = bodies.iter().filter(|b| !b.intrudes);
+    let corner = blunt.map(|b| corner_mm(b.cutter)).fold(f64::INFINITY, f64::min);
+    let relative = 1.0 / corner + patch.convex_per_mm;
+    if relative * radius <= MOST_TURN { 0.5 * relative * radius * radius } else { f64::INFINITY }
+}
+
 impl<'a> Digs<'a> {
     /// The depths of all cells, in the order of groups of samples.
     pub fn depths(
@@ -75,7 +90,11 @@ impl<'a> Digs<'a> {
         surfaces: &[&dyn Surface],
         (patches, cuts): (&[Option<Patch>], &[Cut]),
     ) -> Result<Vec<Depth>, JobError> {
-        let bodies = Body::all(self.job);
+        let mut bodies = Body::all(self.job);
+        let bluntest_mm = self.job.cutters().map(corner_mm).fold(0.0, f64::max);
+        for body in &mut bodies {
+            body.intrudes |= corner_mm(body.cutter) < SHARP * bluntest_mm;
+        }
         let of = |groups: &[Cluster]| self.of_groups(&bodies, groups, surfaces, (patches, cuts));
         Ok(clusters(self.job.samples)?.par_chunks(TOGETHER).flat_map_iter(of).collect())
     }
@@ -101,7 +120,7 @@ impl<'a> Digs<'a> {
         cells.iter().flat_map(of).collect()
     }
 
-    /// Whether a rapid, or a body that is not to cut, comes near any of some cells.
+    /// Whether a rapid, or a body that intrudes, comes near any of some cells.
     fn intrudes<'c>(
         &self,
         bodies: &[Body<'a>],
@@ -122,14 +141,14 @@ impl<'a> Digs<'a> {
         cuts: &[Cut],
     ) -> Vec<Depth> {
         let depth = |(sample, patch, back): &(usize, Patch, Back)| {
-            let level = self.level(patch, back.radius) - cuts[*sample].standoff_mm;
+            let level = level_mm(bodies, patch, back.radius) - cuts[*sample].standoff_mm;
             let which = match (level <= self.depth_mm, intrudes) {
                 (true, false) => return Depth { sample: *sample, most_mm: level, parts: Vec::new() },
                 (true, true) => Which::Intruding,
                 (false, _) => Which::All,
             };
             let mut parts = Vec::new();
-            if cuts[*sample].by.is_some() && level.is_finite() && self.is_coarse(level) {
+            if cuts[*sample].by.is_some() && level.is_finite() && self.is_coarse(bodies, level) {
                 let surface = surfaces[self.job.samples[*sample].face as usize];
                 let all = patch.parts().into_iter().flat_map(|p| p.parts());
                 parts.extend(all.filter(|p| p.raster().any(|place| surface.contains(place))));
@@ -181,17 +200,9 @@ impl<'a> Digs<'a> {
 
     /// Whether a cell is so large that a ball would come near parts of it wherever it cuts, with no gouge at all: a ball is as sharp
     /// everywhere as the quick bound has it, which falls with the square of the size.
-    fn is_coarse(&self, level_mm: f64) -> bool {
-        self.job.cutters().all(Cutter::is_ball) && level_mm > 4f64.powi(DIVISIONS as i32) * self.depth_mm
-    }
-
-    /// By how much a gouge of the cutter may be deeper than a sample so far away shows.
-    fn level(&self, patch: &Patch, radius: f64) -> f64 {
-        // Cutters with a meridian of their own may have edges anywhere; of several the sharpest counts.
-        let corner = |cutter: &Cutter| if cutter.is_end_mill() { cutter.corner_mm() } else { 0.0 };
-        let corner = self.job.cutters().map(corner).fold(f64::INFINITY, f64::min);
-        let relative = 1.0 / corner + patch.convex_per_mm;
-        if relative * radius <= MOST_TURN { 0.5 * relative * radius * radius } else { f64::INFINITY }
+    fn is_coarse(&self, bodies: &[Body<'_>], level_mm: f64) -> bool {
+        let mut blunt = bodies.iter().filter(|b| !b.intrudes);
+        blunt.all(|b| b.cutter.is_ball()) && level_mm > 4f64.powi(DIVISIONS as i32) * self.depth_mm
     }
 
     /// A patch of the cell of sample `k`, set back into the part.
@@ -219,7 +230,7 @@ impl<'a> Digs<'a> {
         self.ways.near(bodies, target, which, |k, body, _| {
             let piece = self.ways.pieces[k as usize];
             let rapid = self.job.motions[piece.motion as usize].rapid;
-            if which == Which::Intruding && body.cuts() && !rapid {
+            if which == Which::Intruding && !body.intrudes && !rapid {
                 return;
             }
             self.comers(*body, piece, target, HALVINGS, &mut found);

@@ -457,7 +457,8 @@ impl Cell<'_> {
     /// What one motion leaves above a point along a direction; none where that is not below `useful`.
     fn height(&self, motion: u32, origin: Point3, direction: Unit3, useful: f64) -> Option<f64> {
         let World { job, .. } = self.world;
-        let body = Body { cutter: job.cutter_of(motion), above_mm: 0.0, tool: job.tool_of(motion) };
+        let body =
+            Body { cutter: job.cutter_of(motion), above_mm: 0.0, tool: job.tool_of(motion), intrudes: false };
         let swept = &job.motions[motion as usize];
         let piece = Piece { motion, range: [0.0, 1.0] };
         let line = Line { origin, direction };

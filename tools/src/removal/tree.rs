@@ -127,7 +127,7 @@ pub(super) enum Which {
     All,
     /// The cutter's in feed motions.
     Cutting,
-    /// Rapids, and bodies other than the cutter in any motion; a leaf with one of them gives the others as well.
+    /// Rapids, and bodies that intrude in any motion; a leaf with one of them gives the others as well.
     Intruding,
 }
 
@@ -170,7 +170,7 @@ impl Tree {
                 let asked = match which {
                     Which::All => true,
                     Which::Cutting => body.cuts(),
-                    Which::Intruding => !body.cuts() || node.rapid,
+                    Which::Intruding => body.intrudes || node.rapid,
                 };
                 if !asked || node.rejects(body, target) {
                     continue;
@@ -299,8 +299,8 @@ mod tests {
         let motions = passes(12);
         let (tool, holder) = (cutter(6.0, 1.0), cutter(20.0, 0.0));
         let bodies = [
-            Body { cutter: &tool, above_mm: 0.0, tool: 0 },
-            Body { cutter: &holder, above_mm: tool.length_mm(), tool: 0 },
+            Body { cutter: &tool, above_mm: 0.0, tool: 0, intrudes: false },
+            Body { cutter: &holder, above_mm: tool.length_mm(), tool: 0, intrudes: true },
         ];
         let ways = Ways::of(&motions, &bodies, std::iter::empty()).unwrap();
         let mut met = [0; 3];
@@ -342,7 +342,7 @@ mod tests {
     #[test]
     fn searches_of_long_paths_look_at_little() {
         let tool = cutter(6.0, 1.0);
-        let bodies = [Body { cutter: &tool, above_mm: 0.0, tool: 0 }];
+        let bodies = [Body { cutter: &tool, above_mm: 0.0, tool: 0, intrudes: false }];
         // The path is sixteen times as long, what is around the target the same.
         let looked_at = |count: u32| {
             let ways = Ways::of(&passes(count), &bodies, std::iter::empty()).unwrap();

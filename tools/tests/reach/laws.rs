@@ -31,8 +31,12 @@ fn scale_does_not_matter() {
             let moved: Vec<_> =
                 scene.points.iter().map(|p| ObstaclePoint { point: at(p.point), ..*p }).collect();
             let places: Vec<_> = scene.places.iter().map(|p| Place { point: at(p.point), ..*p }).collect();
-            let limits =
-                ReachLimits { gouge_mm: by * WIDE.gouge_mm, clearance_mm: by * WIDE.clearance_mm, ..WIDE };
+            let limits = ReachLimits {
+                gouge_mm: by * WIDE.gouge_mm,
+                clearance_mm: by * WIDE.clearance_mm,
+                stock_mm: by * WIDE.stock_mm,
+                ..WIDE
+            };
             let (obstacles, tool) = (obstacles(&moved), scaled(&tool, by));
             let problem = ReachProblem {
                 tool: &tool,

@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 pub const WIDE: ReachLimits = ReachLimits {
     gouge_mm: 0.01,
     clearance_mm: 0.5,
+    stock_mm: 0.7,
     least_lean_rad: 0.0,
     most_lean_rad: std::f64::consts::FRAC_PI_2,
 };
@@ -123,6 +124,7 @@ pub fn scenes() -> [Scene; 4] {
         owner,
         kind: ObstacleKind::Surroundings,
     };
+    let raw = |x: f64, y: f64, z: f64| ObstaclePoint { kind: ObstacleKind::Stock, ..clamp(x, y, z, 10) };
     let mut all = [
         scene(&[floor, left, right], 24, 15),
         scene(&[groove], 40, 15),
@@ -133,6 +135,9 @@ pub fn scenes() -> [Scene; 4] {
         let z = 0.7 * f64::from(k);
         all[2].points.push(clamp(12.0, 3.0, z, 8));
         all[3].points.push(clamp(-6.0, 2.0 + 0.1 * z, z, 9));
+        // The cutter goes through it.
+        all[0].points.push(raw(0.3 * z - 2.0, 1.0, 1.5 * z));
+        all[3].points.push(raw(2.0, -1.0, 1.5 * z));
     }
     all
 }
@@ -147,10 +152,14 @@ pub fn slow_spare(
 ) -> f64 {
     let pose = pose_with_axis(tool.cutter(), &at.point, &at.normal, axis);
     let own = |p: &ObstaclePoint| {
-        let limit = if p.kind == ObstacleKind::Part { -limits.gouge_mm } else { limits.clearance_mm };
-        let cutter = tool.cutter().distance(&pose, &p.point) - limit;
+        let [own, above] = match p.kind {
+            ObstacleKind::Part => [-limits.gouge_mm, limits.clearance_mm],
+            ObstacleKind::Surroundings => [limits.clearance_mm; 2],
+            ObstacleKind::Stock => [f64::NEG_INFINITY, limits.stock_mm],
+        };
+        let cutter = tool.cutter().distance(&pose, &p.point) - own;
         tool.mounted().iter().fold(cutter, |least, m| {
-            let spare = m.body.distance(&pose.retracted(m.height_mm), &p.point) - limits.clearance_mm;
+            let spare = m.body.distance(&pose.retracted(m.height_mm), &p.point) - above;
             least.min(spare)
         })
     };

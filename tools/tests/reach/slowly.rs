@@ -91,19 +91,20 @@ proptest! {
     #[test]
     fn clouds_of_points(
         kind in 0..KINDS, holder in any::<bool>(),
-        cloud in prop::collection::vec((prop::array::uniform3(-25.0..25.0f64), any::<bool>()), 0..60),
-        n in prop::array::uniform3(-1.0..1.0f64), gouge_mm in 0.0..0.5f64, clearance_mm in 0.0..2.0f64,
+        cloud in prop::collection::vec((prop::array::uniform3(-25.0..25.0f64), 0..3usize), 0..60),
+        n in prop::array::uniform3(-1.0..1.0f64), gouge_mm in 0.0..0.5f64,
+        clearance_mm in 0.0..2.0f64, stock_mm in 0.0..2.0f64,
         least in 0.0..0.5f64, most in 0.6..1.7f64,
     ) {
         let Some(normal) = Unit3::try_new(Vec3::from(n), 0.1) else { return Ok(()) };
         let at = Place { point: Point3::new(0.5, -0.25, 1.0), normal };
-        let points: Vec<ObstaclePoint> = cloud.iter().enumerate().map(|(k, (p, part))| ObstaclePoint {
+        let points: Vec<ObstaclePoint> = cloud.iter().enumerate().map(|(k, (p, kind))| ObstaclePoint {
             point: Point3::from(*p),
             owner: k as u32,
-            kind: if *part { ObstacleKind::Part } else { ObstacleKind::Surroundings },
+            kind: [ObstacleKind::Part, ObstacleKind::Surroundings, ObstacleKind::Stock][*kind],
         }).collect();
         let most_lean_rad = most.min(std::f64::consts::FRAC_PI_2);
-        let limits = ReachLimits { gouge_mm, clearance_mm, least_lean_rad: (least - 0.1).max(0.0), most_lean_rad };
+        let limits = ReachLimits { gouge_mm, clearance_mm, stock_mm, least_lean_rad: (least - 0.1).max(0.0), most_lean_rad };
         let (tool, directions) = (if holder { tool(kind) } else { Tool::new(cutter(kind), None) }, sphere(2));
         let obstacles = obstacles(&points);
         let problem =

@@ -4,7 +4,7 @@ use crate::common::{ball, sample, toroidal, upright};
 use osculate_geom::analytic::{Cylinder, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::removal::{
-    Cut, Job, Measured, Patch, Refined, Sample, Sampling, Swept, Wanted, cut, hidden, refine,
+    Change, Cut, Job, Measured, Patch, Refined, Sample, Sampling, Swept, Wanted, cut, hidden, refine,
     sample_boundary, sample_surface,
 };
 use osculate_tools::{Cutter, Holder, Pose};
@@ -168,7 +168,7 @@ fn tips_of_trims_are_looked_at() {
 fn refined(
     surface: &dyn Surface,
     spacing: f64,
-    (cutter, motions): (&Cutter, &[Swept]),
+    (cutter, changes, motions): (&Cutter, &[Change<'_>], &[Swept]),
     (scallop, gouge): (f64, f64),
     most: usize,
 ) -> (Measured, Refined) {
@@ -176,7 +176,7 @@ fn refined(
     let job = Job {
         cutter,
         holder: None,
-        changes: &[],
+        changes,
         motions,
         samples: &sampling.samples,
         stock_mm: 0.5,
@@ -200,7 +200,8 @@ fn a_cusp_between_samples_is_found_by_samples_added_there() {
     let truth = r - (r * r - 0.25 * step * step).sqrt();
     let (surface, cutter) = (square(3.0), ball(2.0 * r));
     let top = |m: &Measured| m.cuts.iter().map(|c| c.standoff_mm).fold(0.0, f64::max);
-    let measure = |limit: f64, most: usize| refined(&surface, 0.16, (&cutter, &motions), (limit, 0.01), most);
+    let measure =
+        |limit: f64, most: usize| refined(&surface, 0.16, (&cutter, &[], &motions), (limit, 0.01), most);
     // Without more samples the cusp seems lower than it is.
     let (before, none) = measure(0.999 * truth, 0);
     assert!(top(&before) < 0.9995 * truth && none.added == 0 && none.left_out > 0, "{none:?}");
@@ -230,8 +231,9 @@ fn a_gouge_between_samples_is_found_by_samples_added_there() {
     let (surface, cutter) = (square(3.0), ball(2.0 * r));
     let deepest = |m: &Measured| m.cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max);
     // Most of the face is not cut at all: gouges are looked for beside it.
-    let measure =
-        |limit: f64, most: usize| refined(&surface, 0.3, (&cutter, &motions), (f64::INFINITY, limit), most);
+    let measure = |limit: f64, most: usize| {
+        refined(&surface, 0.3, (&cutter, &[], &motions), (f64::INFINITY, limit), most)
+    };
     let (before, none) = measure(0.99995 * depth, 0);
     assert!(deepest(&before) + none.hidden.gouge_mm >= depth, "{none:?}");
     let (over, some) = measure(0.99995 * depth, 1_000_000);
@@ -252,16 +254,26 @@ fn aside(cutter: &Cutter, tilt: f64, depth: f64) -> [Pose; 2] {
         .map(|(x, y)| Pose { tip: Point3::new(x, y, -depth) - low, axis: Unit3::new_normalize(axis) })
 }
 
+/// Alone, and after a ball that has gone over the face as it should: what is sharp is found beside what is blunt.
 #[test]
 fn gouges_as_sharp_as_a_corner_are_found() {
     let (surface, depth) = (square(3.0), 0.02);
-    for (corner, tilt) in [(0.3, 0.2), (0.05, 0.2), (0.0, 0.1), (0.0, 0.5)] {
+    let first = ball(6.0);
+    let before = raster(0.3, 12, |x, y| upright(x, y, 0.0));
+    let tools = [(0.3, 0.2), (0.05, 0.2), (0.0, 0.1), (0.0, 0.5)];
+    for ((corner, tilt), alone) in tools.into_iter().flat_map(|t| [(t, true), (t, false)]) {
         let cutter = toroidal(10.0, corner);
         let [from, to] = aside(&cutter, tilt, depth);
-        let motions = [Swept { from, to, rapid: false, block: 1 }];
+        let mut motions = vec![Swept { from, to, rapid: false, block: 1 }];
+        let mut changes = Vec::new();
+        if !alone {
+            motions.splice(0..0, before.iter().copied());
+            changes.push(Change { first: before.len(), cutter: &cutter, holder: None });
+        }
+        let tool = if alone { &cutter } else { &first };
         let deepest = |m: &Measured| m.cuts.iter().map(|c| -c.standoff_mm).fold(0.0, f64::max);
         let measure = |limit: f64, most: usize| {
-            refined(&surface, 0.15, (&cutter, &motions), (f64::INFINITY, limit), most)
+            refined(&surface, 0.15, (tool, &changes, &motions), (f64::INFINITY, limit), most)
         };
         let (before, none) = measure(0.6 * depth, 0);
         assert!(deepest(&before) + none.hidden.gouge_mm >= depth - 1e-12, "{corner} {tilt}: {none:?}");

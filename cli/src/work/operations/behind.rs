@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::{LoadedFace, Part, area};
+use crate::part::{LeftMaterial, LoadedFace, Part, area};
 use crate::work::stock::RawMaterial;
 use osculate_geom::{Point3, Unit3};
 use osculate_productivity::plan::Linked;
@@ -13,7 +13,6 @@ use osculate_tools::removal::{
     self, Body, Change, Cut, Limits, Sample, Swept, cut, cut_on, sample_boundary, sample_surface,
 };
 use serde::Serialize;
-use std::sync::Arc;
 
 /// Places at which it is looked how high material stands on the faces of an operation, along the axis that its tool keeps.
 const PLACES: f64 = 8000.0;
@@ -153,9 +152,9 @@ impl Behind {
         Ok(Self { stock, ground, ..Self::default() })
     }
 
-    /// Points of the surface of the raw material that is left, where some is declared.
-    pub fn left(&self) -> Option<Arc<[Point3]>> {
-        self.stock.as_ref().map(|stock| stock.ends().into())
+    /// The surface of the raw material that is left, where some is declared.
+    pub fn left(&self) -> Option<LeftMaterial> {
+        self.stock.as_ref().map(|s| LeftMaterial { points: s.ends().into(), cell_mm: s.cell_mm() })
     }
 
     /// What is left of the raw material, where some is declared.

@@ -2,15 +2,14 @@
 
 use crate::failure::Failure;
 use crate::job::{Job, Operation, OperationWord, Repeat};
-use crate::part::{self, Part, TurnedFaces};
+use crate::part::{self, LeftMaterial, Part, TurnedFaces};
 use crate::work::operations::behind::{Behind, TooHigh};
 use crate::work::passes;
 use crate::work::program::Planned;
 use crate::work::stock::RawMaterial;
 use nalgebra::Isometry3;
-use osculate_geom::{Diagnostic, Point3, Unit3};
+use osculate_geom::{Diagnostic, Unit3};
 use osculate_productivity::plan::{Places, Stretches, repeated};
-use std::sync::Arc;
 
 /// An axis that leans off that of the turns by more than this, as a sine, is another one in every place.
 const ALONG: f64 = 1e-9;
@@ -57,8 +56,8 @@ impl Passages {
         Ok(Self { each, turns, all: Some(all), circle: Some(circle) })
     }
 
-    /// The same in the raw material that is left, as points of its surface.
-    pub fn in_stock(mut self, left: Option<Arc<[Point3]>>) -> Self {
+    /// The same in the raw material that is left.
+    pub fn in_stock(mut self, left: Option<LeftMaterial>) -> Self {
         self.each.iter_mut().chain(&mut self.all).for_each(|part| part.left.clone_from(&left));
         self
     }

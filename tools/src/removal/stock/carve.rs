@@ -21,8 +21,13 @@ impl Stock {
     /// # Errors
     /// [`JobError`] for numbers that are not finite and axes that turn over.
     pub fn carve(&mut self, job: &StockJob<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Carved, JobError> {
-        let mut bodies = vec![Moved { cutter: job.cutter, above_mm: 0.0, tool: 0 }];
-        bodies.extend(job.uppers.iter().map(|u| Moved { cutter: u.body, above_mm: u.above_mm, tool: 0 }));
+        let mut bodies = vec![Moved { cutter: job.cutter, above_mm: 0.0, tool: 0, intrudes: false }];
+        bodies.extend(job.uppers.iter().map(|u| Moved {
+            cutter: u.body,
+            above_mm: u.above_mm,
+            tool: 0,
+            intrudes: true,
+        }));
         let ways = Ways::of(job.motions, &bodies, std::iter::empty())?;
         let stray_mm = self.stray_mm();
         let world = World { job, bodies, ways, stray_mm };

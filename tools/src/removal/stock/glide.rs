@@ -415,7 +415,7 @@ mod tests {
             let to = Pose { tip: from.tip + Vec3::from(way), axis: turned(1.0) };
             let swept = Swept { from, to, rapid: false, block: 1 };
             let cutter = cutter(kind, r);
-            let body = Body { cutter: &cutter, above_mm: 0.0, tool: 0 };
+            let body = Body { cutter: &cutter, above_mm: 0.0, tool: 0, intrudes: false };
             let approach = Approach::new(&swept, &Piece { motion: 0, range: [0.0, 1.0] });
             let view = View { axis, way: to.tip - from.tip, stray_mm: STRAY_MM };
             let glide = Glide::new(body, &approach, &view);
