@@ -75,6 +75,31 @@ pub fn area(surface: &dyn Surface, relative: f64) -> Integral {
     over_surface(surface, relative, |_| 1.0)
 }
 
+/// The share of the carrier rectangle's area that lies within the trims of a face, about: from a raster of places, never below one of
+/// them.
+pub fn share_within_trims(surface: &dyn Surface) -> f64 {
+    const RASTER: u32 = 32;
+    let domain = surface.domain();
+    let at = |k: u32| (f64::from(k) + 0.5) / f64::from(RASTER);
+    let (mut within, mut all) = (0.0, 0.0);
+    for k in 0..RASTER * RASTER {
+        let place = domain.at(at(k % RASTER), at(k / RASTER));
+        let jet = surface.jet2(place);
+        let density = jet.du.cross(&jet.dv).norm();
+        if density > 0.0 && density.is_finite() {
+            all += density;
+            within += if surface.contains(place) { density } else { 0.0 };
+        }
+    }
+    let least = 1.0 / f64::from(RASTER * RASTER);
+    if all > 0.0 { (within / all).max(least) } else { 1.0 }
+}
+
+/// Area of a face within its trims, mm2: coarse, to share out counts by. Exact areas of trimmed faces come from their outlines.
+pub fn coarse_area(surface: &dyn Surface) -> f64 {
+    area(surface, 1e-2).value * share_within_trims(surface)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -43,7 +43,7 @@ pub(crate) fn samples(
     faces: &[&Named<'_>],
     wanted: Wanted,
 ) -> Result<Vec<Sampling>, (String, SamplingError)> {
-    let areas: Vec<f64> = faces.par_iter().map(|f| quadrature::area(f.surface, 1e-2).value).collect();
+    let areas: Vec<f64> = faces.par_iter().map(|f| quadrature::coarse_area(f.surface)).collect();
     let all: f64 = areas.iter().sum();
     let one = |(k, (face, area)): (usize, (&&Named<'_>, &f64))| {
         // A share of what may be no number goes to the sampling, which says so.

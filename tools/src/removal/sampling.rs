@@ -135,7 +135,7 @@ pub fn sample_surface(
         return Err(SamplingError::Area { face, area_mm2: area });
     }
     let most = max_samples as f64;
-    let inside = inside_share(surface);
+    let inside = quadrature::share_within_trims(surface);
     let mut spacing = spacing_mm.max((area * inside / most).sqrt());
     for _ in 0..MAX_ATTEMPTS {
         let grid = Grid { surface, face, spacing };
@@ -157,17 +157,6 @@ pub fn sample_surface(
         }
     }
     Err(SamplingError::Nothing { face, spacing_mm: spacing })
-}
-
-/// The share of the parameter rectangle that the face covers, from a raster; never below one place of the
-/// raster.
-fn inside_share(surface: &dyn Surface) -> f64 {
-    const RASTER: u32 = 32;
-    let domain = surface.domain();
-    let at = |k: u32| (f64::from(k) + 0.5) / f64::from(RASTER);
-    let hits =
-        (0..RASTER * RASTER).filter(|k| surface.contains(domain.at(at(k % RASTER), at(k / RASTER)))).count();
-    hits.max(1) as f64 / f64::from(RASTER * RASTER)
 }
 
 struct Grid<'a> {

@@ -113,7 +113,7 @@ impl Walls {
         let spacing_mm = keeping.spacing_mm();
         let (mut walls, mut ground, mut ground_apart_mm) = (Vec::new(), Vec::new(), 0.0f64);
         for (faces, most, is_own) in [(check, MOST, false), (own, GROUND, true)] {
-            let area: f64 = faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value).sum();
+            let area: f64 = faces.iter().map(|f| quadrature::coarse_area(f.surface)).sum();
             let all: Vec<&Named<'_>> = faces.iter().collect();
             // Not finer than they can be all over: the same clearance everywhere.
             let spacing_mm = spacing_mm.max((area / most).sqrt());
