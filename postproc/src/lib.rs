@@ -30,6 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod auxiliary;
 mod choices;
 pub mod cldata;
 mod draft;
@@ -56,6 +57,7 @@ mod suggest;
 mod travel;
 mod turn;
 
+pub use auxiliary::{Auxiliary, AuxiliaryWord, Spindle};
 pub use feed::{FeedMode, PathMetric};
 pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
 pub use machine::{Machine, MachineError, built_in_names, built_in_text};
@@ -67,7 +69,7 @@ pub use part_turns::{axis_turns, clamped_turns, first_in_range, free_turns, tilt
 pub use post::{PostReport, PostSummary, Posted, post, post_from, post_to};
 pub use post_error::PostError;
 pub use post_options::PostOptions;
-pub use sections::{PostedSections, Section, post_sections};
+pub use sections::{PostedSections, Section, SectionError, post_sections, post_sections_to};
 pub use setup::{Setup, SetupError};
 pub use setup_comment::SetupCommentError;
 pub use solve_error::SolveError;

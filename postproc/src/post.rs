@@ -128,6 +128,7 @@ pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec
         tool_number: options.tool_number,
         work_offset: options.work_offset,
         spindle_rpm: options.spindle_rpm,
+        counter_clockwise: options.counter_clockwise,
         coolant: options.coolant,
         feed_word: feed_word(options, machine),
         blend_mm: options.blend_mm,
@@ -156,9 +157,13 @@ where
     let mut draft = Draft::new(machine, setup, options);
     let solve = SolveOptions { tcp: options.feed == FeedMode::Tcp, ..options.solve };
     let mut blocks = 0;
+    let mut auxiliary = options.auxiliary.iter().peekable();
     let mut word = |draft: &mut Draft, writer: &mut Writer, block: &JointBlock, fastest: Option<f64>| {
         let Some(m) = draft.next(block, fastest)? else { return Ok(()) };
         blocks += 1;
+        while let Some(one) = auxiliary.next_if(|a| a.before <= block.source) {
+            writer.say(one.word);
+        }
         writer.take(&m);
         if writer.text().len() >= SINK_BYTES { flush(writer, sink) } else { Ok::<(), PostError>(()) }
     };
@@ -174,6 +179,7 @@ where
             piece.iter().try_for_each(|block| word(&mut draft, writer, block, None))
         })?
     };
+    auxiliary.for_each(|one| writer.say(one.word));
     let mut diagnostics = joints.diagnostics;
     if options.spindle_rpm.is_none() {
         diagnostics.push(Diagnostic::warning(

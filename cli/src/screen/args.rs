@@ -251,6 +251,15 @@ pub struct PostArgs {
     /// From the tip to the spindle nose, mm; cutter and holder of the CL data where not given.
     #[arg(long)]
     pub gauge_length_mm: Option<f64>,
+    /// The work offset: G54 to G59 and more, by the dialect; "preset 3" with heidenhain.
+    #[arg(long)]
+    pub work_offset: Option<String>,
+    /// The program's number (fanuc).
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=9999))]
+    pub program_number: Option<u32>,
+    /// Leave out statements that are not understood, or that the program cannot say, instead of refusing the file; they are listed.
+    #[arg(long)]
+    pub lenient: bool,
     /// The program to write.
     #[arg(long)]
     pub out: PathBuf,

@@ -11,6 +11,7 @@ use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::WorkOffset;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
+use osculate_tools::CutterSpec;
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::{GoalControl, Gravity, Program, Remark, Swept};
 use std::collections::BTreeSet;
@@ -41,6 +42,28 @@ pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
 pub fn cl_text(path: &ClPath, tool_number: u32, part_name: &str) -> Result<String, String> {
     let options = ClWriteOptions { part_name: part_name.to_owned(), tool_number };
     cldata::write(path, &options).map_err(|e| e.to_string())
+}
+
+/// A cutter in a few words, for the comments of a program.
+#[must_use]
+pub fn cutter_words(cutter: Option<CutterSpec>) -> String {
+    match cutter {
+        None => "tool".to_owned(),
+        Some(CutterSpec::Ball { diameter_mm, .. }) => format!("ball {diameter_mm}"),
+        Some(CutterSpec::Flat { diameter_mm, .. } | CutterSpec::Cylindrical { diameter_mm, .. }) => {
+            format!("flat {diameter_mm}")
+        }
+        Some(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, .. }) => {
+            format!("toroidal {diameter_mm} r {corner_radius_mm}")
+        }
+        Some(CutterSpec::Apt { diameter_mm, bottom_angle_deg, .. }) if bottom_angle_deg > 0.0 => {
+            format!("pointed {diameter_mm}, {bottom_angle_deg} deg")
+        }
+        Some(CutterSpec::Apt { diameter_mm, .. } | CutterSpec::Cone { diameter_mm, .. }) => {
+            format!("conical {diameter_mm}")
+        }
+        Some(CutterSpec::Barrel { diameter_mm, .. }) => format!("barrel {diameter_mm}"),
+    }
 }
 
 /// The options of a post for this control.

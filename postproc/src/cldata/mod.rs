@@ -10,6 +10,7 @@ mod error;
 mod feed;
 mod fields;
 mod read;
+mod section;
 mod statement;
 mod stream;
 mod ways;
@@ -18,5 +19,6 @@ mod write;
 
 pub use error::ClReadError;
 pub use read::{ClData, ClReadOptions, ClReader, read};
-pub use stream::{ClPlace, ClStream, ClStreamError};
+pub use section::{ClSection, ClTool};
+pub use stream::{ClOutline, ClPart, ClPlace, ClStream, ClStreamError};
 pub use write::{ClWriteError, ClWriteOptions, ClWriter, write};

@@ -82,8 +82,10 @@ pub struct Program {
     pub tool_number: u32,
     /// Where program zero is; `None`: [`WorkOffset::usual`].
     pub work_offset: Option<WorkOffset>,
-    /// Spindle speed, clockwise; `None` leaves the spindle alone.
+    /// Spindle speed; `None` leaves the spindle alone.
     pub spindle_rpm: Option<f64>,
+    /// The spindle turns counter-clockwise.
+    pub counter_clockwise: bool,
     /// Coolant, from the first approach to the end.
     pub coolant: Option<Coolant>,
     /// How F is written.
@@ -187,6 +189,11 @@ impl Program {
                 None => Err(WriteError::WorkOffset { dialect: dialect.name(), offset }),
             },
         }
+    }
+
+    /// The word that starts its spindle.
+    pub(crate) const fn spindle_word(&self) -> &'static str {
+        if self.counter_clockwise { "M4" } else { "M3" }
     }
 
     /// It works in tilted planes.

@@ -45,7 +45,7 @@ fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("T{} M6", program.tool_number));
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
-        lines.line(&format!("S{} M3", number::feed(rpm)));
+        lines.line(&format!("S{} {}", number::feed(rpm), program.spindle_word()));
     }
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());

@@ -58,7 +58,7 @@ fn call(program: &Program, lines: &mut Lines) {
     let speed = program.spindle_rpm.map_or(String::new(), |rpm| format!(" S{}", number::feed(rpm)));
     lines.line(&format!("TOOL CALL {} Z{speed}", program.tool_number));
     if program.spindle_rpm.is_some() {
-        lines.line("M3");
+        lines.line(program.spindle_word());
     }
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());

@@ -2,6 +2,7 @@
 
 mod archive;
 mod asked;
+mod auxiliary;
 pub mod block;
 mod codes;
 mod conditions;
