@@ -52,7 +52,7 @@ mod setup_comment;
 mod solve;
 mod solve_error;
 mod solve_options;
-mod source;
+pub mod source;
 mod suggest;
 mod travel;
 mod turn;

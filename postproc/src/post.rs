@@ -5,6 +5,7 @@ use std::io;
 use osculate_geom::Diagnostic;
 use osculate_tools::cl::ClPath;
 
+use crate::auxiliary::AuxiliaryWord;
 use crate::draft::{Draft, linear_decimals};
 use crate::feed::{FeedMode, fastest_durations_min};
 use crate::joint_path::JointBlock;
@@ -130,6 +131,8 @@ pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec
         spindle_rpm: options.spindle_rpm,
         counter_clockwise: options.counter_clockwise,
         coolant: options.coolant,
+        cools: options.coolant.is_some()
+            || options.auxiliary.iter().any(|a| matches!(a.word, AuxiliaryWord::Coolant(Some(_)))),
         feed_word: feed_word(options, machine),
         blend_mm: options.blend_mm,
         linear_names: if tcp {

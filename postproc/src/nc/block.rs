@@ -86,8 +86,10 @@ pub struct Program {
     pub spindle_rpm: Option<f64>,
     /// The spindle turns counter-clockwise.
     pub counter_clockwise: bool,
-    /// Coolant, from the first approach to the end.
+    /// Coolant at the first approach.
     pub coolant: Option<Coolant>,
+    /// Coolant is on at some time.
+    pub cools: bool,
     /// How F is written.
     pub feed_word: FeedWord,
     /// How far the control may round corners, mm.

@@ -112,7 +112,7 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 fn leave(program: &Program, lines: &mut Lines) {
     lines.line("G94");
     lines.line("G5.1 Q0");
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");

@@ -132,7 +132,7 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 
 /// Away from the part, with everything off.
 fn leave(program: &Program, lines: &mut Lines) {
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");

@@ -98,7 +98,7 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 fn leave(program: &Program, lines: &mut Lines) {
     let switch = program.linuxcnc_tcp.as_ref();
     lines.line("G94");
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");

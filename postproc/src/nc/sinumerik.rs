@@ -150,7 +150,7 @@ fn leave(program: &Program, lines: &mut Lines) {
     if program.feed_word == FeedWord::Inverse {
         lines.line("G94");
     }
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");
