@@ -170,8 +170,8 @@ impl<'a> Draft<'a> {
             FeedMode::Tcp if !slowed && step.linear_mm > 0.0 => wanted,
             mode => {
                 // The fastest program is written over whatever the control reads.
-                let own = PathMetric::from(self.machine.control().feed_reading);
-                let f = mode.metric().unwrap_or(own).length(step) / duration_min;
+                let own = self.own_metric();
+                let f = mode.metric(own).unwrap_or(own).length(step) / duration_min;
                 match mode {
                     FeedMode::Kz { step_mm_min, .. } => {
                         let f = self.risen.map_or(f, |b| f.min(b + step_mm_min));
@@ -184,16 +184,21 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Over what the control reads F by itself.
+    fn own_metric(&self) -> PathMetric {
+        self.options.dialect.feed_metric(self.machine)
+    }
+
     /// How long the control takes, by its own reading of F, min.
     fn control_time(&self, step: &Step, feed: f64) -> f64 {
         match self.options.feed {
             FeedMode::InverseTime => 1.0 / feed,
             mode => {
                 // A program that declares its metric (Sinumerik) is read over it; elsewhere the machine's own holds.
-                let declared = mode.metric().filter(|_| {
+                let declared = mode.metric(self.own_metric()).filter(|_| {
                     self.options.dialect == Dialect::Sinumerik || self.options.feed == FeedMode::Tcp
                 });
-                let metric = declared.unwrap_or_else(|| self.machine.control().feed_reading.into());
+                let metric = declared.unwrap_or_else(|| self.own_metric());
                 metric.length(step) / feed
             }
         }
@@ -217,9 +222,9 @@ impl<'a> Draft<'a> {
             );
             diagnostics.push(Diagnostic::warning(place, text));
         }
-        let own = PathMetric::from(self.machine.control().feed_reading);
+        let own = self.own_metric();
         let wanted =
-            self.options.feed.metric().filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
+            self.options.feed.metric(own).filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
         if let Some(wanted) = wanted.filter(|w| *w != own && !self.machine.rotary().is_empty()) {
             let text = format!(
                 "F is written over {}, but this control reads it over {}: mixed moves take another time than asked, \

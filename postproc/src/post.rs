@@ -216,8 +216,8 @@ pub(crate) fn flush(writer: &mut Writer, sink: &mut dyn io::Write) -> Result<(),
 fn feed_word(options: &PostOptions, machine: &Machine) -> FeedWord {
     match options.feed {
         FeedMode::InverseTime => FeedWord::Inverse,
-        FeedMode::Fastest { .. } => FeedWord::PerMinute(Some(machine.control().feed_reading.into())),
-        mode => FeedWord::PerMinute(mode.metric()),
+        FeedMode::Fastest { .. } => FeedWord::PerMinute(Some(options.dialect.feed_metric(machine))),
+        mode => FeedWord::PerMinute(mode.metric(options.dialect.feed_metric(machine))),
     }
 }
 

@@ -102,7 +102,8 @@ pub enum JointSpec {
     },
 }
 
-/// How the control reads F in G94 where linear and rotary axes move together and the program does not say.
+/// How the control reads F in G94 where linear and rotary axes move together and the program does not say. LinuxCNC reads it over the
+/// linear axes whatever stands here.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum FeedReading {

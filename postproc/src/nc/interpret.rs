@@ -59,7 +59,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             lengths: Vec::new(),
             gauge_length_mm: frame.setup.gauge_length_mm,
             strict,
-            state: State::new(),
+            state: State::new(dialect),
             sink,
             diagnostics: Vec::new(),
             spindle_rpm: None,

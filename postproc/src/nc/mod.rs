@@ -10,6 +10,7 @@ pub mod conduct;
 mod control;
 mod event;
 mod fanuc;
+mod feed_reading;
 mod frames;
 mod heidenhain;
 mod interpret;
