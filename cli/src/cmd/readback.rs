@@ -1,10 +1,10 @@
 //! `readback`: what an NC program makes the tool do, as CL data, read and written as a stream.
 
-use crate::cmd::time::{each_line, names_of};
+use crate::cmd::time::names_of;
 use crate::screen::args::ReadbackArgs;
 use crate::screen::output;
 use crate::screen::render;
-use osculate::failure::{Done, Failure, Outcome};
+use osculate::failure::{Done, Failure, Outcome, each_line};
 use osculate::words;
 use osculate::words::{Table, number};
 use osculate::work::nc;

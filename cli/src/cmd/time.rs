@@ -2,7 +2,7 @@
 
 use crate::screen::args::TimeArgs;
 use crate::screen::render;
-use osculate::failure::{Done, Failure, Outcome};
+use osculate::failure::{Done, Failure, Outcome, each_line};
 use osculate::words;
 use osculate::words::Table;
 use osculate::work::joints::JointFigures;
@@ -13,7 +13,6 @@ use osculate_postproc::nc::timing::{Clock, Names};
 use osculate_postproc::{Machine, Setup};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 #[derive(Serialize)]
@@ -84,18 +83,4 @@ pub fn names_of(file: &Path, dialect: Dialect, machine: &Machine) -> Result<Name
         Ok(())
     })?;
     Ok(names)
-}
-
-/// Reads a file line by line; bytes that are no UTF-8 come as replacement characters, as in comments of old programs.
-pub fn each_line(file: &Path, mut line: impl FnMut(&str) -> Result<(), Failure>) -> Result<(), Failure> {
-    let fail = |e: std::io::Error| Failure::file(file, format!("cannot be read: {e}"));
-    let mut reader = BufReader::new(std::fs::File::open(file).map_err(fail)?);
-    let mut bytes = Vec::new();
-    loop {
-        bytes.clear();
-        if reader.read_until(b'\n', &mut bytes).map_err(fail)? == 0 {
-            return Ok(());
-        }
-        line(String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']))?;
-    }
 }

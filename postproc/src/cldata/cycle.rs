@@ -9,6 +9,7 @@ use super::error::ClReadError;
 use super::feed::Feed;
 use super::fields::numbers;
 use super::statement::Statement;
+use super::words::FEEDS;
 
 /// How far above the last depth the feed starts again, and how far a chip is broken, mm.
 const GAP_MM: f64 = 0.5;
@@ -65,7 +66,7 @@ pub(super) fn cycle(s: &Statement, unit_mm: f64) -> Result<Option<Cycle>, ClRead
         [(["MMPM"], 1.0, false), (["MMPR"], 1.0, true), (["IPM"], 25.4, false), (["IPR"], 25.4, true)]
     {
         if let Some(mm) = value(&names)?.map(|f| f * unit) {
-            if !(mm > 0.0 && mm.is_finite()) {
+            if !FEEDS.contains(&mm) {
                 return Err(ClReadError::Feed { line: s.line, feed_mm_min: mm });
             }
             feed = Some(Feed { mm, per_turn, line: s.line });

@@ -39,8 +39,8 @@ pub enum ClReadError {
         /// Line.
         line: usize,
     },
-    /// A feed that is not above zero.
-    #[error("line {line}: a feed of {feed_mm_min} mm/min: it must be above zero")]
+    /// A feed that no control takes.
+    #[error("line {line}: a feed of {feed_mm_min:?} mm/min: it must be above zero, from 1e-6 to 1e9")]
     Feed {
         /// Line.
         line: usize,

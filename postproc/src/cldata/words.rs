@@ -11,6 +11,9 @@ use super::statement::Statement;
 use crate::auxiliary::{AuxiliaryWord, Spindle};
 use crate::nc::Coolant;
 
+/// Feeds that a control can be given, mm/min or mm per revolution.
+pub(super) const FEEDS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;
+
 /// Tools of controls have up to eight digits.
 const LARGEST_TOOL: f64 = 1e8;
 
@@ -37,7 +40,7 @@ impl ClReader {
             self.unit_mm
         };
         let mm = value * unit;
-        if !(mm > 0.0 && mm.is_finite()) {
+        if !FEEDS.contains(&mm) {
             return Err(ClReadError::Feed { line: s.line, feed_mm_min: mm });
         }
         self.feed = Some(Feed { mm, per_turn, line: s.line });
