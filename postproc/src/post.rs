@@ -12,6 +12,7 @@ use crate::joint_path::JointBlock;
 use crate::machine::Machine;
 use crate::nc::block::RotaryName;
 use crate::nc::writer::Writer;
+use crate::nc::number;
 use crate::nc::{FeedWord, Orientation, Program};
 use crate::post_error::PostError;
 use crate::post_options::{PostOptions, check};
@@ -135,6 +136,7 @@ pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec
             || options.auxiliary.iter().any(|a| matches!(a.word, AuxiliaryWord::Coolant(Some(_)))),
         feed_word: feed_word(options, machine),
         blend_mm: options.blend_mm,
+        retract: machine.retract_mm().and_then(number::counts),
         linear_names: if tcp {
             ["X", "Y", "Z"].map(String::from)
         } else {
@@ -245,6 +247,8 @@ pub(crate) fn comments(machine: &Machine, setup: &Setup, options: &PostOptions) 
             lines.push(format!("posted for a gauge length of {:.4} mm", setup.gauge_length_mm));
         }
     }
+    let endless = machine.rotary().iter().map(|p| &machine.joints()[*p]).filter(|j| j.is_endless());
+    lines.extend(endless.map(|joint| format!("{} turns without end: {}", joint.letter, options.dialect.turning())));
     lines.extend(setup_comment::lines(setup));
     lines
 }

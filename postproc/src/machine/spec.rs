@@ -62,6 +62,10 @@ pub enum JointSpec {
         /// Where `G28` leads it, in the control's own coordinate; absent: not known.
         #[serde(default)]
         home_mm: Option<f64>,
+        /// Where it is out of the way, in the control's own coordinate: programs retract there before tools and planes are changed
+        /// and at their end. Read of the joint called Z only. Absent: the end of its travel away from the part.
+        #[serde(default)]
+        retract_mm: Option<f64>,
         /// Greatest speed.
         max_velocity_mm_s: f64,
         /// Greatest acceleration.

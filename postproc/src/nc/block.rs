@@ -94,6 +94,8 @@ pub struct Program {
     pub feed_word: FeedWord,
     /// How far the control may round corners, mm.
     pub blend_mm: f64,
+    /// Where Z goes in the machine's own coordinates at the start, between tools and at the end; `None`: it is left alone.
+    pub retract: Option<i64>,
     /// Names of the linear words.
     pub linear_names: [String; 3],
     /// Decimals of the linear words.
@@ -175,11 +177,6 @@ impl Program {
             .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' })
             .collect();
         if name.is_empty() { "PROGRAM".into() } else { name }
-    }
-
-    /// The name of the linear word along the spindle for the retracts at start and end, if there is one called Z.
-    pub(crate) fn has_z(&self) -> bool {
-        self.linear_names.iter().any(|n| n == "Z")
     }
 
     /// The words of its work offset; none where the dialect's usual one needs none.

@@ -33,8 +33,8 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
         lines.line(&format!("({comment})"));
     }
     lines.line("G17 G21 G40 G49 G80 G90 G94");
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
     call(program, work_offset.as_deref(), lines);
     Ok(())
@@ -92,8 +92,8 @@ fn plane(m: &NcMove, lines: &mut Lines) {
 pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines: &mut Lines) {
     lines.line("G49");
     lines.line("G69");
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
     modal.forget();
     modal.approach(program, &WORDING, m, &[Which::Rotary]).iter().for_each(|l| lines.line(l));
@@ -120,7 +120,7 @@ fn leave(program: &Program, lines: &mut Lines) {
     if program.in_planes() {
         lines.line("G69");
     }
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
 }

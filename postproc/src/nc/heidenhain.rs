@@ -28,6 +28,13 @@ fn axis(text: &mut String, name: &str, position: Position) {
     number::push_rounded(text, position.counts, position.decimals);
 }
 
+/// A position with all decimals.
+fn signed(name: &str, counts: i64) -> String {
+    let mut text = String::new();
+    axis(&mut text, name, Position { counts, decimals: number::DECIMALS });
+    text
+}
+
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     axis(text, &name.letter, Position::of(name, counts));
 }
@@ -46,8 +53,8 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     lines.line("FUNCTION RESET TCPM");
     lines.line("M126");
     work_offset.iter().for_each(|words| lines.line(words));
-    if program.has_z() {
-        lines.line("L Z+0.0000 R0 FMAX M91");
+    if let Some(z) = program.retract {
+        lines.line(&format!("L {} R0 FMAX M91", signed("Z", z)));
     }
     call(program, lines);
     Ok(())
@@ -102,7 +109,7 @@ fn plane(m: &NcMove) -> String {
     let mut text = String::from("PLANE SPATIAL");
     for (name, c) in ["SPA", "SPB", "SPC"].iter().zip(m.orientation) {
         text.push(' ');
-        axis(&mut text, name, Position { counts: c, decimals: number::DECIMALS });
+        text.push_str(&signed(name, c));
     }
     text + " STAY"
 }
@@ -110,8 +117,8 @@ fn plane(m: &NcMove) -> String {
 /// Goes from one plane to another: away in machine coordinates, rotary axes, plane, back.
 pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines: &mut Lines) {
     lines.line("PLANE RESET STAY");
-    if program.has_z() {
-        lines.line("L Z+0.0000 R0 FMAX M91");
+    if let Some(z) = program.retract {
+        lines.line(&format!("L {} R0 FMAX M91", signed("Z", z)));
     }
     modal.forget();
     let mut approach = |lines: &mut Lines, which: &[Which]| {
@@ -140,7 +147,7 @@ fn leave(program: &Program, lines: &mut Lines) {
         lines.line("PLANE RESET STAY");
     }
     lines.line("FUNCTION RESET TCPM");
-    if program.has_z() {
-        lines.line("L Z+0.0000 R0 FMAX M91");
+    if let Some(z) = program.retract {
+        lines.line(&format!("L {} R0 FMAX M91", signed("Z", z)));
     }
 }

@@ -44,8 +44,8 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     if let Some(words) = switch {
         lines.line(&words.off);
     }
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
     call(program, work_offset.as_deref(), lines);
     Ok(())
@@ -105,7 +105,7 @@ fn leave(program: &Program, lines: &mut Lines) {
     if let Some(words) = switch {
         lines.line(&words.off);
     }
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
 }

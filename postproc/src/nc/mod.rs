@@ -77,6 +77,16 @@ impl Dialect {
         }
     }
 
+    /// How its programs turn an axis without end, and what of the control's data they rely on.
+    pub(crate) const fn turning(self) -> &'static str {
+        match self {
+            Self::Sinumerik => "a modulo axis, DC goes the shortest way",
+            Self::Heidenhain => "M126 goes the shortest way",
+            Self::Fanuc => "a rollover axis, parameters 1006 and 1008, that goes the shortest way",
+            Self::LinuxCnc => "it counts on through whole turns, its limits must hold them, no WRAPPED_ROTARY",
+        }
+    }
+
     /// The usual extension of a program file.
     #[must_use]
     pub const fn extension(self) -> &'static str {

@@ -11,7 +11,7 @@
 //!   does not depend on machine data. Rotary axes alone, outside of `FGROUP`, are read in deg/min.
 //! - `G93` wants F in every block; switching between G93 and G94 deletes F.
 //! - `CYCLE832` bounds what the control's compressor and smoothing may do to the path (finishing).
-//! - `SUPA` with `D0` moves in machine coordinates without tool length: Z0 is the top of the Z axis.
+//! - `SUPA` with `D0` moves in machine coordinates without tool length, to where the machine's file has Z out of the way.
 
 use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
@@ -162,8 +162,8 @@ fn leave(program: &Program, lines: &mut Lines) {
 }
 
 fn retract(lines: &mut Lines, program: &Program) {
-    if program.has_z() {
-        lines.line("G0 SUPA Z0 D0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G0 SUPA Z{} D0", number::plain(z)));
     }
 }
 
