@@ -249,6 +249,11 @@ pub(crate) fn comments(machine: &Machine, setup: &Setup, options: &PostOptions) 
     }
     let endless = machine.rotary().iter().map(|p| &machine.joints()[*p]).filter(|j| j.is_endless());
     lines.extend(endless.map(|joint| format!("{} turns without end: {}", joint.letter, options.dialect.turning())));
+    let turned = setup.turn_rad().map(|a| a.to_degrees() + 0.0);
+    if turned.iter().any(|a| a.abs() >= 5e-5) {
+        let [x, y, z] = turned;
+        lines.push(format!("part turned on the table: {x:.4} deg about X, then {y:.4} about Y, then {z:.4} about Z"));
+    }
     lines.extend(setup_comment::lines(setup));
     lines
 }

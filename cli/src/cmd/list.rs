@@ -5,6 +5,7 @@ use osculate::failure::{Done, Failure, Outcome};
 use osculate::job::tool;
 use osculate::words;
 use osculate::words::Table;
+use osculate_postproc::{DialectFile, shipped_dialects};
 use osculate_postproc::machine::spec::CarriedSide;
 use osculate_postproc::machine::{Joint, JointKind};
 use osculate_postproc::nc::Dialect;
@@ -82,7 +83,11 @@ pub fn dialects(json: bool) -> Outcome {
         };
         let one =
             |d: Dialect| serde_json::json!({ "name": d.name(), "extension": d.extension(), "feed": feed(d) });
-        render::json(&Dialect::ALL.map(one))?;
+        let own = |d: DialectFile| {
+            serde_json::json!({ "name": d.name(), "extension": d.extension(), "engine": d.engine().name(), "description": d.description() })
+        };
+        let shipped = shipped_dialects().filter_map(DialectFile::shipped).map(own);
+        render::json(&Dialect::ALL.into_iter().map(one).chain(shipped).collect::<Vec<_>>())?;
         return Ok(Done::Yes);
     }
     for d in Dialect::ALL {
@@ -99,6 +104,11 @@ pub fn dialects(json: bool) -> Outcome {
             render::text(&format!("  {source}\n"));
         }
     }
+    for own in shipped_dialects().filter_map(DialectFile::shipped) {
+        let (name, extension, engine) = (own.name(), own.extension(), own.engine());
+        render::text(&format!("\n{name} (.{extension}), words of its own over {engine}: {}\n", own.description()));
+    }
+    render::text("\n");
     Ok(Done::Yes)
 }
 

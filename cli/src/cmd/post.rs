@@ -16,7 +16,7 @@ use osculate_postproc::{
 };
 use osculate_tools::Cutter;
 use serde::Serialize;
-use std::io::{self, BufRead, BufReader, Seek};
+use std::io::{self, BufRead, BufReader, Seek, Write};
 use std::path::Path;
 
 #[derive(Serialize)]
@@ -152,20 +152,30 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     }
     let first = &sections[0];
     let setup = Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), first.gauge_length_mm);
-    let reports: Vec<PostReport> = output::stream(&args.out, |file| {
+    let reports: Vec<PostReport> = output::stream(&args.out, |out| {
+        // Words of a dialect of its own are put in once the program is whole.
+        let mut engine_text = Vec::new();
+        let own = control.language.has_own_words();
+        let file: &mut dyn Write = if own { &mut engine_text } else { &mut *out };
         let posted = if let [one] = &sections[..] {
             post_from(one.path, &control.machine, &setup, &one.options, file).map(|r| vec![r]).map_err(|e| (0, e))
         } else {
             post_sections_to(&sections, &control.machine, &setup, file).map_err(|e| (e.section, e.error))
         };
-        posted.map_err(|(k, e)| {
+        let reports = posted.map_err(|(k, e)| {
             let place = e.index().and_then(|i| parts[k].locate(&[i]).ok()?.pop());
             let tool = if sections.len() > 1 { format!(" with tool {}", sections[k].options.tool_number) } else { String::new() };
             match place {
                 Some(p) => here(&format!("line {}, {:.3} mm on the way{tool}: {e}", p.line, p.length_mm)),
                 None => here(&e),
             }
-        })
+        })?;
+        if own {
+            let text = String::from_utf8(engine_text).expect("a program is text");
+            let text = control.language.worded(text)?;
+            out.write_all(text.as_bytes()).map_err(|e| Failure::file(&args.out, e))?;
+        }
+        Ok(reports)
     })?;
     let several = sections.len() > 1;
     for ((part, section), report) in parts.iter().zip(&sections).zip(&reports) {

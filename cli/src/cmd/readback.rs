@@ -32,10 +32,10 @@ const PIECE_BYTES: usize = 1 << 16;
 pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     let file = &args.nc.file;
     let machine = nc::machine(&args.nc.machine)?;
-    let dialect = nc::dialect_of(args.nc.dialect.as_deref(), file)?;
+    let language = nc::dialect_of(args.nc.dialect.as_deref(), file)?;
     let zero = Vec3::from(args.nc.part_zero.unwrap_or_default());
     let setup = Setup::at(zero, args.nc.gauge_length_mm.unwrap_or(0.0));
-    let names = names_of(file, dialect, &machine)?;
+    let names = names_of(file, &language, &machine)?;
     let here = |e| Failure::file(file, e);
     let options = ReadOptions { strict: args.nc.strict, ..ReadOptions::default() };
     let mut reader = Reader::new(&names, &machine, &setup, &options).map_err(here)?;
@@ -48,7 +48,7 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
         let mut at: Option<Point3> = None;
         let unwritten = |e| Failure::file(&args.out, e);
         each_line(file, |line| {
-            reader.line(line).map_err(here)?;
+            reader.line(&language.engine_line(line)).map_err(here)?;
             answer.blocks += reader.take_blocks().count();
             let rpm = reader.spindle_rpm();
             for m in reader.take_moves() {

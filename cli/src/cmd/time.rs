@@ -3,12 +3,12 @@
 use crate::screen::args::TimeArgs;
 use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome, each_line};
+use osculate::job::language::Language;
 use osculate::words;
 use osculate::words::Table;
 use osculate::work::joints::JointFigures;
 use osculate::work::nc;
 use osculate_geom::Vec3;
-use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::timing::{Clock, Names};
 use osculate_postproc::{Machine, Setup};
 use serde::Serialize;
@@ -29,14 +29,14 @@ struct Answer {
 /// Runs the verb.
 pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     let machine = nc::machine(&args.machine)?;
-    let dialect = nc::dialect_of(args.dialect.as_deref(), &args.file)?;
+    let language = nc::dialect_of(args.dialect.as_deref(), &args.file)?;
     let setup =
         Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), args.gauge_length_mm.unwrap_or(0.0));
     let file = &args.file;
-    let names = names_of(file, dialect, &machine)?;
+    let names = names_of(file, &language, &machine)?;
     let here = |e| Failure::file(file, e);
     let mut clock = Clock::new(&names, &machine, &setup, args.strict).map_err(here)?;
-    each_line(file, |line| clock.line(line).map_err(here))?;
+    each_line(file, |line| clock.line(&language.engine_line(line)).map_err(here))?;
     let timed = clock.finish().map_err(here)?;
     let t = &timed.time;
     let answer = Answer {
@@ -76,10 +76,10 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
 }
 
 /// What a program calls its axes, read from the whole of it.
-pub fn names_of(file: &Path, dialect: Dialect, machine: &Machine) -> Result<Names, Failure> {
-    let mut names = Names::new(dialect, machine);
+pub fn names_of(file: &Path, language: &Language, machine: &Machine) -> Result<Names, Failure> {
+    let mut names = Names::new(language.engine, machine);
     each_line(file, |line| {
-        names.line(line);
+        names.line(&language.engine_line(line));
         Ok(())
     })?;
     Ok(names)

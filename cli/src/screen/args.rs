@@ -229,7 +229,7 @@ pub struct PostArgs {
     /// A built-in machine or the path of a machine file.
     #[arg(long)]
     pub machine: String,
-    /// sinumerik, heidenhain, fanuc or linuxcnc.
+    /// A dialect (see `dialects`), or the path of a dialect file.
     #[arg(long)]
     pub dialect: String,
     /// tcp, none, kv, kf, kz, inverse_time, rotary (deg/min over the rotary axes) or fastest (as the joints allow).
@@ -274,7 +274,7 @@ pub struct TimeArgs {
     /// A built-in machine or the path of a machine file.
     #[arg(long)]
     pub machine: String,
-    /// sinumerik, heidenhain, fanuc or linuxcnc; by the file's extension where not given.
+    /// A dialect (see `dialects`) or the path of a dialect file; by the program's extension where not given.
     #[arg(long)]
     pub dialect: Option<String>,
     /// Where the part's origin sits from the table's reference point, mm.

@@ -1,6 +1,7 @@
 //! Between jobs and the postprocessor: machine, dialect, setup, text out and motions back.
 
 use crate::failure::{Failure, read_text};
+use crate::job::language::Language;
 use crate::job::{Control, Job};
 use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
@@ -27,14 +28,16 @@ pub fn machine(word: &str) -> Result<Machine, Failure> {
     Machine::built_in(word).map_err(Failure::job)
 }
 
-/// The language of a program: as said, or by its extension.
-pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
-    if let Some(name) = said {
-        return name.parse().map_err(Failure::job);
+/// The language of a program: as said, by a name or a dialect file, or by its extension.
+pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Language, Failure> {
+    if let Some(word) = said {
+        return Language::of_word(word);
     }
     let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    Dialect::ALL.into_iter().find(|d| d.extension() == extension).ok_or_else(|| {
-        Failure::file(file, "the extension does not tell the dialect: give --dialect, one of sinumerik, heidenhain, fanuc, linuxcnc")
+    let engine = Dialect::ALL.into_iter().find(|d| d.extension() == extension);
+    engine.map(Language::from).ok_or_else(|| {
+        let all = Language::names().join(", ");
+        Failure::file(file, format!("the extension does not tell the dialect: give --dialect, one of {all}"))
     })
 }
 
@@ -224,7 +227,8 @@ pub fn read_back_tools(
         let own = lengths.iter().find(|l| Some(l.0) == number);
         own.map_or(setup.gauge_length_mm, |l| l.1)
     };
-    let read = readback::read_tools(text, control.dialect, &control.machine, (setup, &lengths), &options)
+    let text = control.language.engine_text(text);
+    let read = readback::read_tools(&text, control.dialect, &control.machine, (setup, &lengths), &options)
         .map_err(|e| match e {
             ReadError::Word { line, word } => format!(
                 "line {line}: {word} is not interpreted and may change the tool's way; --lenient leaves such words out \

@@ -1,6 +1,6 @@
 //! Auxiliary words in every dialect: spindle, coolant, dwells, stops.
 //!
-//! Seconds of a dwell are `G4 F` with Sinumerik, `G4 X` with Fanuc, `G4 P` with LinuxCNC and cycle 9 with Heidenhain, where a speed is
+//! Seconds of a dwell are `G4 F` with Sinumerik, `G4 P` in milliseconds with Fanuc, `G4 P` with LinuxCNC and cycle 9 with Heidenhain, where a speed is
 //! changed by `TOOL CALL S`.
 
 use super::Dialect;
@@ -19,10 +19,11 @@ pub(super) fn say(dialect: Dialect, word: AuxiliaryWord, lines: &mut Lines) {
         AuxiliaryWord::Stop => lines.line("M0"),
         AuxiliaryWord::OptionalStop => lines.line("M1"),
         AuxiliaryWord::Dwell { seconds } => {
+            let milliseconds = number::feed((1000.0 * seconds).round().max(1.0));
             let seconds = number::feed(seconds);
             match dialect {
                 Dialect::Sinumerik => lines.line(&format!("G4 F{seconds}")),
-                Dialect::Fanuc => lines.line(&format!("G4 X{seconds}")),
+                Dialect::Fanuc => lines.line(&format!("G4 P{milliseconds}")),
                 Dialect::LinuxCnc => lines.line(&format!("G4 P{seconds}")),
                 Dialect::Heidenhain => {
                     lines.line("CYCL DEF 9.0 DWELL TIME");

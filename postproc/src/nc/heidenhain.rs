@@ -5,7 +5,8 @@
 //! - Directions of the tool are `LN X Y Z TX TY TZ`, with `FUNCTION TCPM` on.
 //! - `PLANE SPATIAL ... STAY` tilts the working plane without motion: the program positions the rotary axes before.
 //! - Every position carries a sign; `FMAX` holds for its own block only.
-//! - `CYCL DEF 32` bounds what smoothing may do to the path (finishing).
+//! - `CYCL DEF 32` bounds what smoothing may do to the path (finishing); without a value it is off.
+//! - `PLANE RESET STAY` at the start deletes a tilted plane that an aborted program may have left.
 //! - `M126` makes endless axes take the shortest way. There is no inverse time feed. `M91` is machine coordinates.
 
 use super::Dialect;
@@ -51,6 +52,9 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
         lines.line(&format!("; {comment}"));
     }
     lines.line("FUNCTION RESET TCPM");
+    if !program.rotary_names.is_empty() {
+        lines.line("PLANE RESET STAY");
+    }
     lines.line("M126");
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(z) = program.retract {
@@ -143,6 +147,8 @@ fn leave(program: &Program, lines: &mut Lines) {
         lines.line("M9");
     }
     lines.line("M5");
+    lines.line("CYCL DEF 32.0 TOLERANCE");
+    lines.line("CYCL DEF 32.1");
     if program.in_planes() {
         lines.line("PLANE RESET STAY");
     }

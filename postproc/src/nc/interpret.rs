@@ -200,6 +200,9 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             }
             asked.acts |= word.acts();
         }
+        if asked.frames_deleted && !asked.axes.is_empty() {
+            return self.refuse(line, "TRANS with axes").map(|()| false);
+        }
         self.settle(&asked);
         self.settle_control(line, &asked);
         if asked.plane {

@@ -4,6 +4,7 @@
 //!   with a tilting rotary table have M428 for the tip in the part's frame and M429 for plain joints).
 //! - F in G94 is read over X Y Z; a move of rotary axes alone is read in deg/min. G93 wants F in every block.
 //! - Rotary axes count on through whole turns; nothing is wrapped.
+//! - `G92.1` at the start deletes offsets of `G92` that an aborted program may have left.
 //! - `G64 P` bounds how far blending may leave the programmed corner. `G53` moves in machine coordinates.
 
 use super::Dialect;
@@ -40,6 +41,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
         lines.line(&format!("({comment})"));
     }
     lines.line("G17 G21 G40 G49 G80 G90 G94");
+    lines.line("G92.1");
     lines.line(&format!("G64 P{:.4}", program.blend_mm));
     if let Some(words) = switch {
         lines.line(&words.off);

@@ -8,6 +8,7 @@ mod codes;
 mod conditions;
 pub mod conduct;
 mod control;
+pub mod dialect_file;
 mod event;
 mod fanuc;
 mod feed_reading;

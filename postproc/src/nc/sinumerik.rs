@@ -10,7 +10,8 @@
 //! - F is read over the axes of `FGROUP`, a rotary one as an arc of radius `FGREF`: the program says both, so that it
 //!   does not depend on machine data. Rotary axes alone, outside of `FGROUP`, are read in deg/min.
 //! - `G93` wants F in every block; switching between G93 and G94 deletes F.
-//! - `CYCLE832` bounds what the control's compressor and smoothing may do to the path (finishing).
+//! - `CYCLE832` bounds what the control's compressor and smoothing may do to the path (finishing), and is off at the end.
+//! - `TRANS` at the start deletes programmed frames that an aborted program may have left.
 //! - `SUPA` with `D0` moves in machine coordinates without tool length, to where the machine's file has Z out of the way.
 
 use super::Dialect;
@@ -53,6 +54,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     }
     lines.line("G17 G40 G64 G90 G94 G710");
     lines.line("TRAFOOF");
+    lines.line("TRANS");
     retract(lines, program);
     call(program, work_offset.as_deref(), lines);
     Ok(())
@@ -154,6 +156,7 @@ fn leave(program: &Program, lines: &mut Lines) {
         lines.line("M9");
     }
     lines.line("M5");
+    lines.line("CYCLE832()");
     if program.in_planes() {
         lines.line("CYCLE800()");
     }
