@@ -344,8 +344,16 @@ fn texts_without_end() {
     for file in ["/dev/zero", long.to_str().unwrap()] {
         let time = ["time", file, "--machine", "trunnion-ac", "--dialect", "fanuc"];
         osculate(&time).refused(&[file, "line 1", "longer than 65536 bytes"]);
-        let readback =
-            ["readback", file, "--machine", "trunnion-ac", "--dialect", "fanuc", "--out", out.to_str().unwrap()];
+        let readback = [
+            "readback",
+            file,
+            "--machine",
+            "trunnion-ac",
+            "--dialect",
+            "fanuc",
+            "--out",
+            out.to_str().unwrap(),
+        ];
         osculate(&readback).refused(&[file, "line 1", "longer than 65536 bytes"]);
         let post =
             ["post", file, "--machine", "trunnion-ac", "--dialect", "fanuc", "--out", out.to_str().unwrap()];

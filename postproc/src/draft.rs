@@ -254,8 +254,11 @@ impl<'a> Draft<'a> {
             diagnostics.push(Diagnostic::warning(place, text));
         }
         let own = self.own_metric();
-        let wanted =
-            self.options.feed.metric(own).filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
+        let wanted = self
+            .options
+            .feed
+            .metric(own)
+            .filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
         if let Some(wanted) = wanted.filter(|w| *w != own && !self.machine.rotary().is_empty()) {
             let text = format!(
                 "F is written over {}, but this control reads it over {}: mixed moves take another time than asked, \

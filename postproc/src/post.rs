@@ -11,8 +11,8 @@ use crate::feed::{FeedMode, fastest_durations_min};
 use crate::joint_path::JointBlock;
 use crate::machine::Machine;
 use crate::nc::block::RotaryName;
-use crate::nc::writer::Writer;
 use crate::nc::number;
+use crate::nc::writer::Writer;
 use crate::nc::{FeedWord, Orientation, Program};
 use crate::post_error::PostError;
 use crate::post_options::{PostOptions, check};
@@ -248,11 +248,15 @@ pub(crate) fn comments(machine: &Machine, setup: &Setup, options: &PostOptions) 
         }
     }
     let endless = machine.rotary().iter().map(|p| &machine.joints()[*p]).filter(|j| j.is_endless());
-    lines.extend(endless.map(|joint| format!("{} turns without end: {}", joint.letter, options.dialect.turning())));
+    lines.extend(
+        endless.map(|joint| format!("{} turns without end: {}", joint.letter, options.dialect.turning())),
+    );
     let turned = setup.turn_rad().map(|a| a.to_degrees() + 0.0);
     if turned.iter().any(|a| a.abs() >= 5e-5) {
         let [x, y, z] = turned;
-        lines.push(format!("part turned on the table: {x:.4} deg about X, then {y:.4} about Y, then {z:.4} about Z"));
+        lines.push(format!(
+            "part turned on the table: {x:.4} deg about X, then {y:.4} about Y, then {z:.4} about Z"
+        ));
     }
     lines.extend(setup_comment::lines(setup));
     lines

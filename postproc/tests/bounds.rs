@@ -10,7 +10,8 @@ use osculate_postproc::{
 /// A trunnion without limits.
 fn endless() -> Machine {
     let text = built_in_text("trunnion-ac").expect("built in");
-    let lines: Vec<&str> = text.lines().filter(|l| !l.starts_with("min_") && !l.starts_with("max_mm")).collect();
+    let lines: Vec<&str> =
+        text.lines().filter(|l| !l.starts_with("min_") && !l.starts_with("max_mm")).collect();
     let text = lines.join("\n").replace("max_deg = 120\n", "");
     Machine::from_toml(&text).expect("a machine")
 }
@@ -67,7 +68,9 @@ fn numbers_that_no_control_holds() {
         let text = refused(PostOptions { auxiliary, ..plain.clone() });
         assert!(text.contains("at most 999999"), "{text}");
     }
-    for (text, line) in [("FEDRAT/1e300\n", 1), ("\nFEDRAT/1e-30\n", 2), ("CYCLE/DRILL,FEDTO,5,MMPM,1e-9\n", 1)] {
+    for (text, line) in
+        [("FEDRAT/1e300\n", 1), ("\nFEDRAT/1e-30\n", 2), ("CYCLE/DRILL,FEDTO,5,MMPM,1e-9\n", 1)]
+    {
         let e = read_cl(text).unwrap_err();
         assert!(matches!(e, ClReadError::Feed { line: at, .. } if at == line), "{e}");
     }

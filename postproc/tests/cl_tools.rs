@@ -29,7 +29,8 @@ fn machine(dialect: Dialect) -> Machine {
 fn every_tool_makes_its_moves_in_every_dialect() {
     for dialect in Dialect::ALL {
         for feed in [FeedMode::Tcp, FeedMode::Kf] {
-            let one = posted(THREE, &machine(dialect), dialect, feed).unwrap_or_else(|e| panic!("{dialect}: {e}"));
+            let one =
+                posted(THREE, &machine(dialect), dialect, feed).unwrap_or_else(|e| panic!("{dialect}: {e}"));
             assert_eq!(one.difference(), None, "{dialect}\n{}", one.text);
             let numbers: Vec<_> = one.outline.sections.iter().map(|s| s.tool.number).collect();
             assert_eq!(numbers, [Some(12), Some(3), Some(7), Some(12)]);
@@ -72,16 +73,17 @@ fn taps_turn_back_at_the_bottom() {
     for dialect in Dialect::ALL {
         let one = posted(THREE, &machine(dialect), dialect, FeedMode::Tcp).unwrap();
         let lines: Vec<&str> = one.text.lines().collect();
-        let at: Vec<usize> = (0..lines.len())
-            .filter(|k| lines[*k].split(' ').any(|w| w == "M4"))
-            .collect();
+        let at: Vec<usize> = (0..lines.len()).filter(|k| lines[*k].split(' ').any(|w| w == "M4")).collect();
         // Twice in the taps, once for the bore.
         assert_eq!(at.len(), 3, "{dialect}\n{}", one.text);
         for k in &at[..2] {
             let z = |k: usize| lines[k].split(' ').find_map(|w| w.strip_prefix('Z')?.parse::<f64>().ok());
             let before = (0..*k).rev().find_map(z).unwrap();
             let after = (*k..lines.len()).find_map(z).unwrap();
-            assert!((before + 10.0).abs() < 1e-3 && (after - 2.0).abs() < 1e-3, "{dialect}: {before} {after}");
+            assert!(
+                (before + 10.0).abs() < 1e-3 && (after - 2.0).abs() < 1e-3,
+                "{dialect}: {before} {after}"
+            );
         }
     }
 }

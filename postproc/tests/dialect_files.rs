@@ -6,66 +6,18 @@ use common::{path, pose};
 use osculate_geom::Vec3;
 use osculate_postproc::readback::{ReadOptions, read};
 use osculate_postproc::{
-    Auxiliary, AuxiliaryWord, Coolant, Dialect, DialectFile, DialectFileError, FeedMode, Machine, Orientation,
-    PostOptions, Setup, post, shipped_dialects,
+    Auxiliary, AuxiliaryWord, Coolant, Dialect, DialectFile, DialectFileError, FeedMode, Machine,
+    Orientation, PostOptions, Setup, post, shipped_dialects,
 };
 
-/// A control that no line of this library knows: words, formats and modal rules of its own.
-const MADE_UP: &str = r#"
-format = 1
-name = "osp"
-description = "words near to those of a control with G15 and G56"
-engine = "fanuc"
-extension = "min"
+/// The page that explains dialects to users, with a file for a control that no line of this library knows.
+const PAGE: &str = include_str!("../../docs/dialects.md");
 
-[blocks]
-letter = "N"
-first = 100
-step = 5
-
-[numbers]
-trailing_zeros = false
-
-[modal]
-motion = false
-feed = false
-
-[[rule]]
-engine = "%"
-words = []
-
-[[rule]]
-engine = "O{number} ({name*})"
-words = ["O{number}({name*})"]
-
-[[rule]]
-engine = "G54"
-words = ["G15 H1"]
-
-[[rule]]
-engine = "T{tool} M6"
-words = ["T{tool} M06", "(TOOL {tool} IN)"]
-
-[[rule]]
-engine = "G43.4 H{tool}"
-words = ["G169 HA={tool}"]
-
-[[rule]]
-engine = "G49"
-words = ["G170"]
-
-[[rule]]
-engine = "G5.1 Q1"
-words = ["G131 F2 J1"]
-
-[[rule]]
-engine = "G5.1 Q0"
-words = ["G130"]
-
-[[rule]]
-engine = "M30"
-words = ["M02"]
-"#;
+/// The dialect file of the page.
+fn made_up() -> &'static str {
+    let after = PAGE.split("```toml\n").nth(1).expect("the page has a file");
+    after.split("```").next().expect("it ends")
+}
 
 fn options(dialect: Dialect, feed: FeedMode) -> PostOptions {
     PostOptions {
@@ -111,18 +63,35 @@ fn assert_comes_back(file: &DialectFile, feed: FeedMode) {
 
 #[test]
 fn a_dialect_made_by_toml_alone() {
-    let file = DialectFile::from_toml(MADE_UP).unwrap();
+    let file = DialectFile::from_toml(made_up()).unwrap();
     assert_eq!((file.name(), file.engine(), file.extension()), ("osp", Dialect::Fanuc, "min"));
     let (_, text) = posted(&file, FeedMode::Tcp);
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[0], "O0012(OSCULATE)");
-    let has = |body: &str| lines.iter().any(|l| l.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim() == body);
-    for body in ["T4 M06", "(TOOL 4 IN)", "G15 H1", "S5000 M3", "M8", "G169 HA=4", "G131 F2 J1", "G130", "G170", "G4 P500", "M02"] {
+    let has = |body: &str| {
+        lines.iter().any(|l| {
+            l.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim() == body
+        })
+    };
+    for body in [
+        "T4 M06",
+        "(TOOL 4 IN)",
+        "G15 H1",
+        "S5000 M3",
+        "M8",
+        "G169 HA=4",
+        "G131 F2 J1",
+        "G130",
+        "G170",
+        "G4 P500",
+        "M02",
+    ] {
         assert!(has(body), "{body}\n{text}");
     }
     assert!(!text.contains('%') && !text.contains("G43.4"), "{text}");
     // Every block that moves says how, and at which feed; numbers end with their last digit that counts.
-    let moves: Vec<&&str> = lines.iter().filter(|l| l.contains(" X")).filter(|l| !l.starts_with('(')).collect();
+    let moves: Vec<&&str> =
+        lines.iter().filter(|l| l.contains(" X")).filter(|l| !l.starts_with('(')).collect();
     assert!(moves.len() > 10);
     assert!(moves.iter().all(|l| l.contains(" G0 ") || l.contains(" G1 ") && l.contains(" F")), "{text}");
     assert!(text.contains(" X1. ") && !text.contains("X1.0000"), "{text}");
@@ -167,12 +136,16 @@ fn what_a_dialect_refuses_is_said() {
 #[test]
 fn what_is_no_dialect_file() {
     let refused = |from: &str, to: &str, words: &[&str]| {
-        assert!(MADE_UP.contains(from), "{from}");
-        let e = DialectFile::from_toml(&MADE_UP.replace(from, to)).expect_err(to).to_string();
+        assert!(made_up().contains(from), "{from}");
+        let e = DialectFile::from_toml(&made_up().replace(from, to)).expect_err(to).to_string();
         words.iter().for_each(|w| assert!(e.contains(w), "{w}: {e}"));
     };
     refused("format = 1", "format = 2", &["format = 2"]);
-    refused("engine = \"fanuc\"", "engine = \"okuma\"", &["engine", "okuma", "sinumerik, heidenhain, fanuc, linuxcnc"]);
+    refused(
+        "engine = \"fanuc\"",
+        "engine = \"okuma\"",
+        &["engine", "okuma", "sinumerik, heidenhain, fanuc, linuxcnc"],
+    );
     refused("name = \"osp\"", "name = \"fanuc\"", &["name", "no engine's name"]);
     refused("name = \"osp\"", "name = \"O SP\"", &["name", "small letters"]);
     refused("extension = \"min\"", "extension = \"../x\"", &["extension"]);

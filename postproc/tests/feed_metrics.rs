@@ -6,7 +6,9 @@ mod common;
 
 use osculate_geom::Vec3;
 use osculate_postproc::readback::{ReadOptions, read};
-use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Posted, Setup, built_in_names, built_in_text, post};
+use osculate_postproc::{
+    Dialect, FeedMode, Machine, PostOptions, Posted, Setup, built_in_names, built_in_text, post,
+};
 use osculate_tools::cl::{ClPath, Motion};
 use std::collections::BTreeMap;
 
@@ -150,7 +152,9 @@ fn the_tip_goes_as_fast_as_asked_or_the_post_says_by_how_much_it_does_not() {
                 (FeedMode::InverseTime, None),
             ] {
                 let name = format!("{} {dialect} {feed:?}", machine.name());
-                let Ok(posted) = post(&path, &machine, &setup, &PostOptions::new(dialect, feed)) else { continue };
+                let Ok(posted) = post(&path, &machine, &setup, &PostOptions::new(dialect, feed)) else {
+                    continue;
+                };
                 let (tip, inverse) = (feed == FeedMode::Tcp, feed == FeedMode::InverseTime);
                 let slowed = posted.diagnostics.iter().any(|d| d.message.contains("slower than asked"));
                 assert!(!slowed, "{name}: no joint is to limit: {:?}", posted.diagnostics);
@@ -158,7 +162,11 @@ fn the_tip_goes_as_fast_as_asked_or_the_post_says_by_how_much_it_does_not() {
                 let declares = dialect == Dialect::Sinumerik && over.is_some();
                 let read_over = if tip { Over::Linear } else { over.filter(|_| declares).unwrap_or(reads) };
                 let got = minutes(&posted.text, &machine, (tip, inverse, read_over));
-                assert!((posted.summary.time_min / got - 1.0).abs() < 0.02, "{name}: {} told, {got} true", posted.summary.time_min);
+                assert!(
+                    (posted.summary.time_min / got - 1.0).abs() < 0.02,
+                    "{name}: {} told, {got} true",
+                    posted.summary.time_min
+                );
                 let back = read(&posted.text, dialect, &machine, &setup, &ReadOptions::default())
                     .unwrap_or_else(|e| panic!("{name}: {e}"));
                 let read_min: f64 = back.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum();
@@ -166,13 +174,17 @@ fn the_tip_goes_as_fast_as_asked_or_the_post_says_by_how_much_it_does_not() {
                 let corrects = inverse || tip || over == Some(read_over) || machine.rotary().is_empty();
                 if !corrects {
                     other += 1;
-                    let (least, most) = warned(&posted).unwrap_or_else(|| panic!("{name}: {:?}", posted.diagnostics));
+                    let (least, most) =
+                        warned(&posted).unwrap_or_else(|| panic!("{name}: {:?}", posted.diagnostics));
                     let feeds = back.moves.iter().filter_map(|m| match m.motion {
                         Motion::Feed(f) => Some(f / FEED_MM_MIN),
                         Motion::Rapid => None,
                     });
                     let (lo, hi) = feeds.fold((f64::INFINITY, 0.0f64), |(a, b), f| (a.min(f), b.max(f)));
-                    assert!((least / lo - 1.0).abs() < WITHIN && (most / hi - 1.0).abs() < WITHIN, "{name}: {least} to {most} said, {lo} to {hi} true");
+                    assert!(
+                        (least / lo - 1.0).abs() < WITHIN && (most / hi - 1.0).abs() < WITHIN,
+                        "{name}: {least} to {most} said, {lo} to {hi} true"
+                    );
                     continue;
                 }
                 right += 1;
@@ -180,7 +192,11 @@ fn the_tip_goes_as_fast_as_asked_or_the_post_says_by_how_much_it_does_not() {
                 assert!((got / wanted - 1.0).abs() < WITHIN, "{name}: {got} min, {wanted} asked");
                 for m in back.moves.iter().skip(1).filter(|m| m.time_min * FEED_MM_MIN > 0.05) {
                     if let Motion::Feed(f) = m.motion {
-                        assert!((f / FEED_MM_MIN - 1.0).abs() < WITHIN, "{name}, line {}: {f} mm/min", m.line);
+                        assert!(
+                            (f / FEED_MM_MIN - 1.0).abs() < WITHIN,
+                            "{name}, line {}: {f} mm/min",
+                            m.line
+                        );
                     }
                 }
             }

@@ -51,14 +51,17 @@ fn retracts_follow_the_machine() {
             };
             let retracts = posted.text.lines().filter(|l| l.ends_with(&line)).count();
             assert_eq!(retracts, 2, "{line}\n{}", posted.text);
-            let back = read(&posted.text, dialect, &machine, &Setup::default(), &ReadOptions::default()).unwrap();
+            let back =
+                read(&posted.text, dialect, &machine, &Setup::default(), &ReadOptions::default()).unwrap();
             let last = back.blocks.last().unwrap();
             assert!(last.own_frame && (last.to[at] - end_mm).abs() < 1e-9, "{z} {dialect}: {last:?}");
             // It goes up from the part, never down.
             assert!(last.to[at] > last.from[at]);
         }
     }
-    let e = Machine::from_toml(&built_in_text("3-axis").unwrap().replace("max_mm = 500", "max_mm = 500\nretract_mm = nan"));
+    let e = Machine::from_toml(
+        &built_in_text("3-axis").unwrap().replace("max_mm = 500", "max_mm = 500\nretract_mm = nan"),
+    );
     assert!(e.unwrap_err().to_string().contains("retract_mm"));
 }
 
@@ -69,7 +72,11 @@ fn an_unknown_place_is_left_out_and_said() {
     let options = PostOptions::new(Dialect::LinuxCnc, FeedMode::Kf);
     let posted = post(&way(), &machine, &Setup::default(), &options).unwrap();
     assert!(!posted.text.contains("G53"), "{}", posted.text);
-    assert!(posted.diagnostics.iter().any(|d| d.message.contains("does not retract Z")), "{:?}", posted.diagnostics);
+    assert!(
+        posted.diagnostics.iter().any(|d| d.message.contains("does not retract Z")),
+        "{:?}",
+        posted.diagnostics
+    );
 }
 
 /// The head names what turns without end; where turns are counted it is told how far, and the next tool begins near zero.
@@ -103,7 +110,10 @@ fn endless_axes_are_named_and_unwound_between_tools() {
         .collect();
     let most = turns.iter().fold(0.0f64, |m, c| m.max(c.abs()));
     assert!(most > 3000.0, "{most}");
-    let said = linuxcnc.diagnostics.iter().any(|d| d.message.contains("counts on to") && d.message.contains("axis C"));
+    let said = linuxcnc
+        .diagnostics
+        .iter()
+        .any(|d| d.message.contains("counts on to") && d.message.contains("axis C"));
     assert!(said, "{:?}", linuxcnc.diagnostics);
     // Z is up and no tool turns when it goes back.
     let lines: Vec<&str> = linuxcnc.text.lines().collect();

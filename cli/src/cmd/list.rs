@@ -5,11 +5,11 @@ use osculate::failure::{Done, Failure, Outcome};
 use osculate::job::tool;
 use osculate::words;
 use osculate::words::Table;
-use osculate_postproc::{DialectFile, shipped_dialects};
 use osculate_postproc::machine::spec::CarriedSide;
 use osculate_postproc::machine::{Joint, JointKind};
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::reading::FeedRow;
+use osculate_postproc::{DialectFile, shipped_dialects};
 use osculate_postproc::{Machine, built_in_names};
 use serde::Serialize;
 
@@ -83,9 +83,7 @@ pub fn dialects(json: bool) -> Outcome {
         };
         let one =
             |d: Dialect| serde_json::json!({ "name": d.name(), "extension": d.extension(), "feed": feed(d) });
-        let own = |d: DialectFile| {
-            serde_json::json!({ "name": d.name(), "extension": d.extension(), "engine": d.engine().name(), "description": d.description() })
-        };
+        let own = |d: DialectFile| serde_json::json!({ "name": d.name(), "extension": d.extension(), "engine": d.engine().name(), "description": d.description() });
         let shipped = shipped_dialects().filter_map(DialectFile::shipped).map(own);
         render::json(&Dialect::ALL.into_iter().map(one).chain(shipped).collect::<Vec<_>>())?;
         return Ok(Done::Yes);
@@ -106,7 +104,10 @@ pub fn dialects(json: bool) -> Outcome {
     }
     for own in shipped_dialects().filter_map(DialectFile::shipped) {
         let (name, extension, engine) = (own.name(), own.extension(), own.engine());
-        render::text(&format!("\n{name} (.{extension}), words of its own over {engine}: {}\n", own.description()));
+        render::text(&format!(
+            "\n{name} (.{extension}), words of its own over {engine}: {}\n",
+            own.description()
+        ));
     }
     render::text("\n");
     Ok(Done::Yes)

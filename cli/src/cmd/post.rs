@@ -158,13 +158,19 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
         let own = control.language.has_own_words();
         let file: &mut dyn Write = if own { &mut engine_text } else { &mut *out };
         let posted = if let [one] = &sections[..] {
-            post_from(one.path, &control.machine, &setup, &one.options, file).map(|r| vec![r]).map_err(|e| (0, e))
+            post_from(one.path, &control.machine, &setup, &one.options, file)
+                .map(|r| vec![r])
+                .map_err(|e| (0, e))
         } else {
             post_sections_to(&sections, &control.machine, &setup, file).map_err(|e| (e.section, e.error))
         };
         let reports = posted.map_err(|(k, e)| {
             let place = e.index().and_then(|i| parts[k].locate(&[i]).ok()?.pop());
-            let tool = if sections.len() > 1 { format!(" with tool {}", sections[k].options.tool_number) } else { String::new() };
+            let tool = if sections.len() > 1 {
+                format!(" with tool {}", sections[k].options.tool_number)
+            } else {
+                String::new()
+            };
             match place {
                 Some(p) => here(&format!("line {}, {:.3} mm on the way{tool}: {e}", p.line, p.length_mm)),
                 None => here(&e),
@@ -181,18 +187,20 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     for ((part, section), report) in parts.iter().zip(&sections).zip(&reports) {
         let mut own = located(part, report.diagnostics.clone());
         if several {
-            own.iter_mut().for_each(|d| d.message = format!("tool {}: {}", section.options.tool_number, d.message));
+            own.iter_mut()
+                .for_each(|d| d.message = format!("tool {}: {}", section.options.tool_number, d.message));
         }
         notes.extend(own);
     }
-    let tools = sections.iter().zip(&outline.sections).zip(&reports).map(|((section, cl), report)| ToolAnswer {
-        number: section.options.tool_number,
-        cutter: section.name.clone(),
-        spindle_rpm: section.options.spindle_rpm,
-        line: cl.line,
-        blocks: report.summary.blocks,
-        time_min: report.summary.time_min,
-    });
+    let tools =
+        sections.iter().zip(&outline.sections).zip(&reports).map(|((section, cl), report)| ToolAnswer {
+            number: section.options.tool_number,
+            cutter: section.name.clone(),
+            spindle_rpm: section.options.spindle_rpm,
+            line: cl.line,
+            blocks: report.summary.blocks,
+            time_min: report.summary.time_min,
+        });
     let s = total(&reports);
     let answer = Answer {
         blocks: s.blocks,
@@ -242,7 +250,14 @@ fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) {
         for one in &answer.tools {
             let rpm = one.spindle_rpm.map_or_else(String::new, |rpm| number(rpm, 6));
             let (line, blocks) = (one.line.to_string(), one.blocks.to_string());
-            t.row([format!("T{}", one.number), one.cutter.clone(), rpm, line, blocks, format!("{:.3}", one.time_min)]);
+            t.row([
+                format!("T{}", one.number),
+                one.cutter.clone(),
+                rpm,
+                line,
+                blocks,
+                format!("{:.3}", one.time_min),
+            ]);
         }
         render::text(&format!("\n{}", t.render()));
     }

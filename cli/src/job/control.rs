@@ -122,13 +122,19 @@ impl Control {
         })?;
         let language = match (given.dialect.as_deref(), &given.dialect_file) {
             (None, None) => DEFAULT_DIALECT.into(),
-            (Some(name), None) => Language::named(name).map_err(|e| places.refuse(TABLE, "dialect", e.message()))?,
+            (Some(name), None) => {
+                Language::named(name).map_err(|e| places.refuse(TABLE, "dialect", e.message()))?
+            }
             (None, Some(file)) => {
                 let path = crate::failure::beside(places.path(), file);
                 Language::of_file(&path).map_err(|e| places.refuse(TABLE, "dialect_file", e.message()))?
             }
             (Some(_), Some(_)) => {
-                return Err(places.refuse(TABLE, "dialect_file", "has both dialect and dialect_file; keep one of them"));
+                return Err(places.refuse(
+                    TABLE,
+                    "dialect_file",
+                    "has both dialect and dialect_file; keep one of them",
+                ));
             }
         };
         let control = Self::new(machine, language, given.feed.unwrap_or_default(), given.kz_step);

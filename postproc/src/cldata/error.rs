@@ -34,7 +34,9 @@ pub enum ClReadError {
         length: f64,
     },
     /// A feed per revolution without a speed.
-    #[error("line {line}: a feed or dwell per revolution or a tap before any SPINDL/ in rpm: put SPINDL/ first, or use MMPM and seconds")]
+    #[error(
+        "line {line}: a feed or dwell per revolution or a tap before any SPINDL/ in rpm: put SPINDL/ first, or use MMPM and seconds"
+    )]
     NoSpindle {
         /// Line.
         line: usize,
@@ -54,7 +56,9 @@ pub enum ClReadError {
         line: usize,
     },
     /// A speed below zero.
-    #[error("line {line}: a spindle speed of {rpm} rpm: it must not be below zero; the direction is CLW or CCLW")]
+    #[error(
+        "line {line}: a spindle speed of {rpm} rpm: it must not be below zero; the direction is CLW or CCLW"
+    )]
     Speed {
         /// Line.
         line: usize,

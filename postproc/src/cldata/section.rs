@@ -90,7 +90,8 @@ impl ClReader {
             self.said.tool.cutter = tool.cutter;
         }
         let another = |section: &ClSection| {
-            let cut = section.tool.number.is_some() || section.tool.cutter.is_some_and(|c| Some(c) != tool.cutter);
+            let cut =
+                section.tool.number.is_some() || section.tool.cutter.is_some_and(|c| Some(c) != tool.cutter);
             cut && section.tool.number != tool.number
         };
         if let Some(section) = self.sections.last_mut()
@@ -163,7 +164,10 @@ impl ClReader {
         let mut lose = |line: usize, text: String| all.push(Diagnostic::loss(place(line), text));
         for (k, section) in self.sections.iter().enumerate() {
             if let (true, Some(number)) = (k > 0, section.tool.number) {
-                lose(section.line, format!("tool change to {number} on the way: the path goes on with the first tool"));
+                lose(
+                    section.line,
+                    format!("tool change to {number} on the way: the path goes on with the first tool"),
+                );
             }
             let words = section.auxiliary.iter().zip(&section.lines);
             let turns = words.filter_map(|(a, line)| match a.word {
@@ -180,10 +184,13 @@ impl ClReader {
                 }
                 reversed |= same;
                 let text = match (same, spindle.rpm()) {
-                    (true, _) => "the spindle is reversed; a path has one direction of it, the first is kept".to_owned(),
+                    (true, _) => "the spindle is reversed; a path has one direction of it, the first is kept"
+                        .to_owned(),
                     (_, None) => "SPINDL/OFF on the way; a path has one speed, the first is kept".to_owned(),
                     (_, Some(rpm)) => {
-                        format!("SPINDL/{rpm} changes the speed on the way; a path has one speed, the first is kept")
+                        format!(
+                            "SPINDL/{rpm} changes the speed on the way; a path has one speed, the first is kept"
+                        )
                     }
                 };
                 lose(line, text);

@@ -66,7 +66,8 @@ impl ClReader {
                 let taken = if self.cycle.is_some() { Taken::Moves } else { Taken::Lost };
                 self.other(&format!("CYCLE/{first}"), s.line, taken);
                 if self.cycle.as_ref().is_some_and(|c| c.kind == cycle::Kind::Tap) {
-                    let text = "CYCLE/TAP: the spindle is reversed at the bottom, which wants a floating tap holder";
+                    let text =
+                        "CYCLE/TAP: the spindle is reversed at the bottom, which wants a floating tap holder";
                     self.diagnostics.push(Diagnostic::warning(place(s.line), text));
                 }
             }

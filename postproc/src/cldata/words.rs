@@ -141,8 +141,11 @@ impl ClReader {
         let number = fields.next().and_then(|f| numbers(s, std::slice::from_ref(f)).ok()?.first().copied());
         let whole = number.filter(|n| n.fract() == 0.0 && (0.0..LARGEST_TOOL).contains(n));
         let Some(number) = whole else {
-            let text =
-                format!("{}/{} names no tool by a number: the tool stays what it was", s.word, s.fields.join(","));
+            let text = format!(
+                "{}/{} names no tool by a number: the tool stays what it was",
+                s.word,
+                s.fields.join(",")
+            );
             self.diagnostics.push(Diagnostic::loss(place(s.line), text));
             return Ok(());
         };

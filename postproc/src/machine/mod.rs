@@ -335,7 +335,9 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
         });
     }
     let (machine_zero, home, retract) = match *spec {
-        JointSpec::Linear { machine_zero_mm, home_mm, retract_mm, .. } => (machine_zero_mm, home_mm, retract_mm),
+        JointSpec::Linear { machine_zero_mm, home_mm, retract_mm, .. } => {
+            (machine_zero_mm, home_mm, retract_mm)
+        }
         JointSpec::Rotary { .. } => (None, None, None),
     };
     for (what, value) in [("machine_zero_mm", machine_zero), ("home_mm", home), ("retract_mm", retract)] {

@@ -32,8 +32,8 @@ fn call(line: &str) -> Option<String> {
     let letters = name.len() > 2 && name.bytes().take(2).all(|b| b.is_ascii_alphabetic() || b == b'_');
     let plain = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     const WORDS: [&str; 15] = [
-        "TRAORI", "TRAFOOF", "TRANS", "ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES", "FNORM", "FFWON", "FFWOF",
-        "SOFT", "BRISK", "COMPOF", "SUPA",
+        "TRAORI", "TRAFOOF", "TRANS", "ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES", "FNORM", "FFWON",
+        "FFWOF", "SOFT", "BRISK", "COMPOF", "SUPA",
     ];
     (letters && plain && !WORDS.contains(&name.as_str())).then_some(name)
 }

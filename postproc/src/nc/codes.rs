@@ -272,7 +272,9 @@ impl<S: Sink> Interpreter<'_, S> {
                     self.state.group = None;
                 }
             }
-            "TRANS" if self.dialect == Dialect::Sinumerik && arguments.is_empty() => asked.frames_deleted = true,
+            "TRANS" if self.dialect == Dialect::Sinumerik && arguments.is_empty() => {
+                asked.frames_deleted = true
+            }
             "CYCLE832" => return self.cycle832(line, arguments),
             "CYCLE800" => return self.cycle800(line, arguments),
             "PLANE" if klartext => return self.klartext_plane(line, arguments),

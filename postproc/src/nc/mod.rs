@@ -84,7 +84,9 @@ impl Dialect {
             Self::Sinumerik => "a modulo axis, DC goes the shortest way",
             Self::Heidenhain => "M126 goes the shortest way",
             Self::Fanuc => "a rollover axis, parameters 1006 and 1008, that goes the shortest way",
-            Self::LinuxCnc => "it counts on through whole turns, its limits must hold them, no WRAPPED_ROTARY",
+            Self::LinuxCnc => {
+                "it counts on through whole turns, its limits must hold them, no WRAPPED_ROTARY"
+            }
         }
     }
 

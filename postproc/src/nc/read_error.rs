@@ -48,7 +48,9 @@ pub enum ReadError {
         axis: String,
     },
     /// A way that is too long for what it curves by.
-    #[error("line {line}: the block's way has more than {most} straight pieces: is a number in another unit?")]
+    #[error(
+        "line {line}: the block's way has more than {most} straight pieces: is a number in another unit?"
+    )]
     Bound {
         /// Line.
         line: usize,

@@ -25,7 +25,12 @@ pub struct Posted {
 }
 
 /// Posts a text and reads it back.
-pub fn posted(text: &str, machine: &Machine, dialect: Dialect, feed: FeedMode) -> Result<Posted, SectionError> {
+pub fn posted(
+    text: &str,
+    machine: &Machine,
+    dialect: Dialect,
+    feed: FeedMode,
+) -> Result<Posted, SectionError> {
     let cl = ClStream::new(|| Ok(Cursor::new(text.as_bytes())), ClReadOptions::default());
     let outline = cl.outline().expect("CL data");
     let parts = cl.parts(&outline);
@@ -53,7 +58,12 @@ pub fn posted(text: &str, machine: &Machine, dialect: Dialect, feed: FeedMode) -
             auxiliary: section.auxiliary.clone(),
             ..PostOptions::new(dialect, feed)
         };
-        sections.push(Section { name: format!("line {}", section.line), path: part, gauge_length_mm, options });
+        sections.push(Section {
+            name: format!("line {}", section.line),
+            path: part,
+            gauge_length_mm,
+            options,
+        });
     }
     let setup = Setup::default();
     let mut bytes = Vec::new();
@@ -93,7 +103,9 @@ impl Posted {
                 let near = |r: &ReadMove| {
                     (r.pose.tip - m.pose.tip).norm() <= TIP_MM
                         && r.pose.axis.dot(&m.pose.axis) > 1.0 - 1e-9
-                        && (i == 0 || (r.motion == Motion::Rapid) == (m.motion == Motion::Rapid) || r.time_min == 0.0)
+                        && (i == 0
+                            || (r.motion == Motion::Rapid) == (m.motion == Motion::Rapid)
+                            || r.time_min == 0.0)
                 };
                 // A point that is where the one before was has no block of its own.
                 let stays = i > 0 && (m.pose.tip - want[i - 1].pose.tip).norm() <= TIP_MM;
@@ -103,13 +115,16 @@ impl Posted {
                     None => return Some(format!("section {k}: move {i} to {} is not met", m.pose.tip)),
                 }
             }
-            let length = |ends: &mut dyn Iterator<Item = (osculate_geom::Point3, osculate_geom::Point3, Motion)>| {
-                ends.filter(|e| e.2 != Motion::Rapid).map(|e| (e.1 - e.0).norm()).sum::<f64>()
-            };
+            let length =
+                |ends: &mut dyn Iterator<Item = (osculate_geom::Point3, osculate_geom::Point3, Motion)>| {
+                    ends.filter(|e| e.2 != Motion::Rapid).map(|e| (e.1 - e.0).norm()).sum::<f64>()
+                };
             let wanted = length(&mut want.windows(2).map(|w| (w[0].pose.tip, w[1].pose.tip, w[1].motion)));
             let made = length(&mut got.windows(2).map(|w| (w[0].pose.tip, w[1].pose.tip, w[1].motion)));
             if (made - wanted).abs() > TIP_MM + 1e-3 * wanted {
-                return Some(format!("section {k}: {made:.4} mm are made at feed, {wanted:.4} mm are asked for"));
+                return Some(format!(
+                    "section {k}: {made:.4} mm are made at feed, {wanted:.4} mm are asked for"
+                ));
             }
         }
         None

@@ -230,12 +230,16 @@ impl DialectFile {
         for (k, one) in rules.iter().enumerate() {
             let Then::Words(words) = &one.then else { continue };
             let Some(said) = words.first() else { continue };
-            let clash = rules[..k].iter().position(|other| {
-                matches!(&other.then, Then::Words(w) if w.first().is_some_and(|w| w.same(said)))
-            });
+            let clash = rules[..k].iter().position(
+                |other| matches!(&other.then, Then::Words(w) if w.first().is_some_and(|w| w.same(said))),
+            );
             if let Some(other) = clash {
                 let what = format!("rule {} says the same: a program could not be read back", other + 1);
-                return Err(DialectFileError::Rule { rule: k + 1, engine: spec.rules[k].engine.clone(), what });
+                return Err(DialectFileError::Rule {
+                    rule: k + 1,
+                    engine: spec.rules[k].engine.clone(),
+                    what,
+                });
             }
         }
         Ok(Self {

@@ -32,7 +32,8 @@ impl Pattern {
             } else if matches!(pieces.last(), Some(Piece::Any(..))) {
                 return Err(format!("two places of '{text}' touch: nothing says where one ends"));
             }
-            let close = rest.find('}').filter(|c| *c > open).ok_or(format!("a brace of '{text}' does not close"))?;
+            let close =
+                rest.find('}').filter(|c| *c > open).ok_or(format!("a brace of '{text}' does not close"))?;
             let name = &rest[open + 1..close];
             let (name, all) = name.strip_suffix('*').map_or((name, false), |n| (n, true));
             let plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_lowercase() || c == '_');
