@@ -11,7 +11,6 @@
 mod blade;
 
 use osculate_geom::Vec3;
-use osculate_postproc::feed::PathMetric;
 use osculate_postproc::readback::{ReadBack, ReadOptions, read};
 use osculate_postproc::{Dialect, FeedMode, Machine, Orientation, PostOptions, Setup, built_in_names, post};
 use osculate_tools::cl::{ClPath, Motion};

@@ -31,20 +31,21 @@ fn options(dialect: Dialect, feed: FeedMode) -> PostOptions {
 }
 
 fn posted(file: &DialectFile, feed: FeedMode) -> (String, String) {
-    let machine = Machine::built_in("trunnion-ac").unwrap();
+    let machine = Machine::built_in("trunnion-ac").expect("built in");
     let poses = (0..12).map(|k| {
         let t = f64::from(k);
         pose([t, 0.5 * t, 5.0 - 0.1 * t], [0.1 * t, 0.2, 1.0])
     });
     let setup = Setup::at(Vec3::new(3.0, 4.0, 50.0), 90.0);
-    let engine = post(&path(poses, 400.0), &machine, &setup, &options(file.engine(), feed)).unwrap().text;
-    let text = file.out(&engine).unwrap();
+    let engine =
+        post(&path(poses, 400.0), &machine, &setup, &options(file.engine(), feed)).expect("posted").text;
+    let text = file.out(&engine).expect("it can be said");
     (engine, text)
 }
 
 fn assert_comes_back(file: &DialectFile, feed: FeedMode) {
     let (engine, text) = posted(file, feed);
-    let machine = Machine::built_in("trunnion-ac").unwrap();
+    let machine = Machine::built_in("trunnion-ac").expect("built in");
     let setup = Setup::at(Vec3::new(3.0, 4.0, 50.0), 90.0);
     let go = |text: &str| {
         read(text, file.engine(), &machine, &setup, &ReadOptions::default())

@@ -6,10 +6,9 @@
 //! `BRKCHP` only breaks the chip. `DWELL` waits at the bottom, s. A tap turns back there and, when it is out, again. Forms without `FEDTO` differ from system to system and are not interpreted.
 
 use super::error::ClReadError;
-use super::feed::Feed;
+use super::feed::{FEEDS, Feed};
 use super::fields::numbers;
 use super::statement::Statement;
-use super::words::FEEDS;
 
 /// How far above the last depth the feed starts again, and how far a chip is broken, mm.
 const GAP_MM: f64 = 0.5;

@@ -11,6 +11,7 @@ mod feed;
 mod fields;
 mod read;
 mod section;
+mod settle;
 mod statement;
 mod stream;
 mod ways;

@@ -4,15 +4,12 @@ use osculate_geom::{Diagnostic, Point3};
 
 use super::cutter::{self, Found};
 use super::error::ClReadError;
-use super::feed::Feed;
+use super::feed::{FEEDS, Feed};
 use super::fields::{count, is_word, numbers, place};
 use super::read::{ClReader, LEAST_RADIUS_MM, Taken};
 use super::statement::Statement;
 use crate::auxiliary::{AuxiliaryWord, Spindle};
 use crate::nc::Coolant;
-
-/// Feeds that a control can be given, mm/min or mm per revolution.
-pub(super) const FEEDS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;
 
 /// Tools of controls have up to eight digits.
 const LARGEST_TOOL: f64 = 1e8;

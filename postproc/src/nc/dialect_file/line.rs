@@ -1,6 +1,7 @@
-//! Lines of a program on their way out: rules, formats, modal words, numbers of blocks.
+//! Lines of a program on their way out and back: rules, formats, modal words, numbers of blocks.
 
-use super::{DialectFile, DialectFileError, Then};
+use super::error::DialectFileError;
+use super::rule::{Rule, Then};
 use crate::nc::Dialect;
 
 /// Numbers of blocks that are still to come.
@@ -10,8 +11,50 @@ pub(super) struct Numbering {
     pub step: u64,
 }
 
+/// What a dialect says otherwise than its engine.
+#[derive(Clone, Debug)]
+pub(super) struct Words {
+    pub name: String,
+    pub engine: Dialect,
+    pub numbering: Option<Numbering>,
+    pub trailing_zeros: bool,
+    /// G0 or G1 stands in every block that moves.
+    pub every_motion: bool,
+    /// F stands in every block that feeds.
+    pub every_feed: bool,
+    pub rules: Vec<Rule>,
+}
+
+impl Words {
+    /// The engine's program in these words.
+    pub fn out(&self, text: &str) -> Result<String, DialectFileError> {
+        let mut state = State::new(self);
+        let mut out = String::with_capacity(text.len());
+        for line in text.lines() {
+            state.out(line, &mut out)?;
+        }
+        Ok(out)
+    }
+
+    /// A line in these words as the engine says it.
+    pub fn back(&self, line: &str) -> String {
+        let (number, body) = split(self.engine, line);
+        for rule in &self.rules {
+            let Then::Words(words) = &rule.then else { continue };
+            let Some((first, more)) = words.split_first() else { continue };
+            if let Some(found) = first.matches(body) {
+                return format!("{number}{}", rule.engine.filled(&found));
+            }
+            if more.iter().any(|w| w.matches(body).is_some()) {
+                return String::new();
+            }
+        }
+        line.to_owned()
+    }
+}
+
 /// The number of a block with the blank behind it, and what follows.
-pub(super) fn split(engine: Dialect, line: &str) -> (&str, &str) {
+fn split(engine: Dialect, line: &str) -> (&str, &str) {
     let body = match engine {
         Dialect::Heidenhain => Some(line),
         Dialect::Sinumerik | Dialect::Fanuc | Dialect::LinuxCnc => line.strip_prefix('N'),
@@ -25,20 +68,20 @@ pub(super) fn split(engine: Dialect, line: &str) -> (&str, &str) {
 }
 
 /// What has been said so far.
-pub(super) struct State<'a> {
-    file: &'a DialectFile,
+struct State<'a> {
+    file: &'a Words,
     numbering: Option<Numbering>,
     motion: String,
     feed: String,
 }
 
 impl<'a> State<'a> {
-    pub fn new(file: &'a DialectFile) -> Self {
+    fn new(file: &'a Words) -> Self {
         Self { file, numbering: file.numbering, motion: String::new(), feed: String::new() }
     }
 
     /// Adds what the dialect says for a line of the engine.
-    pub fn out(&mut self, line: &str, text: &mut String) -> Result<(), DialectFileError> {
+    fn out(&mut self, line: &str, text: &mut String) -> Result<(), DialectFileError> {
         let (number, body) = split(self.file.engine, line);
         for rule in &self.file.rules {
             let Some(found) = rule.engine.matches(body) else { continue };
@@ -63,8 +106,8 @@ impl<'a> State<'a> {
 
     /// A line that moves, in the dialect's formats; `None` where it is to stay as it is.
     fn moved(&mut self, body: &str) -> Option<String> {
-        let modal = &self.file.modal;
-        if modal.motion && modal.feed && self.file.trailing_zeros {
+        let Words { every_motion, every_feed, trailing_zeros, .. } = *self.file;
+        if trailing_zeros && !(every_motion || every_feed) {
             return None;
         }
         let words: Vec<&str> = body.split(' ').collect();
@@ -85,12 +128,12 @@ impl<'a> State<'a> {
             (*feed).clone_into(&mut self.feed);
         }
         let mut out: Vec<String> = Vec::with_capacity(words.len() + 2);
-        if moves && motion.is_none() && !modal.motion && !self.motion.is_empty() {
+        if moves && motion.is_none() && every_motion && !self.motion.is_empty() {
             out.push(self.motion.clone());
         }
         out.extend(words.iter().map(|w| self.number(w)));
         let feeds = if klartext { !words.contains(&"FMAX") && motion.is_some() } else { self.motion == "G1" };
-        if moves && feed.is_none() && feeds && !modal.feed && !self.feed.is_empty() {
+        if moves && feed.is_none() && feeds && every_feed && !self.feed.is_empty() {
             out.push(self.number(&self.feed));
         }
         Some(out.join(" "))

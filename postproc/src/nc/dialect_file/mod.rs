@@ -33,16 +33,18 @@
 //!
 //! The first rule that fits a line is taken; a line that none fits stays as it is. Rules see lines without the number of the block.
 
+mod error;
 mod line;
 mod pattern;
+mod rule;
+mod spec;
 
-use serde::Deserialize;
-
-use self::line::{Numbering, State};
-use self::pattern::Pattern;
+pub use self::error::DialectFileError;
+use self::error::FORMAT;
+use self::line::{Numbering, Words};
+use self::rule::rules;
+use self::spec::{Blocks, Spec};
 use super::Dialect;
-
-const FORMAT: u32 = 1;
 
 /// Rules of a file at most.
 const MOST_RULES: usize = 500;
@@ -65,134 +67,12 @@ pub fn shipped_dialect_text(name: &str) -> Option<&'static str> {
     SHIPPED.iter().find(|s| s.0 == name).map(|s| s.1)
 }
 
-/// Why a dialect file is none, or why its dialect cannot say a program.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum DialectFileError {
-    /// Not TOML, an unknown key or a missing one.
-    #[error("the dialect file cannot be read: {0}")]
-    Toml(String),
-    /// Another version of the format.
-    #[error("the dialect file has format = {got}, this version reads format = {FORMAT}")]
-    Format {
-        /// What stands there.
-        got: u32,
-    },
-    /// A key with a value that makes no sense.
-    #[error("{key} = {value}: {wanted}")]
-    Value {
-        /// The key.
-        key: &'static str,
-        /// What stands there.
-        value: String,
-        /// What would do.
-        wanted: &'static str,
-    },
-    /// A rule that makes no sense.
-    #[error("rule {rule}, engine = \"{engine}\": {what}")]
-    Rule {
-        /// Which, from 1.
-        rule: usize,
-        /// Its engine's line.
-        engine: String,
-        /// What is the matter.
-        what: String,
-    },
-    /// The dialect has no words for it.
-    #[error("{dialect} cannot say '{line}': {why}")]
-    Refused {
-        /// The dialect.
-        dialect: String,
-        /// The engine's line.
-        line: String,
-        /// As the file says.
-        why: String,
-    },
-}
-
-/// A dialect file as it is written.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Spec {
-    format: u32,
-    name: String,
-    #[serde(default)]
-    description: String,
-    engine: String,
-    extension: Option<String>,
-    blocks: Option<Blocks>,
-    #[serde(default)]
-    numbers: Numbers,
-    #[serde(default)]
-    modal: ModalRules,
-    #[serde(default, rename = "rule")]
-    rules: Vec<RuleSpec>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Blocks {
-    letter: String,
-    first: u64,
-    step: u64,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Numbers {
-    trailing_zeros: bool,
-}
-
-impl Default for Numbers {
-    fn default() -> Self {
-        Self { trailing_zeros: true }
-    }
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct ModalRules {
-    motion: bool,
-    feed: bool,
-}
-
-impl Default for ModalRules {
-    fn default() -> Self {
-        Self { motion: true, feed: true }
-    }
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RuleSpec {
-    engine: String,
-    words: Option<Vec<String>>,
-    refused: Option<String>,
-}
-
-/// What becomes of a line.
-#[derive(Clone, Debug)]
-enum Then {
-    Words(Vec<Pattern>),
-    Refused(String),
-}
-
-#[derive(Clone, Debug)]
-struct Rule {
-    engine: Pattern,
-    then: Then,
-}
-
 /// A dialect made of an engine and a file of its own words.
 #[derive(Clone, Debug)]
 pub struct DialectFile {
-    name: String,
     description: String,
-    engine: Dialect,
     extension: String,
-    numbering: Option<Numbering>,
-    trailing_zeros: bool,
-    modal: ModalRules,
-    rules: Vec<Rule>,
+    words: Words,
 }
 
 impl DialectFile {
@@ -225,33 +105,17 @@ impl DialectFile {
             let value = spec.rules.len().to_string();
             return Err(refuse("rule", &value, "at most 500 rules"));
         }
-        let rules: Vec<Rule> =
-            spec.rules.iter().enumerate().map(|(k, r)| rule(k + 1, r)).collect::<Result<_, _>>()?;
-        for (k, one) in rules.iter().enumerate() {
-            let Then::Words(words) = &one.then else { continue };
-            let Some(said) = words.first() else { continue };
-            let clash = rules[..k].iter().position(
-                |other| matches!(&other.then, Then::Words(w) if w.first().is_some_and(|w| w.same(said))),
-            );
-            if let Some(other) = clash {
-                let what = format!("rule {} says the same: a program could not be read back", other + 1);
-                return Err(DialectFileError::Rule {
-                    rule: k + 1,
-                    engine: spec.rules[k].engine.clone(),
-                    what,
-                });
-            }
-        }
-        Ok(Self {
+        let rules = rules(&spec.rules)?;
+        let words = Words {
             name: spec.name,
-            description: spec.description,
             engine,
-            extension,
             numbering,
             trailing_zeros: spec.numbers.trailing_zeros,
-            modal: spec.modal,
+            every_motion: !spec.modal.motion,
+            every_feed: !spec.modal.feed,
             rules,
-        })
+        };
+        Ok(Self { description: spec.description, extension, words })
     }
 
     /// A dialect that comes with the library.
@@ -264,7 +128,7 @@ impl DialectFile {
     /// The name in job files.
     #[must_use]
     pub fn name(&self) -> &str {
-        &self.name
+        &self.words.name
     }
 
     /// One line for people.
@@ -276,7 +140,7 @@ impl DialectFile {
     /// The dialect that makes and reads its programs.
     #[must_use]
     pub const fn engine(&self) -> Dialect {
-        self.engine
+        self.words.engine
     }
 
     /// The extension of a program file.
@@ -290,29 +154,13 @@ impl DialectFile {
     /// # Errors
     /// Where a rule refuses a line.
     pub fn out(&self, text: &str) -> Result<String, DialectFileError> {
-        let mut state = State::new(self);
-        let mut out = String::with_capacity(text.len());
-        for line in text.lines() {
-            state.out(line, &mut out)?;
-        }
-        Ok(out)
+        self.words.out(text)
     }
 
     /// A line of a program of the dialect in the engine's words; the lines of a program stay where they are.
     #[must_use]
     pub fn back(&self, line: &str) -> String {
-        let (number, body) = line::split(self.engine, line);
-        for rule in &self.rules {
-            let Then::Words(words) = &rule.then else { continue };
-            let Some((first, more)) = words.split_first() else { continue };
-            if let Some(found) = first.matches(body) {
-                return format!("{number}{}", rule.engine.filled(&found));
-            }
-            if more.iter().any(|w| w.matches(body).is_some()) {
-                return String::new();
-            }
-        }
-        line.to_owned()
+        self.words.back(line)
     }
 
     /// As [`DialectFile::back`], of a whole text.
@@ -336,33 +184,4 @@ fn numbering(blocks: &Blocks, engine: Dialect) -> Result<Numbering, DialectFileE
         return Err(bad("blocks.first and step", value, "from 0 to 1000000, and from 1 to 1000"));
     }
     Ok(Numbering { next: blocks.first, step: blocks.step })
-}
-
-fn rule(number: usize, spec: &RuleSpec) -> Result<Rule, DialectFileError> {
-    let bad = |what: String| DialectFileError::Rule { rule: number, engine: spec.engine.clone(), what };
-    let engine = Pattern::new(&spec.engine).map_err(bad)?;
-    let then = match (&spec.words, &spec.refused) {
-        (Some(_), Some(_)) | (None, None) => return Err(bad("give words or refused, one of them".into())),
-        (None, Some(why)) => Then::Refused(why.clone()),
-        (Some(words), None) => {
-            let words: Vec<Pattern> =
-                words.iter().map(|w| Pattern::new(w)).collect::<Result<_, _>>().map_err(bad)?;
-            if let Some(first) = words.first()
-                && first.names() != engine.names()
-            {
-                let what = format!(
-                    "the first line of words has {{{}}}, the engine's has {{{}}}: with other names it could not be read back",
-                    first.names().join("}, {"),
-                    engine.names().join("}, {")
-                );
-                return Err(bad(what));
-            }
-            let known = |w: &Pattern| w.names().iter().all(|n| engine.names().contains(n));
-            if !words.iter().all(known) {
-                return Err(bad("words has a name that the engine's line has not".into()));
-            }
-            Then::Words(words)
-        }
-    };
-    Ok(Rule { engine, then })
 }

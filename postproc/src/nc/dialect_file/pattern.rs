@@ -96,7 +96,7 @@ impl Pattern {
                         _ => rest.len(),
                     };
                     let word = &rest[..end];
-                    if word.is_empty() && !all || word.contains(' ') && !all {
+                    if !all && (word.is_empty() || word.contains(' ')) {
                         return None;
                     }
                     found.insert(name, word);
