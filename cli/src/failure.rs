@@ -87,12 +87,22 @@ pub enum Done {
     Yes,
     /// Exit code 1 after everything was written: the tolerance is not met.
     NotWithinTolerance,
+    /// Exit code 1 after everything was said: words were left out that may change the tool's way.
+    Incomplete,
 }
 
 /// Bytes of a file at most.
 const LARGEST_FILE: u64 = 4 << 30;
 /// Bytes of what is no plain file at most: a device may have no end.
 const LARGEST_STREAM: u64 = 256 << 20;
+
+impl Done {
+    /// Of a text that was read with these findings.
+    #[must_use]
+    pub fn with(found: &[Diagnostic]) -> Self {
+        if found.iter().any(|d| d.severity == Severity::Loss) { Self::Incomplete } else { Self::Yes }
+    }
+}
 
 /// The bytes of a file.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {

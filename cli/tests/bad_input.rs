@@ -393,3 +393,26 @@ fn what_a_program_cannot_say() {
     let negative = text.replace("SPINDL/900", "SPINDL/1e308");
     post(&negative, &["--lenient"]).refused(&["1e308 rpm", "at most 999999"]);
 }
+
+/// What is read but for some words is told, and does not pass for the whole.
+#[test]
+fn left_out_words_are_no_success() {
+    let scratch = Scratch::new();
+    let out = scratch.path("out.cl");
+    let text = "G21 G90 G94\nG0 X0 Y0 Z10 A0 C0\nG81 X1 Y1 Z-3 R1 F100\nG1 X5 F100\nM30\n";
+    let program = scratch.write("cycle.nc", text);
+    let file = program.to_str().unwrap();
+    let on = ["--machine", "trunnion-ac", "--dialect", "fanuc"];
+    let time = osculate(&[&["time", file], &on[..]].concat());
+    assert_eq!(time.code, 1, "{}", time.err);
+    assert!(
+        time.out.contains("line 3") && time.out.contains("G81") && time.out.contains("feed moves"),
+        "{}",
+        time.out
+    );
+    let readback = osculate(&[&["readback", file, "--out", out.to_str().unwrap()], &on[..]].concat());
+    assert_eq!(readback.code, 1, "{}", readback.err);
+    assert!(readback.out.contains("G81") && out.exists(), "{}", readback.out);
+    let whole = scratch.write("whole.nc", &text.replace("G81 X1 Y1 Z-3 R1 F100\n", ""));
+    assert_eq!(osculate(&[&["time", whole.to_str().unwrap()], &on[..]].concat()).code, 0);
+}

@@ -84,3 +84,14 @@ fn a_dialect_file_goes_from_the_job_to_the_verdict() {
     osculate(&["time", file, "--machine", "trunnion-ac", "--dialect", "okuma"])
         .refused(&["okuma", "haas, mazak, sinumerik-one"]);
 }
+
+/// What a machine file leaves open.
+#[test]
+fn machines_are_checked() {
+    let run = osculate(&["machines", "--check", "trunnion-ac"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    for words in ["home_mm of X", "machine_zero_mm of Z", "the top of its travel", "turns without end"] {
+        assert!(run.out.contains(words), "{words}: {}", run.out);
+    }
+    osculate(&["machines", "--check", "nothing.toml"]).refused(&["nothing.toml", "cannot be read"]);
+}

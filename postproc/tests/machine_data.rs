@@ -123,3 +123,18 @@ fn endless_axes_are_named_and_unwound_between_tools() {
     assert!(back.abs() <= 180.0, "{approach}");
     assert!(lines[..call].iter().rev().take(3).any(|l| *l == "G53 G0 Z0"), "{}", linuxcnc.text);
 }
+
+/// What a file leaves open is told; one that says all leaves nothing.
+#[test]
+fn gaps_of_machine_files() {
+    let keys = |machine: &Machine| machine.gaps().into_iter().map(|g| g.key).collect::<Vec<_>>();
+    let open = keys(&Machine::built_in("trunnion-ac").unwrap());
+    for key in ["min_deg and max_deg of C", "machine_zero_mm of Z", "home_mm of X"] {
+        assert!(open.iter().any(|k| k == key), "{key}: {open:?}");
+    }
+    assert!(!open.iter().any(|k| k.contains("jerk") || k.contains("retract_mm")), "{open:?}");
+    assert!(keys(&trunnion("machine_zero_mm = 0")).contains(&"retract_mm of Z".to_owned()));
+    let plain = built_in_text("3-axis").unwrap();
+    let said = plain.replace("max_mm = ", "machine_zero_mm = 0\nhome_mm = 0\nmax_mm = ");
+    assert_eq!(keys(&Machine::from_toml(&said).unwrap()), Vec::<String>::new());
+}

@@ -5,8 +5,9 @@ use osculate::failure::{Done, Failure, Outcome};
 use osculate::job::tool;
 use osculate::words;
 use osculate::words::Table;
+use osculate::work::nc;
 use osculate_postproc::machine::spec::CarriedSide;
-use osculate_postproc::machine::{Joint, JointKind};
+use osculate_postproc::machine::{Gap, Joint, JointKind};
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::reading::FeedRow;
 use osculate_postproc::{DialectFile, shipped_dialects};
@@ -72,6 +73,23 @@ fn chain(m: &Machine) -> String {
         ));
     }
     out + "\n"
+}
+
+/// Runs `machines --check`.
+pub fn check_machine(word: &str, json: bool) -> Outcome {
+    let machine = nc::machine(word)?;
+    let gaps = machine.gaps();
+    if json {
+        let row = |g: &Gap| serde_json::json!({ "key": g.key, "meaning": g.meaning });
+        render::json(
+            &serde_json::json!({ "name": machine.name(), "open": gaps.iter().map(row).collect::<Vec<_>>() }),
+        )?;
+        return Ok(Done::Yes);
+    }
+    let mut t = Table::left(["not said", "what that means"]);
+    gaps.into_iter().for_each(|g| t.row([g.key, g.meaning]));
+    render::text(&format!("\n{}\n{}\n", chain(&machine).trim_end(), t.render()));
+    Ok(Done::Yes)
 }
 
 /// Runs `dialects`.

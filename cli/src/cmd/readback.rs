@@ -76,7 +76,7 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     answer.diagnostics = reader.diagnostics().iter().map(ToString::to_string).collect();
     if json {
         render::json(&answer)?;
-        return Ok(Done::Yes);
+        return Ok(Done::with(reader.diagnostics()));
     }
     let mut t = Table::new(["tool's way", "", "unit"]);
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
@@ -89,5 +89,5 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
         render::text(&format!("\n{}", words::findings(reader.diagnostics())));
     }
     render::text("\n");
-    Ok(Done::Yes)
+    Ok(Done::with(reader.diagnostics()))
 }

@@ -50,7 +50,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     };
     if json {
         render::json(&answer)?;
-        return Ok(Done::Yes);
+        return Ok(Done::with(&timed.diagnostics));
     }
     let mut table = Table::new(["time", "min", "s"]);
     for (name, min) in [
@@ -72,7 +72,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
         render::text(&format!("\n{}", words::findings(&timed.diagnostics)));
     }
     render::text("\n");
-    Ok(Done::Yes)
+    Ok(Done::with(&timed.diagnostics))
 }
 
 /// What a program calls its axes, read from the whole of it.

@@ -103,7 +103,11 @@ pub enum Verb {
     /// What an NC program makes the tool do, as CL data.
     Readback(ReadbackArgs),
     /// The built-in machines.
-    Machines,
+    Machines {
+        /// A machine file (or a built-in name): what it leaves open, and what that means.
+        #[arg(long, value_name = "FILE")]
+        check: Option<String>,
+    },
     /// The built-in dialects.
     Dialects,
     /// The cutter kinds that a job can ask for.

@@ -2,6 +2,7 @@
 
 mod built_in;
 mod chain;
+mod gaps;
 mod pose;
 pub mod spec;
 mod two_axis;
@@ -11,6 +12,7 @@ use osculate_tools::Pose;
 
 pub use built_in::{built_in_names, built_in_text};
 pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
+pub use gaps::Gap;
 pub use pose::{Candidate, Orientations};
 pub(crate) use pose::{LIMIT_SLACK, NearWish, angle_between, nearest_turn};
 use spec::{ControlSpec, FeedReading, JointSpec, MachineSpec, Sense};
