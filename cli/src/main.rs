@@ -41,7 +41,8 @@ fn run(cli: &Cli) -> Outcome {
         ),
         Verb::Time(args) => cmd::time::run(args, cli.json),
         Verb::Readback(args) => cmd::readback::run(args, cli.json),
-        Verb::Machines => cmd::list::machines(cli.json),
+        Verb::Machines { check: None } => cmd::list::machines(cli.json),
+        Verb::Machines { check: Some(word) } => cmd::list::check_machine(word, cli.json),
         Verb::Dialects => cmd::list::dialects(cli.json),
         Verb::Tools => cmd::list::tools(cli.json),
         Verb::Gallery => cmd::gallery::run(cli.json),
@@ -59,7 +60,7 @@ fn main() -> ExitCode {
     }
     match run(&cli) {
         Ok(Done::Yes) => ExitCode::SUCCESS,
-        Ok(Done::NotWithinTolerance) => ExitCode::from(NOT_WITHIN),
+        Ok(Done::NotWithinTolerance | Done::Incomplete) => ExitCode::from(NOT_WITHIN),
         Err(f) => {
             if cli.json {
                 // A failure to print it leaves the message on stderr.

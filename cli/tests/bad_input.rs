@@ -332,3 +332,87 @@ fn keys_are_listed_and_the_template_loads() {
     assert!(keys.len() > 90 && keys.iter().any(|k| k["table"] == "tolerance" && k["key"] == "scallop_mm"));
     assert!(osculate(&["keys"]).out.contains("scallop_mm"));
 }
+
+/// Devices without end, binary files and lines without end: refused at once, as programs and as CL data.
+#[cfg(unix)]
+#[test]
+fn texts_without_end() {
+    let scratch = Scratch::new();
+    let out = scratch.path("out.nc");
+    let start = Instant::now();
+    let long = scratch.write("long.nc", &"G1 X1 ".repeat(20_000));
+    for file in ["/dev/zero", long.to_str().unwrap()] {
+        let time = ["time", file, "--machine", "trunnion-ac", "--dialect", "fanuc"];
+        osculate(&time).refused(&[file, "line 1", "longer than 65536 bytes"]);
+        let readback = [
+            "readback",
+            file,
+            "--machine",
+            "trunnion-ac",
+            "--dialect",
+            "fanuc",
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        osculate(&readback).refused(&[file, "line 1", "longer than 65536 bytes"]);
+        let post =
+            ["post", file, "--machine", "trunnion-ac", "--dialect", "fanuc", "--out", out.to_str().unwrap()];
+        osculate(&post).refused(&[file, "line 1", "longer than 65536 bytes"]);
+        assert!(!out.exists());
+    }
+    let job_file = scratch.write("job.toml", &job(|j| j));
+    let verify = ["verify", "/dev/zero", "--job", job_file.to_str().unwrap()];
+    osculate(&verify).refused(&["/dev/zero", "no plain file", "256 MiB"]);
+    assert!(start.elapsed().as_secs() < 20);
+}
+
+/// CL data that a program cannot say whole is refused with its lines, and posted without them where that is asked for.
+#[test]
+fn what_a_program_cannot_say() {
+    let scratch = Scratch::new();
+    let out = scratch.path("out.nc");
+    let post = |text: &str, more: &[&str]| {
+        let cl = scratch.write("a.cl", text);
+        let mut args = vec!["post", cl.to_str().unwrap(), "--machine", "trunnion-ac", "--dialect", "fanuc"];
+        args.extend(["--out", out.to_str().unwrap()]);
+        args.extend(more);
+        osculate(&args)
+    };
+    let text = "CUTTER/10\nLOADTL/4\nSPINDL/900\nRAPID\nGOTO/0,0,5\nFEDRAT/100\nCUTCOM/LEFT\nGOTO/1,0,0\nWEDGE/1\nLOADTL/9\nCUTTER/6\n\
+                SPINDL/2500\nRAPID\nGOTO/5,0,5\nGOTO/5,0,0\nFINI\n";
+    post(text, &[]).refused(&["a.cl", "line 7: CUTCOM", "line 9: WEDGE", "--lenient"]);
+    assert!(!out.exists());
+    let run = post(text, &["--lenient", "--work-offset", "G55", "--program-number", "77"]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    assert!(run.out.contains("CUTCOM") && run.out.contains("T9"), "{}", run.out);
+    let program = std::fs::read_to_string(&out).unwrap();
+    for line in ["O0077 (OUT)", "T4 M6", "T9 M6", "G55", "S900 M3", "S2500 M3"] {
+        assert!(program.lines().any(|l| l == line), "{line}\n{program}");
+    }
+    post(text, &["--lenient", "--work-offset", "G599"]).refused(&["fanuc has no work offset G599"]);
+    let negative = text.replace("SPINDL/900", "SPINDL/1e308");
+    post(&negative, &["--lenient"]).refused(&["1e308 rpm", "at most 999999"]);
+}
+
+/// What is read but for some words is told, and does not pass for the whole.
+#[test]
+fn left_out_words_are_no_success() {
+    let scratch = Scratch::new();
+    let out = scratch.path("out.cl");
+    let text = "G21 G90 G94\nG0 X0 Y0 Z10 A0 C0\nG81 X1 Y1 Z-3 R1 F100\nG1 X5 F100\nM30\n";
+    let program = scratch.write("cycle.nc", text);
+    let file = program.to_str().unwrap();
+    let on = ["--machine", "trunnion-ac", "--dialect", "fanuc"];
+    let time = osculate(&[&["time", file], &on[..]].concat());
+    assert_eq!(time.code, 1, "{}", time.err);
+    assert!(
+        time.out.contains("line 3") && time.out.contains("G81") && time.out.contains("feed moves"),
+        "{}",
+        time.out
+    );
+    let readback = osculate(&[&["readback", file, "--out", out.to_str().unwrap()], &on[..]].concat());
+    assert_eq!(readback.code, 1, "{}", readback.err);
+    assert!(readback.out.contains("G81") && out.exists(), "{}", readback.out);
+    let whole = scratch.write("whole.nc", &text.replace("G81 X1 Y1 Z-3 R1 F100\n", ""));
+    assert_eq!(osculate(&[&["time", whole.to_str().unwrap()], &on[..]].concat()).code, 0);
+}

@@ -11,7 +11,6 @@
 mod blade;
 
 use osculate_geom::Vec3;
-use osculate_postproc::feed::PathMetric;
 use osculate_postproc::readback::{ReadBack, ReadOptions, read};
 use osculate_postproc::{Dialect, FeedMode, Machine, Orientation, PostOptions, Setup, built_in_names, post};
 use osculate_tools::cl::{ClPath, Motion};
@@ -83,10 +82,10 @@ impl Worst {
 fn keeps_time(machine: &Machine, dialect: Dialect, feed: FeedMode) -> bool {
     let plain = machine.rotary().is_empty();
     let corrects = !matches!(feed, FeedMode::None | FeedMode::Kz { .. } | FeedMode::Fastest { .. });
-    let own = PathMetric::from(machine.control().feed_reading);
+    let own = dialect.feed_metric(machine);
     let read_so = dialect == Dialect::Sinumerik
         || matches!(feed, FeedMode::Tcp | FeedMode::InverseTime)
-        || feed.metric() == Some(own);
+        || feed.metric(own) == Some(own);
     (plain && !matches!(feed, FeedMode::Fastest { .. } | FeedMode::Kz { .. })) || (corrects && read_so)
 }
 

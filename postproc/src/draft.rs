@@ -42,6 +42,8 @@ pub(crate) struct Draft<'a> {
     /// Tip lengths and times of blocks that rounded to nothing: they go into the next one.
     carried_mm: f64,
     carried_min: f64,
+    /// The farthest that each rotary joint is from its zero, rad.
+    wound_rad: [f64; 2],
     /// The last F of a mode that bounds its rise.
     risen: Option<f64>,
 }
@@ -61,6 +63,7 @@ impl<'a> Draft<'a> {
             carried_mm: 0.0,
             carried_min: 0.0,
             risen: None,
+            wound_rad: [0.0; 2],
         }
     }
 
@@ -71,6 +74,9 @@ impl<'a> Draft<'a> {
         fastest_min: Option<f64>,
     ) -> Result<Option<NcMove>, PostError> {
         let mut m = self.rounded(block)?;
+        for (most, place) in self.wound_rad.iter_mut().zip(self.machine.rotary()) {
+            *most = most.max(block.joints[*place].abs());
+        }
         let index = block.source;
         let planes = self.options.orientation == Orientation::Planes;
         if planes && m.rapid && block.kind != BlockKind::Point && self.last.is_some() {
@@ -170,8 +176,8 @@ impl<'a> Draft<'a> {
             FeedMode::Tcp if !slowed && step.linear_mm > 0.0 => wanted,
             mode => {
                 // The fastest program is written over whatever the control reads.
-                let own = PathMetric::from(self.machine.control().feed_reading);
-                let f = mode.metric().unwrap_or(own).length(step) / duration_min;
+                let own = self.own_metric();
+                let f = mode.metric(own).unwrap_or(own).length(step) / duration_min;
                 match mode {
                     FeedMode::Kz { step_mm_min, .. } => {
                         let f = self.risen.map_or(f, |b| f.min(b + step_mm_min));
@@ -184,18 +190,47 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Over what the control reads F by itself.
+    fn own_metric(&self) -> PathMetric {
+        self.options.dialect.feed_metric(self.machine)
+    }
+
     /// How long the control takes, by its own reading of F, min.
     fn control_time(&self, step: &Step, feed: f64) -> f64 {
         match self.options.feed {
             FeedMode::InverseTime => 1.0 / feed,
             mode => {
                 // A program that declares its metric (Sinumerik) is read over it; elsewhere the machine's own holds.
-                let declared = mode.metric().filter(|_| {
+                let declared = mode.metric(self.own_metric()).filter(|_| {
                     self.options.dialect == Dialect::Sinumerik || self.options.feed == FeedMode::Tcp
                 });
-                let metric = declared.unwrap_or_else(|| self.machine.control().feed_reading.into());
+                let metric = declared.unwrap_or_else(|| self.own_metric());
                 metric.length(step) / feed
             }
+        }
+    }
+
+    /// How far axes without end count on where the control does not wrap them, and whether Z has a place out of the way.
+    fn report_axes(&self, diagnostics: &mut Vec<Diagnostic>) {
+        let joints = self.machine.joints();
+        for (most, place) in self.wound_rad.iter().zip(self.machine.rotary()) {
+            let joint = &joints[*place];
+            let counts = self.options.dialect == Dialect::LinuxCnc && joint.is_endless();
+            if counts && *most > std::f64::consts::TAU {
+                let text = format!(
+                    "axis {} counts on to {:.0} deg, {:.1} turns: the limits of the control must hold that; it turns back where the next \
+                     tool begins, away from the part",
+                    joint.letter,
+                    most.to_degrees(),
+                    most / std::f64::consts::TAU
+                );
+                diagnostics.push(Diagnostic::warning("program", text));
+            }
+        }
+        if self.machine.retract_mm().is_none() && self.machine.joint_named("Z").is_some() {
+            let text = "the machine file has machine_zero_mm of Z, but no end of its travel: the program does not retract Z; give max_mm \
+                        (min_mm where Z counts downwards) or retract_mm";
+            diagnostics.push(Diagnostic::warning("program", text));
         }
     }
 
@@ -209,6 +244,7 @@ impl<'a> Draft<'a> {
                 diagnostics.push(Diagnostic::warning(place, text));
             }
         }
+        self.report_axes(diagnostics);
         if let Some(place) = self.limited.place() {
             let largest = self.machine.control().largest_feed;
             let text = format!(
@@ -217,9 +253,12 @@ impl<'a> Draft<'a> {
             );
             diagnostics.push(Diagnostic::warning(place, text));
         }
-        let own = PathMetric::from(self.machine.control().feed_reading);
-        let wanted =
-            self.options.feed.metric().filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
+        let own = self.own_metric();
+        let wanted = self
+            .options
+            .feed
+            .metric(own)
+            .filter(|_| !program.tcp && self.options.dialect != Dialect::Sinumerik);
         if let Some(wanted) = wanted.filter(|w| *w != own && !self.machine.rotary().is_empty()) {
             let text = format!(
                 "F is written over {}, but this control reads it over {}: mixed moves take another time than asked, \

@@ -30,6 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod auxiliary;
 mod choices;
 pub mod cldata;
 mod draft;
@@ -51,15 +52,17 @@ mod setup_comment;
 mod solve;
 mod solve_error;
 mod solve_options;
-mod source;
+pub mod source;
 mod suggest;
 mod travel;
 mod turn;
 
+pub use auxiliary::{Auxiliary, AuxiliaryWord, Spindle};
 pub use feed::{FeedMode, PathMetric};
 pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
 pub use machine::{Machine, MachineError, built_in_names, built_in_text};
 pub use nc::conduct;
+pub use nc::dialect_file::{DialectFile, DialectFileError, shipped_dialect_text, shipped_dialects};
 pub use nc::readback;
 pub use nc::{Coolant, Dialect, Orientation, WorkOffset};
 pub use orienting::Orienting;
@@ -67,7 +70,7 @@ pub use part_turns::{axis_turns, clamped_turns, first_in_range, free_turns, tilt
 pub use post::{PostReport, PostSummary, Posted, post, post_from, post_to};
 pub use post_error::PostError;
 pub use post_options::PostOptions;
-pub use sections::{PostedSections, Section, post_sections};
+pub use sections::{PostedSections, Section, SectionError, post_sections, post_sections_to};
 pub use setup::{Setup, SetupError};
 pub use setup_comment::SetupCommentError;
 pub use solve_error::SolveError;

@@ -28,6 +28,9 @@ const SHORT_RAD: f64 = 0.1;
 /// Halvings after which a block counts as a jump: 2^-24 of a CL move is far below any resolution.
 const MOST_HALVINGS: u32 = 24;
 
+/// Blocks of one CL move at most. A metre with a tool that turns over at the finest tolerance in use has some thousands.
+const MOST_PIECES: usize = 100_000;
+
 /// The pose at parameter `t` of a CL move: straight tip, great circle of the axis.
 pub(crate) fn pose_between(a: &Pose, b: &Pose, t: f64) -> Pose {
     Pose { tip: a.tip + (b.tip - a.tip) * t, axis: slerp(&a.axis, &b.axis, t) }
@@ -79,7 +82,8 @@ pub(crate) struct Label {
 impl Liner<'_> {
     /// Appends the blocks from `from` (where the path ends) to `to`.
     pub(crate) fn line(&mut self, from: &Placed, to: &Placed, label: &Label) -> Result<(), SolveError> {
-        self.part(&Line { from, to, label }, (0.0, from.joints), (1.0, to.joints), MOST_HALVINGS)
+        let most = self.path.blocks.len() + MOST_PIECES;
+        self.part(&Line { from, to, label, most }, (0.0, from.joints), (1.0, to.joints), MOST_HALVINGS)
     }
 
     fn part(
@@ -102,6 +106,9 @@ impl Liner<'_> {
         if near && turns <= LARGEST_ROTARY_STEP_RAD {
             self.push(line, a.0, b, &stray);
             return Ok(());
+        }
+        if self.path.blocks.len() >= line.most {
+            return Err(SolveError::Pieces { index: line.label.source, most: MOST_PIECES });
         }
         if left == 0 {
             return Err(SolveError::Jump {
@@ -215,6 +222,8 @@ struct Line<'a> {
     from: &'a Placed,
     to: &'a Placed,
     label: &'a Label,
+    /// Blocks of the path when the move has as many as it may.
+    most: usize,
 }
 
 #[cfg(test)]

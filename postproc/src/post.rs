@@ -5,11 +5,13 @@ use std::io;
 use osculate_geom::Diagnostic;
 use osculate_tools::cl::ClPath;
 
+use crate::auxiliary::AuxiliaryWord;
 use crate::draft::{Draft, linear_decimals};
 use crate::feed::{FeedMode, fastest_durations_min};
 use crate::joint_path::JointBlock;
 use crate::machine::Machine;
 use crate::nc::block::RotaryName;
+use crate::nc::number;
 use crate::nc::writer::Writer;
 use crate::nc::{FeedWord, Orientation, Program};
 use crate::post_error::PostError;
@@ -128,9 +130,13 @@ pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec
         tool_number: options.tool_number,
         work_offset: options.work_offset,
         spindle_rpm: options.spindle_rpm,
+        counter_clockwise: options.counter_clockwise,
         coolant: options.coolant,
+        cools: options.coolant.is_some()
+            || options.auxiliary.iter().any(|a| matches!(a.word, AuxiliaryWord::Coolant(Some(_)))),
         feed_word: feed_word(options, machine),
         blend_mm: options.blend_mm,
+        retract: machine.retract_mm().and_then(number::counts),
         linear_names: if tcp {
             ["X", "Y", "Z"].map(String::from)
         } else {
@@ -156,9 +162,13 @@ where
     let mut draft = Draft::new(machine, setup, options);
     let solve = SolveOptions { tcp: options.feed == FeedMode::Tcp, ..options.solve };
     let mut blocks = 0;
+    let mut auxiliary = options.auxiliary.iter().peekable();
     let mut word = |draft: &mut Draft, writer: &mut Writer, block: &JointBlock, fastest: Option<f64>| {
         let Some(m) = draft.next(block, fastest)? else { return Ok(()) };
         blocks += 1;
+        while let Some(one) = auxiliary.next_if(|a| a.before <= block.source) {
+            writer.say(one.word);
+        }
         writer.take(&m);
         if writer.text().len() >= SINK_BYTES { flush(writer, sink) } else { Ok::<(), PostError>(()) }
     };
@@ -174,6 +184,7 @@ where
             piece.iter().try_for_each(|block| word(&mut draft, writer, block, None))
         })?
     };
+    auxiliary.for_each(|one| writer.say(one.word));
     let mut diagnostics = joints.diagnostics;
     if options.spindle_rpm.is_none() {
         diagnostics.push(Diagnostic::warning(
@@ -207,8 +218,8 @@ pub(crate) fn flush(writer: &mut Writer, sink: &mut dyn io::Write) -> Result<(),
 fn feed_word(options: &PostOptions, machine: &Machine) -> FeedWord {
     match options.feed {
         FeedMode::InverseTime => FeedWord::Inverse,
-        FeedMode::Fastest { .. } => FeedWord::PerMinute(Some(machine.control().feed_reading.into())),
-        mode => FeedWord::PerMinute(mode.metric()),
+        FeedMode::Fastest { .. } => FeedWord::PerMinute(Some(options.dialect.feed_metric(machine))),
+        mode => FeedWord::PerMinute(mode.metric(options.dialect.feed_metric(machine))),
     }
 }
 
@@ -235,6 +246,17 @@ pub(crate) fn comments(machine: &Machine, setup: &Setup, options: &PostOptions) 
         if !machine.rotary().is_empty() {
             lines.push(format!("posted for a gauge length of {:.4} mm", setup.gauge_length_mm));
         }
+    }
+    let endless = machine.rotary().iter().map(|p| &machine.joints()[*p]).filter(|j| j.is_endless());
+    lines.extend(
+        endless.map(|joint| format!("{} turns without end: {}", joint.letter, options.dialect.turning())),
+    );
+    let turned = setup.turn_rad().map(|a| a.to_degrees() + 0.0);
+    if turned.iter().any(|a| a.abs() >= 5e-5) {
+        let [x, y, z] = turned;
+        lines.push(format!(
+            "part turned on the table: {x:.4} deg about X, then {y:.4} about Y, then {z:.4} about Z"
+        ));
     }
     lines.extend(setup_comment::lines(setup));
     lines

@@ -74,7 +74,7 @@ pub enum PostError {
         value: f64,
     },
     /// A spindle speed that makes no sense.
-    #[error("a spindle speed of {rpm} rpm: it must be finite and above zero")]
+    #[error("a spindle speed of {rpm:e} rpm: it must be above zero and at most 999999")]
     Spindle {
         /// What was given.
         rpm: f64,

@@ -1,5 +1,6 @@
 //! How a path is to be posted.
 
+use crate::auxiliary::{Auxiliary, AuxiliaryWord};
 use crate::feed::FeedMode;
 use crate::nc::{Coolant, Dialect, Orientation, WorkOffset};
 use crate::post_error::PostError;
@@ -32,6 +33,10 @@ pub struct PostOptions {
     pub coolant: Option<Coolant>,
     /// Spindle speed; absent: the path's own.
     pub spindle_rpm: Option<f64>,
+    /// The spindle turns counter-clockwise.
+    pub counter_clockwise: bool,
+    /// What is done between the moves, in the order of the moves.
+    pub auxiliary: Vec<Auxiliary>,
 }
 
 impl PostOptions {
@@ -51,6 +56,8 @@ impl PostOptions {
             work_offset: None,
             coolant: None,
             spindle_rpm: None,
+            counter_clockwise: false,
+            auxiliary: Vec::new(),
         }
     }
 }
@@ -78,8 +85,16 @@ pub(crate) fn check(options: &PostOptions) -> Result<(), PostError> {
             return Err(PostError::Feed { what, value });
         }
     }
-    match options.spindle_rpm.filter(|r| !(r.is_finite() && *r > 0.0)) {
+    let words = options.auxiliary.iter().filter_map(|a| match a.word {
+        AuxiliaryWord::Spindle(spindle) => spindle.rpm(),
+        _ => None,
+    });
+    let takes = |rpm: &f64| *rpm > 0.0 && *rpm <= LARGEST_SPEED_RPM;
+    match options.spindle_rpm.into_iter().chain(words).find(|rpm| !takes(rpm)) {
         Some(rpm) => Err(PostError::Spindle { rpm }),
         None => Ok(()),
     }
 }
+
+/// Six digits before the point, which is what S words hold; spindles reach half of it.
+pub(crate) const LARGEST_SPEED_RPM: f64 = 999_999.0;

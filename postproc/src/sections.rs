@@ -3,21 +3,22 @@
 use crate::machine::Machine;
 use crate::nc::Program;
 use crate::nc::writer::Writer;
-use crate::post::{PostSummary, comments, flush, moves_from, program_of};
+use crate::post::{PostReport, PostSummary, comments, flush, moves_from, program_of};
 use crate::post_error::PostError;
 use crate::post_options::{PostOptions, check};
 use crate::setup::Setup;
+use crate::source::MoveSource;
 use osculate_geom::Diagnostic;
 use osculate_tools::cl::ClPath;
 use std::io;
 
 /// A path with its tool.
 #[derive(Clone, Debug)]
-pub struct Section<'a> {
+pub struct Section<'a, S = ClPath> {
     /// What is done, for people: it stands in the program.
     pub name: String,
-    /// The path.
-    pub path: &'a ClPath,
+    /// The path, or another source of its moves.
+    pub path: &'a S,
     /// From the spindle's nose to the tip, mm.
     pub gauge_length_mm: f64,
     /// Tool, speed, tolerances. Dialect, feed and orientation are the same in all sections; name, number and work offset of the
@@ -47,11 +48,57 @@ pub fn post_sections(
     machine: &Machine,
     setup: &Setup,
 ) -> Result<PostedSections, PostError> {
-    let Some(first) = sections.first() else { return Err(PostError::NoSection) };
+    let spoken: Vec<Section<'_>> = sections
+        .iter()
+        .map(|s| {
+            let spindle_rpm = s.options.spindle_rpm.or(s.path.spindle_rpm);
+            Section { options: PostOptions { spindle_rpm, ..s.options.clone() }, ..s.clone() }
+        })
+        .collect();
+    let mut text = Vec::new();
+    let reports = post_sections_to(&spoken, machine, setup, &mut text).map_err(|e| e.error)?;
+    let mut diagnostics = Vec::new();
+    for (section, report) in sections.iter().zip(&reports) {
+        diagnostics.extend(report.diagnostics.iter().cloned().map(|mut d| {
+            if sections.len() > 1 {
+                d.message = format!("{}: {}", section.name, d.message);
+            }
+            d
+        }));
+    }
+    let text = String::from_utf8(text).expect("the pieces are text");
+    Ok(PostedSections { text, sections: reports.iter().map(|r| r.summary).collect(), diagnostics })
+}
+
+/// Why sections cannot be posted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{error}")]
+pub struct SectionError {
+    /// Which one is at fault, from 0.
+    pub section: usize,
+    /// What is the matter; its moves count from the beginning of the section.
+    pub error: PostError,
+}
+
+/// As [`post_sections`], of any sources of moves, with the text going to `sink` as [`post_to`](crate::post_to()) gives it; the speeds are
+/// those of the options. What became of each section.
+///
+/// # Errors
+/// As [`post_sections`], and where a source fails or the sink takes no more.
+pub fn post_sections_to<S: MoveSource>(
+    sections: &[Section<'_, S>],
+    machine: &Machine,
+    setup: &Setup,
+    sink: &mut dyn io::Write,
+) -> Result<Vec<PostReport>, SectionError>
+where
+    PostError: From<S::Error>,
+{
+    let of = |section: usize| move |error: PostError| SectionError { section, error };
+    let Some(first) = sections.first() else { return Err(of(0)(PostError::NoSection)) };
     let own: Vec<PostOptions> = sections
         .iter()
         .map(|s| PostOptions {
-            spindle_rpm: s.options.spindle_rpm.or(s.path.spindle_rpm),
             program_name: first.options.program_name.clone(),
             program_number: first.options.program_number,
             work_offset: first.options.work_offset,
@@ -59,13 +106,13 @@ pub fn post_sections(
         })
         .collect();
     for (k, options) in own.iter().enumerate() {
-        check(options)?;
+        check(options).map_err(of(k))?;
         let once = |o: &PostOptions| (o.dialect, o.feed, o.orientation, o.subprogram);
         if once(options) != once(&own[0]) {
-            return Err(PostError::Sections { section: k + 1, name: sections[k].name.clone() });
+            return Err(of(k)(PostError::Sections { section: k + 1, name: sections[k].name.clone() }));
         }
     }
-    let stands = |s: &Section<'_>| Setup { gauge_length_mm: s.gauge_length_mm, ..*setup };
+    let stands = |s: &Section<'_, S>| Setup { gauge_length_mm: s.gauge_length_mm, ..*setup };
     let programs: Vec<Program> = sections
         .iter()
         .zip(&own)
@@ -80,38 +127,28 @@ pub fn post_sections(
             program_of(machine, options, said)
         })
         .collect();
-    let mut text = Vec::new();
-    let sink: &mut dyn io::Write = &mut text;
-    let mut writer = Writer::new(first.options.dialect, &programs[0])?;
-    let (mut summaries, mut diagnostics) = (Vec::with_capacity(sections.len()), Vec::new());
+    let mut writer = Writer::new(first.options.dialect, &programs[0]).map_err(|e| of(0)(e.into()))?;
+    let mut reports = Vec::with_capacity(sections.len());
     for (k, (section, program)) in sections.iter().zip(&programs).enumerate() {
         if k > 0 {
-            writer.change(program)?;
+            writer.change(program).map_err(|e| of(k)(e.into()))?;
         }
         let setup = stands(section);
-        let report = moves_from(section.path, machine, &setup, (&own[k], program), &mut writer, sink)?;
-        summaries.push(report.summary);
-        let named = report.diagnostics.into_iter().map(|mut d| {
-            if sections.len() > 1 {
-                d.message = format!("{}: {}", section.name, d.message);
-            }
-            d
-        });
-        diagnostics.extend(named);
+        let report = moves_from(section.path, machine, &setup, (&own[k], program), &mut writer, sink);
+        reports.push(report.map_err(of(k))?);
     }
     writer.finish();
-    flush(&mut writer, sink)?;
-    let text = String::from_utf8(text).expect("the pieces are text");
-    Ok(PostedSections { text, sections: summaries, diagnostics })
+    flush(&mut writer, sink).map_err(of(sections.len() - 1))?;
+    Ok(reports)
 }
 
 /// What a section does, as the program says where it begins.
-fn heading(k: usize, section: &Section<'_>) -> String {
+fn heading<S>(k: usize, section: &Section<'_, S>) -> String {
     format!("operation {}: {}, T{}", k + 1, section.name, section.options.tool_number)
 }
 
 /// The tools in the order in which they are called first, with what they are for.
-fn listed(sections: &[Section<'_>]) -> Vec<String> {
+fn listed<S>(sections: &[Section<'_, S>]) -> Vec<String> {
     let mut out: Vec<(u32, String)> = Vec::new();
     if sections.len() < 2 {
         return Vec::new();

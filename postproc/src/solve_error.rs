@@ -92,6 +92,17 @@ pub enum SolveError {
         /// Rotary step.
         rotary_deg: f64,
     },
+    /// The way is too long for the tolerance.
+    #[error(
+        "CL move {index}: it takes more than {most} blocks to keep the tool on its line: is a length in another unit, or the tolerance \
+         too fine?"
+    )]
+    Pieces {
+        /// The move.
+        index: usize,
+        /// Blocks of a move at most.
+        most: usize,
+    },
     /// A rewind is needed and no point of the move allows both turns.
     #[error(
         "CL move {index}: the rotary joints must be rewound, and nowhere on this move both turns are inside the \
@@ -119,6 +130,7 @@ impl SolveError {
             | Self::Limit { index, .. }
             | Self::Flat { index, .. }
             | Self::Jump { index, .. }
+            | Self::Pieces { index, .. }
             | Self::NoRewind { index } => Some(*index),
             Self::Empty | Self::Setup(_) | Self::Option { .. } => None,
         }

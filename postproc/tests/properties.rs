@@ -22,6 +22,7 @@ fn linear(letter: &str, direction: [f64; 3], side: CarriedSide) -> JointSpec {
         max_mm: None,
         machine_zero_mm: None,
         home_mm: None,
+        retract_mm: None,
         // Fast enough that no block is slowed.
         max_velocity_mm_s: 1e5,
         max_acceleration_mm_s2: 1e6,

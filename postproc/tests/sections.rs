@@ -193,6 +193,7 @@ fn between_two_tools_everything_is_said_again() {
             &[
                 "M9",
                 "M5",
+                "CYCLE832()",
                 "TRAFOOF",
                 "G0 SUPA Z0 D0",
                 "; operation 2: finish 1, T7",
@@ -208,6 +209,8 @@ fn between_two_tools_everything_is_said_again() {
             &[
                 "M9",
                 "M5",
+                "CYCL DEF 32.0 TOLERANCE",
+                "CYCL DEF 32.1",
                 "FUNCTION RESET TCPM",
                 "L Z+0.0000 R0 FMAX M91",
                 "; operation 2: finish 1, T7",

@@ -5,10 +5,12 @@ use osculate::failure::{Done, Failure, Outcome};
 use osculate::job::tool;
 use osculate::words;
 use osculate::words::Table;
+use osculate::work::nc;
 use osculate_postproc::machine::spec::CarriedSide;
-use osculate_postproc::machine::{Joint, JointKind};
+use osculate_postproc::machine::{Gap, Joint, JointKind};
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::reading::FeedRow;
+use osculate_postproc::{DialectFile, shipped_dialects};
 use osculate_postproc::{Machine, built_in_names};
 use serde::Serialize;
 
@@ -73,6 +75,23 @@ fn chain(m: &Machine) -> String {
     out + "\n"
 }
 
+/// Runs `machines --check`.
+pub fn check_machine(word: &str, json: bool) -> Outcome {
+    let machine = nc::machine(word)?;
+    let gaps = machine.gaps();
+    if json {
+        let row = |g: &Gap| serde_json::json!({ "key": g.key, "meaning": g.meaning });
+        render::json(
+            &serde_json::json!({ "name": machine.name(), "open": gaps.iter().map(row).collect::<Vec<_>>() }),
+        )?;
+        return Ok(Done::Yes);
+    }
+    let mut t = Table::left(["not said", "what that means"]);
+    gaps.into_iter().for_each(|g| t.row([g.key, g.meaning]));
+    render::text(&format!("\n{}\n{}\n", chain(&machine).trim_end(), t.render()));
+    Ok(Done::Yes)
+}
+
 /// Runs `dialects`.
 pub fn dialects(json: bool) -> Outcome {
     if json {
@@ -82,7 +101,9 @@ pub fn dialects(json: bool) -> Outcome {
         };
         let one =
             |d: Dialect| serde_json::json!({ "name": d.name(), "extension": d.extension(), "feed": feed(d) });
-        render::json(&Dialect::ALL.map(one))?;
+        let own = |d: DialectFile| serde_json::json!({ "name": d.name(), "extension": d.extension(), "engine": d.engine().name(), "description": d.description() });
+        let shipped = shipped_dialects().filter_map(DialectFile::shipped).map(own);
+        render::json(&Dialect::ALL.into_iter().map(one).chain(shipped).collect::<Vec<_>>())?;
         return Ok(Done::Yes);
     }
     for d in Dialect::ALL {
@@ -99,6 +120,14 @@ pub fn dialects(json: bool) -> Outcome {
             render::text(&format!("  {source}\n"));
         }
     }
+    for own in shipped_dialects().filter_map(DialectFile::shipped) {
+        let (name, extension, engine) = (own.name(), own.extension(), own.engine());
+        render::text(&format!(
+            "\n{name} (.{extension}), words of its own over {engine}: {}\n",
+            own.description()
+        ));
+    }
+    render::text("\n");
     Ok(Done::Yes)
 }
 

@@ -1,10 +1,10 @@
 //! `readback`: what an NC program makes the tool do, as CL data, read and written as a stream.
 
-use crate::cmd::time::{each_line, names_of};
+use crate::cmd::time::names_of;
 use crate::screen::args::ReadbackArgs;
 use crate::screen::output;
 use crate::screen::render;
-use osculate::failure::{Done, Failure, Outcome};
+use osculate::failure::{Done, Failure, Outcome, each_line};
 use osculate::words;
 use osculate::words::{Table, number};
 use osculate::work::nc;
@@ -32,10 +32,10 @@ const PIECE_BYTES: usize = 1 << 16;
 pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     let file = &args.nc.file;
     let machine = nc::machine(&args.nc.machine)?;
-    let dialect = nc::dialect_of(args.nc.dialect.as_deref(), file)?;
+    let language = nc::dialect_of(args.nc.dialect.as_deref(), file)?;
     let zero = Vec3::from(args.nc.part_zero.unwrap_or_default());
     let setup = Setup::at(zero, args.nc.gauge_length_mm.unwrap_or(0.0));
-    let names = names_of(file, dialect, &machine)?;
+    let names = names_of(file, &language, &machine)?;
     let here = |e| Failure::file(file, e);
     let options = ReadOptions { strict: args.nc.strict, ..ReadOptions::default() };
     let mut reader = Reader::new(&names, &machine, &setup, &options).map_err(here)?;
@@ -48,7 +48,7 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
         let mut at: Option<Point3> = None;
         let unwritten = |e| Failure::file(&args.out, e);
         each_line(file, |line| {
-            reader.line(line).map_err(here)?;
+            reader.line(&language.engine_line(line)).map_err(here)?;
             answer.blocks += reader.take_blocks().count();
             let rpm = reader.spindle_rpm();
             for m in reader.take_moves() {
@@ -76,7 +76,7 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     answer.diagnostics = reader.diagnostics().iter().map(ToString::to_string).collect();
     if json {
         render::json(&answer)?;
-        return Ok(Done::Yes);
+        return Ok(Done::with(reader.diagnostics()));
     }
     let mut t = Table::new(["tool's way", "", "unit"]);
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
@@ -89,5 +89,5 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
         render::text(&format!("\n{}", words::findings(reader.diagnostics())));
     }
     render::text("\n");
-    Ok(Done::Yes)
+    Ok(Done::with(reader.diagnostics()))
 }

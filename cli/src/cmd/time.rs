@@ -2,18 +2,17 @@
 
 use crate::screen::args::TimeArgs;
 use crate::screen::render;
-use osculate::failure::{Done, Failure, Outcome};
+use osculate::failure::{Done, Failure, Outcome, each_line};
+use osculate::job::language::Language;
 use osculate::words;
 use osculate::words::Table;
 use osculate::work::joints::JointFigures;
 use osculate::work::nc;
 use osculate_geom::Vec3;
-use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::timing::{Clock, Names};
 use osculate_postproc::{Machine, Setup};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 #[derive(Serialize)]
@@ -30,14 +29,14 @@ struct Answer {
 /// Runs the verb.
 pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     let machine = nc::machine(&args.machine)?;
-    let dialect = nc::dialect_of(args.dialect.as_deref(), &args.file)?;
+    let language = nc::dialect_of(args.dialect.as_deref(), &args.file)?;
     let setup =
         Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), args.gauge_length_mm.unwrap_or(0.0));
     let file = &args.file;
-    let names = names_of(file, dialect, &machine)?;
+    let names = names_of(file, &language, &machine)?;
     let here = |e| Failure::file(file, e);
     let mut clock = Clock::new(&names, &machine, &setup, args.strict).map_err(here)?;
-    each_line(file, |line| clock.line(line).map_err(here))?;
+    each_line(file, |line| clock.line(&language.engine_line(line)).map_err(here))?;
     let timed = clock.finish().map_err(here)?;
     let t = &timed.time;
     let answer = Answer {
@@ -51,7 +50,7 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     };
     if json {
         render::json(&answer)?;
-        return Ok(Done::Yes);
+        return Ok(Done::with(&timed.diagnostics));
     }
     let mut table = Table::new(["time", "min", "s"]);
     for (name, min) in [
@@ -73,29 +72,15 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
         render::text(&format!("\n{}", words::findings(&timed.diagnostics)));
     }
     render::text("\n");
-    Ok(Done::Yes)
+    Ok(Done::with(&timed.diagnostics))
 }
 
 /// What a program calls its axes, read from the whole of it.
-pub fn names_of(file: &Path, dialect: Dialect, machine: &Machine) -> Result<Names, Failure> {
-    let mut names = Names::new(dialect, machine);
+pub fn names_of(file: &Path, language: &Language, machine: &Machine) -> Result<Names, Failure> {
+    let mut names = Names::new(language.engine, machine);
     each_line(file, |line| {
-        names.line(line);
+        names.line(&language.engine_line(line));
         Ok(())
     })?;
     Ok(names)
-}
-
-/// Reads a file line by line; bytes that are no UTF-8 come as replacement characters, as in comments of old programs.
-pub fn each_line(file: &Path, mut line: impl FnMut(&str) -> Result<(), Failure>) -> Result<(), Failure> {
-    let fail = |e: std::io::Error| Failure::file(file, format!("cannot be read: {e}"));
-    let mut reader = BufReader::new(std::fs::File::open(file).map_err(fail)?);
-    let mut bytes = Vec::new();
-    loop {
-        bytes.clear();
-        if reader.read_until(b'\n', &mut bytes).map_err(fail)? == 0 {
-            return Ok(());
-        }
-        line(String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']))?;
-    }
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, read_text};
 use crate::job::Tool;
+use crate::job::language::Language;
 use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::words::{CoolantWord, FeedWord};
@@ -30,8 +31,10 @@ pub struct Control {
     pub machine: Machine,
     /// Its description as it stands in its file.
     pub machine_toml: String,
-    /// The language.
+    /// The dialect that makes and reads its programs.
     pub dialect: Dialect,
+    /// The language of its programs: the dialect's, or one with words of its own.
+    pub language: Language,
     /// How F is programmed.
     pub feed: FeedMode,
     /// As the job names it.
@@ -39,7 +42,7 @@ pub struct Control {
     /// As the job names it.
     pub feed_name: String,
     /// Extension of program files.
-    pub extension: &'static str,
+    pub extension: String,
 }
 
 /// The words of a control, from a command line.
@@ -60,17 +63,17 @@ impl Control {
     /// The control that the words describe.
     pub fn from_words(words: &Words<'_>) -> Result<Self, Failure> {
         let machine = machine(words.name, words.file)?;
-        let dialect: Dialect = words.dialect.parse().map_err(Failure::job)?;
+        let language = Language::of_word(words.dialect)?;
         let feed = FeedWord::of(words.feed).ok_or_else(|| {
             let all = FeedWord::WORDS.join(", ");
             Failure::job(format!("feed = \"{}\" is no feed mode; there are {all}", words.feed))
         })?;
-        Ok(Self::new(machine, dialect, feed, words.kz_step))
+        Ok(Self::new(machine, language, feed, words.kz_step))
     }
 
     fn new(
         (machine, machine_toml): (Machine, String),
-        dialect: Dialect,
+        language: Language,
         feed: FeedWord,
         kz_step: Option<f64>,
     ) -> Self {
@@ -88,11 +91,12 @@ impl Control {
         Self {
             machine,
             machine_toml,
-            dialect,
+            dialect: language.engine,
             feed: mode,
-            dialect_name: dialect.name().to_owned(),
+            dialect_name: language.name().to_owned(),
             feed_name: feed.word().to_owned(),
-            extension: dialect.extension(),
+            extension: language.extension().to_owned(),
+            language,
         }
     }
 
@@ -116,11 +120,24 @@ impl Control {
             let key = if file.is_some() { "file" } else { "name" };
             places.refuse(TABLE, key, e.message())
         })?;
-        let dialect = match given.dialect.as_deref() {
-            None => DEFAULT_DIALECT,
-            Some(d) => d.parse().map_err(|e| places.refuse(TABLE, "dialect", e))?,
+        let language = match (given.dialect.as_deref(), &given.dialect_file) {
+            (None, None) => DEFAULT_DIALECT.into(),
+            (Some(name), None) => {
+                Language::named(name).map_err(|e| places.refuse(TABLE, "dialect", e.message()))?
+            }
+            (None, Some(file)) => {
+                let path = crate::failure::beside(places.path(), file);
+                Language::of_file(&path).map_err(|e| places.refuse(TABLE, "dialect_file", e.message()))?
+            }
+            (Some(_), Some(_)) => {
+                return Err(places.refuse(
+                    TABLE,
+                    "dialect_file",
+                    "has both dialect and dialect_file; keep one of them",
+                ));
+            }
         };
-        let control = Self::new(machine, dialect, given.feed.unwrap_or_default(), given.kz_step);
+        let control = Self::new(machine, language, given.feed.unwrap_or_default(), given.kz_step);
         control.tried(places, tool)?;
         Ok(control)
     }

@@ -1,12 +1,12 @@
 //! All keys of a job file: what each takes, what holds where it is not given, and what it means.
 
+use crate::job::language::Language;
 use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
     FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
 };
 use osculate_postproc::built_in_names;
-use osculate_postproc::nc::Dialect;
 use std::sync::LazyLock;
 
 const ANY: Range = Range { least: f64::NEG_INFINITY, most: f64::INFINITY, open: [false; 2] };
@@ -50,7 +50,7 @@ const fn table(name: &'static str, needed: bool, meaning: &'static str, keys: &'
 }
 
 fn dialects() -> Vec<&'static str> {
-    Dialect::ALL.iter().map(|d| d.name()).collect()
+    Language::names()
 }
 
 /// What a job of one operation may hold.
@@ -218,6 +218,7 @@ pub static TABLES: &[Table] = &[
         may("name", Kind::Name(built_in_names), "", "\"trunnion-ac\"", "a built-in machine (see `machines`)"),
         may("file", Kind::File, "", "\"my-machine.toml\"", "a machine file instead"),
         may("dialect", Kind::Name(dialects), "sinumerik", "\"sinumerik\"", "language of the control"),
+        may("dialect_file", Kind::File, "", "\"my-dialect.toml\"", "a dialect file instead: words of a control that is near to one of these"),
         may("feed", Kind::Word(FeedWord::WORDS), "tcp", "\"tcp\"", "how the program says the feed"),
         may("kz_step", Kind::Number(ABOVE, "mm/min"), "200", "200", "feed = \"kz\": largest rise of F from block to block"),
         may("work_offset", Kind::Text, "as the dialect begins", "\"G54\"", "work offset: G54 to G59 and more, by the dialect"),

@@ -189,6 +189,7 @@ pub struct Machine {
     pub dialect: Option<String>,
     pub feed: Option<FeedWord>,
     pub kz_step: Option<f64>,
+    pub dialect_file: Option<String>,
     pub work_offset: Option<String>,
     pub program_number: Option<u32>,
 }

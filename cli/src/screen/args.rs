@@ -103,7 +103,11 @@ pub enum Verb {
     /// What an NC program makes the tool do, as CL data.
     Readback(ReadbackArgs),
     /// The built-in machines.
-    Machines,
+    Machines {
+        /// A machine file (or a built-in name): what it leaves open, and what that means.
+        #[arg(long, value_name = "FILE")]
+        check: Option<String>,
+    },
     /// The built-in dialects.
     Dialects,
     /// The cutter kinds that a job can ask for.
@@ -229,7 +233,7 @@ pub struct PostArgs {
     /// A built-in machine or the path of a machine file.
     #[arg(long)]
     pub machine: String,
-    /// sinumerik, heidenhain, fanuc or linuxcnc.
+    /// A dialect (see `dialects`), or the path of a dialect file.
     #[arg(long)]
     pub dialect: String,
     /// tcp, none, kv, kf, kz, inverse_time, rotary (deg/min over the rotary axes) or fastest (as the joints allow).
@@ -251,6 +255,15 @@ pub struct PostArgs {
     /// From the tip to the spindle nose, mm; cutter and holder of the CL data where not given.
     #[arg(long)]
     pub gauge_length_mm: Option<f64>,
+    /// The work offset: G54 to G59 and more, by the dialect; "preset 3" with heidenhain.
+    #[arg(long)]
+    pub work_offset: Option<String>,
+    /// The program's number (fanuc).
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=9999))]
+    pub program_number: Option<u32>,
+    /// Leave out statements that are not understood, or that the program cannot say, instead of refusing the file; they are listed.
+    #[arg(long)]
+    pub lenient: bool,
     /// The program to write.
     #[arg(long)]
     pub out: PathBuf,
@@ -265,7 +278,7 @@ pub struct TimeArgs {
     /// A built-in machine or the path of a machine file.
     #[arg(long)]
     pub machine: String,
-    /// sinumerik, heidenhain, fanuc or linuxcnc; by the file's extension where not given.
+    /// A dialect (see `dialects`) or the path of a dialect file; by the program's extension where not given.
     #[arg(long)]
     pub dialect: Option<String>,
     /// Where the part's origin sits from the table's reference point, mm.

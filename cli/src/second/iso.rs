@@ -161,6 +161,7 @@ fn code(
         }
         430 if !sinumerik => said.length = Some(code),
         434 | 435 if fanuc => said.length = Some(code),
+        921 => return Ok(s.dialect == Dialect::LinuxCnc),
         530 if !sinumerik => asked.machine_frame = true,
         682 if fanuc => said.plane = true,
         531 if fanuc => said.to_plane = true,
@@ -222,6 +223,8 @@ fn named(s: &mut State<'_>, name: &str, asked: &mut Asked<'_>, said: &mut Said) 
             s.switch_tcp(name == "TRAORI");
             s.turning = Turning::Unsaid;
         }
+        // Alone in its line it deletes frames.
+        "TRANS" => return asked.positions.is_empty(),
         "SUPA" => asked.machine_frame = true,
         "ORIMKS" | "ORIWKS" => s.workpiece = name == "ORIWKS",
         "ORIAXES" => s.turning = Turning::Joints,

@@ -1,6 +1,7 @@
 //! Between jobs and the postprocessor: machine, dialect, setup, text out and motions back.
 
 use crate::failure::{Failure, read_text};
+use crate::job::language::Language;
 use crate::job::{Control, Job};
 use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
@@ -11,6 +12,7 @@ use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::WorkOffset;
 use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
+use osculate_tools::CutterSpec;
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::{GoalControl, Gravity, Program, Remark, Swept};
 use std::collections::BTreeSet;
@@ -26,14 +28,16 @@ pub fn machine(word: &str) -> Result<Machine, Failure> {
     Machine::built_in(word).map_err(Failure::job)
 }
 
-/// The language of a program: as said, or by its extension.
-pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
-    if let Some(name) = said {
-        return name.parse().map_err(Failure::job);
+/// The language of a program: as said, by a name or a dialect file, or by its extension.
+pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Language, Failure> {
+    if let Some(word) = said {
+        return Language::of_word(word);
     }
     let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    Dialect::ALL.into_iter().find(|d| d.extension() == extension).ok_or_else(|| {
-        Failure::file(file, "the extension does not tell the dialect: give --dialect, one of sinumerik, heidenhain, fanuc, linuxcnc")
+    let engine = Dialect::ALL.into_iter().find(|d| d.extension() == extension);
+    engine.map(Language::from).ok_or_else(|| {
+        let all = Language::names().join(", ");
+        Failure::file(file, format!("the extension does not tell the dialect: give --dialect, one of {all}"))
     })
 }
 
@@ -41,6 +45,28 @@ pub fn dialect_of(said: Option<&str>, file: &Path) -> Result<Dialect, Failure> {
 pub fn cl_text(path: &ClPath, tool_number: u32, part_name: &str) -> Result<String, String> {
     let options = ClWriteOptions { part_name: part_name.to_owned(), tool_number };
     cldata::write(path, &options).map_err(|e| e.to_string())
+}
+
+/// A cutter in a few words, for the comments of a program.
+#[must_use]
+pub fn cutter_words(cutter: Option<CutterSpec>) -> String {
+    match cutter {
+        None => "tool".to_owned(),
+        Some(CutterSpec::Ball { diameter_mm, .. }) => format!("ball {diameter_mm}"),
+        Some(CutterSpec::Flat { diameter_mm, .. } | CutterSpec::Cylindrical { diameter_mm, .. }) => {
+            format!("flat {diameter_mm}")
+        }
+        Some(CutterSpec::Toroidal { diameter_mm, corner_radius_mm, .. }) => {
+            format!("toroidal {diameter_mm} r {corner_radius_mm}")
+        }
+        Some(CutterSpec::Apt { diameter_mm, bottom_angle_deg, .. }) if bottom_angle_deg > 0.0 => {
+            format!("pointed {diameter_mm}, {bottom_angle_deg} deg")
+        }
+        Some(CutterSpec::Apt { diameter_mm, .. } | CutterSpec::Cone { diameter_mm, .. }) => {
+            format!("conical {diameter_mm}")
+        }
+        Some(CutterSpec::Barrel { diameter_mm, .. }) => format!("barrel {diameter_mm}"),
+    }
 }
 
 /// The options of a post for this control.
@@ -201,7 +227,8 @@ pub fn read_back_tools(
         let own = lengths.iter().find(|l| Some(l.0) == number);
         own.map_or(setup.gauge_length_mm, |l| l.1)
     };
-    let read = readback::read_tools(text, control.dialect, &control.machine, (setup, &lengths), &options)
+    let text = control.language.engine_text(text);
+    let read = readback::read_tools(&text, control.dialect, &control.machine, (setup, &lengths), &options)
         .map_err(|e| match e {
             ReadError::Word { line, word } => format!(
                 "line {line}: {word} is not interpreted and may change the tool's way; --lenient leaves such words out \

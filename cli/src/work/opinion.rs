@@ -64,7 +64,7 @@ pub struct OpinionFigures {
 
 /// Asks for a second opinion on a program; where it disagrees the verdict is doubted.
 pub fn ask(job: &Job, part: &Part, program: &str, verified: Verified) -> (Verified, SecondOpinion) {
-    match opinion(job, part, program, &verified) {
+    match opinion(job, part, &job.control().language.engine_text(program), &verified) {
         Err(none) => {
             let why = format!("there is no second opinion: {none}");
             (verified, SecondOpinion { agrees: None, why, figures: None })

@@ -95,7 +95,8 @@ impl Posted {
         let (base, mut setup_notes) = setup::of(job, faces, Some(along));
         let options = nc::job_options(job, &control, &title);
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
-            let program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
+            let mut program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
+            program.text = control.language.worded(program.text)?;
             let read = nc::read_back(&program.text, job, &control, setup, false)
                 .map_err(|e| Failure::job(format!("the program just written cannot be read back: {e}")))?;
             Ok((program, read))

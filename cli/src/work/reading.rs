@@ -133,7 +133,8 @@ pub fn program(
     faces: &Part,
     lenient: bool,
 ) -> Result<(Motions, Vec<Diagnostic>), Failure> {
-    let (setup, notes) = posted_setup::of_program(job, faces, text, control.dialect);
+    let (setup, notes) =
+        posted_setup::of_program(job, faces, &control.language.engine_text(text), control.dialect);
     let motions = nc::read_back(text, job, control, &setup, lenient).map_err(Failure::job)?;
     Ok((motions, notes))
 }

@@ -22,7 +22,16 @@ const LARGEST_RADIUS_ERROR_MM: f64 = 0.01;
 const SAME_POINT_MM: f64 = 1e-6;
 
 /// Chords of one arc at most: a full turn of 10 m radius within 1 um has 7000.
-const MOST_CHORDS: f64 = 1e5;
+pub(super) const MOST_CHORDS: f64 = 1e5;
+
+/// Why an arc has no chords.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum NoArc {
+    /// The ends miss a common circle by so much, mm.
+    Off(f64),
+    /// It would have so many, more than [`MOST_CHORDS`].
+    Chords(f64),
+}
 
 /// An arc that waits for its end.
 #[derive(Clone, Debug)]
@@ -85,23 +94,26 @@ impl Arc {
         Some(from - a + a * c + axis.cross(&a) * s)
     }
 
-    /// The points between the ends, or by how much (mm) the ends are on no common circle.
-    pub fn chords(&self, from: &Point3, to: &Point3, tol_mm: f64) -> Result<Vec<Point3>, f64> {
-        let Some(axis) = self.axis else { return Err((to - from).norm()) };
+    /// The points between the ends.
+    pub fn chords(&self, from: &Point3, to: &Point3, tol_mm: f64) -> Result<Vec<Point3>, NoArc> {
+        let Some(axis) = self.axis else { return Err(NoArc::Off((to - from).norm())) };
         let (a, b) = (self.spoke(&axis, from), self.spoke(&axis, to));
         let (ra, rb) = (a.norm(), b.norm());
         if (ra - rb).abs() > LARGEST_RADIUS_ERROR_MM || ra < SAME_POINT_MM {
-            return Err((ra - rb).abs().max(SAME_POINT_MM));
+            return Err(NoArc::Off((ra - rb).abs().max(SAME_POINT_MM)));
         }
         let full = std::f64::consts::TAU;
         let same = (a - b).norm() < SAME_POINT_MM;
         let mut angle = if same { full } else { axis.dot(&a.cross(&b)).atan2(a.dot(&b)).rem_euclid(full) };
         if let Some(given) = self.angle_rad {
-            angle += full * ((given.abs() - angle) / full).round().clamp(0.0, 1e3);
+            angle += full * ((given.abs() - angle) / full).round().max(0.0);
         }
         // A chord over the angle p strays by r (1 - cos(p / 2)).
         let piece = 2.0 * (1.0 - (tol_mm / ra).min(1.0)).acos();
-        let count = (angle / piece).ceil().clamp(1.0, MOST_CHORDS);
+        let count = (angle / piece).ceil().max(1.0);
+        if count > MOST_CHORDS {
+            return Err(NoArc::Chords(count));
+        }
         let rise = axis.into_inner() * axis.dot(&(to - from));
         let foot = from - a;
         let (u, v) = (a / ra, axis.cross(&(a / ra)));

@@ -3,10 +3,10 @@
 //! `CYCLE/DRILL,FEDTO,d,MMPM,f,RAPTO,r,RTRCTO,h`: at every point to come, which lies on the part's face, the tool goes
 //! over it at h, rapidly down to r above it, at feed to d below, back to r (rapidly, or at feed for reaming, boring and
 //! tapping) and to h. `1STPECK` and `SUBPECK` (or `STEP`) bound the depth of a peck; `DEEP` leaves the hole after each,
-//! `BRKCHP` only breaks the chip. Forms without `FEDTO` differ from system to system and are not interpreted.
+//! `BRKCHP` only breaks the chip. `DWELL` waits at the bottom, s. A tap turns back there and, when it is out, again. Forms without `FEDTO` differ from system to system and are not interpreted.
 
 use super::error::ClReadError;
-use super::feed::Feed;
+use super::feed::{FEEDS, Feed};
 use super::fields::numbers;
 use super::statement::Statement;
 
@@ -34,6 +34,8 @@ pub(super) enum Kind {
 pub(super) struct Cycle {
     pub kind: Kind,
     pub feed: Option<Feed>,
+    /// At the bottom, s.
+    pub dwell_s: f64,
     depth_mm: f64,
     clear_mm: f64,
     retract_mm: f64,
@@ -63,7 +65,7 @@ pub(super) fn cycle(s: &Statement, unit_mm: f64) -> Result<Option<Cycle>, ClRead
         [(["MMPM"], 1.0, false), (["MMPR"], 1.0, true), (["IPM"], 25.4, false), (["IPR"], 25.4, true)]
     {
         if let Some(mm) = value(&names)?.map(|f| f * unit) {
-            if !(mm > 0.0 && mm.is_finite()) {
+            if !FEEDS.contains(&mm) {
                 return Err(ClReadError::Feed { line: s.line, feed_mm_min: mm });
             }
             feed = Some(Feed { mm, per_turn, line: s.line });
@@ -75,6 +77,7 @@ pub(super) fn cycle(s: &Statement, unit_mm: f64) -> Result<Option<Cycle>, ClRead
     let cycle = Cycle {
         kind,
         feed,
+        dwell_s: value(&["DWELL"])?.unwrap_or(0.0),
         depth_mm: unit_mm * depth,
         clear_mm,
         retract_mm: value(&["RTRCTO"])?.map_or(clear_mm, |h| unit_mm * h),
@@ -84,26 +87,49 @@ pub(super) fn cycle(s: &Statement, unit_mm: f64) -> Result<Option<Cycle>, ClRead
     Ok(sane.then_some(cycle))
 }
 
+/// What follows when a height is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Then {
+    GoOn,
+    /// The bottom of the hole.
+    Bottom,
+    /// The spindle turns back (true), or as before.
+    Reverse(bool),
+}
+
+/// A move of a cycle along the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    /// Above the point, mm.
+    pub above_mm: f64,
+    pub rapid: bool,
+    pub then: Then,
+}
+
 impl Cycle {
-    /// Heights above the point along the axis, mm, one after the other, and whether they are reached rapidly.
-    pub fn heights(&self) -> Vec<(f64, bool)> {
-        let mut all = vec![(self.retract_mm, true), (self.clear_mm, true)];
+    /// The moves at a point, one after the other.
+    pub fn steps(&self) -> Vec<Step> {
+        let go = |above_mm: f64, rapid: bool| Step { above_mm, rapid, then: Then::GoOn };
+        let mut all = vec![go(self.retract_mm, true), go(self.clear_mm, true)];
         let pecks = matches!(self.kind, Kind::Deep | Kind::BreakChip);
         let [first, next] = self.pecks_mm;
         let mut depth = if pecks { first } else { self.depth_mm };
         while depth < self.depth_mm {
-            all.push((-depth, false));
+            all.push(go(-depth, false));
             let gap = GAP_MM.min(0.5 * next);
             if self.kind == Kind::Deep {
-                all.push((self.clear_mm, true));
+                all.push(go(self.clear_mm, true));
             }
-            all.push((gap - depth, true));
+            all.push(go(gap - depth, true));
             depth += next;
         }
-        all.push((-self.depth_mm, false));
-        all.push((self.clear_mm, !matches!(self.kind, Kind::Ream | Kind::Tap)));
+        let tap = self.kind == Kind::Tap;
+        let then = |tap_turns: bool| if tap { Then::Reverse(tap_turns) } else { Then::Bottom };
+        all.push(Step { then: then(true), ..go(-self.depth_mm, false) });
+        let out = go(self.clear_mm, !(tap || self.kind == Kind::Ream));
+        all.push(if tap { Step { then: then(false), ..out } } else { out });
         if self.retract_mm > self.clear_mm {
-            all.push((self.retract_mm, true));
+            all.push(go(self.retract_mm, true));
         }
         all
     }

@@ -34,13 +34,15 @@ pub enum ClReadError {
         length: f64,
     },
     /// A feed per revolution without a speed.
-    #[error("line {line}: FEDRAT per revolution before any SPINDL/ in rpm: put SPINDL/ first or use MMPM")]
+    #[error(
+        "line {line}: a feed or dwell per revolution or a tap before any SPINDL/ in rpm: put SPINDL/ first, or use MMPM and seconds"
+    )]
     NoSpindle {
         /// Line.
         line: usize,
     },
-    /// A feed that is not above zero.
-    #[error("line {line}: a feed of {feed_mm_min} mm/min: it must be above zero")]
+    /// A feed that no control takes.
+    #[error("line {line}: a feed of {feed_mm_min:?} mm/min: it must be above zero, from 1e-6 to 1e9")]
     Feed {
         /// Line.
         line: usize,
@@ -52,6 +54,44 @@ pub enum ClReadError {
     NoFeed {
         /// Line.
         line: usize,
+    },
+    /// A speed below zero.
+    #[error(
+        "line {line}: a spindle speed of {rpm} rpm: it must not be below zero; the direction is CLW or CCLW"
+    )]
+    Speed {
+        /// Line.
+        line: usize,
+        /// What was read.
+        rpm: f64,
+    },
+    /// A dwell that no control takes.
+    #[error("line {line}: a dwell of {seconds} s: from 0 to 36000 s")]
+    Dwell {
+        /// Line.
+        line: usize,
+        /// What was read.
+        seconds: f64,
+    },
+    /// More moves than a statement may ask for.
+    #[error("line {line}: {what} asks for {count:.0} moves, at most {most}: is a length in another unit?")]
+    Bound {
+        /// Line.
+        line: usize,
+        /// The arc, or the cycle.
+        what: &'static str,
+        /// What it asks for.
+        count: f64,
+        /// What is taken.
+        most: f64,
+    },
+    /// A line without end.
+    #[error("line {line}: longer than {most} bytes: this is no cutter location data, or in binary form")]
+    Long {
+        /// Line.
+        line: usize,
+        /// What is taken.
+        most: usize,
     },
     /// Not one point.
     #[error("no GOTO/ or FROM/ in {lines} lines: this is no cutter location data, or in binary form")]

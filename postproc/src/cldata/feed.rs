@@ -7,3 +7,6 @@ pub(super) struct Feed {
     pub per_turn: bool,
     pub line: usize,
 }
+
+/// Feeds that a control can be given, mm/min or mm per revolution.
+pub(super) const FEEDS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;

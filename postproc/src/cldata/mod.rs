@@ -10,6 +10,8 @@ mod error;
 mod feed;
 mod fields;
 mod read;
+mod section;
+mod settle;
 mod statement;
 mod stream;
 mod ways;
@@ -18,5 +20,6 @@ mod write;
 
 pub use error::ClReadError;
 pub use read::{ClData, ClReadOptions, ClReader, read};
-pub use stream::{ClPlace, ClStream, ClStreamError};
+pub use section::{ClSection, ClTool};
+pub use stream::{ClOutline, ClPart, ClPlace, ClStream, ClStreamError};
 pub use write::{ClWriteError, ClWriteOptions, ClWriter, write};

@@ -1,9 +1,10 @@
 //! Reading APT text of this and of other systems.
 //!
-//! What describes the tool's way is read: `GOTO`, `GODLTA`, `FROM`, `FEDRAT`, `RAPID`, `UNITS`, `SPINDL`, `CUTTER`,
-//! `TLAXIS`, arcs ([`super::arc`]) and drilling cycles ([`super::cycle`]). Everything else is reported by word with its
+//! What describes the tool's way is read: `GOTO`, `GODLTA`, `FROM`, `FEDRAT`, `RAPID`, `UNITS`, `TLAXIS`, arcs
+//! ([`super::arc`]) and drilling cycles ([`super::cycle`]), and what says with which tool and how: `LOADTL`, `CUTTER`, `SPINDL`,
+//! `COOLNT`, `DELAY`, `STOP`, `OPSTOP` ([`super::section`]). Everything else is reported by word with its
 //! lines: as a loss where it may change the way (transformations, cutter compensation, unknown words), as a note where
-//! it does not (coolant, texts). A `GOTO` without an axis keeps the last one, at first (0, 0, 1).
+//! it does not (texts). A `GOTO` without an axis keeps the last one, at first (0, 0, 1).
 //!
 //! A feed per revolution needs the speed of the spindle. Where `SPINDL/` gives a surface speed instead (turning), the
 //! speed follows the distance of the tip from the part's Z axis, never taken below [`LEAST_RADIUS_MM`].
@@ -19,7 +20,9 @@ use super::cycle::Cycle;
 use super::error::ClReadError;
 use super::feed::Feed;
 use super::fields::{axis, count, is_identity, numbers, place, unit, vector};
+use super::section::{ClSection, ClTool, Said};
 use super::statement::{Item, Joiner, Statement};
+use crate::auxiliary::{AuxiliaryWord, Spindle};
 use crate::nc::Coolant;
 
 /// A path and what was noticed on the way.
@@ -38,16 +41,12 @@ const HARMLESS: &[&str] = &[
     "TPRINT",
     "OPNAME",
     "REMARK",
-    "LOAD",
     "SELECT",
     "SELECTL",
     "TOOLNO",
     "MACHIN",
     "REWIND",
     "SEQNO",
-    "STOP",
-    "OPSTOP",
-    "DELAY",
     "PAINT",
     "DISPLY",
     "END",
@@ -133,9 +132,13 @@ pub struct ClReader {
     pub(super) feed: Option<Feed>,
     /// Surface speed of the part under the tool, mm/min.
     pub(super) surface_mm_min: Option<f64>,
-    pub(super) coolant: Option<Coolant>,
     pub(super) rapid: bool,
-    pub(super) loaded: Option<String>,
+    /// What the tools do, one after the other.
+    pub(super) sections: Vec<ClSection>,
+    /// What has been said of the tool since the last point.
+    pub(super) said: Said,
+    /// The cutter is compensated at the control.
+    pub(super) compensated: bool,
     /// The way to the next point.
     pub(super) arc: Option<Arc>,
     /// The initial direction of a CATIA arc.
@@ -166,8 +169,10 @@ pub fn read(text: &str) -> Result<ClData, ClReadError> {
         reader.line(line)?;
     }
     reader.end()?;
-    let diagnostics = reader.diagnostics();
-    Ok(ClData { path: reader.path, diagnostics })
+    let mut diagnostics = reader.diagnostics();
+    reader.one_tool_only(&mut diagnostics);
+    let path = ClPath { cutter: reader.cutter(), spindle_rpm: reader.spindle_rpm(), ..reader.path };
+    Ok(ClData { path, diagnostics })
 }
 
 impl ClReader {
@@ -186,9 +191,10 @@ impl ClReader {
             tip: None,
             feed: None,
             surface_mm_min: None,
-            coolant: None,
             rapid: false,
-            loaded: None,
+            sections: Vec::new(),
+            said: Said::default(),
+            compensated: false,
             arc: None,
             heading: None,
             cycle: None,
@@ -237,22 +243,27 @@ impl ClReader {
         self.path.moves.len()
     }
 
-    /// The cutter, as far as the text has said it.
+    /// The first cutter, as far as the text has said it.
     #[must_use]
-    pub const fn cutter(&self) -> Option<CutterSpec> {
-        self.path.cutter
+    pub fn cutter(&self) -> Option<CutterSpec> {
+        self.first_tool().cutter
     }
 
-    /// The speed of the spindle, as far as the text has said it.
+    /// The first speed of the spindle, as far as the text has said it.
     #[must_use]
-    pub const fn spindle_rpm(&self) -> Option<f64> {
-        self.path.spindle_rpm
+    pub fn spindle_rpm(&self) -> Option<f64> {
+        self.first_tool().spindle.and_then(Spindle::rpm)
     }
 
-    /// The first coolant that the text has turned on.
+    /// The coolant of the first tool.
     #[must_use]
-    pub const fn coolant(&self) -> Option<Coolant> {
-        self.coolant
+    pub fn coolant(&self) -> Option<Coolant> {
+        self.first_tool().coolant
+    }
+
+    /// The first tool: as its first point has it, and before that as the text has said until now.
+    fn first_tool(&self) -> ClTool {
+        self.sections.first().map_or(self.said.tool, |s| s.tool)
     }
 
     /// No point has come yet.
@@ -273,6 +284,11 @@ impl ClReader {
         let mut all = self.diagnostics.clone();
         self.report_others(&mut all);
         all
+    }
+
+    /// As it is, with nothing noticed so far.
+    pub(super) fn without_findings(&self) -> Self {
+        Self { diagnostics: Vec::new(), others: BTreeMap::new(), ..self.clone() }
     }
 
     fn item(&mut self, item: Item) -> Result<(), ClReadError> {
@@ -304,8 +320,12 @@ impl ClReader {
             "UNITS" | "UNIT" => self.units(s),
             "SPINDL" => self.spindle(s)?,
             "CUTTER" => self.cutter_word(s)?,
-            "LOADTL" => self.load(s),
+            "LOADTL" | "LOAD" => self.load(s)?,
             "COOLNT" => self.coolant_word(s),
+            "DELAY" => self.delay(s)?,
+            "STOP" => self.say_later(s.line, AuxiliaryWord::Stop),
+            "OPSTOP" => self.say_later(s.line, AuxiliaryWord::OptionalStop),
+            "CUTCOM" => self.compensation(s),
             "TLAXIS" => self.axis = axis(s, &numbers(s, &s.fields)?)?,
             "CIRCLE" | "MOVARC" => self.arc(s)?,
             "INDIRV" => self.heading = Some(vector(s, &numbers(s, &s.fields)?)?),
@@ -321,7 +341,9 @@ impl ClReader {
                 if word == "TRNTYP" {
                     self.world = s.fields.first().is_some_and(|f| f == "WORLD");
                 }
-                let harmless = HARMLESS.contains(&word) || is_identity(s) || (word == "CSYS" && self.world);
+                let harmless = HARMLESS.contains(&word)
+                    || is_identity(s)
+                    || (self.world && matches!(word, "CSYS" | "TRNTYP"));
                 self.other(word, s.line, if harmless { Taken::Harmless } else { Taken::Lost });
             }
         }
@@ -358,6 +380,7 @@ impl ClReader {
     }
 
     pub(super) fn arrive(&mut self, line: usize, tip: Point3) -> Result<(), ClReadError> {
+        self.settle(line);
         if let Some(cycle) = self.cycle.clone() {
             return self.hole(line, tip, &cycle);
         }
@@ -384,6 +407,10 @@ impl ClReader {
     pub(super) fn push(&mut self, tip: Point3, motion: Motion) {
         self.first = false;
         self.tip = Some(tip);
+        if let Some(section) = self.sections.last_mut() {
+            section.begins_at_feed |= section.moves == 0 && motion != Motion::Rapid;
+            section.moves += 1;
+        }
         self.path.moves.push(ClMove { pose: Pose { tip, axis: self.axis }, motion });
     }
 

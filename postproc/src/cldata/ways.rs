@@ -3,12 +3,13 @@
 use osculate_geom::{Diagnostic, Point3, Unit3};
 use osculate_tools::cl::Motion;
 
-use super::arc::{self, Arc};
+use super::arc::{self, Arc, MOST_CHORDS, NoArc};
 use super::cycle::{self, Cycle};
 use super::error::ClReadError;
 use super::fields::place;
 use super::read::{ClReader, Taken};
 use super::statement::Statement;
+use crate::auxiliary::AuxiliaryWord;
 
 impl ClReader {
     pub(super) fn arc(&mut self, s: &Statement) -> Result<(), ClReadError> {
@@ -65,8 +66,9 @@ impl ClReader {
                 let taken = if self.cycle.is_some() { Taken::Moves } else { Taken::Lost };
                 self.other(&format!("CYCLE/{first}"), s.line, taken);
                 if self.cycle.as_ref().is_some_and(|c| c.kind == cycle::Kind::Tap) {
-                    let text = "CYCLE/TAP: a path has one spindle direction, the reversal is left out";
-                    self.diagnostics.push(Diagnostic::loss(place(s.line), text));
+                    let text =
+                        "CYCLE/TAP: the spindle is reversed at the bottom, which wants a floating tap holder";
+                    self.diagnostics.push(Diagnostic::warning(place(s.line), text));
                 }
             }
         }
@@ -82,7 +84,10 @@ impl ClReader {
         };
         match arc.chords(&from, &end.0, self.options.arc_tol_mm) {
             Ok(points) => points.into_iter().for_each(|p| self.push(p, end.1)),
-            Err(off_mm) => {
+            Err(NoArc::Chords(count)) => {
+                return Err(ClReadError::Bound { line: arc.line, what: "the arc", count, most: MOST_CHORDS });
+            }
+            Err(NoArc::Off(off_mm)) => {
                 let text = format!(
                     "the arc of line {} misses its ends by {off_mm:.4} mm: it is taken as a straight line",
                     arc.line
@@ -98,9 +103,22 @@ impl ClReader {
         self.rapid = false;
         let feed = cycle.feed.or(self.feed).ok_or(ClReadError::NoFeed { line })?;
         let feed = Motion::Feed(self.feed_mm_min(&feed, &tip)?);
-        for (above_mm, rapid) in cycle.heights() {
-            let motion = if rapid { Motion::Rapid } else { feed };
-            self.push(tip + self.axis.into_inner() * above_mm, motion);
+        let forward = self.said.tool.spindle;
+        if cycle.kind == cycle::Kind::Tap && forward.is_none_or(|s| s.rpm().is_none()) {
+            return Err(ClReadError::NoSpindle { line });
+        }
+        let dwell = self.dwell(line, cycle.dwell_s)?;
+        for step in cycle.steps() {
+            let motion = if step.rapid { Motion::Rapid } else { feed };
+            self.push(tip + self.axis.into_inner() * step.above_mm, motion);
+            match step.then {
+                cycle::Then::GoOn => {}
+                cycle::Then::Bottom => dwell.into_iter().for_each(|word| self.say(line, word)),
+                cycle::Then::Reverse(back) => {
+                    let spindle = forward.map(|s| if back { s.reversed() } else { s });
+                    spindle.into_iter().for_each(|s| self.say(line, AuxiliaryWord::Spindle(s)));
+                }
+            }
         }
         Ok(())
     }

@@ -4,11 +4,18 @@ use osculate_geom::{Diagnostic, Point3};
 
 use super::cutter::{self, Found};
 use super::error::ClReadError;
-use super::feed::Feed;
+use super::feed::{FEEDS, Feed};
 use super::fields::{count, is_word, numbers, place};
 use super::read::{ClReader, LEAST_RADIUS_MM, Taken};
 use super::statement::Statement;
+use crate::auxiliary::{AuxiliaryWord, Spindle};
 use crate::nc::Coolant;
+
+/// Tools of controls have up to eight digits.
+const LARGEST_TOOL: f64 = 1e8;
+
+/// Ten hours: what waits longer was meant in another unit, s.
+const LONGEST_DWELL_S: f64 = 36_000.0;
 
 impl ClReader {
     pub(super) fn feed(&mut self, s: &Statement) -> Result<(), ClReadError> {
@@ -30,7 +37,7 @@ impl ClReader {
             self.unit_mm
         };
         let mm = value * unit;
-        if !(mm > 0.0 && mm.is_finite()) {
+        if !FEEDS.contains(&mm) {
             return Err(ClReadError::Feed { line: s.line, feed_mm_min: mm });
         }
         self.feed = Some(Feed { mm, per_turn, line: s.line });
@@ -39,7 +46,7 @@ impl ClReader {
     }
 
     pub(super) fn feed_mm_min(&self, feed: &Feed, tip: &Point3) -> Result<f64, ClReadError> {
-        match (feed.per_turn, self.surface_mm_min, self.path.spindle_rpm) {
+        match (feed.per_turn, self.surface_mm_min, self.said.tool.spindle.and_then(Spindle::rpm)) {
             (false, ..) => Ok(feed.mm),
             (true, Some(v), _) => {
                 let radius_mm = tip.x.hypot(tip.y).max(LEAST_RADIUS_MM);
@@ -74,22 +81,23 @@ impl ClReader {
             self.diagnostics.push(Diagnostic::loss(place(s.line), text));
             return Ok(());
         }
-        if let Some(&rpm) = numbers(s, &values)?.first() {
-            self.surface_mm_min = None;
-            let known = self.path.spindle_rpm;
-            if self.first || known.is_none() {
-                self.path.spindle_rpm = Some(rpm);
-            } else if known != Some(rpm) {
-                let text = format!(
-                    "SPINDL/{rpm} changes the speed on the way; a path has one speed, the first is kept"
-                );
-                self.diagnostics.push(Diagnostic::loss(place(s.line), text));
+        let has = |names: &[&str]| s.fields.iter().any(|f| names.contains(&f.as_str()));
+        let spindle = match (numbers(s, &values)?.first(), self.said.tool.spindle) {
+            (Some(&rpm), _) if rpm < 0.0 => return Err(ClReadError::Speed { line: s.line, rpm }),
+            (Some(&rpm), _) if rpm > 0.0 => {
+                self.surface_mm_min = None;
+                self.said.speed_rpm = Some(rpm);
+                let counter = has(&["CCLW", "CCW"]);
+                Some(if counter { Spindle::Counter { rpm } } else { Spindle::Clockwise { rpm } })
             }
-        }
-        if s.fields.iter().any(|f| f == "CCLW" || f == "CCW") {
-            let text = "SPINDL/ counter-clockwise: a path's spindle turns clockwise";
-            self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-        }
+            (Some(_), _) => Some(Spindle::Off),
+            (None, _) if has(&["OFF"]) => Some(Spindle::Off),
+            // On again, as it was.
+            (None, Some(Spindle::Off)) => self.said.speed_rpm.map(|rpm| Spindle::Clockwise { rpm }),
+            (None, now) => now,
+        };
+        self.said.tool.spindle = spindle;
+        (self.said.lines[0], self.said.changed) = (s.line, true);
         Ok(())
     }
 
@@ -118,38 +126,73 @@ impl ClReader {
                 return Ok(());
             }
         };
-        if self.first || self.path.cutter.is_none() {
-            self.path.cutter = Some(spec);
-        } else if self.path.cutter != Some(spec) {
-            let text = "another CUTTER/ on the way; a path has one cutter, the first is kept";
-            self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-        }
+        (self.said.tool.cutter, self.said.cutter) = (Some(spec), true);
+        (self.said.lines[2], self.said.changed) = (s.line, true);
         Ok(())
     }
 
-    pub(super) fn load(&mut self, s: &Statement) {
-        let tool = s.fields.first().cloned();
-        if !self.first && self.loaded.is_some() && tool != self.loaded {
+    /// `LOADTL/3,...`, `LOAD/TOOL,3,...`, `LOAD/3`.
+    pub(super) fn load(&mut self, s: &Statement) -> Result<(), ClReadError> {
+        self.open_arc()?;
+        let mut fields = s.fields.iter().filter(|f| *f != "TOOL");
+        let number = fields.next().and_then(|f| numbers(s, std::slice::from_ref(f)).ok()?.first().copied());
+        let whole = number.filter(|n| n.fract() == 0.0 && (0.0..LARGEST_TOOL).contains(n));
+        let Some(number) = whole else {
             let text = format!(
-                "tool change to {} on the way: the path goes on with the first tool",
+                "{}/{} names no tool by a number: the tool stays what it was",
+                s.word,
                 s.fields.join(",")
             );
             self.diagnostics.push(Diagnostic::loss(place(s.line), text));
-        }
-        self.loaded = self.loaded.take().or(tool);
+            return Ok(());
+        };
+        // Whole and in the range of u32, as just checked.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let number = number as u32;
+        self.said.tool.number = Some(number);
+        (self.said.loaded, self.said.changed) = (Some(s.line), true);
+        Ok(())
     }
 
-    /// `COOLNT/ON`, `FLOOD`, `MIST`, `OFF`: a program has one coolant, the first, from its start to its end.
+    /// `COOLNT/ON`, `FLOOD`, `MIST`, `OFF`.
     pub(super) fn coolant_word(&mut self, s: &Statement) {
         let asked = match s.fields.first().map(String::as_str) {
             Some("MIST") => Some(Coolant::Mist),
             Some("OFF") => None,
             _ => Some(Coolant::Flood),
         };
-        match (self.coolant, asked) {
-            (None, _) => self.coolant = asked,
-            (Some(now), Some(other)) if now == other => {}
-            (Some(_), _) => self.other("COOLNT", s.line, Taken::Harmless),
+        self.said.tool.coolant = asked;
+        (self.said.lines[1], self.said.changed) = (s.line, true);
+    }
+
+    /// `DELAY/s`; in revolutions with `REV`.
+    pub(super) fn delay(&mut self, s: &Statement) -> Result<(), ClReadError> {
+        let (words, values): (Vec<_>, Vec<_>) = s.fields.iter().cloned().partition(|f| is_word(f));
+        let Some(&value) = numbers(s, &values)?.first() else { return Err(count(s, 0, "1")) };
+        let turns = words.iter().any(|w| w == "REV");
+        let rpm = self.said.tool.spindle.and_then(Spindle::rpm);
+        let seconds = match (turns, rpm) {
+            (true, Some(rpm)) => 60.0 * value / rpm,
+            (true, None) => return Err(ClReadError::NoSpindle { line: s.line }),
+            (false, _) => value,
+        };
+        self.dwell(s.line, seconds)?.into_iter().for_each(|word| self.say_later(s.line, word));
+        Ok(())
+    }
+
+    /// A dwell of this length; none where it is zero.
+    pub(super) fn dwell(&self, line: usize, seconds: f64) -> Result<Option<AuxiliaryWord>, ClReadError> {
+        if !(0.0..=LONGEST_DWELL_S).contains(&seconds) {
+            return Err(ClReadError::Dwell { line, seconds });
         }
+        Ok((seconds > 0.0).then_some(AuxiliaryWord::Dwell { seconds }))
+    }
+
+    /// `CUTCOM/OFF` where none is on says nothing; compensation is no part of a path of the cutter's centre.
+    pub(super) fn compensation(&mut self, s: &Statement) {
+        let off = s.fields.first().is_some_and(|f| f == "OFF");
+        let taken = if off && !self.compensated { Taken::Harmless } else { Taken::Lost };
+        self.compensated = !off;
+        self.other(&s.word, s.line, taken);
     }
 }

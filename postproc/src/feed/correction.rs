@@ -20,7 +20,7 @@ pub enum FeedMode {
     Kf,
     /// Corrected over all axes.
     Kv {
-        /// Radius at which a rotary axis counts, mm; absent: a degree counts as 1 mm.
+        /// Radius at which a rotary axis counts, mm; absent: as the control has it, or else a degree as 1 mm.
         fgref_mm: Option<f64>,
     },
     /// As [`FeedMode::Kv`], with F rising by at most this from block to block.
@@ -42,13 +42,14 @@ pub enum FeedMode {
 }
 
 impl FeedMode {
-    /// The metric over which the mode writes F; `None` where F is no path feed or is not corrected.
+    /// The metric over which the mode writes F for a control that reads it over `own`; `None` where F is no path feed or is not
+    /// corrected. A mode that names no radius takes the control's.
     #[must_use]
-    pub fn metric(&self) -> Option<PathMetric> {
+    pub fn metric(&self, own: PathMetric) -> Option<PathMetric> {
         match *self {
             Self::Tcp | Self::Kf => Some(PathMetric::Linear),
             Self::Kv { fgref_mm } | Self::Kz { fgref_mm, .. } => {
-                Some(PathMetric::Arc { radius_mm: fgref_mm.unwrap_or(DEGREE_AS_MM) })
+                Some(PathMetric::Arc { radius_mm: fgref_mm.unwrap_or(own.radius_mm()) })
             }
             Self::RotaryOnly => Some(PathMetric::RotaryOnly),
             Self::None | Self::InverseTime | Self::Fastest { .. } => None,
@@ -99,6 +100,15 @@ impl Step {
 }
 
 impl PathMetric {
+    /// The radius at which rotary axes count; where they do not count as arcs, that of a degree as 1 mm.
+    #[must_use]
+    pub const fn radius_mm(&self) -> f64 {
+        match *self {
+            Self::Arc { radius_mm } => radius_mm,
+            Self::Linear | Self::RotaryOnly => DEGREE_AS_MM,
+        }
+    }
+
     /// The length of the step, in mm, or in degrees where only rotary axes count.
     #[must_use]
     pub fn length(&self, step: &Step) -> f64 {
@@ -134,7 +144,7 @@ mod tests {
         let step = Step { linear_mm: 5.0, rotary_rad: [12f64.to_radians(), 0.0] };
         let t = duration_min(2.5, 500.0);
         assert!((t - 0.005).abs() < 1e-15);
-        let f = |mode: FeedMode| mode.metric().unwrap().length(&step) / t;
+        let f = |mode: FeedMode| mode.metric(PathMetric::Linear).unwrap().length(&step) / t;
         // Products and roots of a few doubles: relative rounding of 1e-15.
         let near = |got: f64, want: f64, tol: f64| assert!((got - want).abs() < tol, "{got} is not {want}");
         near(f(FeedMode::Kf), 1000.0, 1e-9);

@@ -65,6 +65,8 @@ pub struct Joint {
     pub machine_zero: Option<f64>,
     /// Where `G28` leads, in the control's own coordinate, where the machine file says it.
     pub home: Option<f64>,
+    /// Where it is out of the way, in the control's own coordinate, where the machine file says it.
+    pub retract: Option<f64>,
     /// Speed, acceleration, jerk.
     pub drive: Drive,
 }

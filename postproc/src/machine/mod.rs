@@ -2,6 +2,7 @@
 
 mod built_in;
 mod chain;
+mod gaps;
 mod pose;
 pub mod spec;
 mod two_axis;
@@ -11,6 +12,7 @@ use osculate_tools::Pose;
 
 pub use built_in::{built_in_names, built_in_text};
 pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
+pub use gaps::Gap;
 pub use pose::{Candidate, Orientations};
 pub(crate) use pose::{LIMIT_SLACK, NearWish, angle_between, nearest_turn};
 use spec::{ControlSpec, FeedReading, JointSpec, MachineSpec, Sense};
@@ -223,6 +225,19 @@ impl Machine {
         self.joints.iter().position(|j| j.letter == letter)
     }
 
+    /// Where the joint called Z is out of the way, in the control's own coordinate, mm: where the machine file says so, or else the end of
+    /// its travel away from the part, which is zero where the file says nothing of the control's zero. None: there is no Z, or a zero
+    /// of its own without the end of the travel.
+    #[must_use]
+    pub fn retract_mm(&self) -> Option<f64> {
+        let z = &self.joints[self.joint_named("Z").filter(|z| self.linear.contains(z))?];
+        if z.retract.is_some() || z.machine_zero.is_none() {
+            return Some(z.retract.unwrap_or(0.0));
+        }
+        let end = if z.direction.dot(&self.tool_axis) >= 0.0 { z.max } else { z.min };
+        Some(end? - z.own_zero()?)
+    }
+
     /// Forward kinematics: the pose of the tool in the **part's** frame.
     #[must_use]
     pub fn forward(&self, values: &JointValues, setup: &Setup) -> Pose {
@@ -321,11 +336,13 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
             wanted: "finite coordinates",
         });
     }
-    let (machine_zero, home) = match *spec {
-        JointSpec::Linear { machine_zero_mm, home_mm, .. } => (machine_zero_mm, home_mm),
-        JointSpec::Rotary { .. } => (None, None),
+    let (machine_zero, home, retract) = match *spec {
+        JointSpec::Linear { machine_zero_mm, home_mm, retract_mm, .. } => {
+            (machine_zero_mm, home_mm, retract_mm)
+        }
+        JointSpec::Rotary { .. } => (None, None, None),
     };
-    for (what, value) in [("machine_zero_mm", machine_zero), ("home_mm", home)] {
+    for (what, value) in [("machine_zero_mm", machine_zero), ("home_mm", home), ("retract_mm", retract)] {
         if let Some(value) = value.filter(|v| !v.is_finite()) {
             return Err(MachineError::Value { whose, what, value, wanted: "a finite number" });
         }
@@ -341,6 +358,7 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
         max: max.map(|m| m * to),
         machine_zero,
         home,
+        retract,
         drive: Drive {
             velocity_per_s: positive(&whose, "max_velocity", v)? * to,
             acceleration_per_s2: positive(&whose, "max_acceleration", a)? * to,

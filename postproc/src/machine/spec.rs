@@ -62,6 +62,10 @@ pub enum JointSpec {
         /// Where `G28` leads it, in the control's own coordinate; absent: not known.
         #[serde(default)]
         home_mm: Option<f64>,
+        /// Where it is out of the way, in the control's own coordinate: programs retract there before tools and planes are changed
+        /// and at their end. Read of the joint called Z only. Absent: the end of its travel away from the part.
+        #[serde(default)]
+        retract_mm: Option<f64>,
         /// Greatest speed.
         max_velocity_mm_s: f64,
         /// Greatest acceleration.
@@ -102,7 +106,8 @@ pub enum JointSpec {
     },
 }
 
-/// How the control reads F in G94 where linear and rotary axes move together and the program does not say.
+/// How the control reads F in G94 where linear and rotary axes move together and the program does not say. LinuxCNC reads it over the
+/// linear axes whatever stands here.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum FeedReading {

@@ -203,6 +203,7 @@ fn random_machine() -> impl Strategy<Value = Machine> {
                 min_mm: None,
                 max_mm: None,
                 machine_zero_mm: None,
+                retract_mm: None,
                 home_mm: None,
                 max_velocity_mm_s: 100.0,
                 max_acceleration_mm_s2: 1000.0,

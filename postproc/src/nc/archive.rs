@@ -31,9 +31,9 @@ fn call(line: &str) -> Option<String> {
     // Two letters at the start, as names of programs have; names in use for something else are no calls.
     let letters = name.len() > 2 && name.bytes().take(2).all(|b| b.is_ascii_alphabetic() || b == b'_');
     let plain = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    const WORDS: [&str; 14] = [
-        "TRAORI", "TRAFOOF", "ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES", "FNORM", "FFWON", "FFWOF",
-        "SOFT", "BRISK", "COMPOF", "SUPA",
+    const WORDS: [&str; 15] = [
+        "TRAORI", "TRAFOOF", "TRANS", "ORIWKS", "ORIMKS", "ORIVECT", "ORIPLANE", "ORIAXES", "FNORM", "FFWON",
+        "FFWOF", "SOFT", "BRISK", "COMPOF", "SUPA",
     ];
     (letters && plain && !WORDS.contains(&name.as_str())).then_some(name)
 }

@@ -71,6 +71,8 @@ pub(super) struct Asked {
     pub length: Option<LengthWord>,
     pub work_offset: Option<WorkOffset>,
     pub spindle: Option<Spindle>,
+    /// Programmed frames are deleted, which takes no axis words.
+    pub frames_deleted: bool,
     /// A slash stands before it.
     pub skipped: bool,
     /// It has words that do something.

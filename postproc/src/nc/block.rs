@@ -82,14 +82,20 @@ pub struct Program {
     pub tool_number: u32,
     /// Where program zero is; `None`: [`WorkOffset::usual`].
     pub work_offset: Option<WorkOffset>,
-    /// Spindle speed, clockwise; `None` leaves the spindle alone.
+    /// Spindle speed; `None` leaves the spindle alone.
     pub spindle_rpm: Option<f64>,
-    /// Coolant, from the first approach to the end.
+    /// The spindle turns counter-clockwise.
+    pub counter_clockwise: bool,
+    /// Coolant at the first approach.
     pub coolant: Option<Coolant>,
+    /// Coolant is on at some time.
+    pub cools: bool,
     /// How F is written.
     pub feed_word: FeedWord,
     /// How far the control may round corners, mm.
     pub blend_mm: f64,
+    /// Where Z goes in the machine's own coordinates at the start, between tools and at the end; `None`: it is left alone.
+    pub retract: Option<i64>,
     /// Names of the linear words.
     pub linear_names: [String; 3],
     /// Decimals of the linear words.
@@ -173,11 +179,6 @@ impl Program {
         if name.is_empty() { "PROGRAM".into() } else { name }
     }
 
-    /// The name of the linear word along the spindle for the retracts at start and end, if there is one called Z.
-    pub(crate) fn has_z(&self) -> bool {
-        self.linear_names.iter().any(|n| n == "Z")
-    }
-
     /// The words of its work offset; none where the dialect's usual one needs none.
     pub(crate) fn work_offset_words(&self, dialect: Dialect) -> Result<Option<String>, WriteError> {
         match self.work_offset.or(WorkOffset::usual(dialect)) {
@@ -187,6 +188,11 @@ impl Program {
                 None => Err(WriteError::WorkOffset { dialect: dialect.name(), offset }),
             },
         }
+    }
+
+    /// The word that starts its spindle.
+    pub(crate) const fn spindle_word(&self) -> &'static str {
+        if self.counter_clockwise { "M4" } else { "M3" }
     }
 
     /// It works in tilted planes.

@@ -62,6 +62,7 @@ impl<S: Sink> Interpreter<'_, S> {
             682 if self.dialect == Dialect::Fanuc => asked.plane = true,
             531 if self.dialect == Dialect::Fanuc => asked.turn_to_plane = true,
             690 if self.dialect == Dialect::Fanuc => self.level(),
+            921 if self.dialect == Dialect::LinuxCnc => {}
             530 => asked.machine_frame = true,
             1530 if self.dialect == Dialect::Sinumerik => asked.machine_frame = true,
             600 | 610 => asked.path = Some(PathWord::ExactPath),
@@ -270,6 +271,9 @@ impl<S: Sink> Interpreter<'_, S> {
                 if group.letters.is_empty() {
                     self.state.group = None;
                 }
+            }
+            "TRANS" if self.dialect == Dialect::Sinumerik && arguments.is_empty() => {
+                asked.frames_deleted = true
             }
             "CYCLE832" => return self.cycle832(line, arguments),
             "CYCLE800" => return self.cycle800(line, arguments),

@@ -5,7 +5,7 @@
 use super::Dialect;
 use super::asked::{Asked, LengthWord, PathWord};
 use super::control::{Corner, Length, Spindle, Tool};
-use super::event::Sink;
+use super::event::{Event, Sink};
 use super::interpret::Interpreter;
 use super::read_error::ReadError;
 use super::work_offset::WorkOffset;
@@ -156,6 +156,15 @@ impl<S: Sink> Interpreter<'_, S> {
                 }
             }
             ["DEF", n, ..] if n.starts_with("32.") => {}
+            ["DEF", "9.0", ..] => {}
+            ["DEF", "9.1", ref of @ ..] => {
+                let text = of.concat();
+                let seconds = text.trim_start_matches("DWELL").trim_start_matches("V.ZEIT").parse::<f64>();
+                match seconds.ok().filter(|s| s.is_finite() && *s >= 0.0) {
+                    Some(seconds) => self.tell(&Event::Dwell(seconds / 60.0)),
+                    None => return self.refuse(line, &format!("CYCL {arguments}")),
+                }
+            }
             ["DEF", "247", ..] => return self.preset(line, &words),
             _ => return self.refuse(line, &format!("CYCL {arguments}")),
         }

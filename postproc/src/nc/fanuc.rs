@@ -33,8 +33,8 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
         lines.line(&format!("({comment})"));
     }
     lines.line("G17 G21 G40 G49 G80 G90 G94");
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
     call(program, work_offset.as_deref(), lines);
     Ok(())
@@ -45,7 +45,7 @@ fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("T{} M6", program.tool_number));
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
-        lines.line(&format!("S{} M3", number::feed(rpm)));
+        lines.line(&format!("S{} {}", number::feed(rpm), program.spindle_word()));
     }
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
@@ -92,8 +92,8 @@ fn plane(m: &NcMove, lines: &mut Lines) {
 pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines: &mut Lines) {
     lines.line("G49");
     lines.line("G69");
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
     modal.forget();
     modal.approach(program, &WORDING, m, &[Which::Rotary]).iter().for_each(|l| lines.line(l));
@@ -112,7 +112,7 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 fn leave(program: &Program, lines: &mut Lines) {
     lines.line("G94");
     lines.line("G5.1 Q0");
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");
@@ -120,7 +120,7 @@ fn leave(program: &Program, lines: &mut Lines) {
     if program.in_planes() {
         lines.line("G69");
     }
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
 }

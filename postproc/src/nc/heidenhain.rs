@@ -5,7 +5,8 @@
 //! - Directions of the tool are `LN X Y Z TX TY TZ`, with `FUNCTION TCPM` on.
 //! - `PLANE SPATIAL ... STAY` tilts the working plane without motion: the program positions the rotary axes before.
 //! - Every position carries a sign; `FMAX` holds for its own block only.
-//! - `CYCL DEF 32` bounds what smoothing may do to the path (finishing).
+//! - `CYCL DEF 32` bounds what smoothing may do to the path (finishing); without a value it is off.
+//! - `PLANE RESET STAY` at the start deletes a tilted plane that an aborted program may have left.
 //! - `M126` makes endless axes take the shortest way. There is no inverse time feed. `M91` is machine coordinates.
 
 use super::Dialect;
@@ -28,6 +29,13 @@ fn axis(text: &mut String, name: &str, position: Position) {
     number::push_rounded(text, position.counts, position.decimals);
 }
 
+/// A position with all decimals.
+fn signed(name: &str, counts: i64) -> String {
+    let mut text = String::new();
+    axis(&mut text, name, Position { counts, decimals: number::DECIMALS });
+    text
+}
+
 fn rotary(text: &mut String, name: &RotaryName, counts: i64) {
     axis(text, &name.letter, Position::of(name, counts));
 }
@@ -44,10 +52,13 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
         lines.line(&format!("; {comment}"));
     }
     lines.line("FUNCTION RESET TCPM");
+    if !program.rotary_names.is_empty() {
+        lines.line("PLANE RESET STAY");
+    }
     lines.line("M126");
     work_offset.iter().for_each(|words| lines.line(words));
-    if program.has_z() {
-        lines.line("L Z+0.0000 R0 FMAX M91");
+    if let Some(z) = program.retract {
+        lines.line(&format!("L {} R0 FMAX M91", signed("Z", z)));
     }
     call(program, lines);
     Ok(())
@@ -58,7 +69,7 @@ fn call(program: &Program, lines: &mut Lines) {
     let speed = program.spindle_rpm.map_or(String::new(), |rpm| format!(" S{}", number::feed(rpm)));
     lines.line(&format!("TOOL CALL {} Z{speed}", program.tool_number));
     if program.spindle_rpm.is_some() {
-        lines.line("M3");
+        lines.line(program.spindle_word());
     }
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
@@ -102,7 +113,7 @@ fn plane(m: &NcMove) -> String {
     let mut text = String::from("PLANE SPATIAL");
     for (name, c) in ["SPA", "SPB", "SPC"].iter().zip(m.orientation) {
         text.push(' ');
-        axis(&mut text, name, Position { counts: c, decimals: number::DECIMALS });
+        text.push_str(&signed(name, c));
     }
     text + " STAY"
 }
@@ -110,8 +121,8 @@ fn plane(m: &NcMove) -> String {
 /// Goes from one plane to another: away in machine coordinates, rotary axes, plane, back.
 pub(super) fn next_plane(program: &Program, modal: &mut Modal, m: &NcMove, lines: &mut Lines) {
     lines.line("PLANE RESET STAY");
-    if program.has_z() {
-        lines.line("L Z+0.0000 R0 FMAX M91");
+    if let Some(z) = program.retract {
+        lines.line(&format!("L {} R0 FMAX M91", signed("Z", z)));
     }
     modal.forget();
     let mut approach = |lines: &mut Lines, which: &[Which]| {
@@ -132,15 +143,17 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 
 /// Away from the part, with everything off.
 fn leave(program: &Program, lines: &mut Lines) {
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");
+    lines.line("CYCL DEF 32.0 TOLERANCE");
+    lines.line("CYCL DEF 32.1");
     if program.in_planes() {
         lines.line("PLANE RESET STAY");
     }
     lines.line("FUNCTION RESET TCPM");
-    if program.has_z() {
-        lines.line("L Z+0.0000 R0 FMAX M91");
+    if let Some(z) = program.retract {
+        lines.line(&format!("L {} R0 FMAX M91", signed("Z", z)));
     }
 }

@@ -59,7 +59,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             lengths: Vec::new(),
             gauge_length_mm: frame.setup.gauge_length_mm,
             strict,
-            state: State::new(),
+            state: State::new(dialect),
             sink,
             diagnostics: Vec::new(),
             spindle_rpm: None,
@@ -199,6 +199,9 @@ impl<'a, S: Sink> Interpreter<'a, S> {
                 Word::Skip => asked.skipped = true,
             }
             asked.acts |= word.acts();
+        }
+        if asked.frames_deleted && !asked.axes.is_empty() {
+            return self.refuse(line, "TRANS with axes").map(|()| false);
         }
         self.settle(&asked);
         self.settle_control(line, &asked);

@@ -4,6 +4,7 @@
 //!   with a tilting rotary table have M428 for the tip in the part's frame and M429 for plain joints).
 //! - F in G94 is read over X Y Z; a move of rotary axes alone is read in deg/min. G93 wants F in every block.
 //! - Rotary axes count on through whole turns; nothing is wrapped.
+//! - `G92.1` at the start deletes offsets of `G92` that an aborted program may have left.
 //! - `G64 P` bounds how far blending may leave the programmed corner. `G53` moves in machine coordinates.
 
 use super::Dialect;
@@ -40,12 +41,13 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
         lines.line(&format!("({comment})"));
     }
     lines.line("G17 G21 G40 G49 G80 G90 G94");
+    lines.line("G92.1");
     lines.line(&format!("G64 P{:.4}", program.blend_mm));
     if let Some(words) = switch {
         lines.line(&words.off);
     }
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
     call(program, work_offset.as_deref(), lines);
     Ok(())
@@ -57,7 +59,7 @@ fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("G43 H{}", program.tool_number));
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
-        lines.line(&format!("S{} M3", number::feed(rpm)));
+        lines.line(&format!("S{} {}", number::feed(rpm), program.spindle_word()));
     }
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
@@ -98,14 +100,14 @@ pub(super) fn tail(program: &Program, lines: &mut Lines) {
 fn leave(program: &Program, lines: &mut Lines) {
     let switch = program.linuxcnc_tcp.as_ref();
     lines.line("G94");
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");
     if let Some(words) = switch {
         lines.line(&words.off);
     }
-    if program.has_z() {
-        lines.line("G53 G0 Z0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G53 G0 Z{}", number::plain(z)));
     }
 }

@@ -2,13 +2,16 @@
 
 mod archive;
 mod asked;
+mod auxiliary;
 pub mod block;
 mod codes;
 mod conditions;
 pub mod conduct;
 mod control;
+pub mod dialect_file;
 mod event;
 mod fanuc;
+mod feed_reading;
 mod frames;
 mod heidenhain;
 mod interpret;
@@ -72,6 +75,18 @@ impl Dialect {
             Self::Heidenhain => "heidenhain",
             Self::Fanuc => "fanuc",
             Self::LinuxCnc => "linuxcnc",
+        }
+    }
+
+    /// How its programs turn an axis without end, and what of the control's data they rely on.
+    pub(crate) const fn turning(self) -> &'static str {
+        match self {
+            Self::Sinumerik => "a modulo axis, DC goes the shortest way",
+            Self::Heidenhain => "M126 goes the shortest way",
+            Self::Fanuc => "a rollover axis, parameters 1006 and 1008, that goes the shortest way",
+            Self::LinuxCnc => {
+                "it counts on through whole turns, its limits must hold them, no WRAPPED_ROTARY"
+            }
         }
     }
 

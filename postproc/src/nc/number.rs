@@ -35,6 +35,13 @@ pub fn fixed(counts: i64) -> String {
     text
 }
 
+/// Without trailing zeros: `0`, `-12.5`.
+#[must_use]
+pub fn plain(counts: i64) -> String {
+    let text = fixed(counts);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// Adds a position with fixed decimals.
 pub fn push_fixed(text: &mut String, counts: i64) {
     if counts < 0 {

@@ -47,6 +47,16 @@ pub enum ReadError {
         /// The axis.
         axis: String,
     },
+    /// A way that is too long for what it curves by.
+    #[error(
+        "line {line}: the block's way has more than {most} straight pieces: is a number in another unit?"
+    )]
+    Bound {
+        /// Line.
+        line: usize,
+        /// Pieces of a block at most.
+        most: usize,
+    },
     /// The linear joints cannot hold the tip.
     #[error("line {line}: the machine's linear joints lie in one plane here")]
     Flat {

@@ -17,6 +17,7 @@ use super::interpret::Interpreter;
 use super::names::Names;
 pub use super::read_error::ReadError;
 use super::state::FeedReading;
+use super::way::MOST_PIECES;
 use crate::machine::{JointValues, Machine};
 use crate::motion::{FeedBlock, JointDemand, TimedMove, rapid_time_min};
 use crate::setup::Setup;
@@ -201,7 +202,7 @@ impl<'a> Reader<'a> {
         }
         let frame = Frame { machine, setup };
         let tolerance = [options.tip_tol_mm, options.axis_tol_rad];
-        let collect = Collect { out: ReadBack::default(), tolerance };
+        let collect = Collect { out: ReadBack::default(), tolerance, unbounded: None };
         let mut control = Interpreter::new(names.dialect(), frame, options.strict, collect);
         control.rest_unnamed(names.all());
         Ok(Self { control, lines: 0, ended: false, moved: false })
@@ -215,6 +216,9 @@ impl<'a> Reader<'a> {
         self.lines += 1;
         if !self.ended {
             self.ended = self.control.text_line(self.lines, line)?;
+            if let Some(line) = self.control.sink.unbounded {
+                return Err(ReadError::Bound { line, most: MOST_PIECES });
+            }
             self.moved |= !self.control.sink.out.moves.is_empty();
         }
         Ok(())
@@ -265,6 +269,8 @@ impl<'a> Reader<'a> {
 struct Collect {
     out: ReadBack,
     tolerance: [f64; 2],
+    /// The line of a block whose way is too long for its curvature.
+    unbounded: Option<usize>,
 }
 
 impl Sink for Collect {
@@ -295,7 +301,10 @@ impl Sink for Collect {
 impl Collect {
     fn moved(&mut self, frame: Frame<'_>, m: &Moved) {
         let time_min = if m.rapid { rapid_time_min(frame.machine, &m.from, &m.to).0 } else { m.time_min };
-        let poses = m.way.densified(&|k| frame.pose(k), self.tolerance);
+        let Some(poses) = m.way.densified(&|k| frame.pose(k), self.tolerance) else {
+            self.unbounded = self.unbounded.or(Some(m.line));
+            return;
+        };
         let mut tip_length_mm = 0.0;
         let mut at = frame.pose(&m.way.from).tip;
         for (_, pose) in &poses {

@@ -10,8 +10,9 @@
 //! - F is read over the axes of `FGROUP`, a rotary one as an arc of radius `FGREF`: the program says both, so that it
 //!   does not depend on machine data. Rotary axes alone, outside of `FGROUP`, are read in deg/min.
 //! - `G93` wants F in every block; switching between G93 and G94 deletes F.
-//! - `CYCLE832` bounds what the control's compressor and smoothing may do to the path (finishing).
-//! - `SUPA` with `D0` moves in machine coordinates without tool length: Z0 is the top of the Z axis.
+//! - `CYCLE832` bounds what the control's compressor and smoothing may do to the path (finishing), and is off at the end.
+//! - `TRANS` at the start deletes programmed frames that an aborted program may have left.
+//! - `SUPA` with `D0` moves in machine coordinates without tool length, to where the machine's file has Z out of the way.
 
 use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
@@ -53,6 +54,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     }
     lines.line("G17 G40 G64 G90 G94 G710");
     lines.line("TRAFOOF");
+    lines.line("TRANS");
     retract(lines, program);
     call(program, work_offset.as_deref(), lines);
     Ok(())
@@ -65,7 +67,7 @@ fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line("D1");
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
-        lines.line(&format!("S{} M3", number::feed(rpm)));
+        lines.line(&format!("S{} {}", number::feed(rpm), program.spindle_word()));
     }
     if let Some(coolant) = program.coolant {
         lines.line(coolant.word());
@@ -150,10 +152,11 @@ fn leave(program: &Program, lines: &mut Lines) {
     if program.feed_word == FeedWord::Inverse {
         lines.line("G94");
     }
-    if program.coolant.is_some() {
+    if program.cools {
         lines.line("M9");
     }
     lines.line("M5");
+    lines.line("CYCLE832()");
     if program.in_planes() {
         lines.line("CYCLE800()");
     }
@@ -162,8 +165,8 @@ fn leave(program: &Program, lines: &mut Lines) {
 }
 
 fn retract(lines: &mut Lines, program: &Program) {
-    if program.has_z() {
-        lines.line("G0 SUPA Z0 D0");
+    if let Some(z) = program.retract {
+        lines.line(&format!("G0 SUPA Z{} D0", number::plain(z)));
     }
 }
 

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use nalgebra::Isometry3;
 use osculate_geom::{Unit3, Vec3};
 
-use crate::feed::{DEGREE_AS_MM, PathMetric, Step};
+use super::Dialect;
+use crate::feed::{PathMetric, Step};
 use crate::linearize::slerp;
 use crate::machine::{JointValues, MAX_JOINTS, Machine};
 use crate::setup::Setup;
@@ -28,6 +29,7 @@ pub(super) struct Group {
 /// The state of the control.
 #[derive(Clone, Debug)]
 pub(super) struct State {
+    pub dialect: Dialect,
     /// mm per unit of programmed length.
     pub unit_mm: f64,
     pub absolute: bool,
@@ -69,8 +71,9 @@ pub(super) struct Known {
 }
 
 impl State {
-    pub fn new() -> Self {
+    pub fn new(dialect: Dialect) -> Self {
         Self {
+            dialect,
             unit_mm: 1.0,
             absolute: true,
             rapid: None,
@@ -149,19 +152,20 @@ impl State {
 
     /// The metric over which F is read now.
     pub fn metric(&self, machine: &Machine) -> PathMetric {
+        let own = self.dialect.feed_metric(machine);
         match &self.group {
             Some(group) => {
                 let names = |place: &usize| group.letters.contains(&machine.joints()[*place].letter);
                 let rotary = machine.rotary().iter().any(names);
                 let linear = machine.linear().iter().any(names);
                 match (linear, rotary) {
-                    (true, true) => PathMetric::Arc { radius_mm: group.radius_mm.unwrap_or(DEGREE_AS_MM) },
+                    (true, true) => PathMetric::Arc { radius_mm: group.radius_mm.unwrap_or(own.radius_mm()) },
                     (false, true) => PathMetric::RotaryOnly,
                     _ => PathMetric::Linear,
                 }
             }
             None if self.of_tip() => PathMetric::Linear,
-            None => machine.control().feed_reading.into(),
+            None => own,
         }
     }
 

@@ -157,7 +157,7 @@ impl Scan<'_> {
             self.at += 1;
         }
         self.while_is(|c| c.is_ascii_digit() || c == '.');
-        let value = self.text[start..self.at].parse::<f64>().ok().filter(|v| v.is_finite());
+        let value = self.text[start..self.at].parse::<f64>().ok().filter(|v| held(*v));
         if value.is_none() {
             self.at = start;
         }
@@ -260,9 +260,14 @@ impl Scan<'_> {
             _ => return Err(bad),
         };
         let inside = self.enclosed('(', ')').ok_or_else(|| bad.clone())?;
-        let value = inside.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or(bad)?;
+        let value = inside.trim().parse::<f64>().ok().filter(|v| held(*v)).ok_or(bad)?;
         Ok(address(name, value, manner))
     }
+}
+
+/// No word of a control holds more than nine digits before the point.
+fn held(value: f64) -> bool {
+    value.abs() <= 1e9
 }
 
 fn address(name: String, value: f64, manner: Manner) -> Word {
@@ -310,7 +315,7 @@ fn klartext_words(text: &str) -> Result<Vec<Word>, BadWord> {
         "TOOL" => {
             let number = |letter: char| {
                 let numbers = parts.iter().filter_map(|p| p.strip_prefix(letter));
-                numbers.filter_map(|n| n.parse::<f64>().ok()).find(|n| n.is_finite())
+                numbers.filter_map(|n| n.parse::<f64>().ok()).find(|n| held(*n))
             };
             let call = std::iter::once(name("TOOL", &parts[1..]));
             return Ok(call.chain(number('S').map(Word::S)).chain(number('F').map(Word::F)).collect());
@@ -335,7 +340,7 @@ fn klartext_word(part: &str) -> Result<Word, BadWord> {
     };
     let split = name.find(|c: char| !c.is_ascii_alphabetic()).ok_or_else(bad)?;
     let (letters, number) = name.split_at(split);
-    let value: f64 = number.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(bad)?;
+    let value: f64 = number.parse().ok().filter(|v: &f64| held(*v)).ok_or_else(bad)?;
     let of_direction = matches!(letters, "TX" | "TY" | "TZ" | "NX" | "NY" | "NZ");
     if letters.len() != 1 && !of_direction {
         return Err(bad());

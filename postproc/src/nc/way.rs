@@ -112,8 +112,8 @@ impl Way {
     }
 
     /// Poses along the way with the share of the block at which each is reached, the start left out: straight moves
-    /// between them stay within the tolerances (mm and rad).
-    pub fn densified(&self, pose: &dyn Fn(&Known) -> Pose, tolerance: [f64; 2]) -> Vec<(f64, Pose)> {
+    /// between them stay within the tolerances (mm and rad). None where that takes more than [`MOST_PIECES`].
+    pub fn densified(&self, pose: &dyn Fn(&Known) -> Pose, tolerance: [f64; 2]) -> Option<Vec<(f64, Pose)>> {
         // Looking at three inner points only sees pieces of up to an eighth of a turn reliably. The cap is 512 turns.
         let pieces = (self.turned_rad() / std::f64::consts::FRAC_PI_4).ceil().clamp(1.0, 4096.0);
         let mut cut = Cut { way: self, pose, tolerance, poses: Vec::new() };
@@ -122,16 +122,21 @@ impl Way {
         while k <= pieces {
             let t = k / pieces;
             let b = (t, pose(&self.at(t)));
-            cut.halve(a, b, MOST_HALVINGS);
+            if !cut.halve(a, b, MOST_HALVINGS) {
+                return None;
+            }
             a = b;
             k += 1.0;
         }
-        cut.poses
+        Some(cut.poses)
     }
 }
 
 /// Halvings of a piece at most: 2^-30 of it is below any tolerance.
 const MOST_HALVINGS: u32 = 30;
+
+/// Straight moves of one block at most: a full turn of 10 m radius within the finest tolerance in use has fewer.
+pub(super) const MOST_PIECES: usize = 100_000;
 
 struct Cut<'a> {
     way: &'a Way,
@@ -141,7 +146,8 @@ struct Cut<'a> {
 }
 
 impl Cut<'_> {
-    fn halve(&mut self, a: (f64, Pose), b: (f64, Pose), left: u32) {
+    /// False where there are too many pieces.
+    fn halve(&mut self, a: (f64, Pose), b: (f64, Pose), left: u32) -> bool {
         let [tip_mm, axis_rad] = self.tolerance;
         let near = [0.25, 0.5, 0.75].into_iter().all(|s| {
             let true_pose = (self.pose)(&self.way.at(a.0 + (b.0 - a.0) * s));
@@ -152,11 +158,10 @@ impl Cut<'_> {
         });
         if near || left == 0 {
             self.poses.push(b);
-            return;
+            return self.poses.len() <= MOST_PIECES;
         }
         let t = 0.5 * (a.0 + b.0);
         let middle = (t, (self.pose)(&self.way.at(t)));
-        self.halve(a, middle, left - 1);
-        self.halve(middle, b, left - 1);
+        self.halve(a, middle, left - 1) && self.halve(middle, b, left - 1)
     }
 }

@@ -3,7 +3,8 @@
 use super::block::{NcMove, Program, WriteError};
 use super::lines::Lines;
 use super::modal::{Modal, Wording};
-use super::{Dialect, fanuc, heidenhain, linuxcnc, sinumerik};
+use super::{Dialect, auxiliary, fanuc, heidenhain, linuxcnc, sinumerik};
+use crate::auxiliary::AuxiliaryWord;
 
 /// Words moves as they come.
 pub(crate) struct Writer<'a> {
@@ -103,6 +104,11 @@ impl<'a> Writer<'a> {
             self.words.push_str(" FMAX");
         }
         lines.line(&self.words[1..]);
+    }
+
+    /// Says what is done before the next move.
+    pub fn say(&mut self, word: AuxiliaryWord) {
+        auxiliary::say(self.dialect, word, &mut self.lines);
     }
 
     /// The end of the program.

@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod blade;
+pub mod cl_text;
 
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_postproc::readback::ReadBack;

@@ -112,7 +112,8 @@ impl Course {
         let mut out = Self::default();
         for (setup, text) in setups.iter().zip(texts) {
             let job = &setup.job;
-            let (place, notes) = place(job, part, text.text);
+            let engine_text = job.control().language.engine_text(text.text);
+            let (place, notes) = place(job, part, &engine_text);
             let tools = job.each_tool();
             let read = nc::read_back_tools(text.text, (job, &tools), job.control(), &place, lenient)
                 .map_err(|why| Failure::file(text.file, why))?;
@@ -124,7 +125,7 @@ impl Course {
             out.diagnostics.extend(read.diagnostics);
             let (begin, clock) = (out.motions.len(), out.times_min.last().copied().unwrap_or(0.0));
             out.take_calls(text.file, begin, &read.calls, &tools)?;
-            let names = named(text.text);
+            let names = named(&engine_text);
             for (k, (line, name, tool)) in names.iter().enumerate() {
                 let first = |line: usize| read.motions.partition_point(|m| (m.block as usize) < line);
                 let from = if k == 0 { 0 } else { first(*line) };

@@ -77,7 +77,8 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
         let mut diagnostics = held.job.control_notes();
         diagnostics.extend(notes);
         diagnostics.extend(posted.diagnostics);
-        out.push(Program { path: PathBuf::from(&file), file, text: posted.text, setup: place, diagnostics });
+        let text = control.language.worded(posted.text)?;
+        out.push(Program { path: PathBuf::from(&file), file, text, setup: place, diagnostics });
     }
     Ok(out)
 }

@@ -1,0 +1,142 @@
+//! CL texts of several tools, with what other systems write in them: every tool makes its moves, with its own speed, and what a program
+//! cannot say is named by its line.
+
+mod common;
+
+use common::cl_text::posted;
+use osculate_geom::Severity;
+use osculate_postproc::cldata::{ClReadOptions, ClStream, read};
+use osculate_postproc::{AuxiliaryWord, Dialect, FeedMode, Machine, Spindle};
+use osculate_tools::CutterSpec;
+use std::io::Cursor;
+
+/// A drill, a mill and a tap; words in the orders of other systems: cutter before the tool, tool before the cutter, coolant and speed changed on
+/// the way, a tool that comes again, dwells and stops.
+const THREE: &str = "PARTNO/THREE\nUNIT/MM\nRAPID\nGOTO/0,0,100\nCUTTER/12.,0,6.,3.605164,31.,0,63.\nLOAD/TOOL,12\nSELECT/TOOL,3\n\
+    COOLNT/FLOOD\nSPINDL/3500,RPM,CLW\nRAPID\nGOTO/10,20,30\nCYCLE/DRILL,FEDTO,5.4,MMPM,364.5,RAPTO,3,RTRCTO,27.5,DWELL,1.5\nGOTO/10,20,-2\n\
+    GOTO/40,20,-2\nCYCLE/OFF\nCYCLE/DEEP2,FEDTO,9,1STPECK,5,SUBPECK,2,MMPM,100,RAPTO,3,RTRCTO,27.5\nGOTO/10,5,-2\nCYCLE/OFF\nRAPID\nGOTO/10,5,60\n\
+    LOADTL/3,1\nCUTTER/14,2\nSPINDL/6000,CLW\nCOOLNT/OFF\nOPSTOP\nRAPID\nGOTO/0,0,20,0,0.1,1\nFEDRAT/500,MMPM\nGOTO/0,0,1,0,0.1,1\n\
+    CIRCLE/20,0,1,0,0,1\nGOTO/40,0,1\nSPINDL/8000\nCOOLNT/MIST\nFEDRAT/800\nDELAY/2\nGOTO/40,15,1,0,0.2,1\nRAPID\nGOTO/40,15,50\n\
+    CUTTER/6,0,3,0,0,0,80\nLOADTL/7\nSPINDL/400,CLW\nRAPID\nGOTO/10,20,30,0,0,1\nCYCLE/TAP,FEDTO,8,MMPM,400,RAPTO,4\nGOTO/10,20,-2\nGOTO/40,20,-2\nCYCLE/OFF\n\
+    RAPID\nGOTO/40,20,60\nLOADTL/12\nSPINDL/2000,CCLW\nRAPID\nGOTO/0,0,30\nCYCLE/BORE,FEDTO,2,MMPM,50,RAPTO,1\nGOTO/0,0,0\nCYCLE/OFF\nFINI\n";
+
+fn machine(dialect: Dialect) -> Machine {
+    let name = if dialect == Dialect::LinuxCnc { "linuxcnc-xyzac" } else { "trunnion-ac" };
+    Machine::built_in(name).expect("a built-in machine")
+}
+
+#[test]
+fn every_tool_makes_its_moves_in_every_dialect() {
+    for dialect in Dialect::ALL {
+        for feed in [FeedMode::Tcp, FeedMode::Kf] {
+            let one =
+                posted(THREE, &machine(dialect), dialect, feed).unwrap_or_else(|e| panic!("{dialect}: {e}"));
+            assert_eq!(one.difference(), None, "{dialect}\n{}", one.text);
+            let numbers: Vec<_> = one.outline.sections.iter().map(|s| s.tool.number).collect();
+            assert_eq!(numbers, [Some(12), Some(3), Some(7), Some(12)]);
+            let speeds = [(Some(12), 3500.0), (Some(3), 6000.0), (Some(7), 400.0)];
+            assert_eq!(one.back.speeds_rpm, speeds, "{dialect}");
+            let tools = one.text.lines().filter(|l| l.contains("M6") || l.contains("TOOL CALL 1")).count();
+            assert!(tools >= 2, "{}", one.text);
+        }
+    }
+}
+
+#[test]
+fn sections_know_their_tools() {
+    let cl = ClStream::new(|| Ok(Cursor::new(THREE.as_bytes())), ClReadOptions::default());
+    let outline = cl.outline().unwrap();
+    let lost: Vec<_> = outline.diagnostics.iter().filter(|d| d.severity == Severity::Loss).collect();
+    assert!(lost.is_empty(), "{lost:?}");
+    let [drill, mill, tap, bore] = &outline.sections[..] else { panic!("{:?}", outline.sections) };
+    // The point before the first tool is the drill's; loaded again it has its cutter still.
+    assert_eq!((drill.line, drill.moves), (6, 2 + 2 * 5 + 2 + 3 + 2 * 2 + 2 + 1));
+    assert_eq!(bore.tool.cutter, drill.tool.cutter);
+    assert_eq!(bore.tool.spindle, Some(Spindle::Counter { rpm: 2000.0 }));
+    let toroidal = CutterSpec::Toroidal { diameter_mm: 14.0, corner_radius_mm: 2.0, length_mm: 42.0 };
+    assert_eq!(mill.tool.cutter, Some(toroidal));
+    assert_eq!(mill.tool.coolant, None);
+    let dwells = drill.auxiliary.iter().filter(|a| a.word == AuxiliaryWord::Dwell { seconds: 1.5 });
+    assert_eq!(dwells.count(), 2);
+    let words: Vec<AuxiliaryWord> = mill.auxiliary.iter().map(|a| a.word).collect();
+    assert_eq!(words[0], AuxiliaryWord::OptionalStop);
+    assert!(words.contains(&AuxiliaryWord::Spindle(Spindle::Clockwise { rpm: 8000.0 })));
+    assert!(words.contains(&AuxiliaryWord::Dwell { seconds: 2.0 }));
+    let turns: Vec<AuxiliaryWord> = tap.auxiliary.iter().map(|a| a.word).collect();
+    let (back, on) = (Spindle::Counter { rpm: 400.0 }, Spindle::Clockwise { rpm: 400.0 });
+    assert_eq!(turns, [back, on, back, on].map(AuxiliaryWord::Spindle));
+}
+
+/// A tap turns back at the bottom and not before, in every dialect.
+#[test]
+fn taps_turn_back_at_the_bottom() {
+    for dialect in Dialect::ALL {
+        let one = posted(THREE, &machine(dialect), dialect, FeedMode::Tcp).unwrap();
+        let lines: Vec<&str> = one.text.lines().collect();
+        let at: Vec<usize> = (0..lines.len()).filter(|k| lines[*k].split(' ').any(|w| w == "M4")).collect();
+        // Twice in the taps, once for the bore.
+        assert_eq!(at.len(), 3, "{dialect}\n{}", one.text);
+        for k in &at[..2] {
+            let z = |k: usize| lines[k].split(' ').find_map(|w| w.strip_prefix('Z')?.parse::<f64>().ok());
+            let before = (0..*k).rev().find_map(z).unwrap();
+            let after = (*k..lines.len()).find_map(z).unwrap();
+            assert!(
+                (before + 10.0).abs() < 1e-3 && (after - 2.0).abs() < 1e-3,
+                "{dialect}: {before} {after}"
+            );
+        }
+    }
+}
+
+/// One path has one tool: whoever reads the text so is told what it leaves out.
+#[test]
+fn a_single_path_says_what_it_leaves_out() {
+    let data = read(THREE).unwrap();
+    let lost: Vec<String> =
+        data.diagnostics.iter().filter(|d| d.severity == Severity::Loss).map(ToString::to_string).collect();
+    for word in ["tool change to 3", "tool change to 7", "SPINDL/8000", "reversed"] {
+        assert!(lost.iter().any(|l| l.contains(word)), "{word}: {lost:#?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_said_is_a_loss_with_its_line() {
+    let head = "CUTTER/10\nLOADTL/1\nSPINDL/500\nFEDRAT/100\nRAPID\nGOTO/0,0,9\n";
+    let found = |text: &str| {
+        let text = format!("{head}{text}GOTO/1,0,0\nGOTO/2,0,0\nFINI\n");
+        let cl = ClStream::new(|| Ok(Cursor::new(text.clone().into_bytes())), ClReadOptions::default());
+        cl.outline().map(|o| {
+            let lost = o.diagnostics.into_iter().filter(|d| d.severity == Severity::Loss);
+            lost.map(|d| d.to_string()).collect::<Vec<_>>()
+        })
+    };
+    for (text, word) in [
+        ("CUTCOM/LEFT\n", "line 7: CUTCOM"),
+        ("CUTTER/12\n", "line 7: another CUTTER/"),
+        ("LOADTL/MILL\n", "line 7: LOADTL/MILL"),
+        ("CYCLE/TAP,50.7,1.0\n", "line 7: CYCLE/TAP"),
+        ("TRACUT/0,0,0,0,0,1,5\n", "line 7: TRACUT"),
+        ("COPY/1,TRANSL,10,0,0,3\n", "line 7: COPY"),
+        ("CALLSUB/1001\n", "line 7: CALLSUB"),
+        ("SPINDL/500,SFM\n", "line 7: SPINDL/"),
+    ] {
+        let lost = found(text).unwrap();
+        assert!(lost.iter().any(|l| l.contains(word)), "{text}: {lost:?}");
+    }
+    for harmless in ["CUTCOM/OFF\n", "TRNTYP/WORLD,0,0,0\nCSYS/-1,0,0,0,0,1,0,0,0,0,-1,0\n", "LOADTL/1,1\n"] {
+        assert_eq!(found(harmless).unwrap(), Vec::<String>::new(), "{harmless}");
+    }
+    for (text, word) in [
+        ("SPINDL/-500\n", "line 7: a spindle speed of -500"),
+        ("DELAY/1e9\n", "line 7: a dwell of 1000000000 s"),
+        ("DELAY/-1\n", "line 7: a dwell of -1 s"),
+        ("MOVARC/-1000000,0,9,0,0,1,1000000,ANGLE,36000\nGOTO/0,0,9\n", "line 7: the arc asks for"),
+        ("SPINDL/OFF\nCYCLE/TAP,FEDTO,5,MMPM,100\n", "line 9: a feed or dwell per revolution or a tap"),
+    ] {
+        let e = found(text).expect_err(text);
+        assert!(e.to_string().starts_with(word), "{e}");
+    }
+    let long = format!("{head}$$ {}\n", "-".repeat(100_000));
+    let cl = ClStream::new(|| Ok(Cursor::new(long.clone().into_bytes())), ClReadOptions::default());
+    assert!(cl.outline().unwrap_err().to_string().starts_with("line 7: longer than"));
+}
