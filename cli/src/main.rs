@@ -18,6 +18,7 @@ const NOT_WITHIN: u8 = 1;
 fn run(cli: &Cli) -> Outcome {
     match &cli.verb {
         Verb::Inspect(part) => cmd::inspect::run(part, cli.json),
+        Verb::Init(options) => cmd::init::run(options, cli.json),
         Verb::Export(options) => cmd::export::run(options, cli.json),
         Verb::Probe { part, face, at } => cmd::probe::run(part, face.as_deref(), at, cli.json),
         Verb::Lines(options) => cmd::lines::run(options, cli.json),

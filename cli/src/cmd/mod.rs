@@ -4,6 +4,7 @@ pub mod compare;
 pub mod export;
 pub mod flank;
 pub mod gallery;
+pub mod init;
 pub mod inspect;
 pub mod keys;
 pub mod lines;

@@ -6,6 +6,7 @@ pub mod control;
 mod cutting;
 pub mod flank;
 mod keys;
+pub mod library;
 mod operations;
 pub mod part;
 pub mod problem;

@@ -10,6 +10,7 @@ pub mod flank;
 pub mod goal;
 pub mod ideal;
 pub mod import;
+pub mod init;
 pub mod joints;
 pub mod left_out;
 pub mod look;
