@@ -14,11 +14,14 @@ use osculate_tools::reach::{
 use osculate_tools::removal::{Sample, SamplingError};
 
 /// Fewest places of a face.
-const FEWEST: usize = 3;
+const FEWEST: usize = 9;
 /// Level of the even set: 642 directions.
 const LEVEL: u32 = 3;
+/// A place that is seen at a glance counts so much of one that is seen along its normal: of axes that reach the same the upright one is
+/// better, since passes on walls are close.
+const GLANCE: f64 = 0.3;
 /// An axis of the part's own counts as the best one where it reaches no less than this part of what that reaches.
-const AS_GOOD: f64 = 0.99;
+const AS_GOOD: f64 = 0.97;
 /// An axis is taken that reaches this share of the faces, which none before it reached.
 const WORTH: f64 = 2e-3;
 
@@ -33,6 +36,8 @@ pub struct Asked<'a> {
     pub places: usize,
     /// Least and greatest angle between axis and normal, rad.
     pub lean_rad: [f64; 2],
+    /// The only axis that is asked for, where it is given.
+    pub axis: Option<Unit3>,
 }
 
 /// Why nothing is found.
@@ -89,8 +94,8 @@ impl Access {
         let found = samples(&faces, wanted).map_err(face)?;
         let areas_mm2 = found.iter().map(|f| f.samples.iter().map(|s| s.area_mm2).sum()).collect();
         let places: Vec<Sample> = found.into_iter().flat_map(|f| f.samples).collect();
-        let even = Directions::icosphere(LEVEL)?;
-        let own = Directions::row(own_axes())?;
+        let own = Directions::row(asked.axis.map_or_else(own_axes, |axis| vec![axis]))?;
+        let even = if asked.axis.is_some() { None } else { Some(Directions::icosphere(LEVEL)?) };
         let tool = Tool::new(*asked.around.cutter, asked.holder);
         let limits = ReachLimits {
             gouge_mm: 0.0,
@@ -109,13 +114,16 @@ impl Access {
             };
             Ok(Reach::new(problem)?.map(&at))
         };
-        let (first, then) = (map(&own)?, map(&even)?);
-        let n = own.all().len();
-        let both = |(a, b): (&Bits, &Bits)| {
-            Bits::of(n + b.len(), |k| if k < n { a.contains(k) } else { b.contains(k - n) })
-        };
-        let bits = first.iter().zip(&then).map(both).collect();
-        Ok(Self { axes: own.all().iter().chain(even.all()).copied().collect(), places, bits, areas_mm2 })
+        let mut axes = own.all().to_vec();
+        let mut bits = map(&own)?;
+        if let Some(even) = &even {
+            let n = axes.len();
+            for (own, more) in bits.iter_mut().zip(map(even)?) {
+                *own = Bits::of(n + more.len(), |k| if k < n { own.contains(k) } else { more.contains(k - n) });
+            }
+            axes.extend(even.all());
+        }
+        Ok(Self { axes, places, bits, areas_mm2 })
     }
 
     /// Area of the faces to machine, mm2.
@@ -124,10 +132,11 @@ impl Access {
         self.areas_mm2.iter().sum()
     }
 
-    /// Area of each face that no axis reaches, mm2.
+    /// Area of each face that none of the allowed axes reaches, mm2.
     #[must_use]
-    pub fn unreached_mm2(&self) -> Vec<f64> {
-        self.of_faces(|k| self.bits[k].is_empty())
+    pub fn without_mm2(&self, allowed: &dyn Fn(&Unit3) -> bool) -> Vec<f64> {
+        let allowed: Vec<bool> = self.axes.iter().map(allowed).collect();
+        self.of_faces(|k| !(0..allowed.len()).any(|a| allowed[a] && self.bits[k].contains(a)))
     }
 
     fn of_faces(&self, holds: impl Fn(usize) -> bool) -> Vec<f64> {
@@ -138,28 +147,50 @@ impl Access {
         out
     }
 
-    /// What one axis reaches of the places that are still open.
-    fn gain_mm2(&self, axis: usize, open: &[bool]) -> f64 {
+    /// What one axis reaches of the places that are still open: their area, and that with what is seen at a glance counted less.
+    fn gain_mm2(&self, axis: usize, open: &[bool]) -> [f64; 2] {
         let of = self.places.iter().zip(&self.bits).zip(open);
-        of.filter(|((_, bits), open)| **open && bits.contains(axis)).map(|((s, _), _)| s.area_mm2).sum()
+        of.filter(|((_, bits), open)| **open && bits.contains(axis)).fold([0.0; 2], |sum, ((s, _), _)| {
+            let upright = s.normal.dot(&self.axes[axis]).max(0.0);
+            [sum[0] + s.area_mm2, sum[1] + s.area_mm2 * (GLANCE + (1.0 - GLANCE) * upright)]
+        })
+    }
+
+    /// What these axes reach, each place by the most upright of them and counted less where it is seen at a glance, mm2.
+    #[must_use]
+    pub fn worth_mm2(&self, from: &[From]) -> f64 {
+        let used = self.used(from);
+        let of = |(s, bits): (&Sample, &Bits)| {
+            let upright = |a: &usize| s.normal.dot(&self.axes[*a]).max(0.0);
+            let best = used.iter().filter(|a| bits.contains(**a)).map(upright).reduce(f64::max);
+            best.map_or(0.0, |c| s.area_mm2 * (GLANCE + (1.0 - GLANCE) * c))
+        };
+        self.places.iter().zip(&self.bits).map(of).sum()
+    }
+
+    fn used(&self, from: &[From]) -> Vec<usize> {
+        let taken = |axis: &Unit3| from.iter().any(|f| f.axis == *axis);
+        (0..self.axes.len()).filter(|k| taken(&self.axes[*k])).collect()
     }
 
     /// The axes, `most` of them at most and all of them allowed, that together reach the most: each takes what the ones before it leave.
     /// None takes less than a few thousandths of the faces.
     #[must_use]
     pub fn axes(&self, most: usize, allowed: &dyn Fn(&Unit3) -> bool) -> Vec<From> {
-        let own = own_axes().len();
+        // The part's own axes come first.
+        let own = own_axes().len().min(self.axes.len());
         let allowed: Vec<bool> = self.axes.iter().map(allowed).collect();
         let mut open = vec![true; self.places.len()];
         let mut out = Vec::new();
         while out.len() < most {
-            let gains: Vec<f64> = (0..self.axes.len()).map(|a| if allowed[a] { self.gain_mm2(a, &open) } else { 0.0 }).collect();
+            let gain = |a: usize| if allowed[a] { self.gain_mm2(a, &open) } else { [0.0; 2] };
+            let gains: Vec<[f64; 2]> = (0..self.axes.len()).map(gain).collect();
             let best_of = |range: std::ops::Range<usize>| {
-                range.max_by(|a, b| gains[*a].total_cmp(&gains[*b]).then(b.cmp(a))).unwrap_or(0)
+                range.max_by(|a, b| gains[*a][1].total_cmp(&gains[*b][1]).then(b.cmp(a))).unwrap_or(0)
             };
             let (plain, any) = (best_of(0..own), best_of(0..self.axes.len()));
-            let best = if gains[plain] >= AS_GOOD * gains[any] { plain } else { any };
-            if gains[best] <= WORTH * self.area_mm2() {
+            let best = if gains[plain][1] >= AS_GOOD * gains[any][1] { plain } else { any };
+            if gains[best][0] <= WORTH * self.area_mm2() {
                 break;
             }
             for (open, bits) in open.iter_mut().zip(&self.bits) {
@@ -178,8 +209,7 @@ impl Access {
     /// The area of each face that none of these axes reaches, mm2.
     #[must_use]
     pub fn left_mm2(&self, from: &[From]) -> Vec<f64> {
-        let taken = |axis: &Unit3| from.iter().any(|f| f.axis == *axis);
-        let used: Vec<usize> = (0..self.axes.len()).filter(|k| taken(&self.axes[*k])).collect();
+        let used = self.used(from);
         self.of_faces(|k| !used.iter().any(|a| self.bits[k].contains(*a)))
     }
 }

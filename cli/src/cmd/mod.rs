@@ -1,6 +1,8 @@
 //! The verbs.
 
+pub mod check;
 pub mod compare;
+pub mod complete;
 pub mod export;
 pub mod flank;
 pub mod gallery;

@@ -4,6 +4,7 @@ pub mod builtin;
 mod check;
 pub mod control;
 mod cutting;
+pub mod editor;
 pub mod flank;
 mod keys;
 pub mod library;

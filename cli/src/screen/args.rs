@@ -27,6 +27,11 @@ pub enum Verb {
     Inspect(PartArgs),
     /// A first job for a part: faces, tool, axes and tolerance chosen, each with its reason, ready for `plan`.
     Init(InitArgs),
+    /// What fits and what is not reached or not set, without planning.
+    Check {
+        /// The job file.
+        job: PathBuf,
+    },
     /// Faces as STEP, IGES or JSON, or their triangles as STL or OBJ, by the ending of the file to write.
     Export(ExportArgs),
     /// Point, normal, fundamental forms, principal curvatures and directions at parameters.
@@ -117,6 +122,20 @@ pub enum Verb {
         /// Print a commented job file instead, which can be run.
         #[arg(long)]
         template: bool,
+        /// Print a JSON schema of job files instead, for editors that complete and check TOML.
+        #[arg(long, conflicts_with = "template")]
+        schema: bool,
+    },
+    /// A script that completes verbs and options in a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// The pages of the manual, one for each verb.
+    Man {
+        /// Folder for the pages.
+        #[arg(long)]
+        out: PathBuf,
     },
 }
 

@@ -22,6 +22,7 @@ pub mod plan;
 pub mod ply;
 pub mod posted_setup;
 pub mod program;
+pub mod reached;
 pub mod reading;
 pub mod rough;
 pub mod setup;

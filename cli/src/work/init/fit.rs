@@ -21,27 +21,22 @@ const FINE: f64 = 2e-4;
 const STEPS_MM: [f64; 9] = [0.001, 0.002, 0.003, 0.005, 0.01, 0.015, 0.02, 0.03, 0.05];
 /// Gouge and chord of the scallop.
 const SHARES: [f64; 2] = [0.5, 0.2];
-/// A ball is smaller than what is hollow by this much, so that it does not dwell in it.
-const SMALLER: f64 = 0.9;
 /// A ball is no larger than this part of the side of a square with the area of the faces.
-const LARGEST: f64 = 0.4;
+const LARGEST: f64 = 0.1;
 /// Balls that are tried, from the largest that may fit.
 const MOST_BALLS: usize = 6;
 /// Axes of a job at most: each is an operation.
 const MOST_AXES: usize = 4;
 /// About so many places of the faces are asked for.
 const PLACES: usize = 500;
-/// Axes stay so far off the tangent planes, rad: a ball that is let down beside a wall marks it at its equator.
-const UPRIGHT_RAD: f64 = 0.05;
+/// Axes stay so far off the tangent planes, rad: passes across steep places are close, and a ball marks a wall at its equator.
+const UPRIGHT_RAD: f64 = 0.26;
 /// A tool that leaves no more than this share of the faces is taken before smaller ones are tried.
 const NEARLY_ALL: f64 = 0.02;
 /// Faces of which more is left than this share are refused.
 const TOO_MUCH: f64 = 0.3;
 /// What is accepted as not reached is the estimate times this: strips fade out beside it.
 const SKIRT: f64 = 1.4;
-/// How deep the ball may go into points of the part where it is asked what it reaches, as a part of its radius: points stand so far
-/// apart.
-const COARSE: f64 = 0.01;
 /// A way for the part to stand is as good as the first one where it reaches this much of it.
 const AS_GOOD: f64 = 0.995;
 
@@ -57,6 +52,8 @@ pub struct Fit {
     pub axes: Vec<(From, Vec<usize>)>,
     /// Turn of the part about x, y, z, degrees, and which of its axes then is up.
     pub stands: ([f64; 3], &'static str),
+    /// Faces that none of the axes reaches, by their places in the target; there are others.
+    pub missed: Vec<usize>,
     /// What the job accepts as not reached, mm2.
     pub accepted_mm2: f64,
     /// Length of the sharp inner edges of the faces, mm.
@@ -89,7 +86,7 @@ pub fn tolerance(area_mm2: f64) -> Tolerance {
 /// The balls that may fit, largest first, and why the first of them is no larger.
 fn balls<'a>(target: &Target, wanted: &Wanted<'a>) -> Result<(Vec<&'a Tool>, String), String> {
     let side_mm = target.area_mm2.sqrt();
-    let [hollow, wide] = [2.0 * SMALLER * target.hollow_mm, LARGEST * side_mm];
+    let wide = LARGEST * side_mm;
     let mut all: Vec<&Tool> = wanted.tools.0.tools.iter().filter(|t| t.kind() == ToolKind::Ball).collect();
     let diameter = |t: &Tool| 2.0 * t.cutter().radius_mm();
     all.sort_by(|a, b| diameter(b).total_cmp(&diameter(a)).then(a.number().cmp(&b.number())));
@@ -97,15 +94,11 @@ fn balls<'a>(target: &Target, wanted: &Wanted<'a>) -> Result<(Vec<&'a Tool>, Str
         return Err(format!("{} has no ball", wanted.tools.1));
     };
     let fitting: Vec<&Tool> =
-        all.into_iter().filter(|t| diameter(t) <= hollow.min(wide)).take(MOST_BALLS).collect();
+        all.into_iter().filter(|t| diameter(t) <= wide).take(MOST_BALLS).collect();
     if fitting.is_empty() {
-        return Ok((vec![smallest], "the smallest ball of the library".to_owned()));
+        return Ok((vec![smallest], "it is the smallest one".to_owned()));
     }
-    let why = if hollow < wide {
-        format!("the faces are hollow to a radius of {} mm", number(target.hollow_mm, 3))
-    } else {
-        format!("the faces are {} mm wide", number(side_mm, 3))
-    };
+    let why = format!("the faces are {} mm wide", number(side_mm, 3));
     Ok((fitting, why))
 }
 
@@ -125,10 +118,11 @@ fn tried(access: &Access, wanted: &Wanted<'_>) -> Tried {
     let all: Vec<Tried> = STANDS.into_iter().map(from).collect();
     let left = |t: &Tried| t.left_mm2.iter().sum::<f64>();
     let least = all.iter().map(left).fold(f64::INFINITY, f64::min);
-    // Of those that reach as much the first with the fewest axes.
+    // Of those that reach as much the one that sees most from above; of equal ones the first.
     let limit = access.area_mm2() - AS_GOOD * (access.area_mm2() - least);
+    let worth = |t: &Tried| (access.worth_mm2(&t.axes) / access.area_mm2() * 50.0).round() as i64;
     let good = all.into_iter().filter(|t| left(t) <= limit);
-    good.min_by_key(|t| t.axes.len()).unwrap_or(Tried { axes: Vec::new(), left_mm2: Vec::new(), stands: STANDS[0] })
+    good.min_by_key(|t| (-worth(t), t.axes.len())).unwrap_or(Tried { axes: Vec::new(), left_mm2: Vec::new(), stands: STANDS[0] })
 }
 
 /// Finds the tool and the axes for faces; in words why there are none.
@@ -145,15 +139,17 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
     let own: Vec<Named<'_>> = target.faces.iter().map(named).collect();
     let seen = |k: &usize| !target.faces.contains(k) && !grouped.open.contains(&faces[*k].id);
     let check: Vec<Named<'_>> = (0..faces.len()).filter(seen).collect::<Vec<_>>().iter().map(named).collect();
+    let tolerance = tolerance(target.area_mm2);
     let mut best: Option<(&Tool, Tried, f64)> = None;
     for tool in &balls {
         let cutter = tool.cutter();
-        let around = Around { faces: &own, check: &check, cutter: &cutter, gouge_mm: COARSE * cutter.radius_mm() };
+        let around = Around { faces: &own, check: &check, cutter: &cutter, gouge_mm: tolerance.scallop_mm };
         let asked = Asked {
             around,
             holder: tool.holder(),
             places: PLACES,
             lean_rad: [0.0, FRAC_PI_2 - UPRIGHT_RAD],
+            axis: None,
         };
         let access = Access::of(&asked).map_err(|e| Failure::file(wanted.part, e))?;
         let tried = tried(&access, wanted);
@@ -177,20 +173,32 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
         )));
     }
     let why = if tool.number() == balls[0].number() {
-        format!("the largest ball that fits: {why_size}")
+        format!("the largest ball for their size: {why_size}")
     } else {
-        format!("larger balls reach less of the faces; {why_size}")
+        let hollow = if target.hollow_mm.is_finite() {
+            format!(", which are hollow to a radius of {} mm", number(target.hollow_mm, 3))
+        } else {
+            String::new()
+        };
+        format!("larger balls reach less of the faces{hollow}")
     };
     let (inner_mm, inner_mm2) = inner(grouped, target, tool.cutter().radius_mm());
     let left_mm2: f64 = tried.left_mm2.iter().sum();
     let accepted = SKIRT * left_mm2.max(inner_mm2);
-    let axes = tried.axes.iter().map(|from| (from.clone(), faces_from(grouped, target, from))).collect();
+    let axes: Vec<(From, Vec<usize>)> =
+        tried.axes.iter().map(|from| (from.clone(), faces_from(grouped, target, from))).collect();
+    let missed: Vec<usize> =
+        (0..target.faces.len()).filter(|k| !axes.iter().any(|(_, own)| own.contains(k))).collect();
+    if missed.len() == target.faces.len() {
+        return Ok(Err("no axis reaches more than slivers of its faces".to_owned()));
+    }
     Ok(Ok(Fit {
         tool: (*tool).clone(),
         why,
-        tolerance: tolerance(target.area_mm2),
+        tolerance,
         axes,
         stands: tried.stands,
+        missed,
         accepted_mm2: if accepted > 0.0 { rounded_up(accepted) } else { 0.0 },
         inner_mm,
     }))

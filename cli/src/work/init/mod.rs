@@ -142,9 +142,17 @@ pub fn init(wanted: &Wanted<'_>) -> Result<First, Failure> {
         None => target::targets(&grouped, wanted.faces).map_err(&refuse)?,
     };
     let mut tried: Vec<String> = Vec::new();
-    for target in all.iter().take(MOST_TRIES) {
-        match fit::fit(&grouped, target, wanted)? {
-            Ok(fit) => return Ok(first(wanted, (&grouped, normals), target, &fit, &tried)),
+    for mut target in all.into_iter().take(MOST_TRIES) {
+        let found = loop {
+            let found = fit::fit(&grouped, &target, wanted)?;
+            match found {
+                // What no axis reaches is left out, and the rest asked for again.
+                Ok(fit) if !fit.missed.is_empty() => target = target.without(&grouped, &fit.missed),
+                other => break other,
+            }
+        };
+        match found {
+            Ok(fit) => return Ok(first(wanted, (&grouped, normals), &target, &fit, &tried)),
             Err(why) => tried.push(format!("{}: {why}", target.words)),
         }
     }

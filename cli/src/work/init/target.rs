@@ -56,6 +56,16 @@ impl Target {
         Self { words: listed(&ids), hollow_mm, area_mm2, faces, why }
     }
 
+    /// The same without some of its faces, by their places in it; there are others.
+    #[must_use]
+    pub fn without(&self, grouped: &Grouped, missed: &[usize]) -> Self {
+        let id = |k: &usize| grouped.part.faces[self.faces[*k]].id.as_str();
+        let gone: Vec<&str> = missed.iter().map(id).collect();
+        let left = (0..self.faces.len()).filter(|k| !missed.contains(k)).map(|k| self.faces[k]).collect();
+        let why = format!("{}; without {}, which no tool reaches from those axes", self.why, listed(&gone));
+        Self::of_faces(grouped, left, why)
+    }
+
     /// A single face of a sheet.
     ///
     /// # Errors

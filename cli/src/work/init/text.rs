@@ -14,9 +14,9 @@ const OF_SCALLOP: f64 = 0.5;
 /// Samples of a verification: a first look is to end in minutes.
 const SAMPLES: usize = 600_000;
 
-/// A direction as TOML: whole numbers where it is one of the part's axes.
+/// A direction as TOML: whole numbers where it is one of the part's axes, and digits enough for an axis at the end of a joint's range.
 fn direction(d: &Unit3) -> String {
-    let one = |x: f64| if x.abs() < 1e-9 { "0".to_owned() } else { format!("{}", (x * 1e4).round() / 1e4) };
+    let one = |x: f64| if x.abs() < 1e-9 { "0".to_owned() } else { format!("{}", (x * 1e9).round() / 1e9) };
     format!("[{}, {}, {}]", one(d.x), one(d.y), one(d.z))
 }
 
@@ -140,7 +140,8 @@ pub fn told(grouped: &Grouped, target: &Target, fit: &Fit, tried: &[String]) -> 
     let mut out: Vec<String> = tried.iter().map(|t| format!("not {t}")).collect();
     out.push(format!("{}: {}, {} mm2", target.words, target.why, number(target.area_mm2, 5)));
     out.push(format!("{}: {}", fit.tool.words(), fit.why));
-    let axes: Vec<String> = fit.axes.iter().map(|(f, _)| direction(&f.axis)).collect();
+    let short = |d: &Unit3| format!("({}, {}, {})", number(d.x, 3), number(d.y, 3), number(d.z, 3));
+    let axes: Vec<String> = fit.axes.iter().map(|(f, _)| short(&f.axis)).collect();
     out.push(format!("tool axes {}, the part's {} up", axes.join(", "), fit.stands.1));
     if fit.accepted_mm2 > 0.0 {
         out.push(format!("about {} mm2 are not reached and accepted", number(fit.accepted_mm2, 3)));
