@@ -12,14 +12,12 @@ use osculate_geom::{Surface, Unit3};
 use osculate_postproc::Orienting;
 use osculate_productivity::access::{Access, Asked};
 use osculate_productivity::axis::Around;
-use osculate_productivity::plan::Named;
+use osculate_productivity::plan::{Named, Tolerance};
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
 /// About so many places of the faces of an operation are asked for.
-const PLACES: usize = 250;
-/// How deep an end may go into points of the part here, as a part of its radius: points stand so far apart.
-const COARSE: f64 = 0.02;
+pub const PLACES: usize = 500;
 /// Axes stay so far off the tangent planes, rad.
 const UPRIGHT_RAD: f64 = 0.035;
 /// A flat end leans so much at least where it may lean, rad.
@@ -65,6 +63,12 @@ impl Checked {
     }
 }
 
+/// How deep an end may go into points of the part here, mm: points stand so near to each other as that asks, and twice as deep as a job
+/// accepts is near enough for a share.
+pub fn coarse_mm(tolerance: Tolerance) -> f64 {
+    2.0 * tolerance.gouge_mm
+}
+
 fn named(faces: &[LoadedFace]) -> Vec<Named<'_>> {
     faces.iter().map(|f| Named { face: &f.id, surface: &*f.surface as &dyn Surface }).collect()
 }
@@ -72,7 +76,7 @@ fn named(faces: &[LoadedFace]) -> Vec<Named<'_>> {
 /// What the tool in hand of a job reaches of the faces of a part as the job sees it.
 fn of_tool(operation: &str, job: &Job, part: &Part) -> Result<Reached, Failure> {
     let cutter = job.cutter();
-    let gouge_mm = job.tolerance().gouge_mm.max(COARSE * cutter.radius_mm());
+    let gouge_mm = coarse_mm(job.tolerance());
     let (own, check) = (named(&part.faces), named(&part.check));
     let kept = job.strategy().kept_axis();
     let least = if cutter.is_ball() || kept.is_some() { 0.0 } else { LEAST_RAD };

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::job::Tool;
 use crate::job::words::ToolKind;
 use crate::words::number;
+use crate::work::reached::{PLACES, coarse_mm};
 use osculate_geom::{Surface, Unit3};
 use osculate_postproc::Orienting;
 use osculate_productivity::access::{Access, Asked, From};
@@ -27,8 +28,6 @@ const LARGEST: f64 = 0.1;
 const MOST_BALLS: usize = 6;
 /// Axes of a job at most: each is an operation.
 const MOST_AXES: usize = 4;
-/// About so many places of the faces are asked for.
-const PLACES: usize = 500;
 /// Axes stay so far off the tangent planes, rad: passes across steep places are close, and a ball marks a wall at its equator.
 const UPRIGHT_RAD: f64 = 0.26;
 /// A tool that leaves no more than this share of the faces is taken before smaller ones are tried.
@@ -143,7 +142,7 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
     let mut best: Option<(&Tool, Tried, f64)> = None;
     for tool in &balls {
         let cutter = tool.cutter();
-        let around = Around { faces: &own, check: &check, cutter: &cutter, gouge_mm: tolerance.scallop_mm };
+        let around = Around { faces: &own, check: &check, cutter: &cutter, gouge_mm: coarse_mm(tolerance) };
         let asked = Asked {
             around,
             holder: tool.holder(),
