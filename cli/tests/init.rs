@@ -25,9 +25,20 @@ fn a_first_job_can_be_meant() {
     assert_eq!(read["operation"].as_array().unwrap().len(), 1, "{text}");
     assert_eq!(read["operation"][0]["strategy"]["axis"], toml::Value::from(vec![0, 1, 0]));
     assert_eq!(read["tool"][0]["kind"].as_str(), Some("ball"));
-    assert!(read["tolerance"]["unreached_mm2"].as_float().or(read["tolerance"]["unreached_mm2"].as_integer().map(|x| x as f64)).unwrap() > 1.0);
+    assert!(
+        read["tolerance"]["unreached_mm2"]
+            .as_float()
+            .or(read["tolerance"]["unreached_mm2"].as_integer().map(|x| x as f64))
+            .unwrap()
+            > 1.0
+    );
     // Every table is explained.
-    for words in ["# As asked for.", "# Estimated area that the tool does not reach", "# The part's ", "# Half of the tolerance"] {
+    for words in [
+        "# As asked for.",
+        "# Estimated area that the tool does not reach",
+        "# The part's ",
+        "# Half of the tolerance",
+    ] {
         assert!(text.contains(words), "'{words}' is missing in {text}");
     }
     let check = osculate(&["check", &path.display().to_string(), "--json"]);
@@ -59,8 +70,13 @@ fn what_is_not_there_is_named() {
     let scratch = Scratch::new();
     let out = scratch.path("none").display().to_string();
     let part = example("propeller/propeller.step");
-    osculate(&["init", &part, "--faces", "F21", "--out", &out]).refused(&["has no face F21", "F1 to F20", "G1 to G"]);
-    osculate(&["init", &part, "--machine", "trunion-ac", "--out", &out]).refused(&["trunion-ac", "trunnion-ac"]);
+    osculate(&["init", &part, "--faces", "F21", "--out", &out]).refused(&[
+        "has no face F21",
+        "F1 to F20",
+        "G1 to G",
+    ]);
+    osculate(&["init", &part, "--machine", "trunion-ac", "--out", &out])
+        .refused(&["trunion-ac", "trunnion-ac"]);
     let library = scratch.write("tools.toml", "format = 1\n[[tool]]\nkind = \"bal\"\ndiameter_mm = 6\n");
     let tools = library.display().to_string();
     osculate(&["init", &part, "--tools", &tools, "--out", &out]).refused(&["line 3", "is \"ball\" meant?"]);
@@ -113,7 +129,11 @@ fn shells_and_the_manual_know_all_verbs() {
     let scratch = Scratch::new();
     for shell in ["bash", "zsh", "fish"] {
         let run = osculate(&["completions", shell]);
-        assert!(run.code == 0 && ["inspect", "init", "verify"].iter().all(|v| run.out.contains(v)), "{}", run.err);
+        assert!(
+            run.code == 0 && ["inspect", "init", "verify"].iter().all(|v| run.out.contains(v)),
+            "{}",
+            run.err
+        );
     }
     let pages = scratch.path("man");
     assert_eq!(osculate(&["man", "--out", &pages.display().to_string()]).code, 0);

@@ -119,7 +119,8 @@ impl Access {
         if let Some(even) = &even {
             let n = axes.len();
             for (own, more) in bits.iter_mut().zip(map(even)?) {
-                *own = Bits::of(n + more.len(), |k| if k < n { own.contains(k) } else { more.contains(k - n) });
+                *own =
+                    Bits::of(n + more.len(), |k| if k < n { own.contains(k) } else { more.contains(k - n) });
             }
             axes.extend(even.all());
         }
@@ -197,11 +198,7 @@ impl Access {
                 *open &= !bits.contains(best);
             }
             let of_faces_mm2 = self.of_faces(|k| self.bits[k].contains(best));
-            out.push(From {
-                axis: self.axes[best],
-                area_mm2: of_faces_mm2.iter().sum(),
-                of_faces_mm2,
-            });
+            out.push(From { axis: self.axes[best], area_mm2: of_faces_mm2.iter().sum(), of_faces_mm2 });
         }
         out
     }

@@ -2,12 +2,12 @@
 
 use crate::screen::progress::SCREEN;
 use crate::screen::render;
+use osculate::Part;
 use osculate::failure::{Done, Outcome, read_text};
 use osculate::job::{Job, Operations};
 use osculate::words::{Table, number};
 use osculate::work::reached::{Checked, of_job, of_list};
 use osculate::work::{operations, plan};
-use osculate::Part;
 use std::path::Path;
 
 /// Unreached faces that a line lists at most.

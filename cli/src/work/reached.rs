@@ -112,11 +112,23 @@ fn unset(job: &Job) -> Vec<String> {
             out.push(what.to_owned());
         }
     };
-    say(job.stock().is_none(), "[stock]: no raw material, so that a layer on the faces is assumed and the holder is not held against a block");
+    say(
+        job.stock().is_none(),
+        "[stock]: no raw material, so that a layer on the faces is assumed and the holder is not held against a block",
+    );
     say(!job.names_machine(), "[machine]: no machine of yours, whose joints would be judged");
-    say(job.tools().iter().any(|t| t.holder().is_none()), "[tool.holder]: a tool has no holder, so that only its cutter is looked at");
-    say(job.tools().iter().any(|t| t.teeth().is_none()), "[tool] teeth: marks of teeth are taken for one tooth");
-    say(job.tools().iter().any(|t| t.spindle_rpm().is_none()), "[cutting] spindle_rpm: the program has no speed");
+    say(
+        job.tools().iter().any(|t| t.holder().is_none()),
+        "[tool.holder]: a tool has no holder, so that only its cutter is looked at",
+    );
+    say(
+        job.tools().iter().any(|t| t.teeth().is_none()),
+        "[tool] teeth: marks of teeth are taken for one tooth",
+    );
+    say(
+        job.tools().iter().any(|t| t.spindle_rpm().is_none()),
+        "[cutting] spindle_rpm: the program has no speed",
+    );
     out
 }
 

@@ -72,7 +72,8 @@ impl Library {
     /// As [`Library::load`].
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {
         let places = check::places(text, path, &keys::LIBRARY)?;
-        let raw: RawLibrary = ::toml::from_str(text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
+        let raw: RawLibrary =
+            ::toml::from_str(text).map_err(|e| Failure::file(path, e.to_string().trim_end()))?;
         if raw.tool.is_empty() {
             return Err(Failure::file(path, "holds no tools: give at least one [[tool]]"));
         }

@@ -36,13 +36,15 @@ fn keys(spec: &CutterSpec) -> Vec<(&'static str, f64)> {
             ("corner_radius_mm", corner_radius_mm),
             ("length_mm", length_mm),
         ],
-        CutterSpec::Apt { diameter_mm, corner_radius_mm, bottom_angle_deg, side_angle_deg, length_mm } => vec![
-            ("diameter_mm", diameter_mm),
-            ("corner_radius_mm", corner_radius_mm),
-            ("bottom_angle_deg", bottom_angle_deg),
-            ("side_angle_deg", side_angle_deg),
-            ("length_mm", length_mm),
-        ],
+        CutterSpec::Apt { diameter_mm, corner_radius_mm, bottom_angle_deg, side_angle_deg, length_mm } => {
+            vec![
+                ("diameter_mm", diameter_mm),
+                ("corner_radius_mm", corner_radius_mm),
+                ("bottom_angle_deg", bottom_angle_deg),
+                ("side_angle_deg", side_angle_deg),
+                ("length_mm", length_mm),
+            ]
+        }
     }
 }
 
@@ -54,8 +56,11 @@ fn plain(x: f64) -> String {
 
 /// Spindle and feed, key by key.
 fn cutting(c: &raw::Cutting) -> Vec<String> {
-    let numbers =
-        [("spindle_rpm", c.spindle_rpm), ("feed_mm_min", c.feed_mm_min), ("feed_per_tooth_mm", c.feed_per_tooth_mm)];
+    let numbers = [
+        ("spindle_rpm", c.spindle_rpm),
+        ("feed_mm_min", c.feed_mm_min),
+        ("feed_per_tooth_mm", c.feed_per_tooth_mm),
+    ];
     let mut out: Vec<String> =
         numbers.iter().filter_map(|(key, x)| x.map(|x| format!("{key} = {}", plain(x)))).collect();
     out.extend(c.coolant.map(|w| format!("coolant = \"{}\"", w.word())));
@@ -63,7 +68,8 @@ fn cutting(c: &raw::Cutting) -> Vec<String> {
 }
 
 fn section(s: &HolderSpec) -> String {
-    let upper = s.upper_diameter_mm.map_or_else(String::new, |d| format!(", upper_diameter_mm = {}", plain(d)));
+    let upper =
+        s.upper_diameter_mm.map_or_else(String::new, |d| format!(", upper_diameter_mm = {}", plain(d)));
     format!("{{ diameter_mm = {}{upper}, length_mm = {} }}", plain(s.diameter_mm), plain(s.length_mm))
 }
 
@@ -75,7 +81,11 @@ fn text(s: &str) -> String {
 /// A tool as a `[[tool]]` table, with its number or another one.
 #[must_use]
 pub fn toml(tool: &Tool, number: u32) -> String {
-    let mut out = format!("[[tool]]\nnumber = {number}\nname = {}\nkind = \"{}\"\n", text(tool.words()), tool.kind().word());
+    let mut out = format!(
+        "[[tool]]\nnumber = {number}\nname = {}\nkind = \"{}\"\n",
+        text(tool.words()),
+        tool.kind().word()
+    );
     for (key, value) in keys(&tool.spec()) {
         let _ = writeln!(out, "{key} = {}", plain(value));
     }

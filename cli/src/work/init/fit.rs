@@ -7,12 +7,12 @@ use crate::job::Tool;
 use crate::job::words::ToolKind;
 use crate::words::number;
 use crate::work::reached::{PLACES, coarse_mm};
+use nalgebra::UnitQuaternion;
 use osculate_geom::{Surface, Unit3};
 use osculate_postproc::Orienting;
 use osculate_productivity::access::{Access, Asked, From};
 use osculate_productivity::axis::Around;
 use osculate_productivity::plan::{Named, Tolerance};
-use nalgebra::UnitQuaternion;
 use std::f64::consts::FRAC_PI_2;
 
 /// The scallop as a part of the side of a square with the area of the faces: passes then are some hundreds, and a part of 50 mm is made to
@@ -92,8 +92,7 @@ fn balls<'a>(target: &Target, wanted: &Wanted<'a>) -> Result<(Vec<&'a Tool>, Str
     let Some(smallest) = all.last().copied() else {
         return Err(format!("{} has no ball", wanted.tools.1));
     };
-    let fitting: Vec<&Tool> =
-        all.into_iter().filter(|t| diameter(t) <= wide).take(MOST_BALLS).collect();
+    let fitting: Vec<&Tool> = all.into_iter().filter(|t| diameter(t) <= wide).take(MOST_BALLS).collect();
     if fitting.is_empty() {
         return Ok((vec![smallest], "it is the smallest one".to_owned()));
     }
@@ -121,7 +120,11 @@ fn tried(access: &Access, wanted: &Wanted<'_>) -> Tried {
     let limit = access.area_mm2() - AS_GOOD * (access.area_mm2() - least);
     let worth = |t: &Tried| (access.worth_mm2(&t.axes) / access.area_mm2() * 50.0).round() as i64;
     let good = all.into_iter().filter(|t| left(t) <= limit);
-    good.min_by_key(|t| (-worth(t), t.axes.len())).unwrap_or(Tried { axes: Vec::new(), left_mm2: Vec::new(), stands: STANDS[0] })
+    good.min_by_key(|t| (-worth(t), t.axes.len())).unwrap_or(Tried {
+        axes: Vec::new(),
+        left_mm2: Vec::new(),
+        stands: STANDS[0],
+    })
 }
 
 /// Finds the tool and the axes for faces; in words why there are none.

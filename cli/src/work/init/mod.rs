@@ -10,8 +10,8 @@ mod target;
 mod text;
 
 use crate::failure::Failure;
-use crate::job::library::Library;
 use crate::job::Normals;
+use crate::job::library::Library;
 use crate::part::{self, Loaded, LoadedFace};
 use fit::Fit;
 use osculate_geom::{Diagnostic, Surface};
@@ -176,7 +176,9 @@ fn first(
 #[must_use]
 pub fn relative(to: &Path, from: &Path) -> PathBuf {
     let folder = from.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    let (Ok(to), Ok(folder)) = (std::path::absolute(to), std::path::absolute(folder)) else { return to.to_path_buf() };
+    let (Ok(to), Ok(folder)) = (std::path::absolute(to), std::path::absolute(folder)) else {
+        return to.to_path_buf();
+    };
     let same = to.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     // Nothing in common but the root, or another drive.
     if same < 2 {

@@ -81,7 +81,8 @@ impl Target {
 fn number(grouped: &Grouped, id: &str) -> Result<usize, String> {
     grouped.part.faces.iter().position(|f| f.id == id).ok_or_else(|| {
         let ids = grouped.part.faces.iter().map(|f| f.id.as_str());
-        let near = crate::job::words::nearest(id, ids).map_or_else(String::new, |n| format!(" (is {n} meant?)"));
+        let near =
+            crate::job::words::nearest(id, ids).map_or_else(String::new, |n| format!(" (is {n} meant?)"));
         format!(
             "has no face {id}{near}: its faces are F1 to F{}, its groups G1 to G{} (inspect lists them)",
             grouped.part.faces.len(),
@@ -126,7 +127,8 @@ pub fn open_face(grouped: &Grouped, words: &[String]) -> Result<Option<String>, 
     if !asked.is_empty() || grouped.open.len() < grouped.part.faces.len() {
         return Ok(None);
     }
-    let largest = grouped.part.faces.iter().max_by(|a, b| crate::part::area(a).total_cmp(&crate::part::area(b)));
+    let largest =
+        grouped.part.faces.iter().max_by(|a, b| crate::part::area(a).total_cmp(&crate::part::area(b)));
     Ok(largest.map(|f| f.id.clone()))
 }
 
@@ -163,13 +165,18 @@ pub fn targets(grouped: &Grouped, words: &[String]) -> Result<Vec<Target>, Strin
                 && other.faces.len() == of.faces.len()
                 && (other.area_mm2 - of.area_mm2).abs() <= 0.01 * of.area_mm2
         };
-        let all: Vec<usize> =
-            if of.alike > 1 { (0..grouped.groups.len()).filter(|h| !open(*h)).filter(like).collect() } else { vec![g] };
+        let all: Vec<usize> = if of.alike > 1 {
+            (0..grouped.groups.len()).filter(|h| !open(*h)).filter(like).collect()
+        } else {
+            vec![g]
+        };
         all.iter().for_each(|h| taken[*h] = true);
         let why = match (of.look, all.len()) {
             (Look::Formed, 1) => "the largest formed group of faces".to_owned(),
             (Look::Formed, n) => format!("the {n} largest formed groups of faces, which are alike"),
-            (look, _) => format!("the largest group of faces; it is {look}, and no formed one can be reached"),
+            (look, _) => {
+                format!("the largest group of faces; it is {look}, and no formed one can be reached")
+            }
         };
         out.push(Target::of_groups(grouped, &all, why));
     }

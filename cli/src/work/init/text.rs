@@ -3,8 +3,8 @@
 use super::fit::Fit;
 use super::target::{Target, listed};
 use super::{Grouped, Wanted, name, relative};
-use crate::job::library;
 use crate::job::Normals;
+use crate::job::library;
 use crate::words::number;
 use osculate_geom::Unit3;
 use std::fmt::Write;
@@ -101,8 +101,7 @@ pub fn job(wanted: &Wanted<'_>, (grouped, word): (&Grouped, Normals), target: &T
             plain(fit.accepted_mm2)
         );
     }
-    let machine =
-        if wanted.machine.ends_with(".toml") { "file" } else { "name" };
+    let machine = if wanted.machine.ends_with(".toml") { "file" } else { "name" };
     let (deg, up) = fit.stands;
     let _ = write!(
         out,
@@ -148,7 +147,10 @@ pub fn told(grouped: &Grouped, target: &Target, fit: &Fit, tried: &[String]) -> 
     }
     if !grouped.open.is_empty() {
         let open: Vec<&str> = grouped.open.iter().map(String::as_str).collect();
-        out.push(format!("nothing says on which side the material of {} is: they are left out", listed(&open)));
+        out.push(format!(
+            "nothing says on which side the material of {} is: they are left out",
+            listed(&open)
+        ));
     }
     out
 }
