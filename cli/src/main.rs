@@ -18,6 +18,8 @@ const NOT_WITHIN: u8 = 1;
 fn run(cli: &Cli) -> Outcome {
     match &cli.verb {
         Verb::Inspect(part) => cmd::inspect::run(part, cli.json),
+        Verb::Init(options) => cmd::init::run(options, cli.json),
+        Verb::Check { job } => cmd::check::run(job, cli.json),
         Verb::Export(options) => cmd::export::run(options, cli.json),
         Verb::Probe { part, face, at } => cmd::probe::run(part, face.as_deref(), at, cli.json),
         Verb::Lines(options) => cmd::lines::run(options, cli.json),
@@ -46,7 +48,10 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Dialects => cmd::list::dialects(cli.json),
         Verb::Tools => cmd::list::tools(cli.json),
         Verb::Gallery => cmd::gallery::run(cli.json),
-        Verb::Keys { template } => cmd::keys::run(*template, cli.json),
+        Verb::Keys { schema: true, .. } => cmd::keys::schema(),
+        Verb::Keys { template, .. } => cmd::keys::run(*template, cli.json),
+        Verb::Completions { shell } => cmd::complete::completions(*shell),
+        Verb::Man { out } => cmd::complete::man(out),
     }
 }
 

@@ -8,6 +8,7 @@
 //! - [`optimum`]: the tool, feed direction, lead and tilt of greatest productivity at a point.
 //! - [`field`]: the best postures over a face, as arrays.
 //! - [`compare`]: tools, strategies, directions and leads screened side by side.
+//! - [`access`]: from where a tool reaches faces, and which axes together reach the most.
 //! - [`ideal`]: the time that the best posture at every place of the faces would take, to hold plans against.
 //! - [`levels`]: productivity at an instant, along a pass and over the whole face.
 //! - [`finish`], [`rough`]: area and volume of stock per minute under any change of parameters; [`given`]: tolerance and stock
@@ -23,6 +24,7 @@
 //! # Ok::<(), osculate_productivity::closed_form::DomainError>(())
 //! ```
 
+pub mod access;
 pub mod axis;
 pub mod closed_form;
 pub mod compare;

@@ -24,6 +24,7 @@
 
 pub mod fit;
 pub mod gallery;
+pub mod groups;
 pub mod hidden;
 pub mod iges;
 mod import;

@@ -2,7 +2,7 @@
 
 use crate::screen::render;
 use osculate::failure::{Done, Outcome};
-use osculate::job::{Job, Operations, reference};
+use osculate::job::{Job, Operations, editor, reference};
 
 /// Runs the verb.
 pub fn run(template: bool, json: bool) -> Outcome {
@@ -20,5 +20,11 @@ pub fn run(template: bool, json: bool) -> Outcome {
             render::json(&serde_json::json!({ "keys": keys, "operations": operations }))?;
         }
     }
+    Ok(Done::Yes)
+}
+
+/// Prints the JSON schema of job files.
+pub fn schema() -> Outcome {
+    render::json(&editor::schema(&[Job::schema(), Operations::schema()]))?;
     Ok(Done::Yes)
 }

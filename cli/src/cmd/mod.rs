@@ -1,9 +1,12 @@
 //! The verbs.
 
+pub mod check;
 pub mod compare;
+pub mod complete;
 pub mod export;
 pub mod flank;
 pub mod gallery;
+pub mod init;
 pub mod inspect;
 pub mod keys;
 pub mod lines;

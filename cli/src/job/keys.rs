@@ -93,6 +93,22 @@ pub static LIST: LazyLock<Schema> = LazyLock::new(|| {
     }
 });
 
+/// What a library of tools may hold: the same tables as the tools of a list of operations.
+pub static LIBRARY: LazyLock<Schema> = LazyLock::new(|| {
+    let named =
+        |from: &[Table], name: &str| from.iter().filter(|t| t.name == name).copied().collect::<Vec<_>>();
+    let cutting: Vec<Table> = named(TABLES, "cutting")
+        .iter()
+        .map(|t| Table { name: "tool.cutting", needed: false, ..*t })
+        .collect();
+    const FORMAT: &[Key] =
+        &[must("format", Kind::Whole(1, 1), "1", "format of the file: a library of tools")];
+    let own = table("", true, "the file itself", FORMAT);
+    let tables =
+        [vec![own], named(TABLES, "tool"), named(TABLES, "tool.holder"), cutting, named(OWN, "tool")];
+    Schema { format: 1, tables: tables.concat(), lists: &[("tool", "tool")] }
+});
+
 /// The tables that only a list of operations has, and keys that tables have only there.
 #[rustfmt::skip]
 static OWN: &[Table] = &[

@@ -218,6 +218,12 @@ impl Schema {
         self.keys(table).find(|k| k.name == key)
     }
 
+    /// What a table is, in one line.
+    #[must_use]
+    pub fn meaning(&self, name: &str) -> Option<&'static str> {
+        self.named(name).next().map(|t| t.meaning)
+    }
+
     /// Whether every job has a table.
     #[must_use]
     pub fn needs(&self, name: &str) -> bool {

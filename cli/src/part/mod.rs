@@ -11,7 +11,7 @@ pub use turned::{TurnedFaces, turned};
 
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
-use crate::job::{FaceChoice, Job, Source};
+use crate::job::{FaceChoice, Job, Normals, Source};
 use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
@@ -198,12 +198,19 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
     let chosen = machined(job, &part)?;
-    let sideless = sides::settle(job, &mut part, &chosen);
-    let open: Vec<String> = sideless.iter().map(|k| part.faces[*k].id.clone()).collect();
-    hidden::hide(&mut part, &sideless);
+    let open = settle(&mut part, job.part().normals(), &chosen);
     // Of the faces named, those that are left.
     let chosen = if part.hidden.is_empty() { chosen } else { machined(job, &part)? };
     sorted(job, part, chosen, open)
+}
+
+/// Turns the faces of a part to the side of its material, and leaves of them what no other body hides. The word is what a job says of normals, for
+/// the faces that it works on. The ids of the faces of which nothing says a side come back.
+pub fn settle(part: &mut Loaded, word: Normals, chosen: &[String]) -> Vec<String> {
+    let sideless = sides::settle(word, part, chosen);
+    let open = sideless.iter().map(|k| part.faces[*k].id.clone()).collect();
+    hidden::hide(part, &sideless);
+    open
 }
 
 /// The faces of a part with settled sides, those that a job works on before all others. Nothing says a side of the `open` ones.

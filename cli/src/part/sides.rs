@@ -1,6 +1,6 @@
 //! On which side of each face of a part the material is, as file, job and shape of the part say it.
 
-use crate::job::{Job, Normals};
+use crate::job::Normals;
 use crate::part::loaded::Loaded;
 use osculate_geom::{Diagnostic, Side};
 use osculate_surfaces::sides::{self, Settled, SideGroup, Sides};
@@ -13,10 +13,9 @@ const CLEAR_DOUBT: f64 = 0.5;
 const LISTED: usize = 40;
 
 /// Turns the faces of a part to the side that the job, the file, their neighbours or the part as a whole say. `machined` are the
-/// ids of the faces that the job works on: what `[part] normals` says is meant for them first, and settles what hangs together
-/// with them. The numbers of the faces for which nothing says a side come back.
-pub(super) fn settle(job: &Job, part: &mut Loaded, machined: &[String]) -> Vec<usize> {
-    let word = job.part().normals();
+/// ids of the faces that the job works on: what `[part] normals` says, the word, is meant for them first, and settles what hangs
+/// together with them. The numbers of the faces for which nothing says a side come back.
+pub(super) fn settle(word: Normals, part: &mut Loaded, machined: &[String]) -> Vec<usize> {
     if word == Normals::Reversed {
         (0..part.faces.len()).for_each(|k| flip(part, k));
     }

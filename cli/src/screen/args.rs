@@ -25,6 +25,13 @@ pub struct Cli {
 pub enum Verb {
     /// What is in a CAD file: faces with kind, degrees, poles, area, curvature range, what was not understood.
     Inspect(PartArgs),
+    /// A first job for a part: faces, tool, axes and tolerance chosen, each with its reason, ready for `plan`.
+    Init(InitArgs),
+    /// What fits and what is not reached or not set, without planning.
+    Check {
+        /// The job file.
+        job: PathBuf,
+    },
     /// Faces as STEP, IGES or JSON, or their triangles as STL or OBJ, by the ending of the file to write.
     Export(ExportArgs),
     /// Point, normal, fundamental forms, principal curvatures and directions at parameters.
@@ -119,6 +126,20 @@ pub enum Verb {
         /// Print a commented job file instead, which can be run.
         #[arg(long)]
         template: bool,
+        /// Print a JSON schema of job files instead, for editors that complete and check TOML.
+        #[arg(long, conflicts_with = "template")]
+        schema: bool,
+    },
+    /// A script that completes verbs and options in a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// The pages of the manual, one for each verb.
+    Man {
+        /// Folder for the pages.
+        #[arg(long)]
+        out: PathBuf,
     },
 }
 
@@ -142,6 +163,25 @@ impl PartArgs {
             _ => Err(Failure::Usage("give either a part file or --builtin".to_owned())),
         }
     }
+}
+
+/// What `init` takes.
+#[derive(Debug, Args)]
+pub struct InitArgs {
+    /// A STEP or IGES file.
+    pub part: PathBuf,
+    /// Faces or groups to machine, by their ids in `inspect`, with commas between, or all; chosen where not given.
+    #[arg(long, value_name = "IDS", value_delimiter = ',')]
+    pub faces: Vec<String>,
+    /// A built-in machine or the path of a machine file.
+    #[arg(long, default_value = "trunnion-ac")]
+    pub machine: String,
+    /// A library of tools to choose from; that of the program where not given.
+    #[arg(long, value_name = "FILE")]
+    pub tools: Option<PathBuf>,
+    /// Folder for job.toml.
+    #[arg(long)]
+    pub out: PathBuf,
 }
 
 /// What `lines` takes.

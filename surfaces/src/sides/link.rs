@@ -52,14 +52,17 @@ pub(super) fn agree(a: &Bit, b: &Bit) -> Option<bool> {
 }
 
 /// Cells of rims' middles.
-struct Grid<'a> {
+pub(super) struct Grid<'a> {
     bits: &'a [Bit],
     cell_mm: f64,
     cells: HashMap<[i64; 3], Vec<usize>>,
 }
 
 impl<'a> Grid<'a> {
-    fn new(bits: &'a [Bit], cell_mm: f64) -> Self {
+    /// The pieces of rims, of which one edge has those within the second of these slacks.
+    pub(super) fn new(bits: &'a [Bit], slack_mm: [f64; 2]) -> Self {
+        let longest = bits.iter().map(|b| b.length_mm).fold(0.0, f64::max);
+        let cell_mm = (longest + slack_mm[1]).max(f64::MIN_POSITIVE);
         let mut grid = Self { bits, cell_mm, cells: HashMap::new() };
         for (k, b) in bits.iter().enumerate() {
             grid.cells.entry(grid.cell(&b.points[1])).or_default().push(k);
@@ -71,9 +74,8 @@ impl<'a> Grid<'a> {
         [p.x, p.y, p.z].map(|c| (c / self.cell_mm).floor() as i64)
     }
 
-    /// The face that shares the edge with a piece of a rim, and whether the normals agree. None where there is no such face, or more
-    /// than one.
-    fn partner(&self, of: &Bit, slack_mm: [f64; 2]) -> Option<(usize, bool)> {
+    /// The nearest piece of the face that shares the edge with a piece of a rim. None where there is no such face, or more than one.
+    pub(super) fn partner(&self, of: &Bit, slack_mm: [f64; 2]) -> Option<&'a Bit> {
         let home = self.cell(&of.points[1]);
         // The nearest piece of each face near by.
         let mut near: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
@@ -92,18 +94,17 @@ impl<'a> Grid<'a> {
         }
         let least = near.values().map(|n| n.0).fold(f64::INFINITY, f64::min);
         let limit = slack_mm[0].max(NEXT * least);
-        let mut meant = near.into_iter().filter(|(_, n)| n.0 <= limit);
-        let ((face, (_, k)), None) = (meant.next()?, meant.next()) else { return None };
-        agree(of, &self.bits[k]).map(|same| (face, same))
+        let mut meant = near.into_values().filter(|n| n.0 <= limit);
+        let ((_, k), None) = (meant.next()?, meant.next()) else { return None };
+        Some(&self.bits[k])
     }
 }
 
 /// The links between `count` faces by the pieces of their rims. Within the first slack rims are one edge, up to the second one where nothing is nearer.
 pub(super) fn links(count: usize, bits: &[Bit], slack_mm: [f64; 2]) -> Links {
-    let longest = bits.iter().map(|b| b.length_mm).fold(0.0, f64::max);
-    let grid = Grid::new(bits, (longest + slack_mm[1]).max(f64::MIN_POSITIVE));
-    let found: Vec<Option<(usize, bool)>> =
-        bits.par_iter().with_min_len(256).map(|b| grid.partner(b, slack_mm)).collect();
+    let grid = Grid::new(bits, slack_mm);
+    let other = |b: &Bit| grid.partner(b, slack_mm).and_then(|p| Some((p.face, agree(b, p)?)));
+    let found: Vec<Option<(usize, bool)>> = bits.par_iter().with_min_len(256).map(other).collect();
     let mut votes: BTreeMap<[usize; 2], [f64; 2]> = BTreeMap::new();
     let mut out = Links { rims_mm: vec![[0.0; 2]; count], ..Links::default() };
     for (b, found) in bits.iter().zip(found) {

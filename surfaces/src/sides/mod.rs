@@ -6,10 +6,12 @@
 
 mod groups;
 mod link;
+mod meeting;
 mod rim;
 mod shell;
 mod tree;
 
+pub use meeting::{Meeting, meetings};
 pub(crate) use shell::volume_sign;
 pub(crate) use tree::Tree;
 mod vote;
@@ -142,16 +144,18 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
 /// Groups, the rims of each face as [`link::Links`] has them, and neighbours that do not fit.
 pub(crate) type Hanging = (Vec<groups::Joined>, Vec<[f64; 2]>, Vec<SideConflict>);
 
+/// The rims of all faces in short pieces, and the slacks within which two of them are one edge: always, and where nothing is nearer.
+fn rims(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> (Vec<rim::Bit>, [f64; 2]) {
+    let bits: Vec<Vec<rim::Bit>> =
+        faces.par_iter().enumerate().map(|(k, f)| rim::rim(k, f, STEP * size_mm)).collect();
+    let join_mm = uncertainty_mm.filter(|u| u.is_finite()).unwrap_or(0.0).max(JOIN * size_mm);
+    (bits.concat(), [join_mm, join_mm.max(GAP * size_mm)])
+}
+
 /// The groups of faces that hang together.
 pub(crate) fn hanging(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> Hanging {
-    let bits: Vec<rim::Bit> = faces
-        .par_iter()
-        .enumerate()
-        .map(|(k, f)| rim::rim(k, f, STEP * size_mm))
-        .collect::<Vec<_>>()
-        .concat();
-    let join_mm = uncertainty_mm.filter(|u| u.is_finite()).unwrap_or(0.0).max(JOIN * size_mm);
-    let links = link::links(faces.len(), &bits, [join_mm, join_mm.max(GAP * size_mm)]);
+    let (bits, slack_mm) = rims(faces, size_mm, uncertainty_mm);
+    let links = link::links(faces.len(), &bits, slack_mm);
     let (joined, against) = groups::groups(faces.len(), &links.clear);
     let within = links.mixed.iter().map(|(faces, length_mm)| (*faces, *length_mm, true));
     let among = against.iter().map(|l| (l.faces, l.weight_mm, false));

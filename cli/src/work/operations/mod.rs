@@ -13,7 +13,7 @@ mod step;
 mod told;
 
 use crate::failure::Failure;
-use crate::job::Operations;
+use crate::job::{Job, Operation, Operations};
 use crate::part::Part;
 use crate::watch::{Stage, Watch};
 use crate::work::plan::Plan;
@@ -40,6 +40,14 @@ pub fn part(list: Operations, watch: &dyn Watch) -> Result<(Part, Operations), F
     sense::check(&list, &part)?;
     part.import_s += stage.end();
     Ok((part, list))
+}
+
+/// The part as an operation sees it, with the faces of all its places to machine.
+///
+/// # Errors
+/// Where it names a face that is not there, or the part is not the same in all places.
+pub fn seen(operation: &Operation, job: &Job, part: &Part) -> Result<Part, Failure> {
+    Ok(passages::Passages::of(operation, job, part)?.into_all())
 }
 
 /// Plans all operations of a list, posts a program for each setup, and judges each operation and the finished part from their texts.

@@ -1,0 +1,142 @@
+//! A first job from a part alone, and what is said of jobs before they are planned.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+use common::{Scratch, job, osculate};
+
+fn example(path: &str) -> String {
+    format!("{}/../examples/{path}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The blades of a propeller that look up, from above, with what the hub hides from a ball accepted; the job is one that can be meant, and
+/// is not written over.
+#[test]
+fn a_first_job_can_be_meant() {
+    let scratch = Scratch::new();
+    let out = scratch.path("first");
+    let folder = out.display().to_string();
+    let part = example("propeller/propeller.step");
+    let run = osculate(&["init", &part, "--faces", "F7,F12", "--out", &folder, "--json"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert_eq!(run.json()["faces"], serde_json::json!(["F7", "F12"]));
+    let path = out.join("job.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let read: toml::Table = text.parse().unwrap();
+    assert_eq!(read["operation"].as_array().unwrap().len(), 1, "{text}");
+    assert_eq!(read["operation"][0]["strategy"]["axis"], toml::Value::from(vec![0, 1, 0]));
+    assert_eq!(read["tool"][0]["kind"].as_str(), Some("ball"));
+    assert!(
+        read["tolerance"]["unreached_mm2"]
+            .as_float()
+            .or(read["tolerance"]["unreached_mm2"].as_integer().map(|x| x as f64))
+            .unwrap()
+            > 1.0
+    );
+    // Every table is explained.
+    for words in [
+        "# As asked for.",
+        "# Estimated area that the tool does not reach",
+        "# The part's ",
+        "# Half of the tolerance",
+    ] {
+        assert!(text.contains(words), "'{words}' is missing in {text}");
+    }
+    let check = osculate(&["check", &path.display().to_string(), "--json"]);
+    assert_eq!(check.code, 0, "{}{}", check.out, check.err);
+    let said = check.json();
+    assert_eq!(said["faces"], serde_json::json!([2, 18]));
+    let [reached, area] = ["reached_mm2", "area_mm2"].map(|k| said["reached"][0][k].as_f64().unwrap());
+    // Both faces are 5543.6 mm2; beside the hub a ball does not come.
+    assert!((area - 5543.6).abs() < 60.0 && reached > 0.93 * area && reached < area, "{reached} {area}");
+    osculate(&["init", &part, "--out", &folder]).refused(&["job.toml", "is there already"]);
+}
+
+/// The hull's file says where the material is; a face of the blade's sections does not, and the job says what it is taken to be.
+#[test]
+fn sheets_are_turned_with_a_word() {
+    let scratch = Scratch::new();
+    let text = |part: &str| {
+        let out = scratch.path(&part.replace('/', "-"));
+        let run = osculate(&["init", &example(part), "--out", &out.display().to_string()]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        std::fs::read_to_string(out.join("job.toml")).unwrap()
+    };
+    let blade = text("eee-hpt-rotor2/blade.igs");
+    assert!(!blade.contains("normals =") && blade.matches("[[operation]]").count() > 1, "{blade}");
+}
+
+#[test]
+fn what_is_not_there_is_named() {
+    let scratch = Scratch::new();
+    let out = scratch.path("none").display().to_string();
+    let part = example("propeller/propeller.step");
+    osculate(&["init", &part, "--faces", "F21", "--out", &out]).refused(&[
+        "has no face F21",
+        "F1 to F20",
+        "G1 to G",
+    ]);
+    osculate(&["init", &part, "--machine", "trunion-ac", "--out", &out])
+        .refused(&["trunion-ac", "trunnion-ac"]);
+    let library = scratch.write("tools.toml", "format = 1\n[[tool]]\nkind = \"bal\"\ndiameter_mm = 6\n");
+    let tools = library.display().to_string();
+    osculate(&["init", &part, "--tools", &tools, "--out", &out]).refused(&["line 3", "is \"ball\" meant?"]);
+    let library = scratch.write("tools.toml", "format = 1\n[[tool]]\nkind = \"flat\"\ndiameter_mm = 6\n");
+    let tools = library.display().to_string();
+    osculate(&["init", &part, "--tools", &tools, "--out", &out]).refused(&["tools.toml has no ball"]);
+    assert!(scratch.files().iter().all(|f| f == "tools.toml"));
+}
+
+/// A ball that is larger than a hollow is told before anything is planned.
+#[test]
+fn check_says_what_a_tool_does_not_reach() {
+    let scratch = Scratch::new();
+    let good = scratch.write("good.toml", &job(|t| t));
+    let run = osculate(&["check", &good.display().to_string()]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    assert!(run.out.contains("fits") && run.out.contains("not set: [stock]"), "{}", run.out);
+    // Hollow to a radius of 1 / (2 * 0.3) = 1.7 mm.
+    let hollow = job(|t| t.replace("a_per_mm = 0.005, b_per_mm = -0.003", "a_per_mm = 0.3, b_per_mm = 0.3"));
+    let bad = scratch.write("bad.toml", &hollow);
+    let run = osculate(&["check", &bad.display().to_string(), "--json"]);
+    assert_eq!(run.code, 1, "{}", run.err);
+    assert!(run.json()["unreached_mm2"].as_f64().unwrap() > 1.0);
+}
+
+/// The schema has every key of the reference, with its words.
+#[test]
+fn the_schema_has_all_keys() {
+    let schema = osculate(&["keys", "--schema"]).json();
+    let reference = osculate(&["keys", "--json"]).json();
+    for (k, rows) in ["keys", "operations"].iter().enumerate() {
+        for row in reference[rows].as_array().unwrap() {
+            let (table, key) = (row["table"].as_str().unwrap(), row["key"].as_str().unwrap());
+            let mut at = &schema["oneOf"][k];
+            for name in table.split('.').filter(|n| !n.is_empty()) {
+                let next = &at["properties"][name];
+                let either = next["anyOf"].as_array().and_then(|a| a.iter().find(|v| v["type"] == "object"));
+                at = either.unwrap_or(if next["type"] == "array" { &next["items"] } else { next });
+            }
+            let own = &at["properties"][key];
+            assert!(own.is_object(), "[{table}] {key}");
+            let words = row["words"].as_array().unwrap();
+            assert!(words.iter().all(|w| own.to_string().contains(w.as_str().unwrap())), "[{table}] {key}");
+        }
+    }
+}
+
+#[test]
+fn shells_and_the_manual_know_all_verbs() {
+    let scratch = Scratch::new();
+    for shell in ["bash", "zsh", "fish"] {
+        let run = osculate(&["completions", shell]);
+        assert!(
+            run.code == 0 && ["inspect", "init", "verify"].iter().all(|v| run.out.contains(v)),
+            "{}",
+            run.err
+        );
+    }
+    let pages = scratch.path("man");
+    assert_eq!(osculate(&["man", "--out", &pages.display().to_string()]).code, 0);
+    let page = std::fs::read_to_string(pages.join("osculate-plan.1")).unwrap();
+    assert!(page.contains("The main job") && pages.join("osculate.1").is_file());
+}

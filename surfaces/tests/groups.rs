@@ -1,0 +1,76 @@
+//! Groups of faces and how their faces meet, on bodies whose answer is known.
+
+#![allow(clippy::unwrap_used)]
+
+mod part21;
+mod solids;
+
+use osculate_surfaces::Face;
+use osculate_surfaces::groups::{Look, groups};
+use osculate_surfaces::sides::{Meeting, meetings};
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::path::Path;
+
+fn all(faces: &[Face]) -> Vec<&Face> {
+    faces.iter().collect()
+}
+
+/// A block with a bore: four sides and two ends with a hole. Every edge is an outer one, those of the bore too.
+#[test]
+fn a_block_has_outer_edges_and_its_bore_is_a_hole() {
+    let faces = solids::block_with_bore();
+    let met = meetings(&all(&faces), None);
+    // Twelve edges of the block and two of the bore.
+    assert_eq!(met.len(), 14);
+    // Normals at chords of the bore's rim are those of its middle: right angles all the same.
+    assert!(met.iter().all(|m: &Meeting| !m.smooth && (m.bend_rad - FRAC_PI_2).abs() < 1e-6), "{met:?}");
+    let round: Vec<f64> = met.iter().filter(|m| m.faces.contains(&0)).map(|m| m.length_mm).collect();
+    assert_eq!(round.len(), 2);
+    // Chords of pieces a two-hundredth of the part long are short by (piece / radius)^2 / 24 at most.
+    assert!(round.iter().all(|l| (l - 2.0 * TAU).abs() < 1e-3 * TAU), "{round:?}");
+    let found = groups(&all(&faces), &met);
+    assert_eq!(found.len(), 7);
+    let holes: Vec<_> = found.iter().filter(|g| g.look == Look::Hole).collect();
+    assert_eq!(holes.len(), 1);
+    assert_eq!(holes[0].faces, [0]);
+    assert!((holes[0].hollow_mm - 2.0).abs() < 1e-9 && (holes[0].area_mm2 - 10.0 * TAU).abs() < 1e-2);
+    // Largest first, opposite sides alike.
+    assert!(found.windows(2).all(|w| w[0].area_mm2 >= w[1].area_mm2));
+    let flat: Vec<usize> = found.iter().filter(|g| g.look == Look::Flat).map(|g| g.alike).collect();
+    assert_eq!(flat, [2; 6]);
+}
+
+/// Turned inside out what bends outwards bends inwards, and the bore is a post.
+#[test]
+fn a_body_inside_out_has_inner_edges() {
+    let faces: Vec<Face> = solids::block_with_bore().into_iter().map(Face::flipped).collect();
+    let met = meetings(&all(&faces), None);
+    assert!(met.len() == 14 && met.iter().all(|m| (m.bend_rad + FRAC_PI_2).abs() < 1e-6));
+    let found = groups(&all(&faces), &met);
+    assert!(found.iter().any(|g| g.look == Look::Round && g.faces == [0] && g.hollow_mm.is_infinite()));
+}
+
+/// The upper and the lower sides of a propeller's two blades are formed, and each of them has one like it.
+#[test]
+fn the_blades_of_a_propeller_are_alike() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/propeller/propeller.step");
+    let part = osculate_surfaces::read(&std::fs::read(path).unwrap()).unwrap();
+    let faces = all(&part.faces);
+    let met = meetings(&faces, part.uncertainty_mm);
+    let found = groups(&faces, &met);
+    let mut numbers: Vec<usize> = found.iter().flat_map(|g| g.faces.iter().copied()).collect();
+    numbers.sort_unstable();
+    assert_eq!(numbers, (0..faces.len()).collect::<Vec<_>>());
+    let of = |id: &str| {
+        let k = part.faces.iter().position(|f| f.id == id).unwrap();
+        found.iter().find(|g| g.faces.contains(&k)).unwrap()
+    };
+    for id in ["F6", "F7", "F11", "F12"] {
+        assert_eq!((of(id).look, of(id).alike), (Look::Formed, 2), "{id}");
+    }
+    assert_eq!((of("F20").look, of("F8").look), (Look::Hole, Look::Round));
+    // A blade meets the hub in an inner edge.
+    let [blade, hub] = ["F7", "F8"].map(|id| part.faces.iter().position(|f| f.id == id).unwrap());
+    let between = met.iter().find(|m| m.faces == [blade, hub]).unwrap();
+    assert!(!between.smooth && between.bend_rad < -0.5, "{between:?}");
+}
