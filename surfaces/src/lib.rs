@@ -68,6 +68,7 @@ pub use part::{Colour, CurvatureRange, Face, FaceKind, Format, NotUsed, Part};
 pub use ruled::{
     Band, Mate, RuledBand, RuledError, Ruling, RulingError, RulingOptions, ruled, ruled_bands, ruling,
 };
+pub use trim::Imbalance;
 pub use trim::analytic::{Analytic, Shape};
 pub use trim::carrier::FaceSurface;
 pub use trimmed::{Loop, TrimError, TrimmedSurface};

@@ -5,6 +5,7 @@
 
 use crate::trim::carrier::{FaceSurface, PlaceError};
 use crate::trim::motion::Motion;
+use crate::trim::{Imbalance, imbalance};
 use crate::trimmed::TrimmedSurface;
 use osculate_geom::{Axis, Box3, Diagnostic, Surface, forward_surface};
 use std::fmt;
@@ -195,6 +196,13 @@ impl Face {
     #[must_use]
     pub fn area_mm2(&self) -> f64 {
         self.surface.area_mm2()
+    }
+
+    /// The area of the face held against that of its boundary; `None` where they agree, and where a boundary says nothing: for
+    /// faces that close on themselves, and for loops of which no sense is known.
+    #[must_use]
+    pub fn imbalance(&self) -> Option<Imbalance> {
+        imbalance(&self.surface, self.oriented)
     }
 
     /// Box around the face, mm.

@@ -2,7 +2,7 @@
 
 use crate::screen::args::PartArgs;
 use crate::screen::render;
-use osculate::failure::{Done, Outcome};
+use osculate::failure::{Done, Failure, Outcome};
 use osculate::part::hidden::{self, Found};
 use osculate::part::{self, Loaded, LoadedFace};
 use osculate::words;
@@ -138,10 +138,16 @@ pub fn run(args: &PartArgs, json: bool) -> Outcome {
     if json {
         render::json(&answer)?;
     } else {
-        render::text(&describe(&answer, &part, &found));
+        render::text(&describe(&answer, &part, &found))?;
     }
     // What could be read is shown all the same.
-    part::whole(part).map(|_| Done::Yes)
+    match (&args.part, part::whole(part)?.faces.is_empty()) {
+        (Some(path), true) => {
+            let what = "no face of it could be read: what is lost and what is not used say why; export it again with surfaces";
+            Err(Failure::file(path, what))
+        }
+        _ => Ok(Done::Yes),
+    }
 }
 
 fn answer(part: &Loaded, found: &Found) -> Answer {

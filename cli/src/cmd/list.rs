@@ -40,9 +40,9 @@ pub fn machines(json: bool) -> Outcome {
     for r in &rows {
         t.row([r.name.clone(), r.joints.join(" ")]);
     }
-    render::text(&format!("\n{}\n", t.render()));
+    render::text(&format!("\n{}\n", t.render()))?;
     for name in built_in_names() {
-        render::text(&chain(&Machine::built_in(name).map_err(Failure::job)?));
+        render::text(&chain(&Machine::built_in(name).map_err(Failure::job)?))?;
     }
     Ok(Done::Yes)
 }
@@ -115,9 +115,9 @@ pub fn dialects(json: bool) -> Outcome {
                 sources.push(r.source);
             }
         }
-        render::text(&format!("\n{} (.{})\n{}\n", d.name(), d.extension(), t.render()));
+        render::text(&format!("\n{} (.{})\n{}\n", d.name(), d.extension(), t.render()))?;
         for source in sources {
-            render::text(&format!("  {source}\n"));
+            render::text(&format!("  {source}\n"))?;
         }
     }
     for own in shipped_dialects().filter_map(DialectFile::shipped) {
@@ -146,6 +146,6 @@ pub fn tools(json: bool) -> Outcome {
     for (kind, keys) in rows {
         t.row([kind.to_owned(), keys]);
     }
-    render::text(&format!("\n{}\n", t.render()));
+    render::text(&format!("\n{}\n", t.render()))?;
     Ok(Done::Yes)
 }

@@ -45,7 +45,7 @@ pub fn format(text: &str) -> Option<(i64, usize)> {
 }
 
 /// The line of a place of a text.
-fn line(text: &str, at: usize) -> usize {
+pub fn line(text: &str, at: usize) -> usize {
     1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod analytic;
 mod area;
 pub(crate) mod assemble;
+mod balance;
 mod bands;
 pub(crate) mod boundary;
 pub(crate) mod carrier;
@@ -19,4 +20,6 @@ mod side;
 pub(crate) mod spline;
 pub(crate) mod sweep;
 
+pub use balance::Imbalance;
+pub(crate) use balance::imbalance;
 pub(crate) use area::{Cell, Crossing, crossing, integrate};
