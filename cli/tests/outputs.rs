@@ -215,5 +215,7 @@ fn a_file_whose_faces_are_all_lost_is_no_success() {
     assert!(run.out.contains("0 faces") && run.out.contains("lost"), "{}", run.out);
     run.refused(&["lost.step", "no face"]);
     let json = osculate(&["inspect", text(&part), "--json"]);
-    assert_eq!((json.code, json.json()["faces"].as_array().unwrap().len()), (1, 0));
+    let answer = json.json();
+    assert_eq!((json.code, answer["faces"].as_array().unwrap().len()), (1, 0));
+    assert!(answer["error"]["what"].as_str().unwrap().contains("no face"), "{answer}");
 }

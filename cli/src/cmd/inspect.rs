@@ -3,6 +3,7 @@
 use crate::screen::args::PartArgs;
 use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
+use osculate::job::problem::Problem;
 use osculate::part::hidden::{self, Found};
 use osculate::part::{self, Loaded, LoadedFace};
 use osculate::words;
@@ -70,6 +71,9 @@ struct Answer {
     area_mm2: f64,
     not_used: Vec<NotUsed>,
     diagnostics: Vec<String>,
+    /// Why this is not all of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Problem>,
 }
 
 fn corners(b: &Box3) -> Vec<f64> {
@@ -134,20 +138,29 @@ pub fn run(args: &PartArgs, json: bool) -> Outcome {
     let part = args.load()?;
     let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
     let found = hidden::find(&part, &oriented);
-    let answer = answer(&part, &found);
-    if json {
-        render::json(&answer)?;
-    } else {
-        render::text(&describe(&answer, &part, &found))?;
-    }
+    let why = failure(args, &part);
+    let answer = Answer { error: why.as_ref().map(Failure::problem), ..answer(&part, &found) };
     // What could be read is shown all the same.
-    match (&args.part, part::whole(part)?.faces.is_empty()) {
-        (Some(path), true) => {
-            let what = "no face of it could be read: what is lost and what is not used say why; export it again with surfaces";
-            Err(Failure::file(path, what))
-        }
-        _ => Ok(Done::Yes),
+    if !json {
+        render::text(&describe(&answer, &part, &found))?;
+        return why.map_or(Ok(Done::Yes), Err);
     }
+    render::json(&answer)?;
+    // The answer holds it already: one object is all that stands on stdout.
+    Ok(why.map_or(Done::Yes, |why| {
+        render::complaint(why.message());
+        Done::NotWithinTolerance
+    }))
+}
+
+/// Why what is shown is not the file.
+fn failure(args: &PartArgs, part: &Loaded) -> Option<Failure> {
+    if let Some(message) = &part.truncated {
+        return Some(Failure::job(message));
+    }
+    let path = args.part.as_ref().filter(|_| part.faces.is_empty())?;
+    let what = "no face of it could be read: what is lost and what is not used say why; export it again with surfaces";
+    Some(Failure::file(path, what))
 }
 
 fn answer(part: &Loaded, found: &Found) -> Answer {
@@ -170,6 +183,7 @@ fn answer(part: &Loaded, found: &Found) -> Answer {
         faces,
         not_used: part.not_used.iter().map(not_used).collect(),
         diagnostics: part.diagnostics.iter().chain(&found.diagnostics).map(ToString::to_string).collect(),
+        error: None,
     }
 }
 

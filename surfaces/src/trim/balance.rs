@@ -94,7 +94,8 @@ pub(crate) fn imbalance(surface: &TrimmedSurface, oriented: bool) -> Option<Imba
     let difference = (loops_mm2 - boundary_mm2).abs();
     let allowed = |area: f64| DIFFERS * area + 2.0 * whole.gap_mm2;
     // The area itself only where it decides.
-    let differs = !(difference <= allowed(size)) && !(difference <= allowed(surface.integrate(ACCURACY, &|_| 1.0)));
+    let differs =
+        !(difference <= allowed(size)) && !(difference <= allowed(surface.integrate(ACCURACY, &|_| 1.0)));
     differs.then_some(Imbalance { loops_mm2, boundary_mm2 })
 }
 
@@ -141,4 +142,51 @@ fn along(line: &[Point3], origin: &Point3) -> Sum {
     };
     let (fine, coarse) = (of(1), of(2));
     Sum { area: fine.area + (fine.area - coarse.area) / 3.0, ..fine }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use osculate_geom::analytic::{Plane, Sphere};
+    use osculate_geom::{Domain, Interval, Side};
+    use std::f64::consts::TAU;
+    use std::sync::Arc;
+
+    fn edge(points: Vec<Uv>) -> FaceEdge {
+        FaceEdge { key: None, owner: 0, curve: None, gap_mm: 0.0, points }
+    }
+
+    #[test]
+    fn a_loop_cut_short_is_seen() {
+        let i = Interval::new(0.0, 4.0);
+        let plane = Arc::new(Plane::new(Domain { u: i, v: i }));
+        let square = vec![uv(1.0, 1.0), uv(3.0, 1.0), uv(3.0, 3.0), uv(1.0, 3.0)];
+        let closed = |points: &[Uv]| [points, &points[..1]].concat();
+        let face = TrimmedSurface::new(plane.clone(), &[square.clone()], Side::Along).unwrap();
+        let whole = face.clone().with_edges(vec![edge(closed(&square))]);
+        assert_eq!(imbalance(&whole, true), None);
+        // The other way round the inside would be the outside.
+        let back: Vec<Uv> = square.iter().rev().copied().collect();
+        let turned = face.with_edges(vec![edge(closed(&back))]);
+        assert!(imbalance(&turned, true).is_some() && imbalance(&turned, false).is_none());
+        let triangle = TrimmedSurface::new(plane, &[square[..3].to_vec()], Side::Along).unwrap();
+        let told = imbalance(&triangle.with_edges(vec![edge(closed(&square))]), true).unwrap();
+        assert!((told.loops_mm2 - 2.0).abs() < 1e-12 && (told.boundary_mm2 - 4.0).abs() < 1e-12, "{told:?}");
+    }
+
+    #[test]
+    fn the_rest_of_a_sphere_is_not_its_cap() {
+        // Above z = 1 on a sphere of 3 mm; both have the same rim, and area vectors of +-8 pi.
+        let cap = Arc::new(Sphere::new(3.0).unwrap());
+        let v = (1.0_f64 / 3.0).asin();
+        let rim: Vec<Uv> = (0..=360).map(|k| uv(TAU * f64::from(k) / 360.0, v)).collect();
+        let d = cap.domain();
+        let band =
+            |lo: f64, hi: f64| -> Vec<Uv> { vec![uv(0.0, lo), uv(d.u.hi, lo), uv(d.u.hi, hi), uv(0.0, hi)] };
+        for (points, fits) in [(band(v, d.v.hi), true), (band(d.v.lo, v), false)] {
+            let face = TrimmedSurface::new(cap.clone(), &[points], Side::Along).unwrap();
+            let told = imbalance(&face.with_edges(vec![edge(rim.clone())]), true);
+            assert_eq!(told.is_none(), fits, "{told:?}");
+        }
+    }
 }

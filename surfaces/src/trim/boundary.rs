@@ -130,7 +130,8 @@ pub(crate) fn build(
     }
     if joined.corners > 0 {
         findings.push(
-            "the boundary jumps between sides of the surface that are one point; it is led along these sides".into(),
+            "the boundary jumps between sides of the surface that are one point; it is led along these sides"
+                .into(),
         );
     }
     let mut assembled = match assemble(&carrier, &joined, side) {

@@ -270,8 +270,11 @@ impl Carrier {
         if self.closes != [false, false] {
             return Vec::new();
         }
-        let value = |axis: Axis, end: usize| if end == 0 { self.domain.get(axis).lo } else { self.domain.get(axis).hi };
-        let shrunk = |axis: Axis, end: usize| self.sides_mm[usize::from(axis == Axis::V)][end] <= self.point_mm;
+        let value = |axis: Axis, end: usize| {
+            if end == 0 { self.domain.get(axis).lo } else { self.domain.get(axis).hi }
+        };
+        let shrunk =
+            |axis: Axis, end: usize| self.sides_mm[usize::from(axis == Axis::V)][end] <= self.point_mm;
         let on = |at: Uv, axis: Axis, end: usize| {
             (at.get(axis) - value(axis, end)).abs() <= ON * self.domain.get(axis).length()
         };
@@ -284,7 +287,8 @@ impl Carrier {
         if at(from).any(|a| at(to).any(|b| a == b)) {
             return Vec::new();
         }
-        let corner = |a: (Axis, usize), b: (Axis, usize)| Uv::from_axis(a.0, value(a.0, a.1), value(b.0, b.1));
+        let corner =
+            |a: (Axis, usize), b: (Axis, usize)| Uv::from_axis(a.0, value(a.0, a.1), value(b.0, b.1));
         for a in at(from) {
             for b in at(to) {
                 if a.0 != b.0 {

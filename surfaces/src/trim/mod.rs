@@ -20,6 +20,6 @@ mod side;
 pub(crate) mod spline;
 pub(crate) mod sweep;
 
+pub(crate) use area::{Cell, Crossing, crossing, integrate};
 pub use balance::Imbalance;
 pub(crate) use balance::imbalance;
-pub(crate) use area::{Cell, Crossing, crossing, integrate};
