@@ -38,6 +38,7 @@ pub mod sections;
 pub mod sides;
 pub mod step;
 pub mod stl;
+pub mod structure;
 mod topology;
 mod trim;
 mod trimmed;

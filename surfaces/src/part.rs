@@ -3,6 +3,7 @@
 //! Lengths are millimetres whatever the file's unit was. Nothing is repaired silently: every departure from what the
 //! file says is a [`Diagnostic`].
 
+use crate::structure::Structure;
 use crate::trim::carrier::{FaceSurface, PlaceError};
 use crate::trim::motion::Motion;
 use crate::trim::{Imbalance, imbalance};
@@ -51,6 +52,8 @@ pub struct Part {
     pub schema: String,
     /// The faces in file order.
     pub faces: Vec<Face>,
+    /// How they hang together, as the file says.
+    pub structure: Structure,
     /// What the file has and the part has not, by kind.
     pub not_used: Vec<NotUsed>,
     /// Whether the file ends before its format says it does: faces may be missing without a trace.

@@ -12,11 +12,14 @@ pub use turned::{TurnedFaces, turned};
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
-use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
+use crate::words::number;
+use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
-use osculate_surfaces::TrimmedSurface;
+use osculate_surfaces::structure::Structure;
+use osculate_surfaces::{Face, Imbalance, TrimmedSurface};
 use osculate_tools::removal::Unseen;
+use rayon::prelude::*;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -37,6 +40,7 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         schema: String::new(),
         uncertainty_mm: None,
         faces: vec![face],
+        structure: Structure::default(),
         hidden: Vec::new(),
         not_used: Vec::new(),
         truncated: None,
@@ -68,6 +72,8 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         osculate_surfaces::Format::Sections => "sections",
         osculate_surfaces::Format::Json => "json",
     };
+    let mut diagnostics = part.diagnostics;
+    diagnostics.extend(part.faces.par_iter().filter_map(imbalanced).collect::<Vec<_>>());
     let faces = part
         .faces
         .into_iter()
@@ -90,6 +96,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         schema: part.schema,
         uncertainty_mm: part.uncertainty_mm,
         faces,
+        structure: part.structure,
         hidden: Vec::new(),
         not_used: part.not_used,
         truncated: part.truncated.then(|| {
@@ -97,8 +104,19 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
                 "is truncated: faces may be missing (inspect shows what was read); export or copy it again";
             format!("{}: the file {what}", path.display())
         }),
-        diagnostics: part.diagnostics,
+        diagnostics,
     })
+}
+
+/// What is to say of a face whose area does not fit its boundary.
+fn imbalanced(face: &Face) -> Option<Diagnostic> {
+    let Imbalance { loops_mm2, boundary_mm2 } = face.imbalance()?;
+    let (loops, boundary) = (number(loops_mm2, 7), number(boundary_mm2, 7));
+    let text = format!(
+        "seen along its area vector it has {loops} mm2 by its loops and {boundary} mm2 by the curves of its boundary: \
+         the face is not what the file means, or its edges do not fit its surface"
+    );
+    Some(Diagnostic::warning(format!("{} (entity {})", face.id, face.entity), text))
 }
 
 /// The part, unless its file ends too early.
@@ -198,7 +216,7 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
     let chosen = machined(job, &part)?;
-    let sideless = sides::settle(job, &mut part, &chosen);
+    let sideless = sides::settle(job, &mut part, &chosen)?;
     let open: Vec<String> = sideless.iter().map(|k| part.faces[*k].id.clone()).collect();
     hidden::hide(&mut part, &sideless);
     // Of the faces named, those that are left.
@@ -213,8 +231,12 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
         return Err(Failure::file(
             job.path(),
             format!(
-                "[part] {id}: neither the file nor the shape of the part says on which side of the face the material is; say \
-                 normals = \"file\" or normals = \"reversed\" (probe shows the normal)"
+                "[part] {id}: neither the file nor the shape of the part says on which side of the face the material is. Ask for \
+                 `lines PART --face {id} --out FOLDER` (a picture) and `probe` (its normal), then say: [[part.side]] faces = \
+                 [\"{id}\"], material = \"below_normal\" or \"above_normal\"; or normals = \"file\" or \"reversed\" for all faces to \
+                 machine. Open are {}",
+                open.iter().take(12).cloned().collect::<Vec<_>>().join(", ")
+                    + if open.len() > 12 { ", ..." } else { "" }
             ),
         ));
     }
