@@ -202,10 +202,10 @@ impl Face {
     }
 
     /// The area of the face held against that of its boundary; `None` where they agree, and where a boundary says nothing: for
-    /// faces that close on themselves, and for loops of which no sense is known.
+    /// faces that close on themselves, and for loops that do not close.
     #[must_use]
     pub fn imbalance(&self) -> Option<Imbalance> {
-        imbalance(&self.surface, self.oriented)
+        imbalance(&self.surface)
     }
 
     /// Box around the face, mm.

@@ -12,14 +12,12 @@ pub use turned::{TurnedFaces, turned};
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
-use crate::words::number;
-use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
+use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
+use osculate_surfaces::TrimmedSurface;
 use osculate_surfaces::structure::Structure;
-use osculate_surfaces::{Face, Imbalance, TrimmedSurface};
 use osculate_tools::removal::Unseen;
-use rayon::prelude::*;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -72,8 +70,6 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         osculate_surfaces::Format::Sections => "sections",
         osculate_surfaces::Format::Json => "json",
     };
-    let mut diagnostics = part.diagnostics;
-    diagnostics.extend(part.faces.par_iter().filter_map(imbalanced).collect::<Vec<_>>());
     let faces = part
         .faces
         .into_iter()
@@ -104,19 +100,8 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
                 "is truncated: faces may be missing (inspect shows what was read); export or copy it again";
             format!("{}: the file {what}", path.display())
         }),
-        diagnostics,
+        diagnostics: part.diagnostics,
     })
-}
-
-/// What is to say of a face whose area does not fit its boundary.
-fn imbalanced(face: &Face) -> Option<Diagnostic> {
-    let Imbalance { loops_mm2, boundary_mm2 } = face.imbalance()?;
-    let (loops, boundary) = (number(loops_mm2, 7), number(boundary_mm2, 7));
-    let text = format!(
-        "seen along its area vector it has {loops} mm2 by its loops and {boundary} mm2 by the curves of its boundary: \
-         the face is not what the file means, or its edges do not fit its surface"
-    );
-    Some(Diagnostic::warning(format!("{} (entity {})", face.id, face.entity), text))
 }
 
 /// The part, unless its file ends too early.
