@@ -50,7 +50,7 @@ pub struct Body {
     pub name: String,
     /// What the file says it is.
     pub kind: BodyKind,
-    /// The products from the whole assembly down to the one that it belongs to; names may be empty.
+    /// The products from the whole assembly down to the one that it belongs to, those that have a name.
     pub path: Vec<String>,
     /// Its shells, in the order of their first faces.
     pub shells: Vec<Shell>,

@@ -296,8 +296,7 @@ fn body_table(bodies: &[BodyRow]) -> String {
             (0, open) => format!("{open} open"),
             (closed, open) => format!("{closed} closed, {open} open"),
         };
-        let path: Vec<&str> = b.path.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
-        t.row([b.id.clone(), b.kind.clone(), faces.to_string(), shells, b.name.clone(), path.join(" / ")]);
+        t.row([b.id.clone(), b.kind.clone(), faces.to_string(), shells, b.name.clone(), b.path.join(" / ")]);
     }
     format!("\n{}", t.render())
 }

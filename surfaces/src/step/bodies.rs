@@ -37,7 +37,7 @@ pub(crate) fn structure<'o>(
                 entity: item,
                 name: name(graph, item),
                 kind: kind(graph, item),
-                path: o.path.iter().map(ToString::to_string).collect(),
+                path: o.path.iter().filter(|name| !name.is_empty()).map(ToString::to_string).collect(),
                 shells: Vec::new(),
             });
             out.bodies.len() - 1
