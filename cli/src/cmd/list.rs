@@ -88,7 +88,7 @@ pub fn check_machine(word: &str, json: bool) -> Outcome {
     }
     let mut t = Table::left(["not said", "what that means"]);
     gaps.into_iter().for_each(|g| t.row([g.key, g.meaning]));
-    render::text(&format!("\n{}\n{}\n", chain(&machine).trim_end(), t.render()));
+    render::text(&format!("\n{}\n{}\n", chain(&machine).trim_end(), t.render()))?;
     Ok(Done::Yes)
 }
 
@@ -125,9 +125,9 @@ pub fn dialects(json: bool) -> Outcome {
         render::text(&format!(
             "\n{name} (.{extension}), words of its own over {engine}: {}\n",
             own.description()
-        ));
+        ))?;
     }
-    render::text("\n");
+    render::text("\n")?;
     Ok(Done::Yes)
 }
 

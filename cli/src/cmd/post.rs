@@ -217,7 +217,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     if json {
         render::json(&answer)?;
     } else {
-        show(&answer, &notes, &args.out);
+        show(&answer, &notes, &args.out)?;
     }
     Ok(Done::Yes)
 }
@@ -235,7 +235,7 @@ fn total(reports: &[PostReport]) -> PostSummary {
     })
 }
 
-fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) {
+fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) -> Result<(), Failure> {
     let mut t = Table::new(["program", "", "unit"]);
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
     row("blocks", answer.blocks.to_string(), "");
@@ -265,5 +265,5 @@ fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) {
     if !notes.is_empty() {
         render::text(&format!("\n{}", words::findings(notes)))?;
     }
-    render::text("\n")?;
+    render::text("\n")
 }
