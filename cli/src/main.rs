@@ -7,7 +7,7 @@ mod cmd;
 mod screen;
 
 use clap::Parser;
-use osculate::failure::{Done, Outcome};
+use osculate::failure::{Done, Failure, Outcome};
 use screen::args::{Cli, Verb};
 use screen::{cancel, progress};
 use std::process::ExitCode;
@@ -55,13 +55,19 @@ fn run(cli: &Cli) -> Outcome {
     }
 }
 
-#[allow(clippy::print_stderr)]
 fn main() -> ExitCode {
-    // Wrong usage ends here with clap's own message and exit code 2; --help and --version with 0.
-    let cli = Cli::parse();
+    // Wrong usage ends here with clap's own message and exit code 2; --help and --version with 0 where they can be printed.
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(asked) if asked.use_stderr() => asked.exit(),
+        Err(asked) => match screen::render::text(&asked.render().to_string()) {
+            Ok(()) => return ExitCode::SUCCESS,
+            Err(f) => return failed(&f),
+        },
+    };
     progress::SCREEN.lines(cli.progress);
     if let Err(why) = cancel::watch() {
-        eprintln!("osculate: an interrupt will end this run without a word: {why}");
+        screen::render::complaint(&format!("an interrupt will end this run without a word: {why}"));
     }
     match run(&cli) {
         Ok(Done::Yes) => ExitCode::SUCCESS,
@@ -71,8 +77,13 @@ fn main() -> ExitCode {
                 // A failure to print it leaves the message on stderr.
                 let _ = screen::render::json(&serde_json::json!({ "error": f.problem() }));
             }
-            eprintln!("osculate: {}", f.message());
-            ExitCode::from(f.code())
+            failed(&f)
         }
     }
+}
+
+/// Says why a command ended, and gives its exit code.
+fn failed(why: &Failure) -> ExitCode {
+    screen::render::complaint(why.message());
+    ExitCode::from(why.code())
 }

@@ -1,6 +1,33 @@
 //! Tables and numbers as text, for screens and pages.
 
 use osculate_geom::Diagnostic;
+use std::borrow::Cow;
+
+/// Whether a character steers a terminal instead of standing on it: control characters, and those that turn the direction of writing.
+#[must_use]
+pub fn steers(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Text as it may go to a terminal: what [`steers`] stands as an escape, such as `\u{1b}`; ends of lines stay.
+#[must_use]
+pub fn visible(text: &str) -> Cow<'_, str> {
+    escaped(text, |c| steers(c) && c != '\n')
+}
+
+fn escaped(text: &str, which: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(&which) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        match which(c) {
+            true => out.extend(c.escape_default()),
+            false => out.push(c),
+        }
+    }
+    Cow::Owned(out)
+}
 
 /// A table with right-aligned columns but the first.
 pub struct Table {
@@ -19,9 +46,9 @@ impl Table {
         Self { left: true, ..Self::new(headings) }
     }
 
-    /// Adds a row.
+    /// Adds a row; a cell is one line, whatever it holds.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(cells.into_iter().collect());
+        self.rows.push(cells.into_iter().map(|c| escaped(&c, steers).into_owned()).collect());
     }
 
     /// The table as text.
@@ -55,7 +82,7 @@ impl Table {
 
 /// Findings, one a line.
 pub fn findings(all: &[Diagnostic]) -> String {
-    all.iter().map(|d| format!("  {d}\n")).collect()
+    all.iter().map(|d| format!("  {}\n", escaped(&d.to_string(), steers))).collect()
 }
 
 /// A number with `digits` significant digits, plain where it is neither huge nor tiny.
@@ -83,6 +110,17 @@ mod tests {
         assert_eq!(number(123_456.0, 3), "123456");
         assert_eq!(number(1.5e-9, 3), "1.50e-9");
         assert_eq!(number(0.0, 3), "0");
+    }
+
+    #[test]
+    fn names_cannot_steer_a_terminal() {
+        assert_eq!(visible("plain, \u{e4} \u{221e}\n"), "plain, \u{e4} \u{221e}\n");
+        assert_eq!(visible("a\u{1b}[31mb\r\u{9b}\u{202e}"), "a\\u{1b}[31mb\\r\\u{9b}\\u{202e}");
+        let mut t = Table::new(["name"]);
+        t.row(["two\nlines".into()]);
+        assert_eq!(t.render(), "  name\n  ----------\n  two\\nlines\n");
+        let found = findings(&[Diagnostic::note("F1 'a\nnote: F2'", "all is well")]);
+        assert_eq!(found.lines().count(), 1, "{found}");
     }
 
     #[test]

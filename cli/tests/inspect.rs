@@ -117,6 +117,7 @@ DATA;
 #45=SURFACE_STYLE_USAGE(.BOTH.,#44);
 #46=PRESENTATION_STYLE_ASSIGNMENT((#45));
 #47=STYLED_ITEM('',(#46),#15);
+#48=PRESENTATION_LAYER_ASSIGNMENT('balls','',(#17));
 #50=DATE_AND_NOTHING('');
 #51=DATE_AND_NOTHING('');
 ENDSEC;
@@ -137,15 +138,35 @@ fn names_colours_instances_and_lines() {
         assert_eq!(face["product"], "bearing ball");
     }
     assert_eq!(answer["products"], serde_json::json!([{"name": "bearing ball", "faces": 2, "instances": 2}]));
+    // A solid at each of its places, with its shell.
+    let bodies = answer["bodies"].as_array().unwrap();
+    assert_eq!(bodies.len(), 2, "{answer}");
+    for (k, b) in bodies.iter().enumerate() {
+        let id = format!("F{}", k + 1);
+        assert_eq!((&b["kind"], &b["path"]), (&"solid".into(), &serde_json::json!(["bearing ball"])));
+        let shell = &b["shells"][0];
+        assert_eq!((&shell["closed"], &shell["faces"]), (&true.into(), &serde_json::json!([id])));
+        assert_eq!(answer["faces"][k]["body"], b["id"]);
+    }
+    assert_eq!(answer["layers"], serde_json::json!([{"name": "balls", "faces": ["F1", "F2"]}]));
+    assert_eq!(answer["faces"][1]["layers"], serde_json::json!(["balls"]));
     let left = answer["not_used"].as_array().unwrap().iter().find(|n| n["kind"] == "DATE_AND_NOTHING");
     let lines: Vec<usize> =
         ["#50", "#51"].map(|id| 1 + TWICE.lines().position(|l| l.starts_with(id)).unwrap()).to_vec();
     let left = left.unwrap();
     assert_eq!((&left["count"], &left["lines"]), (&2.into(), &serde_json::json!(lines)));
     let text = osculate(&["inspect", path.to_str().unwrap()]).out;
-    for word in
-        ["ball", "#ff0000", "bearing ball", "instances", "lines", &format!("{}, {}", lines[0], lines[1])]
-    {
+    for word in [
+        "ball",
+        "#ff0000",
+        "bearing ball",
+        "instances",
+        "solid",
+        "1 closed",
+        "balls",
+        "lines",
+        &format!("{}, {}", lines[0], lines[1]),
+    ] {
         assert!(text.contains(word), "{word} is not in {text}");
     }
 }

@@ -14,15 +14,15 @@ pub enum ImportError {
         "the file is UTF-16 text; STEP, IGES and point files are one byte a character: save it as UTF-8 or ASCII"
     )]
     Wide,
-    /// None of the formats.
+    /// None of the formats. What stands in the file is not repeated: it may be anything that this program can read.
     #[error(
-        "no format that is read: it begins with {begin:?}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
+        "no format that is read: it is {kind}; STEP begins with ISO-10303-21, IGES has S, G, D and P \
          in column 73 of its lines, a set of Bezier patches begins with their number and a line of vertex numbers, \
          sections are rows of x y z, and faces that were exported as JSON begin with a brace"
     )]
     Unknown {
-        /// The first characters.
-        begin: String,
+        /// What the file seems to be, in words.
+        kind: &'static str,
     },
     /// A STEP file that cannot be read.
     #[error(transparent)]
@@ -66,6 +66,38 @@ fn is_wide(bytes: &[u8]) -> bool {
     head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff]) || (every_other(0) != every_other(1))
 }
 
+/// Beginnings of files that people take for parts.
+const KNOWN: [(&[u8], &str); 12] = [
+    (b"solid", "a mesh as STL text"),
+    (b"ply", "a PLY mesh"),
+    (b"PK\x03\x04", "a ZIP archive, as 3MF meshes and zipped files are: unpack it"),
+    (b"\x1f\x8b", "compressed by gzip: unpack it"),
+    (b"%PDF", "a PDF document"),
+    (b"\x89PNG", "a PNG picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"\xd0\xcf\x11\xe0", "a native file of another CAD system: export it as STEP"),
+    (b"**ABCDEFGHIJKLMNOPQRSTUVWXYZ", "a Parasolid file: export it as STEP"),
+    (b"ACIS", "an ACIS file: export it as STEP"),
+    (b"<", "XML or HTML"),
+    (b"AC10", "a DWG drawing"),
+];
+
+/// What a file of none of the formats seems to be.
+fn kind(bytes: &[u8]) -> &'static str {
+    let known = KNOWN.iter().find(|(begin, _)| bytes.starts_with(begin)).map(|k| k.1);
+    // A binary STL file: a heading of 80 bytes, the number of triangles, 50 bytes for each.
+    let triangles = bytes.get(80..84).and_then(|n| n.try_into().ok()).map(u32::from_le_bytes);
+    let is_mesh = triangles.is_some_and(|n| 84 + 50 * u64::from(n) == bytes.len() as u64);
+    let text = !bytes.iter().take(1024).any(|b| matches!(b, 0..=8 | 14..=31 | 127));
+    known.unwrap_or(if is_mesh {
+        "a mesh as binary STL"
+    } else if text {
+        "other text"
+    } else {
+        "binary data"
+    })
+}
+
 /// Reads a file of any format that [`detect`] knows.
 ///
 /// # Errors
@@ -82,8 +114,8 @@ pub fn read(bytes: &[u8]) -> Result<Part, ImportError> {
         Some(Format::Json) => Ok(json::read_part(bytes)?),
         None if is_wide(bytes) => Err(ImportError::Wide),
         None => {
-            let begin = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
-            Err(ImportError::Unknown { begin })
+            let kind = kind(bytes);
+            Err(ImportError::Unknown { kind })
         }
     }
 }

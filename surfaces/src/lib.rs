@@ -39,6 +39,7 @@ pub mod sections;
 pub mod sides;
 pub mod step;
 pub mod stl;
+pub mod structure;
 mod topology;
 mod trim;
 mod trimmed;
@@ -69,6 +70,7 @@ pub use part::{Colour, CurvatureRange, Face, FaceKind, Format, NotUsed, Part};
 pub use ruled::{
     Band, Mate, RuledBand, RuledError, Ruling, RulingError, RulingOptions, ruled, ruled_bands, ruling,
 };
+pub use trim::Imbalance;
 pub use trim::analytic::{Analytic, Shape};
 pub use trim::carrier::FaceSurface;
 pub use trimmed::{Loop, TrimError, TrimmedSurface};

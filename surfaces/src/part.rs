@@ -3,8 +3,10 @@
 //! Lengths are millimetres whatever the file's unit was. Nothing is repaired silently: every departure from what the
 //! file says is a [`Diagnostic`].
 
+use crate::structure::Structure;
 use crate::trim::carrier::{FaceSurface, PlaceError};
 use crate::trim::motion::Motion;
+use crate::trim::{Imbalance, imbalance};
 use crate::trimmed::TrimmedSurface;
 use osculate_geom::{Axis, Box3, Diagnostic, Surface, forward_surface};
 use std::fmt;
@@ -50,6 +52,8 @@ pub struct Part {
     pub schema: String,
     /// The faces in file order.
     pub faces: Vec<Face>,
+    /// How they hang together, as the file says.
+    pub structure: Structure,
     /// What the file has and the part has not, by kind.
     pub not_used: Vec<NotUsed>,
     /// Whether the file ends before its format says it does: faces may be missing without a trace.
@@ -195,6 +199,13 @@ impl Face {
     #[must_use]
     pub fn area_mm2(&self) -> f64 {
         self.surface.area_mm2()
+    }
+
+    /// The area of the face held against that of its boundary; `None` where they agree, and where a boundary says nothing: for
+    /// faces that close on themselves, and for loops that do not close.
+    #[must_use]
+    pub fn imbalance(&self) -> Option<Imbalance> {
+        imbalance(&self.surface)
     }
 
     /// Box around the face, mm.

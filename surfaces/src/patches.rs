@@ -12,6 +12,7 @@ use crate::knots::MAX_DEGREE;
 use crate::leftovers::Leftovers;
 use crate::nurbs::{Net, NurbsError, NurbsSurface};
 use crate::part::{Face, FaceKind, Format, Part};
+use crate::structure::Structure;
 use crate::trim::boundary::build;
 use crate::trim::carrier::FaceSurface;
 use osculate_geom::{Diagnostic, Point3, Side};
@@ -292,6 +293,7 @@ pub fn read_in(bytes: &[u8], unit_mm: Option<f64>) -> Result<Part, PatchesError>
         }
     }
     Ok(Part {
+        structure: Structure::default(),
         format: Format::Patches,
         uncertainty_mm: None,
         unit: unit_mm.map_or_else(|| "mm".to_owned(), |mm| format!("{mm} mm")),

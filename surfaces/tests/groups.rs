@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod part21;
+#[allow(dead_code)]
 mod solids;
 
 use osculate_surfaces::Face;

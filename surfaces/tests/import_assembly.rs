@@ -5,6 +5,7 @@
 mod part21;
 
 use osculate_geom::Point3;
+use osculate_surfaces::structure::BodyKind;
 use osculate_surfaces::{Colour, Part, step};
 use part21::{SQUARE, circle, file, numbered, polygon};
 
@@ -314,4 +315,77 @@ fn parameter_curves_of_surfaces_of_revolution_are_measured_in_the_parameters_of_
     assert_eq!(part.faces.len(), 1, "{}", said(&part));
     // The integral of 3 + cos v.
     part21::assert_area(&part.faces[0], 2.0 * (3.0 + 1.0_f64.sin()));
+}
+
+#[test]
+fn bodies_shells_and_layers_are_as_the_file_has_them() {
+    // A product "frame" with a shell model, and in it two instances of a product "block" whose solid "block" is named.
+    let product = |n: u64, name: &str, rep: u64| {
+        let records = format!(
+            "@0=PRODUCT('{name}','{name}','',());@1=PRODUCT_DEFINITION_FORMATION('','',@0);\
+             @2=PRODUCT_DEFINITION('','',@1,$);@3=PRODUCT_DEFINITION_SHAPE('','',@2);\
+             @4=SHAPE_DEFINITION_REPRESENTATION(@3,#{rep});"
+        );
+        numbered(n, &records)
+    };
+    let usage = |n: u64, to: u64| {
+        format!(
+            "#{n}=ITEM_DEFINED_TRANSFORMATION('','',#500,#{to});\
+             #{}=(REPRESENTATION_RELATIONSHIP('','',#650,#600)REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{n})\
+             SHAPE_REPRESENTATION_RELATIONSHIP());#{}=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{},#{});\
+             #{}=PRODUCT_DEFINITION_SHAPE('','',#{});#{}=NEXT_ASSEMBLY_USAGE_OCCURRENCE('','','',#902,#952,$);",
+            n + 1,
+            n + 2,
+            n + 1,
+            n + 3,
+            n + 3,
+            n + 4,
+            n + 4
+        )
+    };
+    let (edges, l) = polygon(300, &SQUARE);
+    let text = format!(
+        "{}{edges}#415=FACE_BOUND('',#{l},.T.);#416=ADVANCED_FACE('',(#415),#399,.T.);#417=CLOSED_SHELL('skin',(#416));\
+         #420=MANIFOLD_SOLID_BREP('block',#417);#650=SHAPE_REPRESENTATION('',(#420),#3);{}{}{}{}\
+         #990=PRESENTATION_LAYER_ASSIGNMENT('tools','',(#420));#991=PRESENTATION_LAYER_ASSIGNMENT('all','',(#420,#401));\
+         #992=PRESENTATION_LAYER_ASSIGNMENT('empty','',());",
+        square(),
+        product(900, "frame", 600),
+        product(950, "block", 650),
+        usage(720, 501),
+        usage(740, 502)
+    );
+    let part = read(&text);
+    assert_eq!(part.faces.len(), 3, "{}", said(&part));
+    let seen: Vec<_> = part
+        .structure
+        .bodies
+        .iter()
+        .map(|b| {
+            (
+                b.id.as_str(),
+                b.name.as_str(),
+                b.kind,
+                b.entity,
+                b.path.join("/"),
+                b.faces().collect::<Vec<_>>(),
+            )
+        })
+        .collect();
+    let want = [
+        ("B1", "", BodyKind::Surfaces, 410, "frame".to_owned(), vec!["F1"]),
+        ("B2", "block", BodyKind::Solid, 420, "frame/block".to_owned(), vec!["F2"]),
+        ("B3", "block", BodyKind::Solid, 420, "frame/block".to_owned(), vec!["F3"]),
+    ];
+    assert_eq!(seen, want);
+    let shell = &part.structure.bodies[1].shells[0];
+    assert_eq!((shell.entity, shell.name.as_str(), shell.closed), (417, "skin", true));
+    assert!(!part.structure.bodies[0].shells[0].closed);
+    let layers: Vec<_> = part.structure.layers.iter().map(|l| (l.name.as_str(), l.faces.join(" "))).collect();
+    assert_eq!(layers, [("tools", "F2 F3".to_owned()), ("all", "F1 F2 F3".to_owned())]);
+    assert!(
+        part.not_used.iter().all(|n| n.kind != "PRESENTATION_LAYER_ASSIGNMENT" || n.count == 0),
+        "{:?}",
+        part.not_used
+    );
 }

@@ -254,3 +254,78 @@ fn edges_along_the_sides_of_a_patch_leave_the_whole_rectangle() {
     let (f, said) = only(&(data + &face(&[212, 222, 232, 242], &surface)));
     assert!(!f.surface.is_trimmed() && said.is_empty(), "{said:?}");
 }
+
+/// Records of a Bezier surface of degree 2 in both directions over points in rows of three, from number 100 on.
+fn biquadratic(points: &[[f64; 3]; 9]) -> (String, String) {
+    let records: String =
+        (100..).zip(points).map(|(n, p)| format!("#{n}=CARTESIAN_POINT('',{});\n", triple(*p))).collect();
+    let surface = "B_SPLINE_SURFACE_WITH_KNOTS('',2,2,((#100,#101,#102),(#103,#104,#105),(#106,#107,#108)),.UNSPECIFIED.,.F.,.F.,\
+                   .F.,(3,3),(3,3),(0.,1.),(0.,1.),.UNSPECIFIED.)";
+    (records, surface.to_owned())
+}
+
+/// Records of a Bezier curve of degree 2 over points, as an edge between two vertices: the edge's use is `n + 2`.
+fn parabola(n: u64, poles: [u64; 3], ends: [u64; 2], sense: &str) -> String {
+    let [a, b, c] = poles;
+    format!(
+        "#{n}=B_SPLINE_CURVE_WITH_KNOTS('',2,(#{a},#{b},#{c}),.UNSPECIFIED.,.F.,.F.,(3,3),(0.,1.),.UNSPECIFIED.);\n\
+         #{}=EDGE_CURVE('',#{},#{},#{n},.T.);\n#{}=ORIENTED_EDGE('',*,*,#{},{sense});\n",
+        n + 1,
+        ends[0],
+        ends[1],
+        n + 2,
+        n + 1
+    )
+}
+
+#[test]
+fn two_sides_that_are_one_point() {
+    // x = u v, y = u v (u - v) over the unit square: u = 0 and v = 0 are the origin. |S_u x S_v| is
+    // |v (u^2 - 2 u v) - u (2 u v - v^2)| = |-u^2 v - u v^2|, whose integral is 2/6 = 1/3.
+    // Poles: products of the degree-raised factors 0, 1/2, 1 of u and 0, 0, 1 of u^2.
+    let (linear, square) = ([0.0, 0.5, 1.0], [0.0, 0.0, 1.0]);
+    let mut points = [[0.0; 3]; 9];
+    for i in 0..3 {
+        for j in 0..3 {
+            points[3 * i + j] = [linear[i] * linear[j], square[i] * linear[j] - linear[i] * square[j], 0.0];
+        }
+    }
+    let (records, surface) = biquadratic(&points);
+    // u = 1 from v = 0 up, then v = 1 from u = 1 down; both end where the other begins.
+    let data = records
+        + "#200=VERTEX_POINT('',#100);\n#201=VERTEX_POINT('',#108);\n"
+        + &parabola(210, [106, 107, 108], [200, 201], ".T.")
+        + &parabola(220, [102, 105, 108], [200, 201], ".F.");
+    let (f, said) = only(&(data + &face(&[212, 222], &surface)));
+    assert!((f.area_mm2() - 1.0 / 3.0).abs() < AREA, "{} {said:?}", f.area_mm2());
+    assert!(said.len() == 1 && said[0].contains("one point"), "{said:?}");
+    assert_eq!(f.imbalance(), None);
+}
+
+#[test]
+fn a_loop_that_lacks_the_edge_around_a_small_end() {
+    // A parabola z = r^2 / 20 from r = e to r = 10 turned about z. The loop is the rim alone; e is larger than what is a point
+    // on a surface of this size, and smaller than a gap. Its area is pi/6 c^2 ((1 + 4 r^2 / c^2)^(3/2) - 1) with c = 20.
+    let e = 1e-5_f64;
+    let c = 20.0;
+    let (b, pole) = (10.0_f64, |r: f64, z: f64| triple([r, 0.0, z]));
+    // The middle pole of a parabola stands where the tangents at its ends meet: at the mean of the ends' r.
+    let middle = (0.5 * (e + b), e * b / c);
+    let data = format!(
+        "#10=CARTESIAN_POINT('',{});\n#11=CARTESIAN_POINT('',{});\n#12=CARTESIAN_POINT('',{});\n\
+         #13=B_SPLINE_CURVE_WITH_KNOTS('',2,(#10,#11,#12),.UNSPECIFIED.,.F.,.F.,(3,3),(0.,1.),.UNSPECIFIED.);\n\
+         #14=AXIS1_PLACEMENT('',#6,#4);\n",
+        pole(e, e * e / c),
+        pole(middle.0, middle.1),
+        pole(b, b * b / c)
+    ) + &part21::circle(30, [0.0, 0.0, b * b / c], b, true)
+        + "#900=SURFACE_OF_REVOLUTION('',#13,#14);\n#902=FACE_OUTER_BOUND('',#39,.T.);\n\
+           #903=ADVANCED_FACE('',(#902),#900,SENSE);\n#904=OPEN_SHELL('',(#903));\n\
+           #905=SHELL_BASED_SURFACE_MODEL('',(#904));\n#906=SHAPE_REPRESENTATION('',(#7,#905),#3);\n";
+    let want = PI / 6.0 * c * c * ((1.0 + 4.0 * b * b / (c * c)).powf(1.5) - 1.0);
+    for sense in [".T.", ".F."] {
+        let (f, said) = only(&data.replace("SENSE", sense));
+        assert!((f.area_mm2() / want - 1.0).abs() < AREA, "{} of {want}: {said:?}", f.area_mm2());
+        assert!(said.len() == 1 && said[0].contains("taken for a pole"), "{said:?}");
+    }
+}

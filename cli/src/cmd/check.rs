@@ -27,7 +27,7 @@ pub fn run(path: &Path, json: bool) -> Outcome {
     if json {
         render::json(&checked)?;
     } else {
-        render::text(&describe(&checked));
+        render::text(&describe(&checked))?;
     }
     Ok(if checked.fits() { Done::Yes } else { Done::NotWithinTolerance })
 }

@@ -1,7 +1,7 @@
 //! `compare`: tools, strategies, directions and leads of a job side by side, ranked, with the reason why each lost.
 
 use crate::screen::progress::SCREEN;
-use crate::screen::{output, render};
+use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::figure::postures::{Arrays, Postures};
 use osculate::figure::{Study, Wanted, sheet};
@@ -72,6 +72,8 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
     }
     let job = Job::load(path)?;
     choice::check(&job)?;
+    let claimed = out.map(output::claim).transpose()?;
+    let mut pictures = Vec::new();
     let stage = Stage::begin(&SCREEN, "import");
     let faces = part::of_job(&job)?;
     stage.end();
@@ -79,9 +81,9 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
     let ideal = ideal::of_job(&job, &faces)?;
     stage.end();
     let fields = match out {
-        Some(out) => {
+        Some(_) => {
             let stage = Stage::begin(&SCREEN, "fields");
-            let made = fields(&job, &faces, nodes, out, &|f| stage.at(f))?;
+            let made = fields(&job, &faces, nodes, &mut pictures, &|f| stage.at(f))?;
             stage.end();
             made
         }
@@ -99,8 +101,13 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
     let answer = Comparison { format: 1, area_mm2, ideal, candidates, story, verdict, fields };
     if let Some(out) = out {
         let text = serde_json::to_string(&answer).map_err(Failure::job)?;
-        output::write(&out.join("compare.json"), text.as_bytes())?;
+        pictures.push(("compare.json".to_owned(), text));
+        let files: Vec<_> = pictures.iter().map(|(name, text)| (name.as_str(), text.as_bytes())).collect();
+        let whole = cancel::whole();
+        output::set(out, &files)?;
+        drop(whole);
     }
+    drop(claimed);
     if json {
         render::json(&answer)?;
     } else {
@@ -112,17 +119,20 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
             answer.ideal.words(),
             answer.ideal.assumes,
             described(&answer.fields, out)
-        ));
+        ))?;
     }
     Ok(if settled.verified.summary.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
 }
+
+/// Pictures by the names of their files.
+type Pictures = Vec<(String, String)>;
 
 /// The best postures of the job's tools over its faces, with a picture of each.
 fn fields(
     job: &Job,
     faces: &Part,
     nodes: usize,
-    out: &Path,
+    pictures: &mut Pictures,
     progress: &dyn Fn(f64),
 ) -> Result<Vec<FaceFields>, Failure> {
     let jobs = job.each_tool();
@@ -130,7 +140,7 @@ fn fields(
     let mut made = Vec::with_capacity(faces.faces.len());
     for (k, face) in faces.faces.iter().enumerate() {
         let at = |tool: usize| progress((k * jobs.len() + tool) as f64 / steps);
-        made.push(of_face(job, &jobs, face, nodes, out, &at)?);
+        made.push(of_face(job, &jobs, face, nodes, pictures, &at)?);
     }
     Ok(made)
 }
@@ -140,7 +150,7 @@ fn of_face(
     jobs: &[Job],
     face: &LoadedFace,
     nodes: usize,
-    out: &Path,
+    pictures: &mut Pictures,
     at: &dyn Fn(usize),
 ) -> Result<FaceFields, Failure> {
     let refuse = |e: String| Failure::file(job.path(), format!("{}: {e}", face.id));
@@ -148,9 +158,9 @@ fn of_face(
     let study = Study::of(&face.surface, face.nurbs(), &wanted).map_err(|e| refuse(e.to_string()))?;
     let scene = sheet::beside_bar(&study, None);
     let tolerance = job.tolerance();
-    let write = |picture: &str, postures: &Postures<'_>, tool: &str| {
+    let mut draw = |picture: &str, postures: &Postures<'_>, tool: &str| {
         let page = postures.page(&study, &scene, &format!("{}, {tool}", face.id));
-        output::write(&out.join(picture), page.as_bytes())
+        pictures.push((picture.to_owned(), page));
     };
     let (mut all, mut tools) = (Vec::with_capacity(jobs.len()), Vec::with_capacity(jobs.len()));
     for (k, one) in jobs.iter().enumerate() {
@@ -161,7 +171,7 @@ fn of_face(
         let postures =
             Postures::of(&face.surface, &cutter, &limits, nodes).map_err(|e| refuse(e.to_string()))?;
         let (tool, picture) = (one.tool_words(), format!("postures-{}-tool-{}.svg", face.id, k + 1));
-        write(&picture, &postures, &tool)?;
+        draw(&picture, &postures, &tool);
         tools.push(ToolField { tool, picture, postures: postures.arrays() });
         all.push(postures);
     }
@@ -171,7 +181,7 @@ fn of_face(
     let best = match several {
         Some(best) => {
             let picture = format!("postures-{}-best.svg", face.id);
-            write(&picture, &best, "the best tool at every place")?;
+            draw(&picture, &best, "the best tool at every place");
             let share_percent = best.shares_percent();
             Some(BestField { picture, share_percent, postures: best.arrays() })
         }

@@ -12,7 +12,7 @@ use std::path::Path;
 pub fn completions(shell: Shell) -> Outcome {
     let mut out = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "osculate", &mut out);
-    render::text(&String::from_utf8_lossy(&out));
+    render::text(&String::from_utf8_lossy(&out))?;
     Ok(Done::Yes)
 }
 

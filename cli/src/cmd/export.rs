@@ -31,6 +31,7 @@ const CHORD: f64 = 1e-3;
 
 /// Runs the verb.
 pub fn run(args: &ExportArgs, as_json: bool) -> Outcome {
+    output::file(&args.out, &[&args.part])?;
     let faces = chosen(args)?;
     let name = args.out.file_stem().map_or_else(|| "part".to_owned(), |s| s.to_string_lossy().into_owned());
     let kind = args.out.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -70,7 +71,7 @@ pub fn run(args: &ExportArgs, as_json: bool) -> Outcome {
         render::json(&answer)?;
         return Ok(Done::Yes);
     }
-    render::text(&format!("  {}: {} faces, {} bytes\n", answer.out, answer.faces, answer.bytes));
+    render::text(&format!("  {}: {} faces, {} bytes\n", answer.out, answer.faces, answer.bytes))?;
     if let Some(t) = &answer.triangles {
         let closed = if t.watertight {
             "closed".to_owned()
@@ -78,9 +79,9 @@ pub fn run(args: &ExportArgs, as_json: bool) -> Outcome {
             format!("not closed: {} open sides, {} bad ones", t.open_edges, t.bad_edges)
         };
         let (count, error) = (t.count, t.chord_error_mm);
-        render::text(&format!("  {count} triangles, {closed}; at most {error:.3e} mm off where measured\n"));
+        render::text(&format!("  {count} triangles, {closed}; at most {error:.3e} mm off where measured\n"))?;
         if !t.unfinished.is_empty() {
-            render::text(&format!("  farther off than asked: {}\n", t.unfinished.join(", ")));
+            render::text(&format!("  farther off than asked: {}\n", t.unfinished.join(", ")))?;
         }
     }
     Ok(Done::Yes)

@@ -51,6 +51,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         output::folder(out)?;
     }
     let job = Job::load_with_one_tool(path)?;
+    let _claimed = out.map(output::claim).transpose()?;
     let table = job.flank();
     let wrong = |text: String| Failure::file(job.path(), format!("[flank] {text}"));
     let chosen = table.method as usize;
@@ -132,7 +133,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let answer = &answers[chosen];
     let Some(out) = out else {
         stage.end();
-        show(&comparison, json, "")?;
+        show(&comparison, json, "", None)?;
         return Ok(Done::Yes);
     };
     let Some(motion) = &answer.motion else {
@@ -167,11 +168,10 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     };
     SCREEN.saves_into(out);
     let plan = prove(&job, &faces, planned, wall_s, &SCREEN)?;
-    plan::write(&plan, out)?;
     comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter), &plan.verified));
     let text_json = serde_json::to_string_pretty(&comparison).map_err(Failure::job)? + "\n";
-    output::write(&out.join("flank.json"), text_json.as_bytes())?;
-    show(&comparison, json, &plan::describe(&plan, out))?;
+    plan::write(&plan, out, Some(("flank.json", text_json.as_bytes())))?;
+    show(&comparison, json, &plan::describe(&plan, out), plan::red(&plan.verified).as_deref())?;
     Ok(if plan.summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
 }
 
@@ -273,7 +273,7 @@ fn page_table(c: &Comparison) -> report::Table {
     }
 }
 
-fn show(c: &Comparison, json: bool, more: &str) -> Result<(), Failure> {
+fn show(c: &Comparison, json: bool, more: &str, red: Option<&str>) -> Result<(), Failure> {
     if json {
         return render::json(c);
     }
@@ -301,6 +301,5 @@ fn show(c: &Comparison, json: bool, more: &str) -> Result<(), Failure> {
     }
     text.push_str(more);
     text.push('\n');
-    render::text(&text);
-    Ok(())
+    render::warning(&text, red)
 }

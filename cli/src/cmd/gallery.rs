@@ -22,6 +22,6 @@ pub fn run(json: bool) -> Outcome {
         out.push_str(&format!("  {:width$}  --builtin 'kind = \"{}\"{keys}'\n\n", "", e.name));
     }
     out.push_str("  Every one takes material = \"inside\" or \"outside\", u_range and v_range too.\n\n");
-    render::text(&out);
+    render::text(&out)?;
     Ok(Done::Yes)
 }

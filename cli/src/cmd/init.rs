@@ -38,7 +38,7 @@ pub fn run(options: &InitArgs, json: bool) -> Outcome {
             "diagnostics": findings,
         }))?;
     } else {
-        render::text(&describe(&first, &job, &options.out));
+        render::text(&describe(&first, &job, &options.out))?;
     }
     Ok(Done::Yes)
 }

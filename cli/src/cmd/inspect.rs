@@ -2,13 +2,15 @@
 
 use crate::screen::args::PartArgs;
 use crate::screen::render;
-use osculate::failure::{Done, Outcome};
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::job::problem::Problem;
 use osculate::part::hidden::{self, Found};
 use osculate::part::{self, Loaded, LoadedFace};
 use osculate::words;
 use osculate::words::{Table, number};
 use osculate_geom::{Box3, Surface};
 use osculate_surfaces::Colour;
+use osculate_surfaces::structure::{Body, Shell, Structure};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -21,6 +23,10 @@ struct FaceRow {
     product: String,
     /// `#rrggbb`; empty where the file has none.
     colour: String,
+    /// The body that it belongs to; empty where the file names none.
+    body: String,
+    /// The layers that it is on.
+    layers: Vec<String>,
     kind: String,
     entity: u64,
     degree: Vec<usize>,
@@ -58,6 +64,36 @@ struct Product {
     instances: usize,
 }
 
+/// A body as the file gives it.
+#[derive(Serialize)]
+struct BodyRow {
+    id: String,
+    name: String,
+    /// `solid`, `surfaces` or `set`.
+    kind: String,
+    entity: u64,
+    /// Products from the whole assembly down to its own.
+    path: Vec<String>,
+    shells: Vec<ShellRow>,
+}
+
+/// A shell of a body.
+#[derive(Serialize)]
+struct ShellRow {
+    name: String,
+    entity: u64,
+    /// Whether the file says that it closes.
+    closed: bool,
+    faces: Vec<String>,
+}
+
+/// Faces that the file shows and hides together.
+#[derive(Serialize)]
+struct LayerRow {
+    name: String,
+    faces: Vec<String>,
+}
+
 #[derive(Serialize)]
 struct Answer {
     format: &'static str,
@@ -65,11 +101,17 @@ struct Answer {
     schema: String,
     /// Empty where the file names no product.
     products: Vec<Product>,
+    /// Solids and other bodies, each at each of its places.
+    bodies: Vec<BodyRow>,
+    layers: Vec<LayerRow>,
     faces: Vec<FaceRow>,
     bbox_mm: Vec<f64>,
     area_mm2: f64,
     not_used: Vec<NotUsed>,
     diagnostics: Vec<String>,
+    /// Why this is not all of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Problem>,
 }
 
 fn corners(b: &Box3) -> Vec<f64> {
@@ -102,6 +144,38 @@ fn products(faces: &[FaceRow]) -> Vec<Product> {
     out
 }
 
+fn body(b: &Body) -> BodyRow {
+    let shell = |s: &Shell| ShellRow {
+        name: s.name.clone(),
+        entity: s.entity,
+        closed: s.closed,
+        faces: s.faces.clone(),
+    };
+    BodyRow {
+        id: b.id.clone(),
+        name: b.name.clone(),
+        kind: b.kind.to_string(),
+        entity: b.entity,
+        path: b.path.clone(),
+        shells: b.shells.iter().map(shell).collect(),
+    }
+}
+
+/// Says of each face which body it belongs to and on which layers it is.
+fn join(faces: &mut [FaceRow], structure: &Structure) {
+    let number: HashMap<String, usize> = faces.iter().enumerate().map(|(k, f)| (f.id.clone(), k)).collect();
+    for b in &structure.bodies {
+        for k in b.faces().filter_map(|id| number.get(id)) {
+            faces[*k].body.clone_from(&b.id);
+        }
+    }
+    for l in &structure.layers {
+        for k in l.faces.iter().filter_map(|id| number.get(id)) {
+            faces[*k].layers.push(l.name.clone());
+        }
+    }
+}
+
 fn row(face: &LoadedFace) -> (FaceRow, Box3) {
     let b = part::bounds(face);
     let d = face.surface.domain();
@@ -111,6 +185,8 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
         name: face.name.clone(),
         product: source.map_or_else(String::new, |f| f.product.clone()),
         colour: source.and_then(|f| f.colour).map_or_else(String::new, hex),
+        body: String::new(),
+        layers: Vec::new(),
         kind: face.kind.clone(),
         entity: source.map_or(0, |f| f.entity),
         degree: source.and_then(|f| f.degree()).map_or_else(Vec::new, |d| d.to_vec()),
@@ -134,20 +210,36 @@ pub fn run(args: &PartArgs, json: bool) -> Outcome {
     let part = args.load()?;
     let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
     let found = hidden::find(&part, &oriented);
-    let answer = answer(&part, &found);
-    if json {
-        render::json(&answer)?;
-    } else {
-        render::text(&describe(&answer, &part, &found));
-    }
+    let why = failure(args, &part);
+    let answer = Answer { error: why.as_ref().map(Failure::problem), ..answer(&part, &found) };
     // What could be read is shown all the same.
-    part::whole(part).map(|_| Done::Yes)
+    if !json {
+        render::text(&describe(&answer, &part, &found))?;
+        return why.map_or(Ok(Done::Yes), Err);
+    }
+    render::json(&answer)?;
+    // The answer holds it already: one object is all that stands on stdout.
+    Ok(why.map_or(Done::Yes, |why| {
+        render::complaint(why.message());
+        Done::NotWithinTolerance
+    }))
+}
+
+/// Why what is shown is not the file.
+fn failure(args: &PartArgs, part: &Loaded) -> Option<Failure> {
+    if let Some(message) = &part.truncated {
+        return Some(Failure::job(message));
+    }
+    let path = args.part.as_ref().filter(|_| part.faces.is_empty())?;
+    let what = "no face of it could be read: what is lost and what is not used say why; export it again with surfaces";
+    Some(Failure::file(path, what))
 }
 
 fn answer(part: &Loaded, found: &Found) -> Answer {
     let rows: Vec<(FaceRow, Box3)> = part.faces.par_iter().map(row).collect();
     let whole = rows.iter().fold(Box3::empty(), |b, r| b.union(&r.1));
     let mut faces: Vec<FaceRow> = rows.into_iter().map(|r| r.0).collect();
+    join(&mut faces, &part.structure);
     for row in &mut faces {
         if let Some(of) = found.faces.iter().find(|f| f.id == row.id) {
             (row.hidden_mm2, row.hidden_in) = (of.hidden_mm2, of.bodies.clone());
@@ -161,9 +253,17 @@ fn answer(part: &Loaded, found: &Found) -> Answer {
         // An empty sum is minus zero.
         area_mm2: faces.iter().map(|f| f.area_mm2).sum::<f64>() + 0.0,
         products: products(&faces),
+        bodies: part.structure.bodies.iter().map(body).collect(),
+        layers: part
+            .structure
+            .layers
+            .iter()
+            .map(|l| LayerRow { name: l.name.clone(), faces: l.faces.clone() })
+            .collect(),
         faces,
         not_used: part.not_used.iter().map(not_used).collect(),
         diagnostics: part.diagnostics.iter().chain(&found.diagnostics).map(ToString::to_string).collect(),
+        error: None,
     }
 }
 
@@ -179,15 +279,40 @@ fn lines(n: &NotUsed) -> String {
     format!("{}{more}", shown.join(", "))
 }
 
+/// The columns of faces that stand where a file has any of them.
+const NAMED: [&str; 5] = ["name", "product", "colour", "body", "layer"];
+
+/// The table of bodies, and how many there are of each kind; nothing of a file without.
+fn body_table(bodies: &[BodyRow]) -> String {
+    if bodies.is_empty() {
+        return String::new();
+    }
+    let mut t = Table::left(["body", "kind", "faces", "shells", "name", "in"]);
+    for b in bodies {
+        let faces: usize = b.shells.iter().map(|s| s.faces.len()).sum();
+        let closed = b.shells.iter().filter(|s| s.closed).count();
+        let shells = match (closed, b.shells.len() - closed) {
+            (closed, 0) => format!("{closed} closed"),
+            (0, open) => format!("{open} open"),
+            (closed, open) => format!("{closed} closed, {open} open"),
+        };
+        t.row([b.id.clone(), b.kind.clone(), faces.to_string(), shells, b.name.clone(), b.path.join(" / ")]);
+    }
+    format!("\n{}", t.render())
+}
+
 /// The table of faces; names, products and colours where the file has any.
 fn face_table(faces: &[FaceRow]) -> String {
     let pair = |v: &[usize]| v.iter().map(ToString::to_string).collect::<Vec<_>>().join("x");
     let yes = |b: bool| if b { "yes" } else { "-" }.to_owned();
-    let words = |f: &FaceRow| [f.name.clone(), f.product.clone(), f.colour.clone()];
-    let named: Vec<usize> = (0..3).filter(|k| faces.iter().any(|f| !words(f)[*k].is_empty())).collect();
+    let words = |f: &FaceRow| {
+        [f.name.clone(), f.product.clone(), f.colour.clone(), f.body.clone(), f.layers.join(", ")]
+    };
+    let named: Vec<usize> =
+        (0..NAMED.len()).filter(|k| faces.iter().any(|f| !words(f)[*k].is_empty())).collect();
     let plain =
         ["face", "kind", "degree", "poles", "rational", "trimmed", "area mm2", "k_min 1/mm", "k_max 1/mm"];
-    let mut t = Table::new(plain.into_iter().chain(named.iter().map(|k| ["name", "product", "colour"][*k])));
+    let mut t = Table::new(plain.into_iter().chain(named.iter().map(|k| NAMED[*k])));
     for f in faces {
         let k = |i: usize| f.principal_curvature_per_mm.get(i).map_or_else(|| "-".into(), |k| number(*k, 4));
         let plain = [
@@ -220,6 +345,7 @@ fn describe(a: &Answer, part: &Loaded, found: &Found) -> String {
     if !a.faces.is_empty() {
         out.push_str(&format!("\n{}", face_table(&a.faces)));
     }
+    out.push_str(&body_table(&a.bodies));
     if !found.faces.is_empty() {
         let mut t = Table::new(["face", "hidden mm2", "of it", "in"]);
         for f in a.faces.iter().filter(|f| !f.hidden_in.is_empty()) {

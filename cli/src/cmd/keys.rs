@@ -8,11 +8,11 @@ use osculate::job::{Job, Operations, editor, reference};
 pub fn run(template: bool, json: bool) -> Outcome {
     let (one, list) = (&Job::schema().tables, &Operations::schema().tables);
     match (template, json) {
-        (true, false) => render::text(&reference::template(one)),
+        (true, false) => render::text(&reference::template(one))?,
         (false, false) => {
-            render::text(&reference::text(one));
-            render::text("\nA list of operations (format = 2) has these tables:\n");
-            render::text(&reference::text(list));
+            render::text(&reference::text(one))?;
+            render::text("\nA list of operations (format = 2) has these tables:\n")?;
+            render::text(&reference::text(list))?;
         }
         (true, true) => render::json(&serde_json::json!({ "template": reference::template(one) }))?,
         (false, true) => {

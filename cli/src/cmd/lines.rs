@@ -1,8 +1,7 @@
 //! `lines`: the characteristic lines of a face as figures and JSON.
 
 use crate::screen::args::{LinesArgs, PostureArgs};
-use crate::screen::output;
-use crate::screen::render;
+use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::figure::postures::Postures;
 use osculate::figure::{self, Panel, Study, Wanted, json, sheet};
@@ -49,15 +48,15 @@ pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
         answer.postures = Some(postures.arrays());
     }
     answer.files = files.iter().map(|(f, _)| f.clone()).chain(["lines.json".to_owned()]).collect();
-    for (file, text) in &files {
-        output::write(&args.out.join(file), text.as_bytes())?;
-    }
-    let text = serde_json::to_string(&answer).map_err(Failure::job)?;
-    output::write(&args.out.join("lines.json"), text.as_bytes())?;
+    files.push(("lines.json".to_owned(), serde_json::to_string(&answer).map_err(Failure::job)?));
+    let claimed = output::claim(&args.out)?;
+    let whole = cancel::whole();
+    output::set(&args.out, &files.iter().map(|(f, t)| (f.as_str(), t.as_bytes())).collect::<Vec<_>>())?;
+    drop((whole, claimed));
     if json_wanted {
-        render::text(&(text + "\n"));
+        render::json(&answer)?;
     } else {
-        render::text(&describe(&study, &name, &answer.files, args));
+        render::text(&describe(&study, &name, &answer.files, args))?;
     }
     Ok(Done::Yes)
 }

@@ -40,9 +40,9 @@ pub fn machines(json: bool) -> Outcome {
     for r in &rows {
         t.row([r.name.clone(), r.joints.join(" ")]);
     }
-    render::text(&format!("\n{}\n", t.render()));
+    render::text(&format!("\n{}\n", t.render()))?;
     for name in built_in_names() {
-        render::text(&chain(&Machine::built_in(name).map_err(Failure::job)?));
+        render::text(&chain(&Machine::built_in(name).map_err(Failure::job)?))?;
     }
     Ok(Done::Yes)
 }
@@ -88,7 +88,7 @@ pub fn check_machine(word: &str, json: bool) -> Outcome {
     }
     let mut t = Table::left(["not said", "what that means"]);
     gaps.into_iter().for_each(|g| t.row([g.key, g.meaning]));
-    render::text(&format!("\n{}\n{}\n", chain(&machine).trim_end(), t.render()));
+    render::text(&format!("\n{}\n{}\n", chain(&machine).trim_end(), t.render()))?;
     Ok(Done::Yes)
 }
 
@@ -115,9 +115,9 @@ pub fn dialects(json: bool) -> Outcome {
                 sources.push(r.source);
             }
         }
-        render::text(&format!("\n{} (.{})\n{}\n", d.name(), d.extension(), t.render()));
+        render::text(&format!("\n{} (.{})\n{}\n", d.name(), d.extension(), t.render()))?;
         for source in sources {
-            render::text(&format!("  {source}\n"));
+            render::text(&format!("  {source}\n"))?;
         }
     }
     for own in shipped_dialects().filter_map(DialectFile::shipped) {
@@ -125,9 +125,9 @@ pub fn dialects(json: bool) -> Outcome {
         render::text(&format!(
             "\n{name} (.{extension}), words of its own over {engine}: {}\n",
             own.description()
-        ));
+        ))?;
     }
-    render::text("\n");
+    render::text("\n")?;
     Ok(Done::Yes)
 }
 
@@ -146,6 +146,6 @@ pub fn tools(json: bool) -> Outcome {
     for (kind, keys) in rows {
         t.row([kind.to_owned(), keys]);
     }
-    render::text(&format!("\n{}\n", t.render()));
+    render::text(&format!("\n{}\n", t.render()))?;
     Ok(Done::Yes)
 }

@@ -11,7 +11,6 @@ use osculate::work::operations;
 use osculate::work::plan::check;
 use osculate::work::summary::Summary;
 use osculate::{Part, Plan, Verified, plan};
-use std::io::IsTerminal;
 use std::path::Path;
 
 /// Operations that an earlier run of another list may have kept here.
@@ -21,31 +20,36 @@ const MOST_KEPT: usize = 100;
 pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     output::folder(out)?;
     let text = read_text(path)?;
+    let claimed;
     let plan = if Operations::are_in(&text) {
         let list = Operations::from_toml(&text, path)?;
+        claimed = output::claim(out)?;
         let (part, list) = operations::part(list, &SCREEN)?;
         SCREEN.saves_into(out);
         operations::plan(&part, &list, &SCREEN)?
     } else {
         let job = Job::from_toml(&text, path)?;
         check(&job)?;
+        claimed = output::claim(out)?;
         let part = Part::watched(&job, &SCREEN)?;
         SCREEN.saves_into(out);
         plan(&part, &job, &SCREEN)?
     };
-    write(&plan, out)?;
+    write(&plan, out, None)?;
+    drop(claimed);
     if json {
         render::json(&plan.summary)?;
     } else {
-        render::text(&describe(&plan, out));
+        render::warning(&describe(&plan, out), red(&plan.verified).as_deref())?;
     }
     Ok(if plan.summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
 }
 
-/// Writes the files of a plan. A stop waits until all of them are there.
-pub fn write(plan: &Plan, out: &Path) -> Result<(), Failure> {
+/// Writes the files of a plan, and one more that belongs to them. A stop waits until all of them are there.
+pub fn write(plan: &Plan, out: &Path, more: Option<(&str, &[u8])>) -> Result<(), Failure> {
     let whole = cancel::whole();
-    plan.write_watched(out, &SCREEN)?;
+    let own = plan.files().iter().map(|f| (f.name.as_str(), &*f.bytes));
+    output::set(out, &own.chain(more).collect::<Vec<_>>())?;
     // What an earlier run saved when it was stopped is out of date.
     let _ = std::fs::remove_file(out.join(cancel::PARTIAL));
     for place in 0..plan.summary.operations.len().max(MOST_KEPT) {
@@ -90,7 +94,7 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     if let Some(words) = s.joints.as_ref().and_then(|j| j.words()) {
         text.push_str(&format!("  {words}\n\n"));
     }
-    text.push_str(&format!("{}\n{}", figures(&s.verification), on_screen(v)));
+    text.push_str(&format!("{}\n{}", figures(&s.verification), v.verdict));
     if !v.verdict.is_held() {
         for w in v.worst.iter().take(5) {
             let [x, y, z] = w.at_mm;
@@ -169,12 +173,7 @@ fn operations_table(s: &Summary) -> String {
     out
 }
 
-/// A verdict, in red where it is not held and a person looks.
-fn on_screen(v: &Verified) -> String {
-    let text = v.verdict.to_string();
-    if v.verdict.is_held() || !std::io::stdout().is_terminal() {
-        return text;
-    }
-    let words = v.verdict.words();
-    text.replace(&words, &format!("\u{1b}[1;31m{words}\u{1b}[0m"))
+/// What stands in red on a screen: the words of a verdict that is not held.
+pub fn red(v: &Verified) -> Option<String> {
+    (!v.verdict.is_held()).then(|| v.verdict.words())
 }

@@ -99,6 +99,7 @@ fn gauge(args: &PostArgs, section: &ClSection, notes: &mut Vec<Diagnostic>) -> R
 /// Runs the verb.
 pub fn run(args: &PostArgs, json: bool) -> Outcome {
     let here = |e: &dyn std::fmt::Display| Failure::file(&args.clfile, e);
+    output::file(&args.out, &[&args.clfile, Path::new(&args.machine)])?;
     let open = || std::fs::File::open(&args.clfile).map(BufReader::new);
     open().map_err(|e| Failure::file(&args.clfile, format!("cannot be read: {e}")))?;
     // A name without a separator or ending is a built-in machine, anything else a file.
@@ -216,7 +217,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     if json {
         render::json(&answer)?;
     } else {
-        show(&answer, &notes, &args.out);
+        show(&answer, &notes, &args.out)?;
     }
     Ok(Done::Yes)
 }
@@ -234,7 +235,7 @@ fn total(reports: &[PostReport]) -> PostSummary {
     })
 }
 
-fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) {
+fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) -> Result<(), Failure> {
     let mut t = Table::new(["program", "", "unit"]);
     let mut row = |k: &str, v: String, u: &str| t.row([k.into(), v, u.into()]);
     row("blocks", answer.blocks.to_string(), "");
@@ -244,7 +245,7 @@ fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) {
     row("points put in", answer.inserted_points.to_string(), "");
     row("tip error", number(answer.tip_error_mm, 3), "mm");
     row("axis error", number(answer.axis_error_deg, 3), "deg");
-    render::text(&format!("\n{}\n  {}\n", t.render(), out.display()));
+    render::text(&format!("\n{}\n  {}\n", t.render(), out.display()))?;
     if answer.tools.len() > 1 {
         let mut t = Table::new(["tool", "cutter", "rpm", "CL line", "blocks", "min"]);
         for one in &answer.tools {
@@ -259,10 +260,10 @@ fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) {
                 format!("{:.3}", one.time_min),
             ]);
         }
-        render::text(&format!("\n{}", t.render()));
+        render::text(&format!("\n{}", t.render()))?;
     }
     if !notes.is_empty() {
-        render::text(&format!("\n{}", words::findings(notes)));
+        render::text(&format!("\n{}", words::findings(notes)))?;
     }
-    render::text("\n");
+    render::text("\n")
 }

@@ -62,17 +62,17 @@ pub fn run(args: &PartArgs, face: Option<&str>, at: &[[f64; 2]], json: bool) -> 
     let list = |v: &[f64]| v.iter().map(|x| number(*x, 9)).collect::<Vec<_>>().join("  ");
     for p in &points {
         let inside = if p.inside { "" } else { "   (outside the trim)" };
-        render::text(&format!("\n  {} at u, v = {}{inside}\n", face.id, list(&p.uv)));
-        render::text(&format!("  point mm             {}\n", list(&p.point_mm)));
-        render::text(&format!("  outward normal       {}\n", list(&p.normal)));
-        render::text(&format!("  first form E F G     {}\n", list(&p.first_form)));
-        render::text(&format!("  second form L M N    {}\n", list(&p.second_form)));
+        render::text(&format!("\n  {} at u, v = {}{inside}\n", face.id, list(&p.uv)))?;
+        render::text(&format!("  point mm             {}\n", list(&p.point_mm)))?;
+        render::text(&format!("  outward normal       {}\n", list(&p.normal)))?;
+        render::text(&format!("  first form E F G     {}\n", list(&p.first_form)))?;
+        render::text(&format!("  second form L M N    {}\n", list(&p.second_form)))?;
         render::text(&format!(
             "  k_max, k_min 1/mm    {}   (positive is convex)\n",
             list(&p.principal_per_mm)
-        ));
-        render::text(&format!("  direction of k_max   {}\n", list(&p.principal_directions[0])));
-        render::text(&format!("  direction of k_min   {}\n", list(&p.principal_directions[1])));
+        ))?;
+        render::text(&format!("  direction of k_max   {}\n", list(&p.principal_directions[0])))?;
+        render::text(&format!("  direction of k_min   {}\n", list(&p.principal_directions[1])))?;
     }
     Ok(Done::Yes)
 }

@@ -15,6 +15,7 @@ use osculate_postproc::readback::{ReadOptions, Reader};
 use osculate_tools::cl::{ClMove, Motion};
 use serde::Serialize;
 use std::io::Write;
+use std::path::Path;
 
 #[derive(Default, Serialize)]
 struct Answer {
@@ -31,6 +32,7 @@ const PIECE_BYTES: usize = 1 << 16;
 /// Runs the verb.
 pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     let file = &args.nc.file;
+    output::file(&args.out, &[file, Path::new(&args.nc.machine)])?;
     let machine = nc::machine(&args.nc.machine)?;
     let language = nc::dialect_of(args.nc.dialect.as_deref(), file)?;
     let zero = Vec3::from(args.nc.part_zero.unwrap_or_default());
@@ -84,10 +86,10 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     row("points", answer.points.to_string(), "");
     row("at feed", number(answer.cutting_length_mm, 4), "mm");
     row("rapid", number(answer.air_length_mm, 4), "mm");
-    render::text(&format!("\n{}\n  {}\n", t.render(), args.out.display()));
+    render::text(&format!("\n{}\n  {}\n", t.render(), args.out.display()))?;
     if !reader.diagnostics().is_empty() {
-        render::text(&format!("\n{}", words::findings(reader.diagnostics())));
+        render::text(&format!("\n{}", words::findings(reader.diagnostics())))?;
     }
-    render::text("\n");
+    render::text("\n")?;
     Ok(Done::with(reader.diagnostics()))
 }

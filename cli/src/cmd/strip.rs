@@ -90,7 +90,7 @@ pub fn run(path: &Path, json: bool) -> Outcome {
     if json {
         render::json(&answer)?;
     } else {
-        render::text(&describe(&answer, scallop_mm));
+        render::text(&describe(&answer, scallop_mm))?;
     }
     Ok(Done::Yes)
 }

@@ -61,17 +61,17 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     ] {
         table.row([name.into(), format!("{min:.4}"), format!("{:.2}", 60.0 * min)]);
     }
-    render::text(&format!("\n{}\n", table.render()));
+    render::text(&format!("\n{}\n", table.render()))?;
     for (joint, count) in &t.limited_by {
-        render::text(&format!("  {joint} makes {count} moves slower than F asks\n"));
+        render::text(&format!("  {joint} makes {count} moves slower than F asks\n"))?;
     }
     if let Some(words) = answer.joints.words() {
-        render::text(&format!("  {words}\n"));
+        render::text(&format!("  {words}\n"))?;
     }
     if !timed.diagnostics.is_empty() {
-        render::text(&format!("\n{}", words::findings(&timed.diagnostics)));
+        render::text(&format!("\n{}", words::findings(&timed.diagnostics)))?;
     }
-    render::text("\n");
+    render::text("\n")?;
     Ok(Done::with(&timed.diagnostics))
 }
 

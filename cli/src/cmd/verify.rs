@@ -48,6 +48,10 @@ pub struct Options<'a> {
 
 /// Runs the verb.
 pub fn run(files: &[PathBuf], job_path: &Path, options: &Options<'_>, json: bool) -> Outcome {
+    for path in [options.ply, options.blocks].into_iter().flatten() {
+        let read: Vec<&Path> = files.iter().map(PathBuf::as_path).chain([job_path]).collect();
+        output::file(path, &read)?;
+    }
     let job_text = read_text(job_path)?;
     if Operations::are_in(&job_text) {
         return of_list(files, Operations::from_toml(&job_text, job_path)?, options, json);
@@ -130,8 +134,8 @@ fn answered(
             diagnostics: v.diagnostics.iter().map(ToString::to_string).collect(),
         })?;
     } else {
-        render::text(&told(v, wall_s));
-        render::text(&second.as_ref().map_or_else(String::new, opinion_text));
+        render::text(&told(v, wall_s))?;
+        render::text(&second.as_ref().map_or_else(String::new, opinion_text))?;
     }
     Ok(if v.verdict.is_held() { Done::Yes } else { Done::NotWithinTolerance })
 }

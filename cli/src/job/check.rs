@@ -45,7 +45,7 @@ pub fn format(text: &str) -> Option<(i64, usize)> {
 }
 
 /// The line of a place of a text.
-fn line(text: &str, at: usize) -> usize {
+pub fn line(text: &str, at: usize) -> usize {
     1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
 }
 
@@ -257,7 +257,7 @@ fn check(kind: &Kind, value: &DeValue<'_>) -> Result<(), Wrong> {
         Kind::Text | Kind::File => value.as_str().is_some_and(|t| !t.trim().is_empty()),
         Kind::Files => each(value.as_array(), |v| v.as_str().is_some_and(|t| !t.trim().is_empty())),
         Kind::Faces => faces(value),
-        Kind::Others => !value.is_table() && faces(value),
+        Kind::Others | Kind::Ids => !value.is_table() && faces(value),
         Kind::Builtin => value.is_table(),
         Kind::List => numbers(value).is_some_and(|x| x.iter().all(|x| x.is_finite())) || points(value),
     };

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, read_text};
 use crate::job::Tool;
+use crate::job::check::line;
 use crate::job::language::Language;
 use crate::job::problem::Places;
 use crate::job::raw;
@@ -9,7 +10,9 @@ use crate::job::words::{CoolantWord, FeedWord};
 use osculate_geom::{Diagnostic, Point3, Vec3};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::{Coolant, Dialect};
-use osculate_postproc::{Machine, PostError, PostOptions, Setup, built_in_names, built_in_text, post};
+use osculate_postproc::{
+    Machine, MachineError, PostError, PostOptions, Setup, built_in_names, built_in_text, post,
+};
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use std::path::Path;
@@ -174,15 +177,23 @@ impl Control {
     }
 }
 
+/// The machine of a file, with its text. What stands in a file that is none is not repeated.
+pub fn machine_file(file: &Path) -> Result<(Machine, String), Failure> {
+    let text = read_text(file)?;
+    let machine = Machine::from_toml(&text).map_err(|e| match &e {
+        MachineError::Toml(e) => {
+            let at = e.span().map_or_else(String::new, |s| format!(", line {}", line(&text, s.start)));
+            Failure::file(file, format!("is no machine{at}: {}", e.message().trim_end()))
+        }
+        e => Failure::file(file, e),
+    })?;
+    Ok((machine, text))
+}
+
 /// A built-in machine or one of a file, with its description.
 fn machine(name: Option<&str>, file: Option<&Path>) -> Result<(Machine, String), Failure> {
     match (name, file) {
-        (_, Some(file)) => {
-            let text = read_text(file)?;
-            let machine =
-                Machine::from_toml(&text).map_err(|e| Failure::file(file, e.to_string().trim_end()))?;
-            Ok((machine, text))
-        }
+        (_, Some(file)) => machine_file(file),
         (Some(name), None) => {
             let machine = Machine::built_in(name).map_err(Failure::job)?;
             Ok((machine, built_in_text(name).unwrap_or_default().to_owned()))

@@ -107,7 +107,7 @@ fn kind(kind: &Kind) -> Value {
             "type": "object", "additionalProperties": false, "required": ["largest"],
             "properties": { "largest": { "type": "integer", "minimum": 1 } }
         }] }),
-        Kind::Others => json!({ "anyOf": [text(), list(text(), None)] }),
+        Kind::Others | Kind::Ids => json!({ "anyOf": [text(), list(text(), None)] }),
         Kind::Builtin => json!({ "type": "object" }),
         Kind::List => json!({ "type": "array" }),
     }

@@ -4,7 +4,8 @@ use crate::job::language::Language;
 use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
+    FlankShape, Gouges, LeadKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
+    Turns,
 };
 use osculate_postproc::built_in_names;
 use std::sync::LazyLock;
@@ -61,6 +62,7 @@ pub static ONE: LazyLock<Schema> =
 pub static LIST: LazyLock<Schema> = LazyLock::new(|| {
     let common = [
         "part",
+        "part.side",
         "part.ruled",
         "part.ruled.c0",
         "part.ruled.c1",
@@ -167,6 +169,10 @@ pub static TABLES: &[Table] = &[
         may("check_faces", Kind::Faces, "none named", "\"all\"", "faces that the tool must not touch"),
         may("may_hit", Kind::Others, "none", "[\"F3\"]", "faces not machined that the tool may cut or hit; the verdict's scope says so"),
         may("normals", Kind::Word(Normals::WORDS), "auto", "\"file\"", "side of the material for faces whose file does not say it"),
+    ]),
+    table("part.side", false, "the side of the material of faces of which neither the file nor the part says it; [[part.side]] are several", &[
+        must("faces", Kind::Ids, "[\"F12\"]", "the faces, by the ids that `inspect` prints"),
+        must("material", Kind::Word(MaterialWord::WORDS), "\"below_normal\"", "where the material is, seen along S_u x S_v as `probe` shows it"),
     ]),
     table("part.ruled", false, "the surface between two curves", &[]),
     table("part.ruled.c0", true, "the curve at v = 0: a NURBS curve, or points for a cubic through them", CURVE),

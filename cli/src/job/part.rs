@@ -5,7 +5,7 @@ use crate::job::builtin::{self, Builtin};
 use crate::job::problem::Places;
 use crate::job::raw;
 pub use crate::job::raw::{FaceChoice, Largest};
-use crate::job::words::Normals;
+use crate::job::words::{MaterialWord, Normals};
 use crate::job::{flank, stock};
 use std::path::PathBuf;
 
@@ -36,6 +36,7 @@ pub struct Part {
     check_faces: Option<FaceChoice>,
     may_hit: Option<FaceChoice>,
     normals: Normals,
+    sides: Vec<(String, MaterialWord)>,
 }
 
 impl Part {
@@ -68,12 +69,27 @@ impl Part {
             return Err(places.refuse(TABLE, "faces", "faces = [] chooses no face"));
         }
         Self::clear(places, t)?;
+        let sides = t.side.as_ref().map(raw::Sides::each).unwrap_or_default();
+        if t.side.is_some() && !matches!(source, Source::File { .. }) {
+            return Err(places.refuse(
+                TABLE,
+                "side",
+                "[[part.side]] goes with file: what is built in has its side",
+            ));
+        }
+        if let Some((k, (id, _))) =
+            sides.iter().enumerate().find(|(k, (id, _))| sides[..*k].iter().any(|s| s.0 == *id))
+        {
+            let what = format!("[[part.side]] names {id} again (entry {} of all ids): name it once", k + 1);
+            return Err(places.refuse(TABLE, "side", what));
+        }
         Ok(Self {
             source,
             faces: t.faces.clone(),
             check_faces: t.check_faces.clone(),
             may_hit: t.may_hit.clone(),
             normals: t.normals,
+            sides,
         })
     }
 
@@ -117,6 +133,12 @@ impl Part {
     #[must_use]
     pub const fn normals(&self) -> Normals {
         self.normals
+    }
+
+    /// Faces whose side the job says one by one, with that side.
+    #[must_use]
+    pub fn sides(&self) -> &[(String, MaterialWord)] {
+        &self.sides
     }
 }
 

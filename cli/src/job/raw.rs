@@ -2,7 +2,8 @@
 
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeadKey, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind, Turns,
+    FlankShape, Gouges, LeadKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
+    Turns,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;
@@ -46,8 +47,47 @@ pub struct Part {
     pub may_hit: Option<FaceChoice>,
     #[serde(default)]
     pub normals: Normals,
+    pub side: Option<Sides>,
     pub builtin: Option<toml::Table>,
     pub ruled: Option<Ruled>,
+}
+
+/// Sides of faces: of some, or several such.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub enum Sides {
+    One(SideKey),
+    Several(Vec<SideKey>),
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SideKey {
+    pub faces: Ids,
+    pub material: MaterialWord,
+}
+
+/// An id, or several.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub enum Ids {
+    One(String),
+    Several(Vec<String>),
+}
+
+impl Sides {
+    /// Each face that is named with its side, in their order.
+    pub fn each(&self) -> Vec<(String, MaterialWord)> {
+        let all = match self {
+            Self::One(one) => std::slice::from_ref(one),
+            Self::Several(all) => all,
+        };
+        let of = |s: &SideKey| match &s.faces {
+            Ids::One(id) => vec![(id.clone(), s.material)],
+            Ids::Several(ids) => ids.iter().map(|id| (id.clone(), s.material)).collect(),
+        };
+        all.iter().flat_map(of).collect()
+    }
 }
 
 /// A choice of faces.

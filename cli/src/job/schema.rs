@@ -80,6 +80,8 @@ pub enum Kind {
     Faces,
     /// "all", an id or ids.
     Others,
+    /// An id or ids.
+    Ids,
     /// A built-in surface's keys.
     Builtin,
     /// A list of numbers or of points, of any length.
@@ -130,6 +132,7 @@ impl Kind {
             Self::Files => "a list of paths, relative to the job file".to_owned(),
             Self::Faces => "\"all\", an id, a list of ids, or { largest = n }".to_owned(),
             Self::Others => "\"all\", an id or a list of ids".to_owned(),
+            Self::Ids => "an id or a list of ids".to_owned(),
             Self::Builtin => {
                 "a table with kind and the sizes of a built-in surface (see `gallery`)".to_owned()
             }
@@ -178,7 +181,7 @@ impl Table {
 pub const TOOLS: &str = "tools";
 
 /// Tables that may be lists of such tables as well.
-pub const ONE_OR_MORE: [&str; 1] = ["tool.holder"];
+pub const ONE_OR_MORE: [&str; 2] = ["tool.holder", "part.side"];
 
 /// What a kind of job file may hold: its tables, and which of them stand in lists.
 #[derive(Debug)]

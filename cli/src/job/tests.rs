@@ -29,6 +29,7 @@ fn accepted() -> Vec<(&'static str, Vec<String>)> {
     vec![
         ("", fields::<raw::Raw>()),
         ("part", fields::<raw::Part>()),
+        ("part.side", fields::<raw::SideKey>()),
         ("part.ruled", fields::<raw::Ruled>()),
         ("part.ruled.c0", fields::<raw::Curve>()),
         ("part.ruled.c1", fields::<raw::Curve>()),

@@ -42,6 +42,17 @@ words! {
 }
 
 words! {
+    /// On which side of a face its material is.
+    MaterialWord {
+        /// The normal S_u x S_v points out of it.
+        #[default]
+        Below = "below_normal",
+        /// The normal S_u x S_v points into it.
+        Above = "above_normal",
+    }
+}
+
+words! {
     /// A kind of cutter.
     ToolKind {
         /// A ball end.

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::words::number;
 use osculate_geom::Diagnostic;
+use osculate_surfaces::structure::Structure;
 use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface};
 use std::sync::Arc;
 
@@ -64,6 +65,8 @@ pub struct Loaded {
     pub uncertainty_mm: Option<f64>,
     /// Faces; those that lie wholly in other bodies are not among them where a job reads the part.
     pub faces: Vec<LoadedFace>,
+    /// Bodies and layers, as the file says.
+    pub structure: Structure,
     /// What of the faces lies in other bodies, where that was looked for.
     pub hidden: Vec<InBodies>,
     /// What the file has that is not used.

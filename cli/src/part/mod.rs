@@ -11,12 +11,14 @@ pub use turned::{TurnedFaces, turned};
 
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
-use crate::job::{FaceChoice, Job, Normals, Source};
+use crate::job::{FaceChoice, Job, Source};
 use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
+use osculate_surfaces::structure::Structure;
 use osculate_tools::removal::Unseen;
+use sides::Told;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -37,6 +39,7 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         schema: String::new(),
         uncertainty_mm: None,
         faces: vec![face],
+        structure: Structure::default(),
         hidden: Vec::new(),
         not_used: Vec::new(),
         truncated: None,
@@ -90,6 +93,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
         schema: part.schema,
         uncertainty_mm: part.uncertainty_mm,
         faces,
+        structure: part.structure,
         hidden: Vec::new(),
         not_used: part.not_used,
         truncated: part.truncated.then(|| {
@@ -198,16 +202,17 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
     let chosen = machined(job, &part)?;
-    let open = settle(&mut part, job.part().normals(), &chosen);
+    let said = sides::said(job, &part)?;
+    let open = settle(&mut part, (job.part().normals(), &said), &chosen);
     // Of the faces named, those that are left.
     let chosen = if part.hidden.is_empty() { chosen } else { machined(job, &part)? };
     sorted(job, part, chosen, open)
 }
 
-/// Turns the faces of a part to the side of its material, and leaves of them what no other body hides. The word is what a job says of normals, for
-/// the faces that it works on. The ids of the faces of which nothing says a side come back.
-pub fn settle(part: &mut Loaded, word: Normals, chosen: &[String]) -> Vec<String> {
-    let sideless = sides::settle(word, part, chosen);
+/// Turns the faces of a part to the side of its material, and leaves of them what no other body hides. What a job says of its
+/// faces is meant for those that it works on. The ids of the faces of which nothing says a side come back.
+pub fn settle(part: &mut Loaded, told: Told<'_>, chosen: &[String]) -> Vec<String> {
+    let sideless = sides::settle(told, part, chosen);
     let open = sideless.iter().map(|k| part.faces[*k].id.clone()).collect();
     hidden::hide(part, &sideless);
     open
@@ -220,8 +225,12 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
         return Err(Failure::file(
             job.path(),
             format!(
-                "[part] {id}: neither the file nor the shape of the part says on which side of the face the material is; say \
-                 normals = \"file\" or normals = \"reversed\" (probe shows the normal)"
+                "[part] {id}: neither the file nor the shape of the part says on which side of the face the material is. Ask for \
+                 `lines PART --face {id} --out FOLDER` (a picture) and `probe` (its normal), then say: [[part.side]] faces = \
+                 [\"{id}\"], material = \"below_normal\" or \"above_normal\"; or normals = \"file\" or \"reversed\" for all faces to \
+                 machine. Open are {}",
+                open.iter().take(12).cloned().collect::<Vec<_>>().join(", ")
+                    + if open.len() > 12 { ", ..." } else { "" }
             ),
         ));
     }

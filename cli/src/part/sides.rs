@@ -1,6 +1,8 @@
 //! On which side of each face of a part the material is, as file, job and shape of the part say it.
 
-use crate::job::Normals;
+use crate::failure::Failure;
+use crate::job::words::MaterialWord;
+use crate::job::{Job, Normals};
 use crate::part::loaded::Loaded;
 use osculate_geom::{Diagnostic, Side};
 use osculate_surfaces::sides::{self, Settled, SideGroup, Sides};
@@ -12,19 +14,27 @@ const CLEAR_DOUBT: f64 = 0.5;
 /// Ids that a message lists at most.
 const LISTED: usize = 40;
 
+/// What a job says of sides: a word for all faces to machine, and a word or none for each face.
+pub type Told<'a> = (Normals, &'a [Option<MaterialWord>]);
+
 /// Turns the faces of a part to the side that the job, the file, their neighbours or the part as a whole say. `machined` are the
-/// ids of the faces that the job works on: what `[part] normals` says, the word, is meant for them first, and settles what hangs
-/// together with them. The numbers of the faces for which nothing says a side come back.
-pub(super) fn settle(word: Normals, part: &mut Loaded, machined: &[String]) -> Vec<usize> {
-    if word == Normals::Reversed {
-        (0..part.faces.len()).for_each(|k| flip(part, k));
+/// ids of the faces that the job works on: what `[part] normals` says, the word, is meant for them first, what `[[part.side]]` says for
+/// the faces that it names, and both settle what hangs together with them. The numbers of the faces for which nothing says a side
+/// come back.
+pub(super) fn settle((word, said): Told<'_>, part: &mut Loaded, machined: &[String]) -> Vec<usize> {
+    let said = |k: usize| said.get(k).copied().flatten();
+    for k in 0..part.faces.len() {
+        match said(k) {
+            Some(MaterialWord::Above) => flip(part, k),
+            None if word == Normals::Reversed => flip(part, k),
+            _ => {}
+        }
     }
-    let unsaid = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| !f.oriented);
-    let open: Vec<bool> = (0..part.faces.len()).map(unsaid).collect();
+    let open: Vec<bool> = (0..part.faces.len()).map(|k| unsaid(part, k)).collect();
     if !open.contains(&true) {
         return Vec::new();
     }
-    let told = |k: usize| word != Normals::Auto && machined.contains(&part.faces[k].id);
+    let told = |k: usize| said(k).is_some() || word != Normals::Auto && machined.contains(&part.faces[k].id);
     let known: Vec<Option<Side>> =
         (0..part.faces.len()).map(|k| (!open[k] || told(k)).then_some(Side::Along)).collect();
     let doubted: Vec<bool> = (0..part.faces.len()).map(|k| open[k] && told(k)).collect();
@@ -50,13 +60,40 @@ pub(super) fn settle(word: Normals, part: &mut Loaded, machined: &[String]) -> V
         part.diagnostics.push(Diagnostic::note(
             ids,
             "nothing says on which side of these faces the material is: they hang together with no face whose side is known, and \
-             the part does not enclose anything there; they are left out; [part] normals says it for faces to machine",
+             the part does not enclose anything there; they are left out; [[part.side]] says it for each, [part] normals for all faces to machine",
         ));
         return left;
     }
     let text = "nothing but [part] normals says on which side of these faces the material is: they are taken as it has them";
     part.diagnostics.push(Diagnostic::note(ids, text));
     Vec::new()
+}
+
+/// Whether the file leaves the side of a face open.
+fn unsaid(part: &Loaded, k: usize) -> bool {
+    part.faces[k].source.as_ref().is_some_and(|f| !f.oriented)
+}
+
+/// What `[[part.side]]` says of each face.
+///
+/// # Errors
+/// Where it names a face that is not there, or one of which the file says the side.
+pub(super) fn said(job: &Job, part: &Loaded) -> Result<Vec<Option<MaterialWord>>, Failure> {
+    let mut all = vec![None; part.faces.len()];
+    for (id, side) in job.part().sides() {
+        let wrong = |what: String| Failure::file(job.path(), format!("[[part.side]] {what}"));
+        let Some(k) = part.faces.iter().position(|f| f.id == *id) else {
+            return Err(wrong(part.face(id).err().map_or_else(String::new, |e| e.message().to_owned())));
+        };
+        if !unsaid(part, k) {
+            let what = format!(
+                "names {id}, of which the file says the side: take it out, or turn all faces over by normals = \"reversed\""
+            );
+            return Err(wrong(what));
+        }
+        all[k] = Some(*side);
+    }
+    Ok(all)
 }
 
 /// A face as it is now turned.
@@ -130,8 +167,8 @@ fn doubt(part: &mut Loaded, found: &Sides, told: &[bool]) {
             warnings.push(Diagnostic::warning(
                 listed(part, &within),
                 format!(
-                    "the tool is on the side that the part encloses (certainty {:.0} %), as [part] normals has it: the \
-                     part would be cut from within; leave normals out, or turn it over",
+                    "the tool is on the side that the part encloses (certainty {:.0} %), as the job has it: the \
+                     part would be cut from within; leave out what it says, or turn it over",
                     100.0 * group.certainty.abs()
                 ),
             ));
@@ -142,7 +179,7 @@ fn doubt(part: &mut Loaded, found: &Sides, told: &[bool]) {
         if !apart.is_empty() && group.certainty.abs() < CLEAR_DOUBT {
             warnings.push(Diagnostic::warning(
                 listed(part, &apart),
-                "[part] normals has the tool on the other side of these faces than of the faces next to them; the sides of those \
+                "the job has the tool on the other side of these faces than of the faces next to them; the sides of those \
                  count for the rest of the part",
             ));
         }

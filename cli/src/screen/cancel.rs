@@ -4,6 +4,7 @@
 //! of results is being written ([`whole`]), removes temporary files, saves what is worth saving ([`keep`]) under a name
 //! that says that it is partial, and ends the program with exit code 1.
 
+use crate::screen::render;
 use osculate::failure::Failure;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -79,7 +80,6 @@ pub fn whole() -> impl Drop {
     Whole(WRITING.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-#[allow(clippy::print_stderr)]
 fn stop() {
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     let (stage, save, temporary, written) = {
@@ -96,6 +96,6 @@ fn stop() {
         None => "nothing was written".to_owned(),
         Some(save) => save().unwrap_or_else(|e| format!("nothing was written: {}", e.message())),
     };
-    eprintln!("osculate: stopped in stage {stage} at {percent:.0} %; {what}");
+    render::complaint(&format!("stopped in stage {stage} at {percent:.0} %; {what}"));
     std::process::exit(STOPPED);
 }

@@ -1,6 +1,7 @@
 //! Between jobs and the postprocessor: machine, dialect, setup, text out and motions back.
 
-use crate::failure::{Failure, read_text};
+use crate::failure::Failure;
+use crate::job::control::machine_file;
 use crate::job::language::Language;
 use crate::job::{Control, Job};
 use crate::work::verify::Reading;
@@ -22,8 +23,7 @@ use std::path::Path;
 pub fn machine(word: &str) -> Result<Machine, Failure> {
     let file = Path::new(word);
     if !built_in_names().contains(&word) && (word.ends_with(".toml") || file.exists()) {
-        return Machine::from_toml(&read_text(file)?)
-            .map_err(|e| Failure::file(file, e.to_string().trim_end()));
+        return machine_file(file).map(|m| m.0);
     }
     Machine::built_in(word).map_err(Failure::job)
 }

@@ -96,7 +96,7 @@ impl Plan {
     /// Writes all files into a folder, which is made where it is not there. Each appears whole or not at all.
     ///
     /// # Errors
-    /// Where one cannot be written; those before it are there then.
+    /// Where one cannot be written; none of them is new then.
     pub fn write(&self, folder: &Path) -> Result<(), Failure> {
         self.write_watched(folder, &())
     }
@@ -106,7 +106,8 @@ impl Plan {
     /// # Errors
     /// As [`write`](Self::write).
     pub fn write_watched(&self, folder: &Path, watch: &dyn Watch) -> Result<(), Failure> {
-        self.files.iter().try_for_each(|f| files::write(&folder.join(&f.name), &f.bytes, watch))
+        let all: Vec<_> = self.files.iter().map(|f| (folder.join(&f.name), &*f.bytes)).collect();
+        files::write_set(&all, watch)
     }
 }
 

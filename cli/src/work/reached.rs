@@ -11,7 +11,7 @@ use crate::work::setup;
 use osculate_geom::{Surface, Unit3};
 use osculate_postproc::Orienting;
 use osculate_productivity::access::{Access, Asked};
-use osculate_productivity::axis::Around;
+use osculate_productivity::axis::{Around, Left};
 use osculate_productivity::plan::{Named, Tolerance};
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
@@ -81,7 +81,7 @@ fn of_tool(operation: &str, job: &Job, part: &Part) -> Result<Reached, Failure> 
     let kept = job.strategy().kept_axis();
     let least = if cutter.is_ball() || kept.is_some() { 0.0 } else { LEAST_RAD };
     let asked = Asked {
-        around: Around { faces: &own, check: &check, cutter: &cutter, gouge_mm },
+        around: Around { faces: &own, check: &check, cutter: &cutter, gouge_mm, left: Left::default() },
         holder: job.holder(),
         places: PLACES,
         lean_rad: [least, FRAC_PI_2 - UPRIGHT_RAD],

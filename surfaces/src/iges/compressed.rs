@@ -19,6 +19,7 @@ struct Fields {
     transform: i64,
     status: i64,
     color: i64,
+    level: i64,
     form: i64,
     label: String,
 }
@@ -38,6 +39,7 @@ fn header<'l>(mut line: &'l [u8], separators: Separators, fields: &mut Fields) -
         let text = value[..end].trim_ascii();
         match number {
             1 => fields.kind = integer(text)?,
+            5 => fields.level = integer(text)?,
             7 => fields.transform = integer(text)?,
             9 => fields.status = integer(text)?,
             13 => fields.color = integer(text)?,
@@ -104,6 +106,7 @@ pub(crate) fn read(data: &[Line<'_>], separators: Separators) -> Directory {
             form: i32::try_from(fields.form).unwrap_or(0),
             transform: fields.transform,
             color: fields.color,
+            level: fields.level,
             label: fields.label.clone(),
             status: Status::new(fields.status),
             line,

@@ -20,6 +20,8 @@ pub(crate) struct Entity {
     pub(crate) transform: i64,
     /// Colour number, or minus the directory number of its colour.
     pub(crate) color: i64,
+    /// Level that it is on, or minus the directory number of a list of levels; 0 for none.
+    pub(crate) level: i64,
     pub(crate) label: String,
     pub(crate) status: Status,
     /// Line of the file that the entry begins in.
@@ -105,6 +107,7 @@ struct Fields {
     form: i64,
     transform: i64,
     color: i64,
+    level: i64,
     status: i64,
     label: String,
     sequence: Option<i64>,
@@ -127,6 +130,7 @@ fn fields(first: &Line<'_>, second: &[u8]) -> Option<Fields> {
         form: at(second, 4).unwrap_or(0),
         transform: at(first, 6).unwrap_or(0),
         color: at(second, 2).unwrap_or(0),
+        level: at(first, 4).unwrap_or(0),
         status,
         label,
         sequence: integer(field(first, 73, 80)).filter(|n| *n > 0),
@@ -259,6 +263,7 @@ pub(crate) fn fixed(directory: &[Line<'_>], parameters: &[Line<'_>], separators:
             form: i32::try_from(e.form).unwrap_or(0),
             transform: e.transform,
             color: e.color,
+            level: e.level,
             label: e.label.clone(),
             status: Status::new(e.status),
             line: e.line,

@@ -10,6 +10,7 @@ use super::names::kind_name;
 use super::tree::{Model, Placed, model};
 use crate::leftovers::{Leftovers, MAX_COPIES, too_many_copies};
 use crate::part::{Colour, Face, Format, Part};
+use crate::structure::{Layer, Structure};
 use osculate_geom::Diagnostic;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -69,6 +70,7 @@ pub(crate) fn part(mut cards: Cards) -> Part {
     }
     left.unused(&cards, &tree);
     Part {
+        structure: structure(&cards, &faces),
         format: Format::Iges,
         uncertainty_mm: None,
         unit: cards.global.unit_name.clone(),
@@ -78,6 +80,36 @@ pub(crate) fn part(mut cards: Cards) -> Part {
         truncated: cards.truncated || left_out > 0 || tree.overflow,
         diagnostics,
     }
+}
+
+/// The levels that faces are on, as layers; level 0 is none. A number below zero is that of a property that lists levels.
+fn structure(cards: &Cards, faces: &[Face]) -> Structure {
+    let mut layers: BTreeMap<i64, Vec<String>> = BTreeMap::new();
+    for f in faces {
+        let level = i64::try_from(f.entity).ok().and_then(|de| Some(cards.entities.get(&de)?.level));
+        let listed = level
+            .filter(|l| *l < 0)
+            .and_then(|l| cards.entities.get(&-l))
+            .filter(|p| p.kind == 406 && p.form == 1);
+        let levels = match (level, listed) {
+            (_, Some(list)) => {
+                // How many, then they.
+                let count = list.params.number(0).unwrap_or(0.0) as usize;
+                (1..list.params.len())
+                    .take(count)
+                    .filter_map(|k| list.params.number(k))
+                    .map(|n| n as i64)
+                    .collect()
+            }
+            (Some(one), None) if one > 0 => vec![one],
+            _ => Vec::new(),
+        };
+        for level in levels {
+            layers.entry(level).or_default().push(f.id.clone());
+        }
+    }
+    let layers = layers.into_iter().map(|(level, faces)| Layer { name: level.to_string(), faces }).collect();
+    Structure { bodies: Vec::new(), layers }
 }
 
 /// Makes the faces: each once, then its copies at other places as far as they may take memory.

@@ -8,6 +8,7 @@ mod surfaces;
 pub use fault::FaceFault;
 
 use crate::part::{Colour, Face, FaceKind, Format, Part};
+use crate::structure::Structure;
 use crate::trim::boundary::{Boundary, build};
 use osculate_geom::Side;
 use std::sync::Arc;
@@ -101,6 +102,7 @@ fn unmarked(bytes: &[u8]) -> &[u8] {
 /// [`JsonError`].
 pub fn read_part(bytes: &[u8]) -> Result<Part, JsonError> {
     Ok(Part {
+        structure: Structure::default(),
         format: Format::Json,
         uncertainty_mm: None,
         unit: "mm".to_owned(),

@@ -13,6 +13,7 @@ pub use error::SectionsError;
 use crate::fit::{Ends, Grid, LoftOptions, Spacing, SurfaceFit, interpolate, interpolate_grid, loft};
 use crate::nurbs::NurbsSurface;
 use crate::part::{Face, FaceKind, Format, Part};
+use crate::structure::Structure;
 use crate::trim::boundary::build;
 use crate::trim::carrier::FaceSurface;
 use crate::trim::spline::Spline;
@@ -78,6 +79,7 @@ pub fn read_in(bytes: &[u8], unit_mm: Option<f64>) -> Result<Part, SectionsError
             .collect::<Result<Vec<_>, _>>()?,
     };
     Ok(Part {
+        structure: Structure::default(),
         format: Format::Sections,
         uncertainty_mm: None,
         unit: unit_name,

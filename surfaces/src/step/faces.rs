@@ -4,6 +4,7 @@
 //! an oriented shell that is reversed turns its faces over again. Seen along the normal a loop has the face on its
 //! left, a bound whose orientation is false is walked backwards.
 
+use super::bodies::structure;
 use super::colour::colours;
 use super::geometry::{Geometry, Unread};
 use super::graph::{Args, Graph, Record, arg};
@@ -51,6 +52,7 @@ pub(crate) fn part(mut graph: Graph<'_>) -> Part {
     let mut left = Leftovers::default();
     let mut told = vec![false; read.len()];
     let mut faces = Vec::with_capacity(found.faces.len());
+    let mut kept = Vec::with_capacity(found.faces.len());
     let (mut copied, mut left_out) = (0, 0_usize);
     for (number, o) in found.faces.iter().enumerate() {
         let label = format!("F{}", number + 1);
@@ -76,9 +78,10 @@ pub(crate) fn part(mut graph: Graph<'_>) -> Part {
         match placed {
             Ok(mut face) => {
                 face.id = label;
-                face.product = o.product.to_string();
+                face.product = o.product().to_owned();
                 face.colour = colours.get(&o.face).or_else(|| colours.get(&o.item?)).copied();
                 faces.push(face);
+                kept.push(o);
             }
             Err(why) => {
                 let record = graph.peek(o.face);
@@ -92,8 +95,10 @@ pub(crate) fn part(mut graph: Graph<'_>) -> Part {
     if left_out > 0 {
         diagnostics.push(too_many_copies(left_out));
     }
+    let structure = structure(graph, kept.into_iter().zip(faces.iter().map(|f: &Face| f.id.as_str())));
     unused::leftovers(graph, &mut left);
     Part {
+        structure,
         format: Format::Step,
         unit: contexts.names(),
         uncertainty_mm: contexts.uncertainty_mm(),

@@ -5,6 +5,7 @@
 //! `unused` what is left. Parameter curves count only where a file has no space curve: that one is the definition, and
 //! writers disagree about the others.
 
+mod bodies;
 mod colour;
 mod curves;
 mod faces;

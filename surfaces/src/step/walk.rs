@@ -36,9 +36,21 @@ pub(crate) struct Occurrence {
     pub(crate) context: Option<usize>,
     /// The shape item that it belongs to: a solid, a shell model.
     pub(crate) item: Option<u64>,
-    /// The product's name.
-    pub(crate) product: Arc<str>,
+    /// The shell within it.
+    pub(crate) shell: Option<u64>,
+    /// The names of the products that it stands in, from the root down to its own.
+    pub(crate) path: Arc<[Arc<str>]>,
 }
+
+impl Occurrence {
+    /// The product's name; empty where it has none.
+    pub(crate) fn product(&self) -> &str {
+        self.path.last().map_or("", |name| name)
+    }
+}
+
+/// Keywords of the items that are shells.
+const SHELLS: [&str; 4] = ["CLOSED_SHELL", "OPEN_SHELL", "CONNECTED_FACE_SET", "CONNECTED_FACE_SUB_SET"];
 
 /// Keywords of items that hold faces by direct reference.
 const CONTAINERS: [&str; 13] = [
@@ -89,6 +101,7 @@ pub(crate) fn occurrences(graph: &Graph<'_>, contexts: &Contexts, out: &mut Vec<
         round: 0,
         visits: 0,
         path: Vec::new(),
+        names: Vec::new(),
         said: BTreeMap::new(),
         notes: Vec::new(),
         number: 0,
@@ -138,7 +151,8 @@ struct Place {
     motion: Option<Motion>,
     context: Option<usize>,
     item: Option<u64>,
-    product: Arc<str>,
+    shell: Option<u64>,
+    path: Arc<[Arc<str>]>,
 }
 
 struct Walk<'w, 'g> {
@@ -153,6 +167,8 @@ struct Walk<'w, 'g> {
     visits: usize,
     /// Groups from the root down.
     path: Vec<usize>,
+    /// The names of their products.
+    names: Vec<Arc<str>>,
     /// Losses with their number and first record.
     said: BTreeMap<String, (usize, u64)>,
     notes: Vec<Diagnostic>,
@@ -165,7 +181,7 @@ impl Walk<'_, '_> {
     /// Places what belongs to no representation: whole items first, then shells, then faces.
     fn loose(&mut self, out: &mut Vec<Diagnostic>) {
         let graph = self.web.graph;
-        let nobody = Place { motion: None, context: None, item: None, product: Arc::from("") };
+        let nobody = Place { motion: None, context: None, item: None, shell: None, path: Arc::from([]) };
         let before = self.faces.len();
         self.number += 1;
         let oriented = ["ORIENTED_CLOSED_SHELL", "ORIENTED_OPEN_SHELL", "ORIENTED_FACE"];
@@ -224,7 +240,8 @@ impl Walk<'_, '_> {
         let web = self.web;
         let members = &web.members[group];
         let name = members.iter().find_map(|m| web.products.get(&web.reps[*m].id).cloned());
-        let product = name.unwrap_or_else(|| Arc::from(""));
+        self.names.push(name.unwrap_or_else(|| Arc::from("")));
+        let path: Arc<[Arc<str>]> = self.names.as_slice().into();
         let first = self.faces.len();
         let mut own = HashSet::new();
         for r in members {
@@ -242,8 +259,13 @@ impl Walk<'_, '_> {
                 if only_new && lone_face && self.seen.contains(item) {
                     continue;
                 }
-                let place =
-                    Place { motion, context: rep.context, item: Some(*item), product: product.clone() };
+                let place = Place {
+                    motion,
+                    context: rep.context,
+                    item: Some(*item),
+                    shell: None,
+                    path: path.clone(),
+                };
                 self.item(*item, &place, false, 0);
                 if web.graph.peek(*item).is_some_and(|i| i.any(&CONTAINERS).is_some()) {
                     web.graph.get(rep.id);
@@ -274,6 +296,7 @@ impl Walk<'_, '_> {
             }
         }
         self.path.pop();
+        self.names.pop();
     }
 
     /// The frame that a root representation stands in: a placement among its items that no transformation uses. The
@@ -330,6 +353,8 @@ impl Walk<'_, '_> {
             self.items.entry(id).or_insert(self.round);
             let free = record.is("GEOMETRIC_SET");
             let inner: Vec<u64> = record.references().collect();
+            let shell = record.any(&SHELLS).map(|_| Place { shell: Some(id), ..place.clone() });
+            let place = shell.as_ref().unwrap_or(place);
             for r in inner {
                 let bounded = free && self.web.graph.peek(r).is_some_and(|s| s.any(&BOUNDED).is_some());
                 if bounded {
@@ -365,8 +390,10 @@ impl Walk<'_, '_> {
             motion: place.motion,
             place: self.number,
             context: place.context,
-            item: place.item,
-            product: place.product.clone(),
+            // What belongs to no representation is its own item.
+            item: place.item.or(place.shell),
+            shell: place.shell,
+            path: place.path.clone(),
         });
     }
 }

@@ -70,6 +70,7 @@ pub(crate) fn build(
     let size = size_mm(&carrier, loops);
     let tolerance = Tolerance { chord_mm: CHORD * size, near_mm: NEAR * size, far_mm: FAR * size };
     let mut gap_mm = 0.0_f64;
+    let mut gaps_mm = Vec::new();
     let mut edges = Vec::new();
     for (owner, l) in loops.iter().enumerate() {
         for b in l {
@@ -82,10 +83,12 @@ pub(crate) fn build(
                         None => pull(piece, &carrier, tolerance),
                     };
                     gap_mm = gap_mm.max(pulled.gap_mm);
+                    gaps_mm.push(pulled.gap_mm);
                     EdgeUse { points: pulled.points, ends: piece.end_points(), key: *key, owner, own: false }
                 }
                 Boundary::Parameter { piece } => {
                     let points = flatten(piece, &carrier, tolerance);
+                    gaps_mm.push(0.0);
                     let end = |at: Option<&Uv>| carrier.surface.point(at.copied().unwrap_or_default());
                     let ends = [end(points.first()), end(points.last())];
                     EdgeUse { points, ends, key: None, owner, own: true }
@@ -99,9 +102,10 @@ pub(crate) fn build(
     for e in &mut edges {
         snap(&carrier, &mut e.points, tolerance.chord_mm);
     }
-    let kept = loops.iter().flatten().zip(&edges).map(|(b, e)| FaceEdge {
+    let kept = loops.iter().flatten().zip(&edges).zip(gaps_mm).map(|((b, e), gap_mm)| FaceEdge {
         key: e.key,
         owner: e.owner,
+        gap_mm,
         curve: match b {
             Boundary::Space { piece, .. } => Some(piece.clone()),
             Boundary::Parameter { .. } => None,
@@ -124,7 +128,30 @@ pub(crate) fn build(
         findings
             .push(format!("the boundary has a gap of {:.3e} mm, closed by a straight line", joined.jump_mm));
     }
-    let mut assembled = assemble(&carrier, &joined, side)?;
+    if joined.corners > 0 {
+        findings.push(
+            "the boundary jumps between sides of the surface that are one point; it is led along these sides"
+                .into(),
+        );
+    }
+    let mut assembled = match assemble(&carrier, &joined, side) {
+        Ok(made) if made.consistent && made.idle == 0 => made,
+        first => {
+            // Loops that separate nothing: a side as small as a gap is the pole that they lack an edge around.
+            let poled = carrier.with_poles(tolerance.near_mm).and_then(|(carrier, mm)| {
+                Some((assemble(&carrier, &joined, side).ok().filter(|made| made.consistent)?, mm))
+            });
+            match poled {
+                Some((made, mm)) => {
+                    findings.push(format!(
+                        "its loops have no edge around the end of the surface, which is {mm:.3e} mm large; it is taken for a pole"
+                    ));
+                    made
+                }
+                None => first?,
+            }
+        }
+    };
     assembled.surface = assembled.surface.with_edges(kept);
     if assembled.idle > 0 {
         findings.push(format!(

@@ -162,6 +162,11 @@ pub(crate) struct Carrier {
     pub(crate) known: Known,
     /// Typical length of the derivative by each parameter.
     pub(crate) speed: [f64; 2],
+    /// How large the sides are, mm: at both ends of u, at both ends of v. Infinite where nothing shrinks, and on analytic
+    /// surfaces, which know their poles.
+    sides_mm: [[f64; 2]; 2],
+    /// Sides up to this size are points, mm.
+    point_mm: f64,
     /// Made when a point is first looked for without a neighbour.
     seeds: OnceLock<foot::Seeds>,
 }
@@ -199,7 +204,8 @@ impl Carrier {
                     | Shape::Lemon { major_radius_mm, minor_radius_mm } => [major_radius_mm, minor_radius_mm],
                 };
                 let known = Known { below_out, above_out, oriented };
-                Self { surface, domain, closes, known, speed, seeds: OnceLock::new() }
+                let (sides_mm, point_mm) = ([[f64::INFINITY; 2]; 2], 0.0);
+                Self { surface, domain, closes, known, speed, sides_mm, point_mm, seeds: OnceLock::new() }
             }
             FaceSurface::Nurbs(_) | FaceSurface::Offset(_) => {
                 let (n, base) = (&surface, surface.base());
@@ -212,12 +218,13 @@ impl Carrier {
                 };
                 let sides = [Axis::U, Axis::V].map(|axis| [side(axis, 0.0), side(axis, 1.0)]);
                 let closes = [Axis::U, Axis::V].map(|axis| base.is_some_and(|b| b.closed(axis)));
-                let is_point = |points: &[Point3]| Box3::around(points).diagonal_mm() <= SAME_LINE * size;
+                let sides_mm = sides.map(|ends| ends.map(|points| Box3::around(&points).diagonal_mm()));
+                let point_mm = SAME_LINE * size;
                 // The direction that does not close is v, or u where only v closes.
                 let open = if closes[1] && !closes[0] { 0 } else { 1 };
                 let [below_out, above_out] = match closes {
                     [false, false] => [true, true],
-                    _ => [0, 1].map(|end| !is_point(&sides[open][end])),
+                    _ => [0, 1].map(|end| sides_mm[open][end] > point_mm),
                 };
                 let speed = [Axis::U, Axis::V].map(|axis| {
                     let mut sum = 0.0;
@@ -230,9 +237,70 @@ impl Carrier {
                     sum / 25.0
                 });
                 let known = Known { below_out, above_out, oriented };
-                Self { surface, domain, closes, known, speed, seeds: OnceLock::new() }
+                Self { surface, domain, closes, known, speed, sides_mm, point_mm, seeds: OnceLock::new() }
             }
         }
+    }
+
+    /// The carrier with its small sides taken for poles, where it closes and has sides that are larger than a point but
+    /// not than `small_mm`, and the size of the largest such side, mm.
+    pub(crate) fn with_poles(&self, small_mm: f64) -> Option<(Self, f64)> {
+        let open = match self.closes {
+            [false, false] => return None,
+            [false, true] => 0,
+            _ => 1,
+        };
+        let small = self.sides_mm[open].map(|mm| mm > self.point_mm && mm <= small_mm);
+        let known = Known {
+            below_out: self.known.below_out && !small[0],
+            above_out: self.known.above_out && !small[1],
+            ..self.known
+        };
+        let sizes = self.sides_mm[open].iter().zip(small).filter(|s| s.1).map(|s| *s.0);
+        let largest = sizes.fold(0.0, f64::max);
+        let carrier = Self { surface: self.surface.clone(), known, seeds: OnceLock::new(), ..*self };
+        (known != self.known).then_some((carrier, largest))
+    }
+
+    /// The corners on the way from one place to another along sides that are points, where the straight way would leave
+    /// them: between two such sides.
+    pub(crate) fn corners_between(&self, from: Uv, to: Uv) -> Vec<Uv> {
+        /// Parameters this near to a side, as a fraction of their range, are on it.
+        const ON: f64 = 1e-9;
+        if self.closes != [false, false] {
+            return Vec::new();
+        }
+        let value = |axis: Axis, end: usize| {
+            if end == 0 { self.domain.get(axis).lo } else { self.domain.get(axis).hi }
+        };
+        let shrunk =
+            |axis: Axis, end: usize| self.sides_mm[usize::from(axis == Axis::V)][end] <= self.point_mm;
+        let on = |at: Uv, axis: Axis, end: usize| {
+            (at.get(axis) - value(axis, end)).abs() <= ON * self.domain.get(axis).length()
+        };
+        let sides: Vec<(Axis, usize)> = [Axis::U, Axis::V]
+            .into_iter()
+            .flat_map(|axis| [(axis, 0), (axis, 1)])
+            .filter(|(axis, end)| shrunk(*axis, *end))
+            .collect();
+        let at = |p: Uv| sides.iter().filter(move |(axis, end)| on(p, *axis, *end));
+        if at(from).any(|a| at(to).any(|b| a == b)) {
+            return Vec::new();
+        }
+        let corner =
+            |a: (Axis, usize), b: (Axis, usize)| Uv::from_axis(a.0, value(a.0, a.1), value(b.0, b.1));
+        for a in at(from) {
+            for b in at(to) {
+                if a.0 != b.0 {
+                    return vec![corner(*a, *b)];
+                }
+                // Across from each other, with one between them.
+                if let Some(c) = sides.iter().find(|c| c.0 != a.0) {
+                    return vec![corner(*a, *c), corner(*b, *c)];
+                }
+            }
+        }
+        Vec::new()
     }
 
     fn seeds(&self) -> &foot::Seeds {

@@ -30,6 +30,8 @@ pub(crate) struct Joined {
     pub(crate) chains: Vec<Chain>,
     pub(crate) jump_mm: f64,
     pub(crate) turned_edges: usize,
+    /// Corners put in between sides of the surface that are one point.
+    pub(crate) corners: usize,
 }
 
 /// Joins the edges of all loops of a face. Ends within `slack_mm` are the same vertex.
@@ -39,6 +41,7 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
     let mut used = vec![false; kept.len()];
     let mut chains = Vec::new();
     let mut jump_mm = 0.0_f64;
+    let mut corners = 0;
     for first in 0..kept.len() {
         if used[first] {
             continue;
@@ -90,15 +93,15 @@ pub(crate) fn join(carrier: &Carrier, edges: Vec<EdgeUse>, slack_mm: f64) -> Joi
             used[next] = true;
             jump_mm = jump_mm.max((kept[next].ends[0] - end).norm());
             own &= kept[next].own;
-            append(carrier, &mut points, &kept[next].points, own);
+            corners += append(carrier, &mut points, &kept[next].points, own);
             last = next;
         }
-        close(carrier, &mut points, own);
+        corners += close(carrier, &mut points, own);
         if points.len() > 1 {
             chains.push(Chain { points });
         }
     }
-    Joined { chains, jump_mm, turned_edges }
+    Joined { chains, jump_mm, turned_edges, corners }
 }
 
 /// The edges that the face uses once (or an odd number of times).
@@ -112,33 +115,39 @@ fn without_slits(edges: Vec<EdgeUse>) -> Vec<EdgeUse> {
     edges.into_iter().filter(|e| e.key.is_none_or(|k| seen.get(&k).is_none_or(|n| n % 2 == 1))).collect()
 }
 
-/// Appends a piece, shifted by whole periods so that it begins near the end.
-fn append(carrier: &Carrier, points: &mut Vec<Uv>, piece: &[Uv], own: bool) {
+/// Appends a piece, shifted by whole periods so that it begins near the end. The number of corners on the way to it.
+fn append(carrier: &Carrier, points: &mut Vec<Uv>, piece: &[Uv], own: bool) -> usize {
     let (Some(end), Some(begin)) = (points.last().copied(), piece.first().copied()) else {
         points.extend_from_slice(piece);
-        return;
+        return 0;
     };
     let moved = continued(carrier, begin, end, own);
     let shift = uv(moved.u - begin.u, moved.v - begin.v);
     let meets = same_place(carrier, moved, end);
+    let corners = carrier.corners_between(end, moved);
+    points.extend_from_slice(&corners);
     for (k, p) in piece.iter().enumerate() {
         // Rounding between two edges at one vertex would leave a needle: the earlier edge's end stands.
         if !(k == 0 && meets) {
             points.push(uv(p.u + shift.u, p.v + shift.v));
         }
     }
+    corners.len()
 }
 
-/// Ends a chain at its first point, shifted by the whole periods it winds.
-fn close(carrier: &Carrier, points: &mut Vec<Uv>, own: bool) {
+/// Ends a chain at its first point, shifted by the whole periods it winds. The number of corners on the way to it.
+fn close(carrier: &Carrier, points: &mut Vec<Uv>, own: bool) -> usize {
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
-        return;
+        return 0;
     };
     let target = continued(carrier, first, last, own);
     if points.len() > 1 && same_place(carrier, target, last) {
         points.pop();
     }
+    let corners = carrier.corners_between(last, target);
+    points.extend_from_slice(&corners);
     points.push(target);
+    corners.len()
 }
 
 /// `at` shifted by whole periods to continue at `near`; the file's own parameters only where that closes the jump.

@@ -14,6 +14,8 @@ pub(crate) struct FaceEdge {
     pub(crate) owner: usize,
     /// The curve in space along the loop's sense; `None` where the file gives only parameters.
     pub(crate) curve: Option<Piece>,
+    /// The largest distance of the curve from the carrier where that was looked at, mm.
+    pub(crate) gap_mm: f64,
     /// Carrier parameters along the loop's sense, unwrapped, to the chord tolerance of the loops.
     pub(crate) points: Vec<Uv>,
 }

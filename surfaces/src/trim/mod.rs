@@ -3,6 +3,7 @@
 pub(crate) mod analytic;
 mod area;
 pub(crate) mod assemble;
+mod balance;
 mod bands;
 pub(crate) mod boundary;
 pub(crate) mod carrier;
@@ -20,3 +21,5 @@ pub(crate) mod spline;
 pub(crate) mod sweep;
 
 pub(crate) use area::{Cell, Crossing, crossing, integrate};
+pub use balance::Imbalance;
+pub(crate) use balance::imbalance;

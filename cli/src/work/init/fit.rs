@@ -11,7 +11,7 @@ use nalgebra::UnitQuaternion;
 use osculate_geom::{Surface, Unit3};
 use osculate_postproc::Orienting;
 use osculate_productivity::access::{Access, Asked, From};
-use osculate_productivity::axis::Around;
+use osculate_productivity::axis::{Around, Left};
 use osculate_productivity::plan::{Named, Tolerance};
 use std::f64::consts::FRAC_PI_2;
 
@@ -145,7 +145,13 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
     let mut best: Option<(&Tool, Tried, f64)> = None;
     for tool in &balls {
         let cutter = tool.cutter();
-        let around = Around { faces: &own, check: &check, cutter: &cutter, gouge_mm: coarse_mm(tolerance) };
+        let around = Around {
+            faces: &own,
+            check: &check,
+            cutter: &cutter,
+            gouge_mm: coarse_mm(tolerance),
+            left: Left::default(),
+        };
         let asked = Asked {
             around,
             holder: tool.holder(),

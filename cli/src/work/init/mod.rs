@@ -80,7 +80,7 @@ impl Grouped {
     #[must_use]
     pub fn of(mut part: Loaded, normals: Normals) -> Self {
         let all: Vec<String> = part.faces.iter().map(|f| f.id.clone()).collect();
-        let open = part::settle(&mut part, normals, &all);
+        let open = part::settle(&mut part, (normals, &[]), &all);
         let shapes = shapes(&part);
         let shapes: Vec<&Face> = shapes.iter().collect();
         let meetings = meetings(&shapes, part.uncertainty_mm);
