@@ -1,7 +1,7 @@
 //! The tool for some faces: the largest ball of a library that reaches them, from which axes, and how the part stands for these.
 
+use super::asked::{Grouped, Wanted};
 use super::target::Target;
-use super::{Grouped, Wanted};
 use crate::failure::Failure;
 use crate::job::Tool;
 use crate::job::words::ToolKind;

@@ -1,6 +1,6 @@
 //! Which faces a first job machines.
 
-use super::{Grouped, name};
+use super::asked::{Grouped, name};
 use crate::failure::Failure;
 use osculate_surfaces::groups::Look;
 

@@ -1,8 +1,8 @@
 //! The text of a first job, with the reason of every choice beside it.
 
+use super::asked::{Grouped, Wanted, name, relative};
 use super::fit::Fit;
 use super::target::{Target, listed};
-use super::{Grouped, Wanted, name, relative};
 use crate::job::Normals;
 use crate::job::library;
 use crate::words::number;
