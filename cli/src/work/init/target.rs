@@ -84,7 +84,7 @@ fn number(grouped: &Grouped, id: &str) -> Result<usize, String> {
         let near =
             crate::job::words::nearest(id, ids).map_or_else(String::new, |n| format!(" (is {n} meant?)"));
         format!(
-            "has no face {id}{near}: its faces are F1 to F{}, its groups G1 to G{} (inspect lists them)",
+            "has no face {id}{near}: its faces are F1 to F{}, its groups G1 to G{} (inspect lists the faces)",
             grouped.part.faces.len(),
             grouped.groups.len()
         )

@@ -42,7 +42,7 @@ fn groups(grouped: &Grouped) -> String {
     }
     let more = grouped.groups.len().saturating_sub(MOST);
     if more > 0 {
-        let _ = writeln!(out, "#   and {more} more (osculate inspect lists them)");
+        let _ = writeln!(out, "#   and {more} smaller ones");
     }
     out
 }

@@ -41,7 +41,10 @@ impl Moves<'_> {
             let f = s as f64 / steps as f64;
             let (all, _) = site.grid.around([0, 1].map(|a| from[a] + (to[a] - from[a]) * f))?;
             for k in all {
-                let stands = self.columns.top_in(&site.grid, &self.under, k);
+                // Where only the material says how high the part is, it is known to its cells.
+                let is_known = site.tip[k] < f64::INFINITY;
+                let disc = if is_known { &self.under } else { &self.wide };
+                let stands = self.columns.top_in(&site.grid, disc, k);
                 out = out.max(stands).max(self.holder_stops(k)).max(self.part_stops(k));
             }
         }
