@@ -83,7 +83,8 @@ pub fn replaceable(path: &Path) -> Result<PathBuf, Failure> {
             path,
             "is a device, a pipe or a socket: only regular files are replaced, give another name",
         )),
-        Err(e) if e.kind() == ErrorKind::NotFound => Ok(place),
+        // Whether its folder can be made is found when it is.
+        Err(e) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&e.kind()) => Ok(place),
         Err(e) => Err(unwritten(path, &e)),
     }
 }
