@@ -57,7 +57,7 @@ pub(super) fn concluded(
     Closing { coarse, refined, stock, mut notes }: Closing,
 ) -> Verdict {
     let goal = trial.goal;
-    let Look { measured, tally, density, lost } = look;
+    let Look { measured, tally, density, lost, .. } = look;
     let Measured { samples, patches, cuts } = measured;
     let bend = patches.iter().flatten().map(|p| p.convex_per_mm.max(p.concave_per_mm)).fold(0.0, f64::max);
     notes.extend(lost);

@@ -70,6 +70,21 @@ struct Back {
     radius: f64,
 }
 
+impl Comer<'_> {
+    fn comes_near(&self, target: &Target) -> bool {
+        self.approach.passes(&self.body, target, 0.0) != Passes::Clear
+    }
+}
+
+/// The cell of a sample.
+struct Cell {
+    sample: usize,
+    patch: Patch,
+    back: Back,
+    /// By the quick bound nothing in it that does not intrude is deeper, mm.
+    level_mm: f64,
+}
+
 /// Radius of a cutter's corner, mm: those with a meridian of their own may have edges anywhere.
 fn corner_mm(cutter: &Cutter) -> f64 {
     if cutter.is_end_mill() { cutter.corner_mm() } else { 0.0 }
@@ -107,56 +122,64 @@ impl<'a> Digs<'a> {
         surfaces: &[&dyn Surface],
         (patches, cuts): (&[Option<Patch>], &[Cut]),
     ) -> Vec<Depth> {
-        let cell = |k: usize| patches[k].map(|patch| (k, patch, self.back(surfaces, k, &patch)));
-        let cells: Vec<Vec<(usize, Patch, Back)>> = groups
+        let cell = |k: usize| {
+            let patch = patches[k]?;
+            let back = self.back(surfaces, k, &patch);
+            let level_mm = level_mm(bodies, &patch, back.radius) - cuts[k].standoff_mm;
+            Some(Cell { sample: k, patch, back, level_mm })
+        };
+        let cells: Vec<Vec<Cell>> = groups
             .iter()
             .map(|group| group.members.iter().filter_map(|k| cell(*k as usize)).collect())
             .collect();
-        let any = self.intrudes(bodies, cells.iter().flatten());
-        let of = |own: &Vec<(usize, Patch, Back)>| {
-            let intrudes = any && self.intrudes(bodies, own.iter());
-            self.of_group((bodies, intrudes), own, surfaces, cuts)
-        };
-        cells.iter().flat_map(of).collect()
+        let any = !self.near_all(bodies, cells.iter().flatten(), Which::Intruding).is_empty();
+        cells.iter().flat_map(|own| self.of_group((bodies, any), own, surfaces, cuts)).collect()
     }
 
-    /// Whether a rapid, or a body that intrudes, comes near any of some cells.
-    fn intrudes<'c>(
+    /// What comes near any of some cells.
+    fn near_all<'c>(
         &self,
         bodies: &[Body<'a>],
-        mut cells: impl Iterator<Item = &'c (usize, Patch, Back)> + Clone,
-    ) -> bool {
-        let corners = cells.clone().flat_map(|(_, _, back)| back.target.corners());
-        let Some((first, ..)) = cells.next() else { return false };
-        let whole = Target::around(corners, &self.job.samples[*first].normal);
-        !self.near(bodies, &whole, Which::Intruding).is_empty()
+        mut cells: impl Iterator<Item = &'c Cell> + Clone,
+        which: Which,
+    ) -> Vec<Comer<'a>> {
+        let corners = cells.clone().flat_map(|cell| cell.back.target.corners());
+        let Some(first) = cells.next() else { return Vec::new() };
+        let whole = Target::around(corners, &self.job.samples[first.sample].normal);
+        self.near(bodies, &whole, which)
     }
 
-    /// Of one group, of which it is known whether anything intrudes.
+    /// Of one group, of which it is known whether anything intrudes. What comes near any of its cells is looked for once.
     fn of_group(
         &self,
-        (bodies, intrudes): (&[Body<'a>], bool),
-        cells: &[(usize, Patch, Back)],
+        (bodies, any): (&[Body<'a>], bool),
+        cells: &[Cell],
         surfaces: &[&dyn Surface],
         cuts: &[Cut],
     ) -> Vec<Depth> {
-        let depth = |(sample, patch, back): &(usize, Patch, Back)| {
-            let level = level_mm(bodies, patch, back.radius) - cuts[*sample].standoff_mm;
-            let which = match (level <= self.depth_mm, intrudes) {
-                (true, false) => return Depth { sample: *sample, most_mm: level, parts: Vec::new() },
-                (true, true) => Which::Intruding,
-                (false, _) => Which::All,
+        let is_level = |cell: &Cell| cell.level_mm <= self.depth_mm;
+        let intruders = if any { self.near_all(bodies, cells.iter(), Which::Intruding) } else { Vec::new() };
+        let intrudes = !intruders.is_empty();
+        let all = self.near_all(bodies, cells.iter().filter(|c| !is_level(c)), Which::All);
+        let depth = |cell: &Cell| {
+            let Cell { sample, patch, back, level_mm } = cell;
+            let (sample, level) = (*sample, *level_mm);
+            let around = match (is_level(cell), intrudes) {
+                (true, false) => return Depth { sample, most_mm: level, parts: Vec::new() },
+                (true, true) => &intruders,
+                (false, _) => &all,
             };
             let mut parts = Vec::new();
-            if cuts[*sample].by.is_some() && level.is_finite() && self.is_coarse(bodies, level) {
-                let surface = surfaces[self.job.samples[*sample].face as usize];
+            if cuts[sample].by.is_some() && level.is_finite() && self.is_coarse(bodies, level) {
+                let surface = surfaces[self.job.samples[sample].face as usize];
                 let all = patch.parts().into_iter().flat_map(|p| p.parts());
                 parts.extend(all.filter(|p| p.raster().any(|place| surface.contains(place))));
             } else {
-                let comers = self.near(bodies, &back.target, which);
-                self.divide(surfaces, *sample, patch, &comers, (DIVISIONS, &mut parts));
+                let comers: Vec<Comer<'a>> =
+                    around.iter().filter(|c| c.comes_near(&back.target)).copied().collect();
+                self.divide(surfaces, sample, patch, &comers, (DIVISIONS, &mut parts));
             }
-            parts.retain(|part| !self.is_beside(surfaces, *sample, part));
+            parts.retain(|part| !self.is_beside(surfaces, sample, part));
             // The quick bound is one on the cutter's own gouges.
             let quick = if intrudes { f64::INFINITY } else { level };
             let known = if parts.is_empty() {
@@ -164,10 +187,9 @@ impl<'a> Digs<'a> {
             } else if quick.is_finite() {
                 quick
             } else {
-                self.known(bodies, surfaces, *sample, patch)
+                self.known(bodies, surfaces, sample, patch)
             };
-            let most_mm = quick.min(known);
-            Depth { sample: *sample, most_mm, parts }
+            Depth { sample, most_mm: quick.min(known), parts }
         };
         cells.iter().map(depth).collect()
     }
@@ -281,7 +303,7 @@ impl<'a> Digs<'a> {
                 continue;
             }
             let target = self.back(surfaces, sample, &part).target;
-            let comes = |c: &&Comer<'a>| c.approach.passes(&c.body, &target, 0.0) != Passes::Clear;
+            let comes = |c: &&Comer<'a>| c.comes_near(&target);
             // Of the last parts one that comes near says all there is to say.
             let wanted = if divisions == 1 { 1 } else { comers.len() };
             let near: Vec<Comer<'a>> = comers.iter().filter(comes).take(wanted).copied().collect();

@@ -13,8 +13,9 @@ use super::tally::Limits;
 use super::trial::{ProveError, Sampled, Trial, changes_of, unbounded};
 use super::verdict::{StockFound, Verdict};
 
-/// Rounds in which places between samples that stand too high are counted into an area that is accepted.
-const GIVEN_UP: u32 = 3;
+/// Rounds at most in which places between samples that stand too high are counted into an area that is accepted, and those that a look
+/// left open are looked at again.
+const AGAIN: u32 = 8;
 /// Operations are judged by this many samples of all faces where the whole is too far off for a look at more.
 const OF_STEPS: f64 = 4e5;
 /// Shares of the work, for its progress: raw material where operations are judged, the first look, all of it, and what lies between.
@@ -106,14 +107,21 @@ pub fn prove_in_steps(
     let crest_median_mm = trial.crests(&look.measured)?;
     let bounds = goal.looks.between && !coarse;
     let mut refined = if bounds { trial.refine(&mut look, &mut marks)? } else { unbounded() };
-    // Samples that were added may stand too high where an area that does is accepted.
-    for _ in 0..GIVEN_UP {
-        if !bounds || !trial.is_to_give_up(&look, &marks) {
+    // Samples that were added may stand too high where an area that does is accepted, and end a look that others have not.
+    let mut added = refined.added;
+    for _ in 0..AGAIN {
+        let gives_up = trial.is_to_give_up(&look, &marks);
+        let goes_on = refined.added > 0 && !look.is_settled() && trial.holds(&look);
+        if !bounds || !(gives_up || goes_on) {
             break;
         }
-        trial.give_up(&mut look, &mut marks, spacing)?;
+        if gives_up {
+            trial.give_up(&mut look, &mut marks, spacing)?;
+        }
         refined = trial.refine(&mut look, &mut marks)?;
+        added += refined.added;
     }
+    refined.added = added;
     within(3, 1.0);
     let stock = match material {
         _ if coarse => None,

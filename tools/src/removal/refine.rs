@@ -81,23 +81,25 @@ pub fn refine(
     wanted: Wanted,
     most: usize,
 ) -> Result<Refined, JobError> {
-    refine_beside((surfaces, None), job, measured, wanted, most)
+    Ok(refine_beside((surfaces, None), job, measured, wanted, most)?.0)
 }
 
-/// As [`refine`], with places beside outer edges told apart.
+/// As [`refine`], with places beside outer edges told apart. Of each sample, those that were added among them, it comes back whether its
+/// cell is settled: nothing in it exceeds what is wanted, but in parts of it that have samples of their own.
 pub(super) fn refine_beside(
     (surfaces, edges): (&[&dyn Surface], Option<&Edges<'_>>),
     job: &Job<'_>,
     measured: &mut Measured,
     wanted: Wanted,
     most: usize,
-) -> Result<Refined, JobError> {
+) -> Result<(Refined, Vec<bool>), JobError> {
     let even = measured.samples.len();
     // Samples come and go, motions stay.
     let ways = Ways::of_job(job)?;
     let mut out = Refined { hidden: Hidden { scallop_mm: 0.0, gouge_mm: 0.0 }, added: 0, left_out: 0 };
     // Bounds over all cells that have not been replaced by smaller ones.
     let (mut height, mut depth) = (0.0f64, 0.0f64);
+    let mut settled = vec![false; even];
     let mut from = 0;
     for round in 0..=ROUNDS {
         let part = &measured.samples[from..];
@@ -108,6 +110,11 @@ pub(super) fn refine_beside(
         if places.is_empty() || round == ROUNDS {
             height = height.max(height_mm);
             depth = depth.max(depth_mm);
+            // Of more places than there is room for not all were found.
+            if places.len() <= room {
+                settled[from..].fill(true);
+                places.iter().for_each(|p| settled[from + p.0] = false);
+            }
             break;
         }
         let all = places.len() <= room;
@@ -121,6 +128,8 @@ pub(super) fn refine_beside(
         for of_one in places.chunk_by(|a, b| a.0 == b.0) {
             measured.divide(surfaces, from + of_one[0].0, of_one.iter().map(|p| p.1));
         }
+        settled[from..].fill(all);
+        settled.resize(measured.samples.len(), false);
         let samples = &measured.samples[first..];
         measured.cuts.extend(cut_by(&Job { samples, ..*job }, &ways)?);
         let new = first..measured.samples.len();
@@ -150,5 +159,5 @@ pub(super) fn refine_beside(
         }
     }
     out.hidden = Hidden { scallop_mm: (height - seen).max(0.0), gouge_mm: (depth - dug).max(0.0) };
-    Ok(out)
+    Ok((out, settled))
 }

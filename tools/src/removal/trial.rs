@@ -101,6 +101,25 @@ pub(super) struct Look {
     pub density: Density,
     /// What could not be looked at.
     pub lost: Vec<String>,
+    pub settled: Settled,
+}
+
+/// What was shown between samples already: limits that are kept there are kept whatever becomes of other places.
+#[derive(Default)]
+pub(super) struct Settled {
+    /// Whether nothing in the cell of each sample exceeds the limits; none where nothing was bounded.
+    each: Vec<bool>,
+    /// What nothing in these cells stands above with its mark, mm.
+    height_mm: f64,
+    /// What no gouge in these cells is deeper than, mm.
+    depth_mm: f64,
+}
+
+impl Look {
+    /// Whether nothing is left open between the samples.
+    pub fn is_settled(&self) -> bool {
+        self.settled.each.len() == self.measured.samples.len() && self.settled.each.iter().all(|is| *is)
+    }
 }
 
 /// A goal with a program that is held against it.
@@ -284,7 +303,8 @@ impl<'a> Trial<'a> {
         }
         patches.resize(samples.len(), None);
         let tally = self.tally(&samples, &cuts, &density)?;
-        Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost })
+        let settled = Settled::default();
+        Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost, settled })
     }
 
     /// The faces with their outer edges, found by samples so far apart.
@@ -370,14 +390,20 @@ impl<'a> Trial<'a> {
         Ok(Marks { each, known: true })
     }
 
+    /// Whether what was measured keeps the limits, marks aside.
+    pub fn holds(&self, look: &Look) -> bool {
+        self.failings(&look.tally, look.tally.scallop_max_mm).is_empty()
+    }
+
     /// Adds samples where limits may be exceeded between those there are. What comes back of scallops is what nothing stands above
     /// with its mark, not what hides above others.
     ///
     /// What is left for a scallop is the less the higher its mark. Samples are taken by the height of their marks, and each lot is
-    /// bounded against what its highest mark leaves: a few places with high marks do not spoil all others.
+    /// bounded against what its highest mark leaves: a few places with high marks do not spoil all others. Cells that were settled before
+    /// are not looked at again.
     pub fn refine(&self, look: &mut Look, marks: &mut Marks) -> Result<Refined, ProveError> {
         let even = look.measured.samples.len();
-        let holds = self.failings(&look.tally, look.tally.scallop_max_mm).is_empty();
+        let holds = self.holds(look);
         let blend_mm = self.goal.control.blend_mm;
         let less = |limit: f64, by: f64| if by < limit { limit - by } else { limit };
         // Between samples of a path that fails already nothing is left to be found out.
@@ -385,38 +411,56 @@ impl<'a> Trial<'a> {
         let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
         let lots = marks.lots();
         let Measured { samples, patches, cuts } = std::mem::take(&mut look.measured);
+        let mut settled = std::mem::take(&mut look.settled);
+        settled.each.resize(samples.len(), false);
         let edges = self.edges(&samples, look.density.spacing_mm);
         let (mut all, mut more) = (Measured::default(), Measured::default());
-        let mut in_order = Vec::with_capacity(samples.len());
+        let (mut marks_of_all, mut settled_more) = (Vec::with_capacity(samples.len()), Vec::new());
+        let mut settled_all = Vec::with_capacity(samples.len());
+        let mut keep = |k: usize, to: &mut Measured| {
+            to.samples.push(samples[k]);
+            to.patches.push(patches[k]);
+            to.cuts.push(cuts[k]);
+            marks_of_all.push(marks.each[k]);
+        };
+        for k in (0..samples.len()).filter(|k| settled.each[*k]) {
+            keep(k, &mut all);
+            settled_all.push(true);
+        }
         let mut refined = Refined { added: 0, left_out: 0, ..unbounded() };
         // Nothing in any lot stands above this with its mark, or lies below that.
-        let (mut highest, mut deepest, mut dug) = (0.0f64, 0.0f64, 0.0f64);
+        let (mut highest, mut deepest) = (settled.height_mm, settled.depth_mm);
         for (k, most_mark) in lots.iter().enumerate() {
             let low = if k == 0 { f64::NEG_INFINITY } else { lots[k - 1] };
             let of_lot = |m: &f64| *m > low && *m <= *most_mark;
             let mut lot = Measured::default();
-            for k in (0..samples.len()).filter(|k| of_lot(&marks.each[*k])) {
-                lot.samples.push(samples[k]);
-                lot.patches.push(patches[k]);
-                lot.cuts.push(cuts[k]);
-                in_order.push(marks.each[k]);
+            for k in (0..samples.len()).filter(|k| !settled.each[*k] && of_lot(&marks.each[*k])) {
+                keep(k, &mut lot);
             }
             let evenly = lot.samples.len();
+            if evenly == 0 {
+                continue;
+            }
             let wanted = Wanted {
                 uncut_mm: self.limits.uncut_mm,
                 enough_mm: less(self.limits.scallop_mm, most_mark + blend_mm),
                 gouge_mm: less(self.limits.gouge_mm, blend_mm),
             };
             let room = most.saturating_sub(refined.added);
-            let found =
+            let (found, mut of_each) =
                 refine_beside((&self.surfaces, Some(&edges)), &self.job(&[]), &mut lot, wanted, room)?;
             let t = self.tally(&lot.samples, &lot.cuts, &look.density)?;
-            highest = highest.max(t.scallop_max_mm + found.hidden.scallop_mm + most_mark);
-            deepest = deepest.max(t.gouge_max_mm + found.hidden.gouge_mm);
-            dug = dug.max(t.gouge_max_mm);
+            let height_mm = t.scallop_max_mm + found.hidden.scallop_mm;
+            let depth_mm = t.gouge_max_mm + found.hidden.gouge_mm;
+            highest = highest.max(height_mm + most_mark);
+            deepest = deepest.max(depth_mm);
+            settled.height_mm = settled.height_mm.max(height_mm.min(wanted.enough_mm) + most_mark);
+            settled.depth_mm = settled.depth_mm.max(depth_mm.min(wanted.gouge_mm));
             refined.added += found.added;
             refined.left_out += found.left_out;
             // Those that were added come after all others.
+            settled_more.extend(of_each.drain(evenly..));
+            settled_all.append(&mut of_each);
             more.samples.extend(lot.samples.drain(evenly..));
             more.patches.extend(lot.patches.drain(evenly..));
             more.cuts.extend(lot.cuts.drain(evenly..));
@@ -424,16 +468,19 @@ impl<'a> Trial<'a> {
             all.patches.append(&mut lot.patches);
             all.cuts.append(&mut lot.cuts);
         }
-        in_order.extend(self.marks(&more, usize::MAX)?.each);
-        marks.each = in_order;
+        marks_of_all.extend(self.marks(&more, usize::MAX)?.each);
+        marks.each = marks_of_all;
+        settled_all.append(&mut settled_more);
         all.samples.append(&mut more.samples);
         all.patches.append(&mut more.patches);
         all.cuts.append(&mut more.cuts);
         look.measured = all;
-        refined.hidden = Hidden { scallop_mm: highest, gouge_mm: (deepest - dug).max(0.0) };
+        look.settled = Settled { each: settled_all, ..settled };
         if refined.added > 0 {
             look.tally = self.tally(&look.measured.samples, &look.measured.cuts, &look.density)?;
         }
+        refined.hidden =
+            Hidden { scallop_mm: highest, gouge_mm: (deepest - look.tally.gouge_max_mm).max(0.0) };
         Ok(refined)
     }
 }
