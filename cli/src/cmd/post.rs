@@ -78,6 +78,9 @@ fn refuse_losses(file: &Path, found: &[Diagnostic]) -> Result<(), Failure> {
     if lost.len() > NAMED_LOSSES {
         text.push(format!("{} more", lost.len() - NAMED_LOSSES));
     }
+    if lost.iter().any(|d| d.message.starts_with("CUTCOM")) {
+        text.push("--cutcom centre says that points under CUTCOM are the cutter's centre, and posts them so".to_owned());
+    }
     text.push("--lenient leaves such statements out and lists them".to_owned());
     Err(Failure::file(file, text.join("\n  ")))
 }
@@ -115,7 +118,8 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     })?;
     let work_offset = args.work_offset.as_deref().map(str::parse::<WorkOffset>).transpose();
     let work_offset = work_offset.map_err(|e| Failure::job(format!("--work-offset: {e}")))?;
-    let cl = ClStream::new(open, ClReadOptions::default());
+    let options = ClReadOptions { cutcom_is_centre: args.cutcom.is_some(), ..ClReadOptions::default() };
+    let cl = ClStream::new(open, options);
     let outline = cl.outline().map_err(|e| here(&e))?;
     if !args.lenient {
         refuse_losses(&args.clfile, &outline.diagnostics)?;
