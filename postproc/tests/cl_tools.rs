@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::cl_text::posted;
+use common::cl_text::{self, posted};
 use osculate_geom::{Point3, Severity, Vec3};
 use osculate_postproc::cldata::{ClReadOptions, ClStream, read};
 use osculate_postproc::source::MoveSource;
@@ -68,6 +68,31 @@ fn sections_know_their_tools() {
     let turns: Vec<AuxiliaryWord> = tap.auxiliary.iter().map(|a| a.word).collect();
     let (back, on) = (Spindle::Counter { rpm: 400.0 }, Spindle::Clockwise { rpm: 400.0 });
     assert_eq!(turns, [back, on, back, on].map(AuxiliaryWord::Spindle));
+}
+
+/// The next tool is put ready behind each call, and what is read back stays the same.
+#[test]
+fn the_next_tool_is_put_ready() {
+    for dialect in Dialect::ALL {
+        let plain = posted(THREE, &machine(dialect), dialect, FeedMode::Tcp).unwrap();
+        let ready = cl_text::posted_ready(THREE, &machine(dialect), dialect, FeedMode::Tcp).unwrap();
+        assert_eq!(ready.difference(), None, "{dialect}\n{}", ready.text);
+        assert_eq!(
+            (&ready.back.moves.len(), &ready.back.speeds_rpm),
+            (&plain.back.moves.len(), &plain.back.speeds_rpm)
+        );
+        let bare = |line: &str| {
+            let line = line.trim_start_matches(|c: char| c == 'N' || c.is_ascii_digit()).trim();
+            line.strip_prefix(if dialect == Dialect::Heidenhain { "TOOL DEF " } else { "T" })?
+                .parse::<u32>()
+                .ok()
+        };
+        let numbers: Vec<u32> = ready.text.lines().filter_map(bare).collect();
+        // Sinumerik selects with the same word before M6.
+        let want: &[u32] =
+            if dialect == Dialect::Sinumerik { &[12, 3, 3, 7, 7, 12, 12] } else { &[3, 7, 12] };
+        assert_eq!(numbers, want, "{dialect}\n{}", ready.text);
+    }
 }
 
 /// A tap turns back at the bottom and not before, in every dialect.
@@ -163,6 +188,23 @@ fn copies_have_the_cycles_and_the_tool_of_what_they_repeat() {
     let one = posted(text, &machine(Dialect::Fanuc), Dialect::Fanuc, FeedMode::Tcp).unwrap();
     assert_eq!(one.difference(), None);
     assert_eq!(one.moves.iter().map(Vec::len).collect::<Vec<_>>(), [3 * 5, 4]);
+}
+
+/// A board that is drilled from both sides: a table that turns about X reaches them, a trunnion does not.
+#[test]
+fn both_sides_of_a_board() {
+    let text = "CUTTER/6,0,3,1.8,31,0,60\nLOADTL/1\nSPINDL/3000\nRAPID\nGOTO/10,20,25\nCYCLE/DRILL,FEDTO,5,MMPM,300,RAPTO,3\nGOTO/10,20,0\nCYCLE/OFF\n\
+        CUTTER/8,0,4,0,0,0,60\nLOADTL/2\nSPINDL/4000\nRAPID\nGOTO/10,20,-55,0,0,-1\nFEDRAT/500\nGOTO/10,20,-29,0,0,-1\nCUTCOM/LEFT\nGOTO/60,20,-29,0,0,-1\n\
+        CUTCOM/OFF\nRAPID\nGOTO/60,20,-55,0,0,-1\nFINI\n";
+    let table = cl_text::four_axes();
+    for dialect in Dialect::ALL {
+        let feed = if dialect == Dialect::LinuxCnc { FeedMode::InverseTime } else { FeedMode::Tcp };
+        let one = posted(text, &table, dialect, feed).unwrap_or_else(|e| panic!("{dialect}: {e}"));
+        assert_eq!(one.difference(), None, "{dialect}\n{}", one.text);
+        let e =
+            posted(text, &machine(dialect), dialect, FeedMode::Tcp).err().expect("it does not reach below");
+        assert!(e.section == 1 && e.to_string().contains("joint A"), "{e}");
+    }
 }
 
 /// One path has one tool: whoever reads the text so is told what it leaves out.

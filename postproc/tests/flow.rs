@@ -152,14 +152,14 @@ fn what_asks_for_too_much_or_is_not_known_is_refused() {
         (Fanuc, "M99\n", "line 4: M99 is not interpreted"),
         (Fanuc, "#1=0\nWHILE[#1LT2]DO1\nG0 X1\nEND1\nM30\n", "line 7: more than 300000 lines run"),
         (Fanuc, "WHILE[#1LT2]DO1\nG0 X1\nEND1\nM30\n", "line 4: WHILE[#1LT2] is not"),
-        (Fanuc, "IF[#1LT2]GOTO10\nM30\n", "line 4: "),
+        (Fanuc, "IF[#1LT2]GOTO10\nM30\n", "line 4: IF is not interpreted"),
         (LinuxCnc, "o1 repeat [1000000]\nG0 X1\no1 endrepeat\nM2\n", "line 6: more than 300000 lines run"),
         (LinuxCnc, "o1 repeat [4000000000]\no1 endrepeat\nM2\n", "line 5: more than 300000 lines run"),
         (LinuxCnc, "o<gone> call\nM2\n", "line 4: "),
-        (LinuxCnc, "o1 if [#1 EQ 1]\nG0 X1\no1 endif\nM2\n", "line 4: "),
+        (LinuxCnc, "o1 if [#1 EQ 1]\nG0 X1\no1 endif\nM2\n", "line 4: IF is not interpreted"),
         (Sinumerik, "REPEAT GONE P=2\nM30\n", "line 4: REPEAT"),
         (Sinumerik, "HERE: G0 X1\nREPEAT HERE P=9999999\nM30\n", "line 5: more than 300000 lines run"),
-        (Sinumerik, "HERE: G0 X1\nIF R1<5 GOTOB HERE\nM30\n", "line 5: "),
+        (Sinumerik, "HERE: G0 X1\nIF R1<5 GOTOB HERE\nM30\n", "line 5: IF is not interpreted"),
         (Sinumerik, "R1=SIN(3)\nM30\n", "line 4: "),
     ] {
         let text = format!("%\n{HEAD}{body}").replace('%', if dialect == Fanuc { "O1" } else { "" });

@@ -21,7 +21,7 @@ mod words;
 mod write;
 
 pub use error::ClReadError;
-pub use read::{ClData, ClReadOptions, ClReader, read};
+pub use read::{ClData, ClReadOptions, ClReader, known_words, read};
 pub use section::{ClSection, ClTool};
 pub use stream::{ClOutline, ClPart, ClPlace, ClStream, ClStreamError};
 pub use write::{ClWriteError, ClWriteOptions, ClWriter, write};

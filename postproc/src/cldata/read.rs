@@ -70,6 +70,18 @@ const HARMLESS: &[&str] = &[
     "ROTABL",
 ];
 
+/// Words that say what the tool does.
+const KNOWN: &[&str] = &[
+    "GOTO", "GODLTA", "FROM", "RAPID", "FEDRAT", "UNITS", "SPINDL", "CUTTER", "LOADTL", "LOAD", "COOLNT",
+    "DELAY", "STOP", "OPSTOP", "CUTCOM", "TLAXIS", "CIRCLE", "MOVARC", "INDIRV", "CYCLE", "TRACUT", "INDEX",
+    "COPY", "CSYS", "TRNTYP", "MULTAX", "PARTNO", "FINI",
+];
+
+/// The words that are read, those that say nothing of the tool's way among them.
+pub fn known_words() -> impl Iterator<Item = &'static str> {
+    KNOWN.iter().chain(HARMLESS).copied()
+}
+
 /// Lines of one word that are listed before the rest is only counted.
 const LISTED_LINES: usize = 5;
 

@@ -173,6 +173,7 @@ impl Flow {
                 Ok(Ended::Through)
             }
             FlowWord::Return => Ok(Ended::Back),
+            FlowWord::Jump(word) => run(number, word).map(through),
             FlowWord::Set { name, value } => {
                 match value {
                     Some(value) => {

@@ -66,6 +66,18 @@ pub(super) enum FlowWord {
     Set { name: String, value: Option<f64> },
     /// A variable grows.
     Add { name: String, by: f64 },
+    /// The word of a jump or a condition, which is not followed.
+    Jump(&'static str),
+}
+
+/// Words of jumps and conditions.
+const JUMPS: [&str; 9] = ["GOTOF", "GOTOB", "GOTOC", "GOTOS", "GOTO", "IF", "CASE", "LOOP", "UNTIL"];
+
+/// A line that begins with such a word, behind which no other letters come.
+fn jump(text: &str) -> Option<FlowWord> {
+    let word = JUMPS.into_iter().find(|j| text.starts_with(j))?;
+    let ends = !text[word.len()..].starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    ends.then_some(FlowWord::Jump(word))
 }
 
 /// What a line says of the order; `None`: nothing that is known.
@@ -123,7 +135,7 @@ fn bare(line: &str, round_comments: bool) -> String {
 }
 
 fn iso(line: &str, dialect: Dialect) -> Option<FlowWord> {
-    let letter = |b| matches!(b, b'O' | b'o' | b'#' | b'W' | b'w' | b'E' | b'e');
+    let letter = |b| matches!(b, b'O' | b'o' | b'#' | b'W' | b'w' | b'E' | b'e' | b'[');
     if !(line.bytes().any(letter) || line.contains("M9") || line.contains("m9")) {
         return None;
     }
@@ -148,6 +160,9 @@ fn iso(line: &str, dialect: Dialect) -> Option<FlowWord> {
         return assigned("#", rest);
     }
     if dialect == Dialect::Fanuc {
+        if let Some(jump) = jump(&text) {
+            return Some(jump);
+        }
         if let Some(rest) = text.strip_prefix("WHILE") {
             let (test, level) = rest.rsplit_once("DO")?;
             whole(level)?;
@@ -177,7 +192,7 @@ fn iso(line: &str, dialect: Dialect) -> Option<FlowWord> {
             if let Some(k) = word.strip_prefix("REPEAT[").and_then(|k| k.strip_suffix(']')) {
                 return Some(FlowWord::Times { times: whole(k)? });
             }
-            return tested(word.strip_prefix("WHILE")?);
+            word.strip_prefix("WHILE").map_or_else(|| jump(word), tested)?
         }
     })
 }
@@ -219,7 +234,8 @@ fn tested(text: &str) -> Option<FlowWord> {
 
 fn sinumerik(line: &str) -> Option<FlowWord> {
     let word = line.trim_start().trim_start_matches(|c: char| c == 'N' || c == 'n' || c.is_ascii_digit());
-    let begins = word.trim_start().starts_with(['R', 'r', 'E', 'e', 'F', 'f', 'W', 'w']);
+    let begins = word.trim_start().starts_with(['R', 'E', 'F', 'W', 'G', 'I', 'C', 'L', 'U'])
+        || word.trim_start().starts_with(['r', 'e', 'f', 'w', 'g', 'i', 'c', 'l', 'u']);
     if !(begins || line.contains(':')) {
         return None;
     }
@@ -234,6 +250,9 @@ fn sinumerik(line: &str) -> Option<FlowWord> {
         && is_label(name)
     {
         return Some(FlowWord::Label(name.to_owned()));
+    }
+    if let Some(jump) = jump(line) {
+        return Some(jump);
     }
     if let Some(rest) = line.strip_prefix('R').filter(|r| r.starts_with(|c: char| c.is_ascii_digit())) {
         let text: String = rest.split_whitespace().collect();
@@ -342,7 +361,9 @@ mod tests {
         assert_eq!(of("o100 repeat [5]", LinuxCnc), Some(FlowWord::Times { times: 5 }));
         assert_eq!(of("o<hole> call", LinuxCnc), call("HOLE", 1));
         assert_eq!(of("o<hole> call [5]", LinuxCnc), None);
-        assert_eq!(of("o7 if [#1 EQ 2]", LinuxCnc), None);
+        assert_eq!(of("o7 if [#1 EQ 2]", LinuxCnc), Some(FlowWord::Jump("IF")));
+        assert_eq!(of("N5 IF [#1 EQ 2] GOTO 7", Fanuc), Some(FlowWord::Jump("IF")));
+        assert_eq!(of("GOTO7", Fanuc), Some(FlowWord::Jump("GOTO")));
     }
 
     #[test]
@@ -363,7 +384,7 @@ mod tests {
         let test = Test { how: How::Less, with: 3.0 };
         assert_eq!(of("WHILE R2 < 3"), Some(FlowWord::While { name: "R2".into(), test }));
         assert_eq!(of("R2=R2+1"), Some(FlowWord::Add { name: "R2".into(), by: 1.0 }));
-        for none in ["G1 X5 F100", "MSG(\"a: b\")", "GOTOB HOLE", "IF R1<5 GOTOB HOLE", "X=R1", "A3=0 B3=1"] {
+        for none in ["G1 X5 F100", "MSG(\"a: b\")", "IFX=3", "X=R1", "A3=0 B3=1"] {
             assert_eq!(of(none), None, "{none}");
         }
     }
