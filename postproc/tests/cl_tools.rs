@@ -119,7 +119,7 @@ fn taps_turn_back_at_the_bottom() {
 /// Moves of a text, all tools together.
 fn moves(text: &str) -> Vec<(Point3, Vec3, bool)> {
     let cl = ClStream::new(|| Ok(Cursor::new(text.as_bytes())), ClReadOptions::default());
-    let outline = cl.outline().unwrap();
+    let outline = cl.outline().expect("CL data");
     let lost: Vec<_> = outline.diagnostics.iter().filter(|d| d.severity == Severity::Loss).collect();
     assert!(lost.is_empty(), "{text}: {lost:?}");
     let mut all = Vec::new();
@@ -130,7 +130,7 @@ fn moves(text: &str) -> Vec<(Point3, Vec3, bool)> {
             );
             ControlFlow::Continue(())
         })
-        .unwrap();
+        .expect("it can be read again");
     }
     all
 }

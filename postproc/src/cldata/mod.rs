@@ -9,6 +9,7 @@ mod cycle;
 mod error;
 mod feed;
 mod fields;
+mod placing;
 mod read;
 mod repeat;
 mod section;

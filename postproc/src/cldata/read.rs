@@ -20,7 +20,7 @@ use super::cycle::Cycle;
 use super::error::ClReadError;
 use super::feed::Feed;
 use super::fields::{axis, count, is_identity, numbers, place, unit, vector};
-use super::repeat::Placing;
+use super::placing::Placing;
 use super::section::{ClSection, ClTool, Said};
 use super::statement::{Item, Joiner, Statement};
 use crate::auxiliary::{AuxiliaryWord, Spindle};

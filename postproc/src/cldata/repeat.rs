@@ -4,10 +4,11 @@
 //! from where the statements before have left them, as they do in a CL file that is written out. Copies within copies are copied with them.
 //! `INDEX/n,NOMORE` closes an index.
 
-use osculate_geom::{Diagnostic, Point3, Unit3};
+use osculate_geom::Diagnostic;
 
 use super::error::ClReadError;
 use super::fields::place;
+use super::placing::{Mark, Reckoning};
 use super::read::{ClReader, Taken};
 use super::statement::{Item, Statement};
 use super::transform::{self, Copy, Transform, Why};
@@ -16,58 +17,6 @@ use super::transform::{self, Copy, Transform, Why};
 const MOST: usize = 500_000;
 /// Copies within copies.
 const DEEPEST: usize = 10;
-
-/// What the points that follow are reckoned from.
-#[derive(Clone, Debug)]
-struct Reckoning {
-    unit_mm: f64,
-    tracut: Option<Transform>,
-    axis: Unit3,
-    tip: Option<Point3>,
-}
-
-/// An `INDEX/` that is open.
-#[derive(Clone, Debug)]
-struct Mark {
-    name: String,
-    /// The first statement behind it.
-    at: usize,
-    /// The line of a tool call since then.
-    tool: Option<usize>,
-    reckoning: Reckoning,
-}
-
-/// Where points go, and what is kept for copies.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Placing {
-    tracut: Option<Transform>,
-    /// Of the copies in work, from the outermost.
-    copies: Vec<Transform>,
-    /// All together.
-    total: Option<Transform>,
-    marks: Vec<Mark>,
-    kept: Vec<Item>,
-    /// Statements that the copy in work has made.
-    made: usize,
-}
-
-impl Placing {
-    /// Where a tip and an axis of the text are.
-    pub fn place(&self, tip: Point3, axis: Unit3) -> (Point3, Unit3) {
-        self.total.map_or((tip, axis), |t| (t.point(&tip), t.axis(&axis)))
-    }
-
-    fn settle(&mut self) {
-        let all = self.copies.iter().chain(&self.tracut).copied();
-        self.total = all.reduce(|outer, inner| outer.after(&inner));
-    }
-
-    /// A tool call: what stands before it is not copied.
-    pub fn tool_called(&mut self, line: usize) {
-        self.marks.iter_mut().for_each(|m| m.tool = Some(line));
-        self.kept.clear();
-    }
-}
 
 /// Whether the first point is come to on an arc; `None` where a statement makes no point.
 fn begins_round(item: &Item) -> Option<bool> {

@@ -76,6 +76,10 @@ impl<'a> Clock<'a> {
     /// Where a subprogram is missing, with `strict`.
     pub fn finish(mut self) -> Result<Timed, ReadError> {
         self.control.end()?;
+        if !self.control.placed {
+            let text = "nothing moves: no complete position is named (a text that only defines subprograms runs none)";
+            self.control.diagnostics.push(Diagnostic::loss("program", text));
+        }
         let planned = self.control.sink;
         let mut time = planned.time;
         if let Some(stretch) = &planned.stretch {
