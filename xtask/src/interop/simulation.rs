@@ -146,14 +146,16 @@ fn simulate(witness: &Witness, kind: &str, program: &Path) -> Result<Ran, Failur
     allow.arg("+x").arg(folder.join("ui"));
     cmd::run(allow)?;
     let file = folder.join("ran.txt");
+    cmd::write(&file, "")?;
     let script = "mount -t overlay overlay -o lowerdir=\"$OVER/usr\":/usr /usr && \
                   mount -t overlay overlay -o lowerdir=\"$OVER/etc\":/etc /etc && exec linuxcnc -r \"$INI\"";
     let mut start = Command::new("unshare");
     start.current_dir(&folder).args(["-m", "timeout", "500", "sh", "-c", script]);
     start.env("OVER", &witness.unpacked).env("INI", &ini).env("HOME", &folder).env_remove("DISPLAY");
     start.env("PROGRAM", program).env("FILE", &file);
-    // The realtime part gives up root for this user.
-    start.env("RTAPI_UID", "65534").env("RTAPI_FIFO_PATH", folder.join("fifo"));
+    // The realtime part gives up root for a user that may write where all may.
+    let fifo = std::env::temp_dir().join(format!("osculate-{}-{kind}", std::process::id()));
+    start.env("RTAPI_UID", "65534").env("RTAPI_FIFO_PATH", fifo);
     start.env("LD_LIBRARY_PATH", "/usr/lib").env("PYTHONPATH", "/usr/lib/python3/dist-packages");
     cmd::output_quietly(start)?;
     let text = std::fs::read_to_string(&file).map_err(|why| Failure::Read { path: file.clone(), why })?;
