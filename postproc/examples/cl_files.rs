@@ -17,8 +17,11 @@ fn main() -> ExitCode {
         let name = std::path::Path::new(&file).file_name().map(|n| n.to_string_lossy().into_owned());
         println!("{}", name.unwrap_or(file));
         for dialect in Dialect::ALL {
-            for machine_name in ["trunnion-ac", "linuxcnc-xyzac", "head-ca", "head-b-table-c"] {
-                let machine = Machine::built_in(machine_name).expect("a built-in machine");
+            for machine_name in ["trunnion-ac", "linuxcnc-xyzac", "head-ca", "head-b-table-c", "4-axis"] {
+                let machine = match machine_name {
+                    "4-axis" => cl_text::four_axes(),
+                    name => Machine::built_in(name).expect("a built-in machine"),
+                };
                 let feed = if dialect == Dialect::LinuxCnc && machine.control().linuxcnc_tcp.is_none() {
                     FeedMode::InverseTime
                 } else {
@@ -27,15 +30,15 @@ fn main() -> ExitCode {
                 match cl_text::posted(&text, &machine, dialect, feed) {
                     Err(e) => println!("  {dialect} {machine_name}: section {}: {e}", e.section),
                     Ok(posted) => {
-                        let off = posted.difference();
-                        if off.is_some() {
+                        let off = posted.worst_mm();
+                        if off.is_err() {
                             code = ExitCode::FAILURE;
                         }
                         println!(
                             "  {dialect} {machine_name}: {} tools, {} moves: {}",
                             posted.moves.len(),
                             posted.moves.iter().map(Vec::len).sum::<usize>(),
-                            off.unwrap_or_else(|| "come back".into())
+                            off.map_or_else(|why| why, |mm| format!("come back within {mm:.6} mm"))
                         );
                         break;
                     }

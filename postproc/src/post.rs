@@ -128,6 +128,7 @@ pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec
         linuxcnc_tcp: machine.control().linuxcnc_tcp.clone(),
         number: options.program_number,
         tool_number: options.tool_number,
+        next_tool: None,
         work_offset: options.work_offset,
         spindle_rpm: options.spindle_rpm,
         counter_clockwise: options.counter_clockwise,

@@ -27,6 +27,8 @@ pub struct PostOptions {
     pub program_number: u32,
     /// Number of the tool, and of its length offset.
     pub tool_number: u32,
+    /// Of several tools the next one is put ready while one is at work.
+    pub preselect: bool,
     /// Work offset; absent: `G54`, or with Heidenhain the preset that is active.
     pub work_offset: Option<WorkOffset>,
     /// Coolant.
@@ -53,6 +55,7 @@ impl PostOptions {
             program_name: "OSCULATE".into(),
             program_number: 1,
             tool_number: 1,
+            preselect: false,
             work_offset: None,
             coolant: None,
             spindle_rpm: None,

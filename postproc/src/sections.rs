@@ -127,6 +127,12 @@ where
             program_of(machine, options, said)
         })
         .collect();
+    let mut programs = programs;
+    for k in 1..programs.len() {
+        let next = programs[k].tool_number;
+        let ready = own[k - 1].preselect && next != programs[k - 1].tool_number;
+        programs[k - 1].next_tool = ready.then_some(next);
+    }
     let mut writer = Writer::new(first.options.dialect, &programs[0]).map_err(|e| of(0)(e.into()))?;
     let mut reports = Vec::with_capacity(sections.len());
     for (k, (section, program)) in sections.iter().zip(&programs).enumerate() {

@@ -84,12 +84,13 @@ fn what_is_not_interpreted_is_named() {
         assert!(hit, "{place} {word}: {:#?}", data.diagnostics);
     };
     said("line 1", Severity::Loss, "CUTTER/12,0,6,3.6,31,0,63");
-    said("line 8, 10", Severity::Loss, "TRACUT (2 x)");
+    said("line 8", Severity::Loss, "TRACUT/");
+    said("line 10", Severity::Loss, "TRACUT/");
     said("line 11", Severity::Note, "CSYS");
     said("line 12", Severity::Loss, "CSYS");
     said("line 13", Severity::Loss, "FROBNI");
     said("line 14", Severity::Loss, "tool change to 2");
-    assert_eq!(data.diagnostics.len(), 6);
+    assert_eq!(data.diagnostics.len(), 7);
 }
 
 #[test]

@@ -108,7 +108,7 @@ fn arcs() {
         assert!(back.moves.iter().map(off).fold(0.0, f64::max) < 1e-9, "{words}");
     }
     let e = go("G90\nG0 X0 Y0 Z0\nG2 X10 I1 F5", Dialect::LinuxCnc, "3-axis").unwrap_err();
-    assert!(matches!(e, ReadError::Arc { line: 3, off_mm } if (off_mm + 8.0).abs() < 1e-12), "{e}");
+    assert!(matches!(e, ReadError::Arc { line: 3, off_mm } if (off_mm - 8.0).abs() < 1e-12), "{e}");
     let e = go("G90\nG0 X0 Y0 Z0\nG2 X10 F5", Dialect::LinuxCnc, "3-axis").unwrap_err();
     assert!(matches!(e, ReadError::Word { line: 3, .. }), "{e}");
 }

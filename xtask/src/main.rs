@@ -29,7 +29,10 @@ usage: cargo xtask COMMAND
                 --time: its reading of a STEP file beside ours, the best of seven
   tidy          the rules of the workspace that neither the compiler nor clippy checks
   interop linuxcnc
-                LinuxCNC's interpreter and kinematics, and pygcode, on our programs (Debian: apt-get, dpkg, gcc, pip)
+                LinuxCNC's interpreter and kinematics, and pygcode, on our programs (Debian: apt-get, dpkg, gcc, pip), and LinuxCNC
+                itself on its sample machines where it can be run (root, tcl8.6, python3.11)
+  interop simulation
+                LinuxCNC itself alone: a program with three tools, limits on, to the end
   interop roundtrip
                 CL to NC and back on a real blade, for every machine, dialect and feed mode: a table of what is off
   ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         ["tidy"] => tidy::run(),
         ["ci"] => ci::run(),
         ["interop", "linuxcnc"] => interop::linuxcnc(),
+        ["interop", "simulation"] => interop::simulation(),
         ["interop", "roundtrip"] => postproc_example("roundtrip", &[]),
         ["bench"] => bench::run(false),
         ["bench", "--peers"] => bench::run(true),

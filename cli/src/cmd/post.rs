@@ -5,14 +5,15 @@ use crate::screen::output;
 use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::job::control::{Control, Words};
+use osculate::job::words::nearest;
 use osculate::words;
 use osculate::words::{Table, number};
 use osculate::work::nc;
 use osculate_geom::{Diagnostic, Severity, Vec3};
-use osculate_postproc::cldata::{ClPart, ClReadOptions, ClSection, ClStream};
+use osculate_postproc::cldata::{ClPart, ClReadOptions, ClSection, ClStream, known_words};
 use osculate_postproc::{
-    Orientation, PostOptions, PostReport, PostSummary, Section, Setup, Spindle, WorkOffset, built_in_names,
-    post_from, post_sections_to,
+    Auxiliary, AuxiliaryWord, Orientation, PostOptions, PostReport, PostSummary, Section, Setup, Spindle,
+    WorkOffset, built_in_names, post_from, post_sections_to,
 };
 use osculate_tools::Cutter;
 use serde::Serialize;
@@ -67,6 +68,16 @@ fn located<R: BufRead + Seek, O: Fn() -> io::Result<R>>(
 /// Losses that a refusal names.
 const NAMED_LOSSES: usize = 4;
 
+/// The word that a finding of an unknown one may mean.
+fn near(found: &Diagnostic) -> String {
+    let word = found.message.split([' ', '/']).next().unwrap_or_default();
+    let known = || known_words().filter(|known| known.len() > 3);
+    match nearest(word, known()) {
+        Some(near) if !known().any(|known| known == word) => format!(" (is {near} meant?)"),
+        _ => String::new(),
+    }
+}
+
 /// Refuses what cannot be said in the program, with its lines.
 fn refuse_losses(file: &Path, found: &[Diagnostic]) -> Result<(), Failure> {
     let lost: Vec<&Diagnostic> = found.iter().filter(|d| d.severity == Severity::Loss).collect();
@@ -74,9 +85,15 @@ fn refuse_losses(file: &Path, found: &[Diagnostic]) -> Result<(), Failure> {
         return Ok(());
     }
     let mut text: Vec<String> =
-        lost.iter().take(NAMED_LOSSES).map(|d| format!("{}: {}", d.place, d.message)).collect();
+        lost.iter().take(NAMED_LOSSES).map(|d| format!("{}: {}{}", d.place, d.message, near(d))).collect();
     if lost.len() > NAMED_LOSSES {
         text.push(format!("{} more", lost.len() - NAMED_LOSSES));
+    }
+    if lost.iter().any(|d| d.message.starts_with("CUTCOM")) {
+        text.push(
+            "--cutcom centre says that points under CUTCOM are the cutter's centre, and posts them so"
+                .to_owned(),
+        );
     }
     text.push("--lenient leaves such statements out and lists them".to_owned());
     Err(Failure::file(file, text.join("\n  ")))
@@ -94,6 +111,14 @@ fn gauge(args: &PostArgs, section: &ClSection, notes: &mut Vec<Diagnostic>) -> R
     };
     let here = |e| Failure::file(&args.clfile, format!("line {}: {e}", section.line));
     Ok(Cutter::try_from(spec).map_err(here)?.length_mm())
+}
+
+/// What is done between the moves of a section, with the stop before it that is asked for.
+fn stopping(args: &PostArgs, k: usize, section: &ClSection) -> Vec<Auxiliary> {
+    let word = AuxiliaryWord::OptionalStop;
+    let there = section.auxiliary.iter().any(|a| a.before == 0 && a.word == word);
+    let stop = (args.stops && k > 0 && !there).then_some(Auxiliary { before: 0, word });
+    stop.into_iter().chain(section.auxiliary.iter().copied()).collect()
 }
 
 /// Runs the verb.
@@ -115,7 +140,8 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
     })?;
     let work_offset = args.work_offset.as_deref().map(str::parse::<WorkOffset>).transpose();
     let work_offset = work_offset.map_err(|e| Failure::job(format!("--work-offset: {e}")))?;
-    let cl = ClStream::new(open, ClReadOptions::default());
+    let options = ClReadOptions { cutcom_is_centre: args.cutcom.is_some(), ..ClReadOptions::default() };
+    let cl = ClStream::new(open, options);
     let outline = cl.outline().map_err(|e| here(&e))?;
     if !args.lenient {
         refuse_losses(&args.clfile, &outline.diagnostics)?;
@@ -141,7 +167,8 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
             counter_clockwise: matches!(tool.spindle, Some(Spindle::Counter { .. })),
             coolant: tool.coolant,
             tool_number: tool.number.unwrap_or(usual.tool_number),
-            auxiliary: section.auxiliary.clone(),
+            auxiliary: stopping(args, k, section),
+            preselect: args.preselect,
             orientation,
             subprogram: args.subprogram,
             work_offset,

@@ -183,7 +183,7 @@ impl Reader<'_> {
 
     fn wrong(&self, name: &str, key: &Key, value: &Spanned<DeValue<'_>>, wrong: Wrong) -> Failure {
         let written = match value.get_ref() {
-            DeValue::Float(_) | DeValue::Integer(_) => number(value.get_ref()).map(|x| x.to_string()),
+            DeValue::Float(_) | DeValue::Integer(_) => number(value.get_ref()).map(short),
             _ => None,
         };
         let source = self.text.get(value.span()).unwrap_or_default();
@@ -281,4 +281,9 @@ fn faces(value: &DeValue<'_>) -> bool {
 
 fn points(value: &DeValue<'_>) -> bool {
     each(value.as_array(), |v| numbers(v).is_some_and(|p| p.len() == 3 && p.iter().all(|x| x.is_finite())))
+}
+
+/// A number as one writes it: hundreds of digits say less than their count.
+fn short(x: f64) -> String {
+    if x.abs() < 1e15 { x.to_string() } else { format!("{x:e}") }
 }

@@ -4,7 +4,7 @@ use crate::failure::{Failure, read_text};
 use crate::job::Tool;
 use crate::job::check::line;
 use crate::job::language::Language;
-use crate::job::problem::Places;
+use crate::job::problem::{Places, meant};
 use crate::job::raw;
 use crate::job::words::{CoolantWord, FeedWord};
 use osculate_geom::{Diagnostic, Point3, Vec3};
@@ -195,7 +195,7 @@ fn machine(name: Option<&str>, file: Option<&Path>) -> Result<(Machine, String),
     match (name, file) {
         (_, Some(file)) => machine_file(file),
         (Some(name), None) => {
-            let machine = Machine::built_in(name).map_err(Failure::job)?;
+            let machine = Machine::built_in(name).map_err(|e| meant(&e, name, built_in_names()))?;
             Ok((machine, built_in_text(name).unwrap_or_default().to_owned()))
         }
         (None, None) => Err(Failure::job(format!(

@@ -1,6 +1,7 @@
 //! The language of a control: one of the engines, or one with words of its own from a dialect file.
 
 use crate::failure::{Failure, read_text};
+use crate::job::problem::meant;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::{DialectFile, shipped_dialects};
 use std::borrow::Cow;
@@ -35,7 +36,9 @@ impl Language {
             return Ok(engine.into());
         }
         let own = DialectFile::shipped(name).ok_or_else(|| {
-            Failure::job(format!("no dialect is called '{name}'; there are {}", Self::names().join(", ")))
+            let names = Self::names();
+            let text = format!("no dialect is called '{name}'; there are {}", names.join(", "));
+            meant(&text, name, names)
         })?;
         Ok(Self { engine: own.engine(), own: Some(own) })
     }

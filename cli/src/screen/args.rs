@@ -301,6 +301,16 @@ pub struct PostArgs {
     /// The program's number (fanuc).
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=9999))]
     pub program_number: Option<u32>,
+    /// Put the next tool ready while one is at work (`T7`, `TOOL DEF 7`).
+    #[arg(long)]
+    pub preselect: bool,
+    /// Stop before each further tool where the operator asks for it (`M1`).
+    #[arg(long)]
+    pub stops: bool,
+    /// What points between CUTCOM/LEFT or RIGHT and CUTCOM/OFF are. With `centre`, the cutter's centre as CL data has it: they are
+    /// posted as they are, and wear is not compensated at the control. Without it CUTCOM is refused.
+    #[arg(long, value_parser = ["centre"])]
+    pub cutcom: Option<String>,
     /// Leave out statements that are not understood, or that the program cannot say, instead of refusing the file; they are listed.
     #[arg(long)]
     pub lenient: bool,

@@ -74,7 +74,9 @@ pub enum ClReadError {
         seconds: f64,
     },
     /// More moves than a statement may ask for.
-    #[error("line {line}: {what} asks for {count:.0} moves, at most {most}: is a length in another unit?")]
+    #[error(
+        "line {line}: {what} asks for {count:.0} moves, at most {most}: is a length in another unit, or a count wrong?"
+    )]
     Bound {
         /// Line.
         line: usize,

@@ -12,7 +12,7 @@ pub(super) fn place(line: usize) -> String {
 /// A coordinate system statement that leaves everything where it is.
 pub(super) fn is_identity(s: &Statement) -> bool {
     const IDENTITY: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    matches!(s.word.as_str(), "CSYS" | "MATRIX" | "TRACUT")
+    matches!(s.word.as_str(), "CSYS" | "MATRIX")
         && (s.fields == ["NOMORE"] || numbers(s, &s.fields).is_ok_and(|n| n == IDENTITY))
 }
 

@@ -4,7 +4,7 @@
 //! ([`super::arc`]) and drilling cycles ([`super::cycle`]), and what says with which tool and how: `LOADTL`, `CUTTER`, `SPINDL`,
 //! `COOLNT`, `DELAY`, `STOP`, `OPSTOP` ([`super::section`]). Everything else is reported by word with its
 //! lines: as a loss where it may change the way (transformations, cutter compensation, unknown words), as a note where
-//! it does not (texts). A `GOTO` without an axis keeps the last one, at first (0, 0, 1).
+//! it does not (texts). `TRACUT` and `COPY` place points ([`super::transform`], [`super::repeat`]). A `GOTO` without an axis keeps the last one, at first (0, 0, 1).
 //!
 //! A feed per revolution needs the speed of the spindle. Where `SPINDL/` gives a surface speed instead (turning), the
 //! speed follows the distance of the tip from the part's Z axis, never taken below [`LEAST_RADIUS_MM`].
@@ -20,6 +20,7 @@ use super::cycle::Cycle;
 use super::error::ClReadError;
 use super::feed::Feed;
 use super::fields::{axis, count, is_identity, numbers, place, unit, vector};
+use super::placing::Placing;
 use super::section::{ClSection, ClTool, Said};
 use super::statement::{Item, Joiner, Statement};
 use crate::auxiliary::{AuxiliaryWord, Spindle};
@@ -69,6 +70,18 @@ const HARMLESS: &[&str] = &[
     "ROTABL",
 ];
 
+/// Words that say what the tool does.
+const KNOWN: &[&str] = &[
+    "GOTO", "GODLTA", "FROM", "RAPID", "FEDRAT", "UNITS", "SPINDL", "CUTTER", "LOADTL", "LOAD", "COOLNT",
+    "DELAY", "STOP", "OPSTOP", "CUTCOM", "TLAXIS", "CIRCLE", "MOVARC", "INDIRV", "CYCLE", "TRACUT", "INDEX",
+    "COPY", "CSYS", "TRNTYP", "MULTAX", "PARTNO", "FINI",
+];
+
+/// The words that are read, those that say nothing of the tool's way among them.
+pub fn known_words() -> impl Iterator<Item = &'static str> {
+    KNOWN.iter().chain(HARMLESS).copied()
+}
+
 /// Lines of one word that are listed before the rest is only counted.
 const LISTED_LINES: usize = 5;
 
@@ -80,12 +93,15 @@ pub(super) const LEAST_RADIUS_MM: f64 = 1.0;
 pub struct ClReadOptions {
     /// How far the chords of an arc may stray from it, mm.
     pub arc_tol_mm: f64,
+    /// Points between `CUTCOM/LEFT` (`RIGHT`) and `CUTCOM/OFF` are the cutter's centre, as CL data has it: the compensation would be of
+    /// wear only, and is left out. Else it is a loss, since there are systems that write the contour there.
+    pub cutcom_is_centre: bool,
 }
 
 impl Default for ClReadOptions {
-    /// Arcs within 1 um.
+    /// Arcs within 1 um; of what points under `CUTCOM/` are nothing is known.
     fn default() -> Self {
-        Self { arc_tol_mm: 0.001 }
+        Self { arc_tol_mm: 0.001, cutcom_is_centre: false }
     }
 }
 
@@ -100,6 +116,12 @@ pub(super) enum Taken {
     Chords,
     /// A cycle, as moves.
     Moves,
+    /// A placing, put into the points.
+    Placed,
+    /// A copy, made.
+    Copied,
+    /// Compensation of a path of the cutter's centre.
+    Centre,
 }
 
 /// Reads cutter location data a line at a time: points go out as they come, nothing of the text is kept.
@@ -147,6 +169,8 @@ pub struct ClReader {
     pub(super) cycle: Option<Cycle>,
     /// Between CYCLE/ and CYCLE/OFF, where points are holes.
     pub(super) in_cycle: bool,
+    /// Where points go.
+    pub(super) placing: Placing,
     /// Points are in the world's frame: coordinate systems are for people.
     world: bool,
     /// Word and how it was taken -> lines listed, count.
@@ -199,6 +223,7 @@ impl ClReader {
             heading: None,
             cycle: None,
             in_cycle: false,
+            placing: Placing::default(),
             world: false,
             others: BTreeMap::new(),
         }
@@ -291,7 +316,7 @@ impl ClReader {
         Self { diagnostics: Vec::new(), others: BTreeMap::new(), ..self.clone() }
     }
 
-    fn item(&mut self, item: Item) -> Result<(), ClReadError> {
+    pub(super) fn execute(&mut self, item: Item) -> Result<(), ClReadError> {
         match item {
             Item::Goto { line, numbers: n, count } => {
                 if count == 6 {
@@ -334,6 +359,7 @@ impl ClReader {
                 self.catia_arc(s)?;
             }
             "CYCLE" => self.cycle(s)?,
+            "TRACUT" => self.tracut(s)?,
             word => {
                 if word.starts_with("CYCLE") {
                     self.in_cycle = s.fields.first().is_none_or(|f| f != "OFF");
@@ -411,7 +437,8 @@ impl ClReader {
             section.begins_at_feed |= section.moves == 0 && motion != Motion::Rapid;
             section.moves += 1;
         }
-        self.path.moves.push(ClMove { pose: Pose { tip, axis: self.axis }, motion });
+        let (tip, axis) = self.placing.place(tip, self.axis);
+        self.path.moves.push(ClMove { pose: Pose { tip, axis }, motion });
     }
 
     fn note(&mut self, line: usize, text: &str) {
@@ -428,6 +455,11 @@ impl ClReader {
                 Taken::Harmless => "is not interpreted; it does not change the tool's way".to_string(),
                 Taken::Chords => format!("is read as chords within {} mm", self.options.arc_tol_mm),
                 Taken::Moves => "is read as the moves that it stands for".to_string(),
+                Taken::Placed => "is put into the points".to_string(),
+                Taken::Copied => "is made: its statements come again".to_string(),
+                Taken::Centre => "is left out: points are the cutter's centre, as asked; wear is not \
+                                  compensated at the control"
+                    .to_string(),
             };
             let text = format!("{word} ({times} x) {what}");
             let lost = *taken == Taken::Lost;

@@ -150,6 +150,7 @@ impl ClReader {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let number = number as u32;
         self.said.tool.number = Some(number);
+        self.placing.tool_called(s.line);
         (self.said.loaded, self.said.changed) = (Some(s.line), true);
         Ok(())
     }
@@ -188,10 +189,14 @@ impl ClReader {
         Ok((seconds > 0.0).then_some(AuxiliaryWord::Dwell { seconds }))
     }
 
-    /// `CUTCOM/OFF` where none is on says nothing; compensation is no part of a path of the cutter's centre.
+    /// `CUTCOM/OFF` where none is on says nothing; else it is a loss, but for a path that is known to be the cutter's centre.
     pub(super) fn compensation(&mut self, s: &Statement) {
         let off = s.fields.first().is_some_and(|f| f == "OFF");
-        let taken = if off && !self.compensated { Taken::Harmless } else { Taken::Lost };
+        let taken = match (off && !self.compensated, self.options.cutcom_is_centre) {
+            (true, _) => Taken::Harmless,
+            (false, true) => Taken::Centre,
+            (false, false) => Taken::Lost,
+        };
         self.compensated = !off;
         self.other(&s.word, s.line, taken);
     }

@@ -80,6 +80,8 @@ pub struct Program {
     pub number: u32,
     /// Tool in the spindle.
     pub tool_number: u32,
+    /// The tool to be put ready meanwhile.
+    pub next_tool: Option<u32>,
     /// Where program zero is; `None`: [`WorkOffset::usual`].
     pub work_offset: Option<WorkOffset>,
     /// Spindle speed; `None` leaves the spindle alone.

@@ -68,6 +68,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
 fn call(program: &Program, lines: &mut Lines) {
     let speed = program.spindle_rpm.map_or(String::new(), |rpm| format!(" S{}", number::feed(rpm)));
     lines.line(&format!("TOOL CALL {} Z{speed}", program.tool_number));
+    program.next_tool.iter().for_each(|next| lines.line(&format!("TOOL DEF {next}")));
     if program.spindle_rpm.is_some() {
         lines.line(program.spindle_word());
     }

@@ -57,6 +57,7 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
 fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("T{} M6", program.tool_number));
     lines.line(&format!("G43 H{}", program.tool_number));
+    program.next_tool.iter().for_each(|next| lines.line(&format!("T{next}")));
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} {}", number::feed(rpm), program.spindle_word()));

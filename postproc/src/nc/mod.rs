@@ -12,6 +12,7 @@ pub mod dialect_file;
 mod event;
 mod fanuc;
 mod feed_reading;
+mod flow;
 mod frames;
 mod heidenhain;
 mod interpret;

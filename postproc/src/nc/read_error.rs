@@ -57,6 +57,22 @@ pub enum ReadError {
         /// Pieces of a block at most.
         most: usize,
     },
+    /// More than a text may ask for by calls and repeats.
+    #[error("line {line}: more than {most} {what}: is a count wrong?")]
+    Repeats {
+        /// Line of the call or repeat.
+        line: usize,
+        /// What there is too much of.
+        what: &'static str,
+        /// What is taken.
+        most: usize,
+    },
+    /// A subprogram that runs on behind its last line.
+    #[error("line {line}: the subprogram that is called here has no end (LBL 0, M99, endsub)")]
+    NoReturn {
+        /// Line of the call.
+        line: usize,
+    },
     /// The linear joints cannot hold the tip.
     #[error("line {line}: the machine's linear joints lie in one plane here")]
     Flat {

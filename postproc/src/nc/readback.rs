@@ -13,6 +13,7 @@ use super::Dialect;
 use super::conduct::{Conduct, Expected};
 use super::control::Record;
 use super::event::{Event, Frame, Moved, Sink};
+use super::flow::Flow;
 use super::interpret::Interpreter;
 use super::names::Names;
 pub use super::read_error::ReadError;
@@ -175,9 +176,13 @@ pub fn read_tools(
     Ok(out)
 }
 
-/// Reads a text a line at a time: moves and blocks go out as they come, nothing of the text is kept.
+/// Moves that come out of a line that calls or repeats others, at most.
+const MOST_MOVES: usize = 2_000_000;
+
+/// Reads a text a line at a time: moves and blocks go out as they come.
 pub struct Reader<'a> {
     control: Interpreter<'a, Collect>,
+    flow: Flow,
     lines: usize,
     ended: bool,
     moved: bool,
@@ -205,7 +210,8 @@ impl<'a> Reader<'a> {
         let collect = Collect { out: ReadBack::default(), tolerance, unbounded: None };
         let mut control = Interpreter::new(names.dialect(), frame, options.strict, collect);
         control.rest_unnamed(names.all());
-        Ok(Self { control, lines: 0, ended: false, moved: false })
+        let flow = Flow::new(names.dialect(), names.kept());
+        Ok(Self { control, flow, lines: 0, ended: false, moved: false })
     }
 
     /// One line; those after the end of the program are ignored.
@@ -215,10 +221,20 @@ impl<'a> Reader<'a> {
     pub fn line(&mut self, line: &str) -> Result<(), ReadError> {
         self.lines += 1;
         if !self.ended {
-            self.ended = self.control.text_line(self.lines, line)?;
-            if let Some(line) = self.control.sink.unbounded {
-                return Err(ReadError::Bound { line, most: MOST_PIECES });
-            }
+            let Self { control, flow, .. } = self;
+            let before = control.sink.out.moves.len();
+            let mut run = |number: usize, text: &str| {
+                let ended = control.text_line(number, text)?;
+                if let Some(line) = control.sink.unbounded {
+                    return Err(ReadError::Bound { line, most: MOST_PIECES });
+                }
+                if control.sink.out.moves.len() - before > MOST_MOVES {
+                    let what = "moves made by calls and repeats";
+                    return Err(ReadError::Repeats { line: number, what, most: MOST_MOVES });
+                }
+                Ok(ended)
+            };
+            self.ended = flow.line(self.lines, line, &mut run)?;
             self.moved |= !self.control.sink.out.moves.is_empty();
         }
         Ok(())

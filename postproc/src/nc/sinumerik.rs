@@ -65,6 +65,7 @@ fn call(program: &Program, work_offset: Option<&str>, lines: &mut Lines) {
     lines.line(&format!("T{}", program.tool_number));
     lines.line("M6");
     lines.line("D1");
+    program.next_tool.iter().for_each(|next| lines.line(&format!("T{next}")));
     work_offset.iter().for_each(|words| lines.line(words));
     if let Some(rpm) = program.spindle_rpm {
         lines.line(&format!("S{} {}", number::feed(rpm), program.spindle_word()));

@@ -6,6 +6,7 @@
 
 use super::Dialect;
 use super::event::{Event, FeedNow, Frame, Moved, Sink};
+use super::flow::Flow;
 use super::interpret::Interpreter;
 pub use super::names::Names;
 use super::read_error::ReadError;
@@ -27,9 +28,10 @@ pub struct Timed {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// A clock that runs along a text, a line at a time; nothing of the text is kept.
+/// A clock that runs along a text, a line at a time.
 pub struct Clock<'a> {
     control: Interpreter<'a, Planned>,
+    flow: Flow,
     lines: usize,
     ended: bool,
 }
@@ -50,7 +52,8 @@ impl<'a> Clock<'a> {
         let planned = Planned::new(names.dialect(), machine);
         let mut control = Interpreter::new(names.dialect(), frame, strict, planned);
         control.rest_unnamed(names.all());
-        Ok(Self { control, lines: 0, ended: false })
+        let flow = Flow::new(names.dialect(), names.kept());
+        Ok(Self { control, flow, lines: 0, ended: false })
     }
 
     /// One line; those after the end of the program are ignored.
@@ -60,7 +63,9 @@ impl<'a> Clock<'a> {
     pub fn line(&mut self, line: &str) -> Result<(), ReadError> {
         self.lines += 1;
         if !self.ended {
-            self.ended = self.control.text_line(self.lines, line)?;
+            let Self { control, flow, .. } = self;
+            let mut run = |number: usize, text: &str| control.text_line(number, text);
+            self.ended = flow.line(self.lines, line, &mut run)?;
         }
         Ok(())
     }
@@ -71,6 +76,10 @@ impl<'a> Clock<'a> {
     /// Where a subprogram is missing, with `strict`.
     pub fn finish(mut self) -> Result<Timed, ReadError> {
         self.control.end()?;
+        if !self.control.placed {
+            let text = "nothing moves: no complete position is named (a text that only defines subprograms runs none)";
+            self.control.diagnostics.push(Diagnostic::loss("program", text));
+        }
         let planned = self.control.sink;
         let mut time = planned.time;
         if let Some(stretch) = &planned.stretch {

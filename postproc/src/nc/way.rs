@@ -52,7 +52,7 @@ impl Arc {
             Some(r) => {
                 let under = r * r - 0.25 * length * length;
                 if length < SAME_POINT_MM || under < -LARGEST_RADIUS_ERROR_MM * r.abs() {
-                    return Err(0.5 * length - r.abs());
+                    return Err((0.5 * length - r.abs()).abs());
                 }
                 // To the left of the chord for the smaller counter-clockwise arc.
                 let h = turn * r.signum() * under.max(0.0).sqrt() / length;
@@ -64,7 +64,7 @@ impl Arc {
         let (p, q) = (spoke(a), spoke(b));
         let (radius_mm, end_mm) = (p[0].hypot(p[1]), q[0].hypot(q[1]));
         if radius_mm < SAME_POINT_MM || (radius_mm - end_mm).abs() > LARGEST_RADIUS_ERROR_MM {
-            return Err(radius_mm - end_mm);
+            return Err((radius_mm - end_mm).abs());
         }
         let full = std::f64::consts::TAU;
         let angle = turn * (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);

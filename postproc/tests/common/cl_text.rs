@@ -7,7 +7,8 @@ use osculate_postproc::cldata::{ClOutline, ClReadOptions, ClStream};
 use osculate_postproc::readback::{ReadBack, ReadMove, ReadOptions, read_tools};
 use osculate_postproc::source::MoveSource;
 use osculate_postproc::{
-    Dialect, FeedMode, Machine, PostOptions, Section, SectionError, Setup, Spindle, post_sections_to,
+    Dialect, FeedMode, Machine, PostOptions, Section, SectionError, Setup, Spindle, built_in_text,
+    post_sections_to,
 };
 use osculate_tools::Cutter;
 use osculate_tools::cl::{ClMove, Motion};
@@ -31,7 +32,27 @@ pub fn posted(
     dialect: Dialect,
     feed: FeedMode,
 ) -> Result<Posted, SectionError> {
-    let cl = ClStream::new(|| Ok(Cursor::new(text.as_bytes())), ClReadOptions::default());
+    posted_so(text, machine, (dialect, feed), false)
+}
+
+/// As [`posted`], with the next tool put ready.
+pub fn posted_ready(
+    text: &str,
+    machine: &Machine,
+    dialect: Dialect,
+    feed: FeedMode,
+) -> Result<Posted, SectionError> {
+    posted_so(text, machine, (dialect, feed), true)
+}
+
+fn posted_so(
+    text: &str,
+    machine: &Machine,
+    (dialect, feed): (Dialect, FeedMode),
+    preselect: bool,
+) -> Result<Posted, SectionError> {
+    let options = ClReadOptions { cutcom_is_centre: true, ..ClReadOptions::default() };
+    let cl = ClStream::new(|| Ok(Cursor::new(text.as_bytes())), options);
     let outline = cl.outline().expect("CL data");
     let parts = cl.parts(&outline);
     let mut moves = Vec::new();
@@ -56,6 +77,7 @@ pub fn posted(
             counter_clockwise: matches!(section.tool.spindle, Some(Spindle::Counter { .. })),
             coolant: section.tool.coolant,
             auxiliary: section.auxiliary.clone(),
+            preselect,
             ..PostOptions::new(dialect, feed)
         };
         sections.push(Section {
@@ -89,14 +111,20 @@ impl Posted {
 
     /// Where the moves read back are not those of the text.
     pub fn difference(&self) -> Option<String> {
+        self.worst_mm().err()
+    }
+
+    /// How far points come back off those of the text, mm; else where they do not.
+    pub fn worst_mm(&self) -> Result<f64, String> {
         let calls = self.calls();
+        let mut worst = 0.0f64;
         if calls.len() != self.moves.len() {
-            return Some(format!("{} tools are called, {} are asked for", calls.len(), self.moves.len()));
+            return Err(format!("{} tools are called, {} are asked for", calls.len(), self.moves.len()));
         }
         for (k, (want, got)) in self.moves.iter().zip(&calls).enumerate() {
             let number = self.outline.sections[k].tool.number.unwrap_or(1);
             if got.iter().any(|m| m.tool != Some(number)) {
-                return Some(format!("section {k} is made with {:?}, not with tool {number}", got[0].tool));
+                return Err(format!("section {k} is made with {:?}, not with tool {number}", got[0].tool));
             }
             let mut at = 0;
             for (i, m) in want.iter().enumerate() {
@@ -110,9 +138,12 @@ impl Posted {
                 // A point that is where the one before was has no block of its own.
                 let stays = i > 0 && (m.pose.tip - want[i - 1].pose.tip).norm() <= TIP_MM;
                 match got[at..].iter().position(near) {
-                    Some(hit) => at += hit,
+                    Some(hit) => {
+                        at += hit;
+                        worst = worst.max((got[at].pose.tip - m.pose.tip).norm());
+                    }
                     None if stays => {}
-                    None => return Some(format!("section {k}: move {i} to {} is not met", m.pose.tip)),
+                    None => return Err(format!("section {k}: move {i} to {} is not met", m.pose.tip)),
                 }
             }
             let length =
@@ -122,11 +153,25 @@ impl Posted {
             let wanted = length(&mut want.windows(2).map(|w| (w[0].pose.tip, w[1].pose.tip, w[1].motion)));
             let made = length(&mut got.windows(2).map(|w| (w[0].pose.tip, w[1].pose.tip, w[1].motion)));
             if (made - wanted).abs() > TIP_MM + 1e-3 * wanted {
-                return Some(format!(
+                return Err(format!(
                     "section {k}: {made:.4} mm are made at feed, {wanted:.4} mm are asked for"
                 ));
             }
         }
-        None
+        Ok(worst)
     }
+}
+
+/// A mill whose table turns about X without end: four axes, which reach both sides of a board.
+pub fn four_axes() -> Machine {
+    let text = built_in_text("3-axis").expect("a built-in machine");
+    let turning = "[[joint]]\nkind = \"rotary\"\nletter = \"A\"\nside = \"table\"\ndirection = [1, 0, 0]\n\
+        max_velocity_deg_s = 180\nmax_acceleration_deg_s2 = 1000\n\n[[joint]]\n";
+    let mut text = text.replacen("[[joint]]\n", turning, 1).replace("\"3-axis\"", "\"4-axis\"");
+    for limit in ["300", "400", "500"] {
+        text = text
+            .replace(&format!("_mm = {limit}"), "_mm = 1000")
+            .replace(&format!("_mm = -{limit}"), "_mm = -1000");
+    }
+    Machine::from_toml(&text).expect("a machine")
 }

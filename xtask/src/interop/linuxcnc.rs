@@ -44,12 +44,18 @@ pub(super) struct Witness {
     pub work: PathBuf,
 }
 
-/// Compares the programs of the example.
-pub(super) fn run() -> Result<Witness, Failure> {
+/// LinuxCNC's files, unpacked, and the program that calls its kinematics.
+pub(super) fn witness() -> Result<Witness, Failure> {
     let root = cmd::root()?;
     let work = root.join("target/interop");
     let unpacked = unpack(&work)?;
     let kins = build_kins(&root, &work)?;
+    Ok(Witness { root, unpacked, kins, work })
+}
+
+/// Compares the programs of the example.
+pub(super) fn run() -> Result<Witness, Failure> {
+    let Witness { root, unpacked, kins, work } = witness()?;
     let programs = work.join("linuxcnc");
     let example = ["run", "-q", "--locked", "-p", "osculate-postproc", "--example", "interop_linuxcnc", "--"];
     let mut write = cmd::cargo(&root, &example);
@@ -168,6 +174,8 @@ pub(super) struct Kins {
     joints: bool,
     /// The tool length offset in force, mm.
     pub length_mm: f64,
+    /// Pins of the module that are not zero, as `name=value`.
+    pub pins: &'static [&'static str],
 }
 
 impl Kins {
@@ -175,7 +183,7 @@ impl Kins {
     pub fn new((program, unpacked): (&Path, &Path), kind: &str, joints: bool) -> Self {
         let module = unpacked.join(format!("usr/lib/linuxcnc/modules/{kind}-trt-kins.so"));
         let second = if kind == "xyzbc" { 4 } else { 3 };
-        Self { program: program.to_path_buf(), module, second, joints, length_mm: 0.0 }
+        Self { program: program.to_path_buf(), module, second, joints, length_mm: 0.0, pins: &[] }
     }
 
     /// Where the tip is in the part after each move: the control adds the length in force to z.
@@ -195,27 +203,18 @@ impl Kins {
     }
 
     /// Runs numbers through the kinematics.
-    fn through(&self, way: &str, rows: &[[f64; 6]]) -> Result<Vec<[f64; 6]>, Failure> {
-        through(&self.program, &self.module, (way, self.length_mm), rows)
+    pub fn through(&self, way: &str, rows: &[[f64; 6]]) -> Result<Vec<[f64; 6]>, Failure> {
+        let line = |r: &[f64; 6]| r.map(|v| v.to_string()).join(" ") + "\n";
+        let input: String = rows.iter().map(line).collect();
+        let mut run = Command::new(&self.program);
+        run.arg(&self.module).arg(way).arg(self.length_mm.to_string()).args(self.pins);
+        let text = cmd::output_of(run, &input)?;
+        let row = |l: &str| {
+            let n: Vec<f64> = l.split_whitespace().filter_map(|w| w.parse().ok()).collect();
+            <[f64; 6]>::try_from(n).ok()
+        };
+        Ok(text.lines().filter_map(row).collect())
     }
-}
-
-fn through(
-    kins: &Path,
-    module: &Path,
-    (way, length_mm): (&str, f64),
-    rows: &[[f64; 6]],
-) -> Result<Vec<[f64; 6]>, Failure> {
-    let line = |r: &[f64; 6]| r.map(|v| v.to_string()).join(" ") + "\n";
-    let input: String = rows.iter().map(line).collect();
-    let mut run = Command::new(kins);
-    run.arg(module).arg(way).arg(length_mm.to_string());
-    let text = cmd::output_of(run, &input)?;
-    let row = |l: &str| {
-        let n: Vec<f64> = l.split_whitespace().filter_map(|w| w.parse().ok()).collect();
-        <[f64; 6]>::try_from(n).ok()
-    };
-    Ok(text.lines().filter_map(row).collect())
 }
 
 fn compare(unpacked: &Path, kins: &Path, program: &Path, moves: &[[f64; 6]]) -> Result<Worst, Failure> {

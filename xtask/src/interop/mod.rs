@@ -3,12 +3,20 @@
 mod linuxcnc;
 mod lists;
 mod occt;
+mod simulation;
 
 use crate::cmd::Failure;
 
-/// LinuxCNC's interpreter and kinematics, and a parser of G-code, on our LinuxCNC programs.
+/// LinuxCNC's interpreter and kinematics, and a parser of G-code, on our LinuxCNC programs; LinuxCNC itself where it can be run.
 pub fn linuxcnc() -> Result<(), Failure> {
-    lists::run(&linuxcnc::run()?)
+    let witness = linuxcnc::run()?;
+    lists::run(&witness)?;
+    simulation::run(&witness)
+}
+
+/// LinuxCNC itself alone.
+pub fn simulation() -> Result<(), Failure> {
+    simulation::run(&linuxcnc::witness()?)
 }
 
 /// OpenCASCADE on our STEP and IGES exports, or its reading time beside ours.
