@@ -34,9 +34,8 @@ impl Language {
         if let Ok(engine) = name.parse::<Dialect>() {
             return Ok(engine.into());
         }
-        let own = DialectFile::shipped(name).ok_or_else(|| {
-            Failure::job(format!("no dialect is called '{name}'; there are {}", Self::names().join(", ")))
-        })?;
+        let own = DialectFile::shipped(name)
+            .ok_or_else(|| Failure::unknown("dialect", "dialect", name, &Self::names()))?;
         Ok(Self { engine: own.engine(), own: Some(own) })
     }
 

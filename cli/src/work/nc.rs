@@ -25,7 +25,8 @@ pub fn machine(word: &str) -> Result<Machine, Failure> {
     if !built_in_names().contains(&word) && (word.ends_with(".toml") || file.exists()) {
         return machine_file(file).map(|m| m.0);
     }
-    Machine::built_in(word).map_err(Failure::job)
+    Machine::built_in(word)
+        .map_err(|_| Failure::unknown("machine", "built-in machine", word, &built_in_names()))
 }
 
 /// The language of a program: as said, by a name or a dialect file, or by its extension.
