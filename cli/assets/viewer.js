@@ -17,11 +17,23 @@
     return bytes.buffer;
   }
 
-  const block = decodeBase64($("report-data").textContent);
-  $("report-data").textContent = "";
+  // The data as the report packed them; filled before anything is drawn.
+  let block = null;
+
+  async function unpack() {
+    const packed = new Blob([decodeBase64($("report-data").textContent)]);
+    $("report-data").textContent = "";
+    block = await new Response(packed.stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer();
+  }
+
+  // Values that stand there as differences from the one `stride` before.
+  function summed(list, stride) {
+    for (let i = stride; i < list.length; i++) list[i] += list[i - stride];
+    return list;
+  }
 
   function points(at, count) {
-    const steps = new Uint16Array(block, at, 3 * count);
+    const steps = summed(new Uint16Array(block, at, 3 * count), 3);
     const out = new Float32Array(3 * count);
     for (let i = 0; i < out.length; i++) out[i] = head.lo[i % 3] + head.step[i % 3] * steps[i];
     return out;
@@ -29,7 +41,7 @@
 
   // Unfolds the octahedron.
   function normals(at, count) {
-    const steps = new Int16Array(block, at, 2 * count);
+    const steps = summed(new Int16Array(block, at, 2 * count), 2);
     const out = new Float32Array(3 * count);
     for (let i = 0; i < count; i++) {
       let x = steps[2 * i] / 32767;
@@ -171,10 +183,11 @@
       geometry.setAttribute("normal", new THREE.BufferAttribute(normals(face.normal, face.vertices), 3));
       geometry.setAttribute("quantity", new THREE.BufferAttribute(new Float32Array(2 * face.vertices), 2));
       const Index = face.wide ? Uint32Array : Uint16Array;
-      geometry.setIndex(new THREE.BufferAttribute(new Index(block, face.index, 3 * face.triangles), 1));
+      geometry.setIndex(new THREE.BufferAttribute(summed(new Index(block, face.index, 3 * face.triangles), 1), 1));
       const mesh = new THREE.Mesh(geometry, partMaterial);
       mesh.userData = {
         id: face.id,
+        checked: face.checked,
         deviation: new Float32Array(block, face.deviation, face.vertices),
         scalars: face.scalars.map((at) => new Float32Array(block, at, face.vertices)),
       };
@@ -182,7 +195,7 @@
       if (face.borders > 0) {
         const edges = new THREE.BufferGeometry();
         edges.setAttribute("position", position);
-        edges.setIndex(new THREE.BufferAttribute(new Uint32Array(block, face.border, 2 * face.borders), 1));
+        edges.setIndex(new THREE.BufferAttribute(summed(new Uint32Array(block, face.border, 2 * face.borders), 1), 1));
         borders.add(new THREE.LineSegments(edges, borderMaterial));
       }
     }
@@ -203,17 +216,22 @@
         if (!textures.has(mode)) textures.set(mode, textureOf(shownScale));
         uniforms.lookup.value = textures.get(mode);
         uniforms.range.value.set(...rangeOf(shownScale));
+        let knownOnes = 0;
+        let all = 0;
         for (const mesh of part.children) {
           const values = mode === "deviation" ? mesh.userData.deviation : mesh.userData.scalars[Number(mode)];
           const attribute = mesh.geometry.getAttribute("quantity");
           for (let i = 0; i < values.length; i++) {
             const known = !Number.isNaN(values[i]);
+            knownOnes += known;
             // What exceeds the scale is clamped, or an infinite value would spoil its whole triangle.
             const inside = Math.min(Math.max(values[i], -1e6), 1e6);
             attribute.setXY(i, known ? inside : 0, known ? 1 : 0);
           }
+          all += values.length;
           attribute.needsUpdate = true;
         }
+        box.dataset.known = String(knownOnes / Math.max(all, 1));
       }
       needle(null);
       redraw();
@@ -309,13 +327,21 @@
     const tool = new THREE.Group();
     const inHand = head.tools.map(() => new THREE.Group());
     for (const one of inHand) tool.add(one);
+    const toolMaterials = [];
+    // A tool that stands over the place that is looked at lets it through.
+    function seeThrough(on) {
+      for (const { material, opacity } of toolMaterials) {
+        material.opacity = on ? Math.min(opacity, 0.3) : opacity;
+        material.transparent = material.opacity < 1;
+        material.depthWrite = !on;
+        material.needsUpdate = true;
+      }
+    }
     const pieceColours = { cutter: "#d6ab45", shank: "#b3bbc5", holder: "#69747f" };
     head.tools.forEach(({ pieces }, which) => pieces.forEach((piece, number) => {
       const material = new THREE.MeshLambertMaterial({ color: pieceColours[piece.kind], side: THREE.DoubleSide });
-      if (piece.kind !== "cutter") {
-        material.transparent = true;
-        material.opacity = piece.kind === "holder" ? 0.55 : 0.85;
-      }
+      const opacity = { cutter: 1, shank: 0.85, holder: 0.55 }[piece.kind];
+      toolMaterials.push({ material, opacity });
       // Where the next piece stands on this one, the lid would flicker through its floor.
       const outline = number + 1 < pieces.length ? piece.outline.slice(0, -1) : piece.outline;
       // The lathe smooths its normals along the outline: it gets one run at a time, cut at the sharp edges.
@@ -334,6 +360,7 @@
       }
     }));
     scene.add(tool);
+    seeThrough(false);
 
     const perPose = head.poses.numbers;
     const poses = new Float32Array(block, head.poses.at, perPose * head.poses.count);
@@ -343,7 +370,7 @@
 
     function showPose(index) {
       if (head.poses.count === 0) return;
-      const [x, y, z, i, j, k, time, pass, which] = poses.subarray(perPose * index, perPose * (index + 1));
+      const [x, y, z, i, j, k, time, pass, which, line] = poses.subarray(perPose * index, perPose * (index + 1));
       inHand.forEach((one, number) => { one.visible = number === which; });
       tool.position.set(x, y, z);
       const axis = new THREE.Vector3(i, j, k).normalize();
@@ -356,6 +383,7 @@
       ];
       if (pass >= 0) words.unshift(`pass ${pass + 1} of ${path.counts.length}`);
       if (head.tools.length > 1) words.unshift(head.tools[which].label);
+      if (line > 0) words.unshift(`line ${line}`);
       if (Number.isFinite(time)) words.unshift(`${fixed(time, 2)} min`);
       $("pose-words").textContent = words.join("  \u00b7  ");
       limitPath();
@@ -382,6 +410,7 @@
     const PLAY_S = 40;
     function play(on) {
       playing = on;
+      if (on) seeThrough(false);
       $("play").textContent = on ? "Pause" : "Play";
       if (!on) return;
       exact = Number(slider.value) >= begun.length - 1 ? 0 : Number(slider.value);
@@ -415,9 +444,10 @@
     marker.visible = markerRim.visible = false;
     scene.add(markerRim, marker);
 
-    function verdictWords(deviation) {
+    function verdictWords(deviation, checked) {
       const { scallop, gouge } = head.limits;
       if (!Number.isFinite(deviation)) return ["not verified here", ""];
+      if (checked && deviation >= 0) return ["not cut; not to be machined", "good"];
       if (deviation < 0) {
         if (!(gouge > 0)) return ["gouge, no limit given", ""];
         return deviation < -gouge ? ["gouge, out of tolerance", "bad"] : ["undercut, within tolerance", "good"];
@@ -449,13 +479,15 @@
       raycaster.setFromCamera(new THREE.Vector2(x, y), camera);
       const hit = raycaster.intersectObjects(part.children, false)[0];
       if (!hit) return hideTip();
-      const { deviation, scalars, id } = hit.object.userData;
+      const { deviation, scalars, id, checked } = hit.object.userData;
       const corners = [hit.face.a, hit.face.b, hit.face.c];
       const weights = [hit.barycoord.x, hit.barycoord.y, hit.barycoord.z];
       const value = (list) => corners.reduce((sum, c, i) => sum + list[c] * weights[i], 0);
       const d = value(deviation);
-      const [words, kind] = verdictWords(d);
-      const rows = [["strong " + kind, Number.isFinite(d) ? `${signed(d, 4)} mm` : "\u2013"], [kind, words]];
+      const [words, kind] = verdictWords(d, checked);
+      const rows = head.measured
+        ? [["strong " + kind, Number.isFinite(d) ? `${signed(d, 4)} mm` : "\u2013"], [kind, words]]
+        : [["strong", id]];
       head.scalars.forEach((scale, i) => {
         rows.push(["", `${scale.name} ${fixed(value(scalars[i]), 5)} ${scale.unit}`]);
       });
@@ -490,6 +522,24 @@
       redraw();
     }
 
+    // A click, which is no drag, copies the id of the face under it.
+    let pressed = null;
+    renderer.domElement.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+    renderer.domElement.addEventListener("click", (event) => {
+      if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;
+      const area = renderer.domElement.getBoundingClientRect();
+      const x = ((event.clientX - area.left) / area.width) * 2 - 1;
+      const y = 1 - ((event.clientY - area.top) / area.height) * 2;
+      raycaster.setFromCamera(new THREE.Vector2(x, y), camera);
+      const hit = raycaster.intersectObjects(part.children, false)[0];
+      if (!hit) return;
+      const { id } = hit.object.userData;
+      box.dataset.copied = id;
+      navigator.clipboard?.writeText(id).catch(() => {});
+      $("hover").hidden = false;
+      $("hover").textContent = `${id} copied`;
+    });
+
     let picking = false;
     renderer.domElement.addEventListener("pointermove", (event) => {
       pointer = event.buttons === 0 || event.pointerType === "touch" ? event : null;
@@ -514,7 +564,7 @@
 
     // The direction is from the part to the viewer; from above a trace of -y keeps x to the right.
     const directions = {
-      iso: [Math.cos(-0.9) * 0.83, Math.sin(-0.9) * 0.83, 0.56],
+      iso: opening(),
       top: [0, -1e-5, 1],
       front: [0, -1, 0],
       right: [1, 0, 0],
@@ -555,16 +605,117 @@
 
     const legendRoom = () => document.querySelector(".legends").offsetWidth + 8;
 
-    function goTo(at) {
+    // The outward normal of the part where it is nearest to a point.
+    function normalAt(point) {
+      let nearest = Infinity;
+      const normal = new THREE.Vector3(0, 0, 1);
+      for (const mesh of part.children) {
+        const at = mesh.geometry.getAttribute("position").array;
+        for (let i = 0; i < at.length; i += 3) {
+          const d = (at[i] - point.x) ** 2 + (at[i + 1] - point.y) ** 2 + (at[i + 2] - point.z) ** 2;
+          if (d >= nearest) continue;
+          nearest = d;
+          normal.fromArray(mesh.geometry.getAttribute("normal").array, i);
+        }
+      }
+      return normal.normalize();
+    }
+
+    // Does something stand between a point and a viewer in a direction?
+    function covered(point, direction, things) {
+      raycaster.set(point.clone().addScaledVector(direction, 1e-3 * radius), direction);
+      return raycaster.intersectObjects(things, true).length > 0;
+    }
+
+    // From where a place on the surface is seen best: not through the part, and past the tool where that can be; as near
+    // to the side that is looked from now as possible.
+    function outlook(point) {
+      const normal = normalAt(point);
+      const now = camera.position.clone().sub(controls.target).normalize();
+      const side = new THREE.Vector3().crossVectors(normal, Math.abs(normal.z) < 0.9 ? camera.up : new THREE.Vector3(1, 0, 0)).normalize();
+      const other = new THREE.Vector3().crossVectors(normal, side);
+      const ways = [];
+      for (const lean of [0.35, 0.7, 0.1, 1.0, 1.25]) {
+        for (let k = 0; k < 8; k++) {
+          const turn = (Math.PI * k) / 4;
+          const way = normal.clone().multiplyScalar(Math.cos(lean));
+          way.addScaledVector(side, Math.sin(lean) * Math.cos(turn)).addScaledVector(other, Math.sin(lean) * Math.sin(turn));
+          ways.push(way.normalize());
+        }
+      }
+      ways.sort((a, b) => b.dot(now) + 0.6 * b.dot(normal) - a.dot(now) - 0.6 * a.dot(normal));
+      const inSight = ways.filter((way) => !covered(point, way, part.children));
+      const inHandNow = inHand.filter((one) => one.visible);
+      const free = tool.visible ? inSight.find((way) => !covered(point, way, inHandNow)) : inSight[0];
+      box.dataset.seen = String(inSight.length > 0);
+      seeThrough(!free);
+      return free || inSight[0] || normal;
+    }
+
+    // Shows a place with the tool as it made it.
+    function goTo(at, pose) {
       fitted = false;
       const target = new THREE.Vector3(...at);
-      const shift = target.clone().sub(controls.target);
-      controls.target.add(shift);
-      camera.position.add(shift);
-      camera.zoom = Math.max(camera.zoom, (6 * camera.top) / radius);
+      let reach = 0.1 * radius;
+      if (pose !== null && head.poses.count > 0) {
+        play(false);
+        slider.value = pose;
+        showPose(pose);
+        tool.updateMatrixWorld(true);
+        const which = poses[perPose * pose + 8];
+        const widest = Math.max(...(head.tools[which]?.pieces[0]?.outline ?? []).map(([r]) => r), 0);
+        reach = Math.max(reach, 5 * widest);
+      }
+      const from = outlook(target);
+      controls.target.copy(target);
+      camera.position.copy(target).addScaledVector(from, 20 * radius);
+      camera.lookAt(target);
+      camera.zoom = camera.top / Math.min(reach, 0.5 * radius);
       camera.updateProjectionMatrix();
       controls.update();
       mark(target);
+    }
+
+    // The side from which most of what is machined is seen, and not behind other faces; the usual one where that is nearly
+    // as good. Each side is drawn small, what is machined white and the rest black, and white is counted.
+    function opening() {
+      const SMALL = 72;
+      const ways = [];
+      for (const up of [0.56, -0.56]) {
+        for (let k = 0; k < 8; k++) {
+          const turn = -0.9 + (Math.PI * k) / 4;
+          ways.push([Math.cos(turn) * 0.83, Math.sin(turn) * 0.83, up]);
+        }
+      }
+      const white = new THREE.MeshBasicMaterial({ color: "#ffffff" });
+      const black = new THREE.MeshBasicMaterial({ color: "#000000", side: THREE.DoubleSide });
+      const behind = new THREE.MeshBasicMaterial({ color: "#000000", side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
+      const small = new THREE.Scene();
+      small.background = new THREE.Color("#000000");
+      for (const mesh of part.children) {
+        // Of what is machined only the outer side counts; its other side hides what is behind it.
+        small.add(new THREE.Mesh(mesh.geometry, mesh.userData.checked ? black : behind));
+        if (!mesh.userData.checked) small.add(new THREE.Mesh(mesh.geometry, white));
+      }
+      renderer.setPixelRatio(1);
+      renderer.setSize(SMALL, SMALL, false);
+      const eye = new THREE.OrthographicCamera(-radius, radius, radius, -radius, 0.01 * radius, 40 * radius);
+      eye.up.set(0, 0, 1);
+      const gl = renderer.getContext();
+      const pixels = new Uint8Array(4 * SMALL * SMALL);
+      const seen = ways.map((way) => {
+        eye.position.copy(centre).addScaledVector(new THREE.Vector3(...way).normalize(), 20 * radius);
+        eye.lookAt(centre);
+        renderer.render(small, eye);
+        gl.readPixels(0, 0, SMALL, SMALL, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+        let count = 0;
+        for (let i = 0; i < pixels.length; i += 4) count += pixels[i] > 127;
+        return count;
+      });
+      renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+      for (const material of [white, black, behind]) material.dispose();
+      const best = seen.indexOf(Math.max(...seen));
+      return seen[best] > 1.15 * seen[0] ? ways[best] : ways[0];
     }
 
     function resize() {
@@ -647,15 +798,15 @@
     $("show-tool").addEventListener("change", (e) => { tool.visible = e.target.checked; redraw(); });
     $("show-borders").addEventListener("change", (e) => { borders.visible = e.target.checked; redraw(); });
     $("so-far").addEventListener("change", () => { limitPath(); redraw(); });
-    slider.addEventListener("input", () => { play(false); showPose(Number(slider.value)); });
+    slider.addEventListener("input", () => { play(false); seeThrough(false); showPose(Number(slider.value)); });
     $("play").addEventListener("click", () => play(!playing));
     for (const button of document.querySelectorAll("[data-view]")) {
       button.addEventListener("click", () => fit(directions[button.dataset.view]));
     }
     for (const button of document.querySelectorAll("[data-at]")) {
       button.addEventListener("click", () => {
-        goTo(button.dataset.at.split(" ").map(Number));
-        box.scrollIntoView({ block: "nearest", behavior: "smooth" });
+        goTo(button.dataset.at.split(" ").map(Number), "pose" in button.dataset ? Number(button.dataset.pose) : null);
+        box.scrollIntoView({ block: "nearest" });
       });
     }
     controls.addEventListener("change", redraw);
@@ -673,6 +824,8 @@
     slider.value = Math.round(0.62 * Number(slider.max));
     showPose(Number(slider.value));
     fit(directions.iso);
+    draw();
+    performance.mark("osculate-drawn");
   }
 
   // ---- page -------------------------------------------------------------------------------------------------------
@@ -688,11 +841,9 @@
     $("still-words").textContent = "The report has no part and no path to show.";
     return;
   }
-  try {
-    start();
-  } catch (error) {
+  unpack().then(start).catch((error) => {
     document.body.classList.remove("live");
     box.querySelector("canvas")?.remove();
     $("still-words").textContent = `This browser cannot show the part in 3D (${error.message}); here is a still picture.`;
-  }
+  });
 })();

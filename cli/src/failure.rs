@@ -1,9 +1,13 @@
 //! What ends a command early, and with which exit code.
 
 use crate::job::problem::Problem;
+use crate::job::words::nearest;
 use osculate_geom::{Diagnostic, Severity};
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
+
+/// Ids of faces that a message lists at most.
+const SHOWN_IDS: usize = 12;
 
 /// A command that cannot be done, with the message for the user.
 #[derive(Debug, thiserror::Error)]
@@ -14,6 +18,9 @@ pub enum Failure {
     /// Exit code 1: a key or value of a job cannot be meant.
     #[error("{}", .0.message)]
     Input(Box<Problem>),
+    /// Exit code 1: as [`Job`](Self::Job), with the file or the option that it is about.
+    #[error("{}", .0.message)]
+    At(Box<Problem>),
     /// Exit code 2: wrong usage.
     #[error("{0}")]
     Usage(String),
@@ -27,7 +34,39 @@ impl Failure {
 
     /// Something in a file.
     pub fn file(path: &Path, message: impl std::fmt::Display) -> Self {
-        Self::Job(format!("{}: {message}", path.display()))
+        Self::at(path.display(), message)
+    }
+
+    /// Something about a file, or an option of the command line.
+    pub fn at(place: impl std::fmt::Display, message: impl std::fmt::Display) -> Self {
+        let (place, what) = (place.to_string(), message.to_string());
+        Self::At(Box::new(Problem { message: format!("{place}: {what}"), what, place, ..Problem::default() }))
+    }
+
+    /// A word that is none of those there are; `what` names its kind: "machine".
+    pub fn unknown(place: &str, what: &str, word: &str, known: &[&str]) -> Self {
+        let near = nearest(word, known.iter().copied()).unwrap_or_default().to_owned();
+        let meant = if near.is_empty() { String::new() } else { format!(" (is {near} meant?)") };
+        let expected = known.join(", ");
+        let what = format!("there is no {what} {word:?}{meant}; there are {expected}");
+        let message = if place.is_empty() { what.clone() } else { format!("{place}: {what}") };
+        Self::At(Box::new(Problem { what, place: place.to_owned(), expected, nearest: near, message }))
+    }
+
+    /// A face that a part does not have.
+    pub fn no_face(id: &str, known: &[&str]) -> Self {
+        let near = nearest(id, known.iter().copied()).unwrap_or_default().to_owned();
+        let more = if known.len() > SHOWN_IDS { ", ..." } else { "" };
+        let expected = known.iter().take(SHOWN_IDS).copied().collect::<Vec<_>>().join(", ") + more;
+        let meant = if near.is_empty() { String::new() } else { format!(" (is {near} meant?)") };
+        let what = format!("there is no face {id}{meant}; the part has {expected} (see inspect)");
+        Self::At(Box::new(Problem {
+            message: what.clone(),
+            what,
+            place: id.to_owned(),
+            expected,
+            nearest: near,
+        }))
     }
 
     /// The failure with what was warned of before: it may be why.
@@ -36,6 +75,11 @@ impl Failure {
         let warnings: String = heavy.map(|d| format!("\n{d}")).collect();
         match self {
             Self::Job(text) => Self::Job(text + &warnings),
+            Self::At(mut p) => {
+                p.message += &warnings;
+                p.what += &warnings;
+                Self::At(p)
+            }
             other => other,
         }
     }
@@ -45,6 +89,11 @@ impl Failure {
     pub fn in_operation(self, name: &str) -> Self {
         match self {
             Self::Job(text) => Self::Job(format!("operation {name}: {text}")),
+            Self::At(mut p) => {
+                p.message = format!("operation {name}: {}", p.message);
+                p.what = format!("operation {name}: {}", p.what);
+                Self::At(p)
+            }
             other => other,
         }
     }
@@ -52,7 +101,7 @@ impl Failure {
     /// The exit code.
     pub const fn code(&self) -> u8 {
         match self {
-            Self::Job(_) | Self::Input(_) => 1,
+            Self::Job(_) | Self::Input(_) | Self::At(_) => 1,
             Self::Usage(_) => 2,
         }
     }
@@ -61,7 +110,7 @@ impl Failure {
     pub fn message(&self) -> &str {
         match self {
             Self::Job(m) | Self::Usage(m) => m,
-            Self::Input(p) => &p.message,
+            Self::Input(p) | Self::At(p) => &p.message,
         }
     }
 
@@ -69,9 +118,11 @@ impl Failure {
     #[must_use]
     pub fn problem(&self) -> Problem {
         match self {
-            Self::Input(p) => (**p).clone(),
+            Self::Input(p) | Self::At(p) => (**p).clone(),
             Self::Job(m) | Self::Usage(m) => {
-                Problem { what: m.clone(), message: m.clone(), ..Problem::default() }
+                // An option of the command line that leads the sentence is where it is.
+                let place = m.split([' ', ':']).next().filter(|w| w.starts_with("--")).unwrap_or_default();
+                Problem { what: m.clone(), place: place.to_owned(), message: m.clone(), ..Problem::default() }
             }
         }
     }
@@ -104,9 +155,33 @@ impl Done {
     }
 }
 
+/// A file that cannot be read, with the name that is nearest in its folder where it is not there.
+fn unreadable(path: &Path, e: &std::io::Error) -> Failure {
+    let what = format!("cannot be read: {e}");
+    let folder = path.parent().filter(|_| e.kind() == ErrorKind::NotFound);
+    let folder = folder.map(|f| if f.as_os_str().is_empty() { Path::new(".") } else { f });
+    let there = folder.and_then(|f| std::fs::read_dir(f).ok());
+    let mut names: Vec<String> =
+        there.into_iter().flatten().flatten().map(|f| f.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    // Endings are alike everywhere: the names before them decide.
+    let stem = |name: &str| {
+        Path::new(name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
+    };
+    let stems: Vec<String> = names.iter().map(|n| stem(n)).collect();
+    let wanted = stem(&path.display().to_string());
+    let near = nearest(&wanted, stems.iter().map(String::as_str));
+    let near = near.and_then(|near| names.iter().find(|n| stem(n) == near));
+    let Some(near) = near else { return Failure::file(path, what) };
+    let what = format!("{what} (is {near} meant?)");
+    let place = path.display().to_string();
+    let message = format!("{place}: {what}");
+    Failure::At(Box::new(Problem { what, place, nearest: near.to_owned(), message, ..Problem::default() }))
+}
+
 /// The bytes of a file.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let unread = |e: std::io::Error| Failure::file(path, format!("cannot be read: {e}"));
+    let unread = |e: std::io::Error| unreadable(path, &e);
     let file = std::fs::File::open(path).map_err(unread)?;
     let plain = file.metadata().map_err(unread)?.is_file();
     let most = if plain { LARGEST_FILE } else { LARGEST_STREAM };
@@ -127,7 +202,7 @@ const LONGEST_LINE: u64 = 1 << 16;
 /// # Errors
 /// Where it cannot be read or a line has no end, and those of `line`.
 pub fn each_line(path: &Path, mut line: impl FnMut(&str) -> Result<(), Failure>) -> Result<(), Failure> {
-    let unread = |e: std::io::Error| Failure::file(path, format!("cannot be read: {e}"));
+    let unread = |e: std::io::Error| unreadable(path, &e);
     let mut reader = BufReader::new(std::fs::File::open(path).map_err(unread)?);
     let mut bytes = Vec::new();
     let mut number = 0;

@@ -8,7 +8,7 @@ mod screen;
 
 use clap::Parser;
 use osculate::failure::{Done, Failure, Outcome};
-use screen::args::{Cli, Verb};
+use screen::args::{Cli, ToolsArgs, Verb};
 use screen::{cancel, progress};
 use std::process::ExitCode;
 
@@ -46,7 +46,8 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Machines { check: None } => cmd::list::machines(cli.json),
         Verb::Machines { check: Some(word) } => cmd::list::check_machine(word, cli.json),
         Verb::Dialects => cmd::list::dialects(cli.json),
-        Verb::Tools => cmd::list::tools(cli.json),
+        Verb::Tools(ToolsArgs { library: None, .. }) => cmd::list::tools(cli.json),
+        Verb::Tools(args) => cmd::tools::run(args, cli.json),
         Verb::Gallery => cmd::gallery::run(cli.json),
         Verb::Keys { schema: true, .. } => cmd::keys::schema(),
         Verb::Keys { template, .. } => cmd::keys::run(*template, cli.json),
@@ -59,13 +60,20 @@ fn main() -> ExitCode {
     // Wrong usage ends here with clap's own message and exit code 2; --help and --version with 0 where they can be printed.
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(asked) if asked.use_stderr() => asked.exit(),
+        Err(asked) if asked.use_stderr() => {
+            if std::env::args_os().any(|word| word == "--json") {
+                let _ = screen::render::json(&serde_json::json!({ "error": screen::usage::problem(&asked) }));
+            }
+            asked.exit()
+        }
         Err(asked) => match screen::render::text(&asked.render().to_string()) {
             Ok(()) => return ExitCode::SUCCESS,
             Err(f) => return failed(&f),
         },
     };
     progress::SCREEN.lines(cli.progress);
+    progress::SCREEN.quiet(cli.quiet);
+    screen::render::speak(!cli.quiet, &cli.color);
     if let Err(why) = cancel::watch() {
         screen::render::complaint(&format!("an interrupt will end this run without a word: {why}"));
     }

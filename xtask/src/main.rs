@@ -1,5 +1,5 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
-//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask plans` and `cargo xtask truth`.
+//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask browser`, `cargo xtask plans` and `cargo xtask truth`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -7,6 +7,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod bench;
+mod browser;
 mod ci;
 mod cmd;
 mod figures;
@@ -50,6 +51,9 @@ usage: cargo xtask COMMAND
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
   parts [--only TEXT] [--program FILE]
                 docs/parts.md: the examples that are whole parts, from the block to finished, planned and verified
+  browser [--only TEXT] [--program FILE] [--report FILE] [--bless]
+                reports of three parts in a real browser (Debian: apt-get install chromium): what they show and do, pictures
+                below target/browser, held against xtask/browser/golden.json; --report looks at another one
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -84,6 +88,12 @@ fn main() -> ExitCode {
         ["parts", rest @ ..] => match parts::Options::of(rest) {
             Some(options) => parts::run(&options),
             None => return wrong_usage("parts takes --only TEXT and --program FILE"),
+        },
+        ["browser", rest @ ..] => match browser::Options::of(rest) {
+            Some(options) => browser::run(&options),
+            None => {
+                return wrong_usage("browser takes --only TEXT, --program FILE, --report FILE and --bless");
+            }
         },
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),

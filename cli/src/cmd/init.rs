@@ -28,11 +28,12 @@ pub fn run(options: &InitArgs, json: bool) -> Outcome {
         on: &machine,
         tools: (&library, &name),
     })?;
-    output::write(&job, first.text.as_bytes())?;
+    output::set(&options.out, &[("job.toml", first.text.as_bytes()), ("faces.html", first.page.as_bytes())])?;
     if json {
         let findings: Vec<String> = first.diagnostics.iter().map(ToString::to_string).collect();
         render::json(&serde_json::json!({
             "job": job.display().to_string(),
+            "page": options.out.join("faces.html").display().to_string(),
             "faces": first.faces,
             "chosen": first.told,
             "diagnostics": findings,
@@ -65,6 +66,6 @@ fn describe(first: &First, job: &Path, out: &Path) -> String {
         text.push_str(&format!("\n{}", findings(&first.diagnostics)));
     }
     let (job, plan) = (job.display(), out.join("plan").display().to_string());
-    text.push_str(&format!("\n  {job}\n  next: osculate check {job}; osculate plan {job} --out {plan}\n\n"));
+    text.push_str(&format!("\n  {job}\n  {}: the faces with their ids\n  next: osculate check {job}; osculate plan {job} --out {plan}\n\n", out.join("faces.html").display()));
     text
 }

@@ -1,19 +1,24 @@
 //! `inspect`: what is in a CAD file.
 
-use crate::screen::args::PartArgs;
-use crate::screen::render;
+use crate::cmd::groups::{self, GroupRow, Neighbours};
+use crate::screen::args::{InspectArgs, PartArgs};
+use crate::screen::{output, render};
 use osculate::failure::{Done, Failure, Outcome};
+use osculate::job::Normals;
 use osculate::job::problem::Problem;
 use osculate::part::hidden::{self, Found};
 use osculate::part::{self, Loaded, LoadedFace};
 use osculate::words;
 use osculate::words::{Table, number};
+use osculate::work::faces_page;
+use osculate::work::init::Grouped;
 use osculate_geom::{Box3, Surface};
 use osculate_surfaces::Colour;
 use osculate_surfaces::structure::{Body, Shell, Structure};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::HashMap;
+use std::path::Path;
 
 #[derive(Serialize)]
 struct FaceRow {
@@ -109,6 +114,15 @@ struct Answer {
     area_mm2: f64,
     not_used: Vec<NotUsed>,
     diagnostics: Vec<String>,
+    /// Groups of faces, where they are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    groups: Option<Vec<GroupRow>>,
+    /// How faces meet, where groups are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    neighbours: Option<Vec<Neighbours>>,
+    /// The page that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    page: Option<String>,
     /// Why this is not all of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Problem>,
@@ -206,15 +220,35 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
 }
 
 /// Runs the verb.
-pub fn run(args: &PartArgs, json: bool) -> Outcome {
+pub fn run(options: &InspectArgs, json: bool) -> Outcome {
+    let args = &options.part;
+    options.out.as_deref().map_or(Ok(()), output::folder)?;
     let part = args.load()?;
     let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
     let found = hidden::find(&part, &oriented);
     let why = failure(args, &part);
-    let answer = Answer { error: why.as_ref().map(Failure::problem), ..answer(&part, &found) };
+    let grouped = (options.groups || options.out.is_some()).then(|| Grouped::of(part.clone(), Normals::Auto));
+    let page = options.out.as_ref().map(|folder| folder.join("faces.html"));
+    if let (Some(to), Some(grouped)) = (&page, &grouped) {
+        let title = args.part.as_deref().and_then(Path::file_stem).map(|n| n.to_string_lossy().into_owned());
+        let text = faces_page::page(grouped, &title.unwrap_or_else(|| "part".to_owned()));
+        output::write(to, text.as_bytes())?;
+    }
+    let answer = Answer {
+        error: why.as_ref().map(Failure::problem),
+        groups: grouped.as_ref().map(groups::groups),
+        neighbours: grouped.as_ref().map(groups::neighbours),
+        page: page.as_ref().map(|p| p.display().to_string()),
+        ..answer(&part, &found)
+    };
     // What could be read is shown all the same.
     if !json {
-        render::text(&describe(&answer, &part, &found))?;
+        render::text(
+            &(describe(&answer, &part, &found) + &groups::describe(&answer.groups, &answer.neighbours)),
+        )?;
+        if let Some(page) = &answer.page {
+            render::text(&format!("  {page}\n\n"))?;
+        }
         return why.map_or(Ok(Done::Yes), Err);
     }
     render::json(&answer)?;
@@ -263,6 +297,9 @@ fn answer(part: &Loaded, found: &Found) -> Answer {
         faces,
         not_used: part.not_used.iter().map(not_used).collect(),
         diagnostics: part.diagnostics.iter().chain(&found.diagnostics).map(ToString::to_string).collect(),
+        groups: None,
+        neighbours: None,
+        page: None,
         error: None,
     }
 }

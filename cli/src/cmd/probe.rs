@@ -36,10 +36,11 @@ pub fn run(args: &PartArgs, face: Option<&str>, at: &[[f64; 2]], json: bool) -> 
         let at = uv(*u, *v);
         let d = face.surface.domain();
         if !d.contains(at) {
-            return Err(Failure::job(format!(
-                "{}: --at {u},{v} is outside its parameters: u in [{}, {}], v in [{}, {}]",
+            let what = format!(
+                "{u},{v} is outside the parameters of {}: u in [{}, {}], v in [{}, {}]",
                 face.id, d.u.lo, d.u.hi, d.v.lo, d.v.hi
-            )));
+            );
+            return Err(Failure::at("--at", what));
         }
         let jet = face.surface.jet2(at);
         let forms = jet.forms().map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;

@@ -1,5 +1,6 @@
 //! Built-in surfaces as written in jobs and on the command line.
 
+use crate::job::words::{nearest, not_known};
 use osculate_geom::analytic::{Cone, Cylinder, Ellipsoid, Paraboloid, Plane, Sphere, Torus};
 use osculate_geom::{Curve, Domain, Interval, Patch, Point3, Side, Surface};
 use osculate_surfaces::gallery::{
@@ -319,7 +320,14 @@ pub fn parse(keys: &str) -> Result<Builtin, String> {
     let table: toml::Table =
         toml::from_str(&text).map_err(|e| format!("--builtin '{keys}': {}", e.message()))?;
     match table.get("builtin") {
-        Some(toml::Value::Table(t)) => build(t).map_err(|e| format!("--builtin: {e}")),
+        Some(toml::Value::Table(t)) => build(t).map_err(|e| match not_known(&e) {
+            Some((kind, written, known)) => {
+                let near = nearest(written, known.iter().copied());
+                let meant = near.map(|n| format!(" (is {n} meant?)")).unwrap_or_default();
+                format!("--builtin: there is no {kind} {written}{meant}; there are {}", known.join(", "))
+            }
+            None => format!("--builtin: {e}"),
+        }),
         _ => Err(format!("--builtin '{keys}' is not a list of keys")),
     }
 }

@@ -160,7 +160,9 @@ impl Reader<'_> {
     fn unknown(&self, name: &str, kind: &str, key: &str) -> Failure {
         let here: Vec<&str> =
             self.schema.keys(kind).map(|k| k.name).chain(self.schema.tables_in(kind)).collect();
-        let place = if name.is_empty() { "a job".to_owned() } else { shown(name).trim_end().to_owned() };
+        let list = name.ends_with(']').then(|| format!("[[{}]]", plain(name)));
+        let own = if name.is_empty() { "a job".to_owned() } else { shown(name).trim_end().to_owned() };
+        let place = list.unwrap_or(own);
         let takes = format!("{place} takes {}", here.join(", "));
         let owner = self.schema.tables.iter().find(|t| !t.name.is_empty() && t.key(key).is_some());
         let near = nearest(key, here.iter().copied());

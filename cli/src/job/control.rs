@@ -4,7 +4,7 @@ use crate::failure::{Failure, read_text};
 use crate::job::Tool;
 use crate::job::check::line;
 use crate::job::language::Language;
-use crate::job::problem::{Places, meant};
+use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::words::{CoolantWord, FeedWord};
 use osculate_geom::{Diagnostic, Point3, Vec3};
@@ -67,10 +67,8 @@ impl Control {
     pub fn from_words(words: &Words<'_>) -> Result<Self, Failure> {
         let machine = machine(words.name, words.file)?;
         let language = Language::of_word(words.dialect)?;
-        let feed = FeedWord::of(words.feed).ok_or_else(|| {
-            let all = FeedWord::WORDS.join(", ");
-            Failure::job(format!("feed = \"{}\" is no feed mode; there are {all}", words.feed))
-        })?;
+        let feed = FeedWord::of(words.feed)
+            .ok_or_else(|| Failure::unknown("feed", "feed mode", words.feed, FeedWord::WORDS))?;
         Ok(Self::new(machine, language, feed, words.kz_step))
     }
 
@@ -195,7 +193,8 @@ fn machine(name: Option<&str>, file: Option<&Path>) -> Result<(Machine, String),
     match (name, file) {
         (_, Some(file)) => machine_file(file),
         (Some(name), None) => {
-            let machine = Machine::built_in(name).map_err(|e| meant(&e, name, built_in_names()))?;
+            let machine = Machine::built_in(name)
+                .map_err(|_| Failure::unknown("machine", "built-in machine", name, &built_in_names()))?;
             Ok((machine, built_in_text(name).unwrap_or_default().to_owned()))
         }
         (None, None) => Err(Failure::job(format!(

@@ -1,7 +1,6 @@
 //! The language of a control: one of the engines, or one with words of its own from a dialect file.
 
 use crate::failure::{Failure, read_text};
-use crate::job::problem::meant;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::{DialectFile, shipped_dialects};
 use std::borrow::Cow;
@@ -35,11 +34,8 @@ impl Language {
         if let Ok(engine) = name.parse::<Dialect>() {
             return Ok(engine.into());
         }
-        let own = DialectFile::shipped(name).ok_or_else(|| {
-            let names = Self::names();
-            let text = format!("no dialect is called '{name}'; there are {}", names.join(", "));
-            meant(&text, name, names)
-        })?;
+        let own = DialectFile::shipped(name)
+            .ok_or_else(|| Failure::unknown("dialect", "dialect", name, &Self::names()))?;
         Ok(Self { engine: own.engine(), own: Some(own) })
     }
 

@@ -279,6 +279,12 @@ impl Job {
         self.told.places.refuse(table, key, what)
     }
 
+    /// A failure at a key, of something that has been found wrong already.
+    #[must_use]
+    pub fn lacks(&self, table: &str, key: &str, found: problem::Problem) -> Failure {
+        self.told.places.lacks(table, key, found)
+    }
+
     /// The job once with each of its tools in hand.
     #[must_use]
     pub fn each_tool(&self) -> Vec<Self> {

@@ -6,6 +6,7 @@ use crate::job::problem::Places;
 use crate::job::raw;
 pub use crate::job::raw::{FaceChoice, Largest};
 use crate::job::words::{MaterialWord, Normals};
+use crate::job::words::{nearest, not_known};
 use crate::job::{flank, stock};
 use std::path::PathBuf;
 
@@ -46,7 +47,14 @@ impl Part {
                 Source::File { path: stock::present(places, TABLE, "file", file)?, unit_mm: t.unit_mm }
             }
             (None, Some(table), None) => {
-                let wrong = |e: String| places.refuse(TABLE, "builtin", format!("builtin: {e}"));
+                let wrong = |e: String| match not_known(&e) {
+                    Some((kind, written, known)) => {
+                        let all = known.join(", ");
+                        let what = format!("builtin: there is no {kind} {written}; there are {all}");
+                        places.full(TABLE, "builtin", what, all, nearest(written, known))
+                    }
+                    None => places.refuse(TABLE, "builtin", format!("builtin: {e}")),
+                };
                 Source::Builtin(builtin::build(table).map_err(wrong)?)
             }
             (None, None, Some(table)) => {

@@ -93,6 +93,17 @@ impl Places {
         self.full(table, key, what, String::new(), None)
     }
 
+    /// A failure at a key, of something that has been found wrong already and says itself what is nearest.
+    pub fn lacks(&self, table: &str, key: &str, found: Problem) -> Failure {
+        match self.full(table, key, found.what, found.expected, None) {
+            Failure::Input(mut p) => {
+                p.nearest = found.nearest;
+                Failure::Input(p)
+            }
+            other => other,
+        }
+    }
+
     /// A failure with what was expected and what is nearest.
     pub fn full(
         &self,

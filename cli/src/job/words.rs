@@ -402,6 +402,21 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     (2 * changes <= word.chars().count().max(best.chars().count())).then_some(best)
 }
 
+/// What a parser says of a word that it does not know ("unknown variant `x`, expected one of `a`, `b`"), in parts: the word's kind and the
+/// word, and those there are. `None` where it says something else.
+pub fn not_known(message: &str) -> Option<(&'static str, &str, Vec<&str>)> {
+    let (kind, rest) =
+        match (message.strip_prefix("unknown variant "), message.strip_prefix("unknown field ")) {
+            (Some(rest), _) => ("kind", rest),
+            (_, Some(rest)) => ("key", rest),
+            _ => return None,
+        };
+    // Words stand between back quotes: the first is the one that was written.
+    let mut words = rest.split('`').skip(1).step_by(2);
+    let written = words.next()?;
+    Some((kind, written, words.collect()))
+}
+
 /// Letters put in, taken out, changed or exchanged with their neighbour.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
@@ -434,5 +449,8 @@ mod tests {
         assert_eq!(nearest("Toriodal", ToolKind::WORDS.iter().copied()), Some("toroidal"));
         assert_eq!(nearest("linux", ["fanuc", "linuxcnc"]), Some("linuxcnc"));
         assert_eq!(nearest("hexapod", ["ball", "flat"]), None);
+        let said = not_known("unknown field `half_size`, expected one of `a_per_mm`, `half_size_mm`");
+        assert_eq!(said, Some(("key", "half_size", vec!["a_per_mm", "half_size_mm"])));
+        assert_eq!(not_known("missing field `a_per_mm`"), None);
     }
 }

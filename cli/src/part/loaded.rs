@@ -104,12 +104,8 @@ impl Loaded {
             return Err(Failure::job(text));
         }
         self.faces.iter().find(|f| f.id == id).ok_or_else(|| {
-            let ids: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).take(12).collect();
-            let more = if self.faces.len() > ids.len() { ", ..." } else { "" };
-            Failure::job(format!(
-                "there is no face {id}; the part has {}{more} (see inspect)",
-                ids.join(", ")
-            ))
+            let all: Vec<&str> = self.faces.iter().map(|f| f.id.as_str()).collect();
+            Failure::no_face(id, &all)
         })
     }
 }

@@ -183,14 +183,18 @@ impl Part {
 
 /// A face of a job where a key of `[part]` cannot be meant.
 fn in_part(job: &Job, e: &Failure) -> Failure {
-    Failure::file(job.path(), format!("[part] {}", e.message()))
+    let found = e.problem();
+    match e {
+        Failure::At(_) => job.lacks("part", "faces", found),
+        _ => job.refuse("part", "faces", e.message()),
+    }
 }
 
 /// The ids of the faces that a job works on.
 fn machined(job: &Job, part: &Loaded) -> Result<Vec<String>, Failure> {
     let chosen = choose(part, job.part().faces(), "faces").map_err(|e| in_part(job, &e))?;
     if chosen.is_empty() {
-        return Err(Failure::file(job.path(), "[part] faces chooses no face"));
+        return Err(job.refuse("part", "faces", "faces chooses no face"));
     }
     Ok(chosen.into_iter().map(|f| f.id).collect())
 }

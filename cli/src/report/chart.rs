@@ -3,7 +3,7 @@
 //! Colours of text and axes come from the page (`currentColor` and its CSS variables), so that the charts follow its
 //! light and dark theme. A chart without data is `None`: the page then says so instead of showing an empty frame.
 
-use super::data::{Histogram, Pass, Stage};
+use super::data::{Histogram, Pace, Pass, Stage};
 use super::legend::{Rgb, Scale, nice_step};
 use super::text::{coordinate, count, escape, figure, fixed, short};
 use std::fmt::Write;
@@ -204,6 +204,73 @@ pub fn strip_widths(passes: &[Pass], scale: Option<&Scale>) -> Option<String> {
             coordinate(mean - 1.2),
             left = coordinate(at - 0.5 * bar),
             bar = coordinate(bar)
+        );
+    }
+    Some(out + &base_line() + "</svg>")
+}
+
+/// Stretches of time for which one value of the feed is drawn.
+const PACE_SLOTS: usize = 260;
+
+/// The mean feed over the time; where rapids take a stretch for the most part there is a gap. The feed asked for is marked.
+pub fn pace(data: &Pace) -> Option<String> {
+    let end = data.steps.last()?.end_min;
+    if !(end > 0.0 && end.is_finite()) {
+        return None;
+    }
+    let mut slots = vec![(0.0, 0.0); PACE_SLOTS];
+    let slot_min = end / PACE_SLOTS as f64;
+    let mut from = 0.0;
+    for step in &data.steps {
+        let (begin, took) = (from, step.end_min - from);
+        from = step.end_min;
+        if step.rapid || !(took > 0.0 && step.length_mm.is_finite()) {
+            continue;
+        }
+        let (first, last) = ((begin / slot_min) as usize, (step.end_min / slot_min) as usize);
+        for (k, slot) in slots.iter_mut().enumerate().take(last + 1).skip(first) {
+            let lower = (k as f64 * slot_min).max(begin);
+            let share = ((((k + 1) as f64) * slot_min).min(step.end_min) - lower).max(0.0);
+            slot.0 += share;
+            slot.1 += step.length_mm * share / took;
+        }
+    }
+    let feeds: Vec<Option<f64>> =
+        slots.iter().map(|(took, way)| (*took > 0.5 * slot_min).then(|| way / took)).collect();
+    let most = feeds.iter().flatten().copied().chain(data.asked_mm_min).fold(0.0, f64::max);
+    if most <= 0.0 {
+        return None;
+    }
+    let x = Axis { lo: 0.0, hi: end, from: LEFT, to: WIDTH - RIGHT };
+    let y = Axis { lo: 0.0, hi: 1.05 * most, from: HEIGHT - BOTTOM, to: TOP + 4.0 };
+    let mut out = frame("Feed over the time", x, y, &x.ticks(8.0), "time, min", "feed, mm/min");
+    let mut d = String::new();
+    let mut pen_down = false;
+    for (k, feed) in feeds.iter().enumerate() {
+        let Some(feed) = feed else {
+            pen_down = false;
+            continue;
+        };
+        let word = if pen_down { 'L' } else { 'M' };
+        let at = x.at((k as f64 + 0.5) * slot_min);
+        // A lone stretch is a dot.
+        let dot = if pen_down { "" } else { "h.6" };
+        let _ = write!(d, "{word}{} {}{dot}", coordinate(at), coordinate(y.at(*feed)));
+        pen_down = true;
+    }
+    let _ = write!(
+        out,
+        "<path d=\"{d}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.4\" stroke-linejoin=\"round\"/>"
+    );
+    if let Some(asked) = data.asked_mm_min.filter(|a| a.is_finite() && *a > 0.0) {
+        let at = coordinate(y.at(asked));
+        let _ = write!(
+            out,
+            "<path class=\"mark\" d=\"M{LEFT} {at}H{}\"/><text class=\"strong\" x=\"{}\" y=\"{at}\" dy=\"-4\" \
+             text-anchor=\"end\">asked for {} mm/min</text>",
+            WIDTH - RIGHT,
+            WIDTH - RIGHT - 2.0,
+            short(asked, 4)
         );
     }
     Some(out + &base_line() + "</svg>")

@@ -13,6 +13,8 @@ pub struct Report {
     pub title: String,
     /// One line under it: job file, machine, dialect.
     pub subtitle: String,
+    /// The page is about faces alone: nothing is planned or measured, and their ids are what a reader looks for.
+    pub faces_only: bool,
     /// What the verification measured.
     pub verdict: Verdict,
     /// The part's faces.
@@ -31,6 +33,8 @@ pub struct Report {
     pub poses: Vec<ToolPose>,
     /// How the deviation is spread.
     pub histogram: Histogram,
+    /// How fast the tool goes.
+    pub pace: Pace,
     /// Tables beside the picture.
     pub tables: Vec<Table>,
     /// What was found on the way.
@@ -99,7 +103,7 @@ impl Default for Verdict {
 }
 
 /// A place worth looking at.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Worst {
     /// Deviation there, mm, signed.
     pub deviation_mm: f64,
@@ -107,6 +111,8 @@ pub struct Worst {
     pub at_mm: [f64; 3],
     /// The place in words: face, parameters, NC block.
     pub place: String,
+    /// Which of the report's poses made it so; `None` where nothing came there.
+    pub pose: Option<usize>,
 }
 
 /// One face as triangles. Vertices that are shared are stored once; the three per-vertex lists go with `positions`.
@@ -114,6 +120,8 @@ pub struct Worst {
 pub struct FaceMesh {
     /// The face's name as `inspect` prints it.
     pub id: String,
+    /// It is not to be machined, only kept clear of: its deviation is what was cut of it, zero where nothing was.
+    pub checked: bool,
     /// Vertices, mm.
     pub positions: Vec<[f32; 3]>,
     /// Outward unit normals.
@@ -205,6 +213,8 @@ pub struct ToolPose {
     pub pass: Option<u32>,
     /// Which of the tools is in hand.
     pub tool: u32,
+    /// Line of the program that ends here; 0 where not known.
+    pub line: u32,
 }
 
 /// How the deviation is spread: bin `i` reaches from `edges_mm[i]` to `edges_mm[i + 1]`.
@@ -216,6 +226,26 @@ pub struct Histogram {
     pub weights: Vec<f64>,
     /// Unit of the weights: "samples", "mm2".
     pub unit: String,
+}
+
+/// How fast the tip goes, over the time.
+#[derive(Clone, Debug, Default)]
+pub struct Pace {
+    /// Feed moves and rapids in order.
+    pub steps: Vec<PaceStep>,
+    /// The feed that is asked for, mm/min; `None` where several are.
+    pub asked_mm_min: Option<f64>,
+}
+
+/// A stretch of the program.
+#[derive(Clone, Copy, Debug)]
+pub struct PaceStep {
+    /// When it ends, min.
+    pub end_min: f64,
+    /// The way of the tip, mm.
+    pub length_mm: f64,
+    /// Driven as fast as the machine goes.
+    pub rapid: bool,
 }
 
 /// A table. With `columns` empty, its rows are pairs of key and value.

@@ -1,10 +1,12 @@
 //! From the results of a plan to what its report shows.
 
 use crate::job::Job;
-use crate::part::{LoadedFace, Part, area};
+use crate::part::{Part, area};
+use crate::report::measured::{Measured, mesh_of};
+use crate::report::sheet;
 use crate::report::{
-    self, Column, FaceMesh, Histogram, Holder, Link, Outcome, Pass, PathPoints, Report, Stage, Table, Tool,
-    ToolPose, Verdict, View, Worst,
+    self, Column, Histogram, Holder, Link, Outcome, Pace, PaceStep, Pass, PathPoints, Report, Stage, Table,
+    Tool, ToolPose, Verdict, View, Worst,
 };
 use crate::words::number;
 use crate::work::extras::Extras;
@@ -14,11 +16,9 @@ use crate::work::summary::Summary;
 use crate::work::verify::Verified;
 use osculate_geom::{Diagnostic, Point3, Unit3};
 use osculate_productivity::plan::{Linked, Passes};
-use osculate_surfaces::tessellate;
 use osculate_tools::cl::Motion;
-use osculate_tools::removal::{Answer, Cut, Sample};
+use osculate_tools::removal::{Answer, Swept};
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Triangles over all faces, about.
 const TRIANGLES: f64 = 120_000.0;
@@ -84,20 +84,14 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
     let s = story.summary;
     let total_area: f64 = story.faces.faces.iter().chain(&story.faces.check).map(area).sum();
     let edge = (2.0 * total_area / TRIANGLES).sqrt().max(1e-6);
-    let lookup = Lookup::new(story.verified.verdict.samples(), story.verified.summary.spacing_mm);
+    let verdict_of = &story.verified.verdict;
+    let measured = Measured::new(verdict_of.samples(), verdict_of.cuts(), story.verified.summary.spacing_mm);
     let mut faces = Vec::new();
     let machined = story.faces.faces.iter().map(|f| (f, false));
     for (k, (face, check)) in machined.chain(story.faces.check.iter().map(|f| (f, true))).enumerate() {
         let mut m = mesh_of(face, if check { 3.0 * edge } else { edge });
-        if !check {
-            m.deviation_mm = deviation(
-                &m,
-                k as u32,
-                &lookup,
-                story.verified.verdict.samples(),
-                story.verified.verdict.cuts(),
-            );
-        }
+        m.checked = check;
+        m.deviation_mm = measured.on(&m, k as u32);
         let point = |p: &[f32; 3]| Point3::from(p.map(f64::from));
         for (_, field) in &story.extras.maps {
             let value = |p: &[f32; 3]| if check { f32::NAN } else { field(k, &point(p)) as f32 };
@@ -106,22 +100,25 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         faces.push(m);
         progress(0.6 * (k + 1) as f64 / (story.faces.faces.len() + story.faces.check.len()) as f64);
     }
+    let kept = kept_poses(story);
     Report {
         title: format!("{}: {}", story.title, s.strategy),
         subtitle: format!("{}, {}, feed {}", s.machine, s.dialect, s.feed),
-        verdict: verdict(story),
+        faces_only: false,
+        verdict: verdict(story, &kept),
         faces,
         scalars: story.extras.maps.iter().map(|m| m.0.clone()).collect(),
         passes: passes(story.passes),
         path_points: PathPoints::Contact,
         links: links(story.linked),
         tools: story.hands.iter().map(|h| h.1.clone()).collect(),
-        poses: poses(story),
+        poses: poses(story, &kept),
         histogram: Histogram {
             edges_mm: histogram_edges(story),
             weights: story.verified.verdict.figures().tally.histogram.iter().map(|b| b.area_mm2).collect(),
             unit: "mm2".to_owned(),
         },
+        pace: pace(story),
         tables: story.extras.tables.iter().cloned().chain(tables(story)).collect(),
         diagnostics: story.diagnostics.to_vec(),
         stages: [
@@ -155,7 +152,7 @@ fn histogram_edges(story: &Story<'_>) -> Vec<f64> {
     edges
 }
 
-fn verdict(story: &Story<'_>) -> Verdict {
+fn verdict(story: &Story<'_>, kept: &[usize]) -> Verdict {
     let v = &story.summary.verification;
     let t = story.job.tolerance();
     let answer = story.verified.verdict.answer();
@@ -202,6 +199,7 @@ fn verdict(story: &Story<'_>) -> Verdict {
                     number(w.uv[1], 5),
                     w.made_by()
                 ),
+                pose: w.motion.and_then(|m| kept.binary_search(&(m as usize)).ok()),
             })
             .collect(),
     }
@@ -284,15 +282,24 @@ pub fn tool(job: &Job) -> Tool {
     }
 }
 
+/// The motions whose ends the animation shows: evenly spread, and those that made the worst places.
+fn kept_poses(story: &Story<'_>) -> Vec<usize> {
+    let n = story.time_by_move.motions.len();
+    let stride = n.div_ceil(POSES).max(1);
+    let worst = story.verified.worst.iter().filter_map(|w| w.motion).map(|m| m as usize);
+    let mut kept: Vec<usize> = (0..n).step_by(stride).chain(n.checked_sub(1)).chain(worst).collect();
+    kept.retain(|k| *k < n);
+    kept.sort_unstable();
+    kept.dedup();
+    kept
+}
+
 /// Poses of the program as read back, with their time; the pass is found by the CL path's own poses only where the
 /// motion is at feed.
-fn poses(story: &Story<'_>) -> Vec<ToolPose> {
+fn poses(story: &Story<'_>, kept: &[usize]) -> Vec<ToolPose> {
     let read = story.time_by_move;
-    let n = read.motions.len();
-    let stride = n.div_ceil(POSES).max(1);
-    (0..n)
-        .filter(|k| k % stride == 0 || *k + 1 == n)
-        .map(|k| {
+    kept.iter()
+        .map(|&k| {
             let m = &read.motions[k];
             ToolPose {
                 tip_mm: f32s(&m.to.tip),
@@ -300,9 +307,24 @@ fn poses(story: &Story<'_>) -> Vec<ToolPose> {
                 time_min: read.times_min[k] as f32,
                 pass: None,
                 tool: story.hands.partition_point(|h| h.0 <= k).saturating_sub(1) as u32,
+                line: m.block,
             }
         })
         .collect()
+}
+
+/// The way and the time of every motion; one feed that is asked for where there is one tool.
+fn pace(story: &Story<'_>) -> Pace {
+    let read = story.time_by_move;
+    let step = |(m, end_min): (&Swept, &f64)| PaceStep {
+        end_min: *end_min,
+        length_mm: (m.to.tip - m.from.tip).norm(),
+        rapid: m.rapid,
+    };
+    Pace {
+        steps: read.motions.iter().zip(&read.times_min).map(step).collect(),
+        asked_mm_min: (story.hands.len() == 1).then(|| story.job.feed_mm_min()),
+    }
 }
 
 fn tables(story: &Story<'_>) -> Vec<Table> {
@@ -320,7 +342,10 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             ("the estimate took", format!("{:.1} s at {} places", s.wall_s.ideal, i.ideal.places)),
         ]
     });
-    let mut out = vec![
+    let scope = story.verified.verdict.scope();
+    let mut out = sheet::setups(story.job, s, scope);
+    out.push(sheet::tools(story.job));
+    out.extend([
         pairs(
             "Plan",
             vec![
@@ -375,7 +400,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
                 ("uncut area", format!("{:.3} mm2", v.uncut_area_mm2)),
             ],
         ),
-    ];
+    ]);
     if let Some(joints) = s.joints.as_ref().filter(|j| j.words().is_some()) {
         let steps = joints.steps().into_iter();
         let rows = steps.map(|(letter, step)| vec![format!("largest step of {letter}"), step]);
@@ -385,7 +410,6 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             rows: rows.chain([vec!["slower than asked".to_owned(), joints.slowed()]]).collect(),
         });
     }
-    let scope = story.verified.verdict.scope();
     out.push(Table {
         caption: "Scope of the verdict".to_owned(),
         columns: ["part of it", "covers"]
@@ -407,69 +431,4 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             .collect(),
     });
     out
-}
-
-/// Triangles of a face for the picture.
-fn mesh_of(face: &LoadedFace, edge_mm: f64) -> FaceMesh {
-    let m = tessellate(&face.surface, 0.2 * edge_mm, Some(edge_mm));
-    let flat = |v: &[[f64; 3]]| v.iter().map(|p| p.map(|x| x as f32)).collect();
-    FaceMesh {
-        id: face.id.clone(),
-        positions: flat(&m.positions),
-        normals: flat(&m.normals),
-        triangles: m.triangles,
-        deviation_mm: Vec::new(),
-        scalars: Vec::new(),
-    }
-}
-
-/// Samples by cells of space.
-struct Lookup {
-    cell_mm: f64,
-    cells: HashMap<[i64; 3], Vec<u32>>,
-}
-
-impl Lookup {
-    fn new(samples: &[Sample], spacing_mm: f64) -> Self {
-        let cell_mm = 2.0 * spacing_mm;
-        let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-        for (k, s) in samples.iter().enumerate() {
-            cells.entry(Self::key(cell_mm, &s.point)).or_default().push(k as u32);
-        }
-        Self { cell_mm, cells }
-    }
-
-    fn key(cell_mm: f64, p: &Point3) -> [i64; 3] {
-        [p.x, p.y, p.z].map(|c| (c / cell_mm).floor() as i64)
-    }
-
-    /// The nearest sample of a face in the cells around a point.
-    fn nearest(&self, p: &Point3, face: u32, samples: &[Sample]) -> Option<u32> {
-        let [a, b, c] = Self::key(self.cell_mm, p);
-        let mut best: Option<(f64, u32)> = None;
-        for i in -1..=1 {
-            for j in -1..=1 {
-                for k in -1..=1 {
-                    for s in self.cells.get(&[a + i, b + j, c + k]).into_iter().flatten() {
-                        let sample = &samples[*s as usize];
-                        let d = (sample.point - p).norm_squared();
-                        if sample.face == face && best.is_none_or(|b| (d, *s) < b) {
-                            best = Some((d, *s));
-                        }
-                    }
-                }
-            }
-        }
-        best.map(|b| b.1)
-    }
-}
-
-fn deviation(m: &FaceMesh, face: u32, lookup: &Lookup, samples: &[Sample], cuts: &[Cut]) -> Vec<f32> {
-    m.positions
-        .par_iter()
-        .map(|p| {
-            let at = Point3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-            lookup.nearest(&at, face, samples).map_or(f32::NAN, |s| cuts[s as usize].standoff_mm as f32)
-        })
-        .collect()
 }

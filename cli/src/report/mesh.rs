@@ -117,12 +117,96 @@ fn borders(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
         .filter(|(ends, _)| ends[0] != ends[1])
         .collect();
     edges.sort_unstable();
-    edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1).map(|same| same[0].1).collect()
+    let alone: Vec<([u32; 2], [u32; 2])> =
+        edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1).map(|same| same[0]).collect();
+    // Of each place where it is.
+    let mut points = vec![[0.0; 3]; places.len()];
+    for (position, at) in positions.iter().zip(&place) {
+        points[*at as usize] = position.map(f64::from);
+    }
+    let ends: Vec<[u32; 2]> = alone.iter().map(|e| e.0).collect();
+    let inner = beside_smaller(&points, &ends);
+    alone.iter().zip(inner).filter(|(_, inner)| !inner).map(|(e, _)| e.1).collect()
+}
+
+/// How far a chain of small edges may turn off a large one beside which it runs, as a cosine: tessellations bend less within a triangle.
+const ALONG: f64 = 0.96;
+/// Small edges beside a large one at most.
+const CHAIN: usize = 64;
+
+/// Which edges that one triangle alone has lie inside a face all the same: a large triangle beside several small ones has an edge where
+/// they have a chain. Edges are given by the places of their ends.
+fn beside_smaller(points: &[[f64; 3]], alone: &[[u32; 2]]) -> Vec<bool> {
+    let mut around: HashMap<u32, Vec<(usize, u32)>> = HashMap::new();
+    for (k, [a, b]) in alone.iter().enumerate() {
+        around.entry(*a).or_default().push((k, *b));
+        around.entry(*b).or_default().push((k, *a));
+    }
+    let at = |place: u32| &points[place as usize];
+    let mut inner = vec![false; alone.len()];
+    for (k, ends) in alone.iter().enumerate() {
+        let span = minus(at(ends[1]), at(ends[0]));
+        let length = norm(&span);
+        let mut chain: Vec<usize> = Vec::new();
+        let mut here = ends[0];
+        while here != ends[1] && chain.len() < CHAIN {
+            let next = around[&here].iter().find(|(edge, other)| {
+                let step = minus(at(*other), at(here));
+                let way = dot(&minus(at(*other), at(ends[0])), &span) / (length * length);
+                let forward = dot(&step, &span) / (norm(&step) * length);
+                *edge != k && forward > ALONG && (way < 1.0 - 1e-6 || *other == ends[1])
+            });
+            let Some((edge, other)) = next else { break };
+            chain.push(*edge);
+            here = *other;
+        }
+        if here == ends[1] && chain.len() > 1 {
+            inner[k] = true;
+            chain.into_iter().for_each(|edge| inner[edge] = true);
+        }
+    }
+    inner
+}
+
+fn minus(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn norm(a: &[f64; 3]) -> f64 {
+    dot(a, a).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// One triangle on the left of a line, two on the right of it: the line is inside, whatever the triangles have there.
+    #[test]
+    fn a_large_triangle_beside_two_small_ones_has_no_border_between() {
+        let face = FaceMesh {
+            positions: vec![
+                [0.0, 0.0, 0.0],
+                [0.0, 2.0, 0.0],
+                [-1.0, 1.0, 0.0],
+                [0.0, 1.0, 0.01],
+                [1.0, 1.0, 0.0],
+            ],
+            triangles: vec![[0, 1, 2], [0, 4, 3], [3, 4, 1]],
+            ..FaceMesh::default()
+        };
+        let mut found =
+            clean(&face, 0).borders.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect::<Vec<_>>();
+        found.sort_unstable();
+        // Vertices come in the order of the triangles: 0, 1, 2 of the large one, then 4 and 3 of the small ones as 3 and 4.
+        assert_eq!(found, [[0, 2], [0, 3], [1, 2], [1, 3]]);
+        // Without one of the small ones the line is a border.
+        let half = FaceMesh { triangles: vec![[0, 1, 2], [0, 4, 3]], ..face };
+        assert_eq!(clean(&half, 0).borders.len(), 6);
+    }
 
     /// A unit square of two triangles that share no vertex record.
     fn soup() -> FaceMesh {

@@ -11,11 +11,13 @@ mod chart;
 mod data;
 pub mod fill;
 pub mod legend;
+pub mod measured;
 mod mesh;
 mod pack;
 mod page;
 mod picture;
 pub mod project;
+pub mod sheet;
 mod simplify;
 pub mod text;
 mod tool_body;
@@ -25,8 +27,8 @@ mod viewer;
 mod tests;
 
 pub use data::{
-    Column, FaceMesh, Histogram, Holder, Link, Outcome, Pass, PathPoints, Report, Scalar, Stage, Table, Tool,
-    ToolPose, Verdict, Worst,
+    Column, FaceMesh, Histogram, Holder, Link, Outcome, Pace, PaceStep, Pass, PathPoints, Report, Scalar,
+    Stage, Table, Tool, ToolPose, Verdict, Worst,
 };
 pub use page::html;
 pub use picture::{PartColours, PathColours, View, svg};

@@ -3,16 +3,17 @@
 //! Little-endian; every section begins at a multiple of four bytes. Points are 16-bit steps of a box around part and
 //! passes (a metre gives steps of 0.015 mm: far below a pixel), normals are octahedral in two 16-bit numbers, and
 //! deviations stay 32-bit floats because the viewer shows their digits. A shared vertex costs 14 bytes, a triangle 6
-//! or 12.
+//! or 12. Points, normals and indices are written as differences from what stands before them: neighbours are alike,
+//! and the page packs the block (RFC 1950), which leaves a tenth of them.
 
-use super::data::Report;
+use super::data::{FaceMesh, Report};
 use super::mesh::Clean;
 use serde_json::{Value, json};
 
 /// More path points than this are thinned: beyond it lines differ by less than a pixel and the file only grows.
 const PATH_POINTS: usize = 120_000;
-/// Numbers of a pose: tip, axis, time, pass, tool.
-const POSE_NUMBERS: usize = 9;
+/// Numbers of a pose: tip, axis, time, pass, tool, line of the program.
+const POSE_NUMBERS: usize = 10;
 
 /// The block and its head.
 pub struct Packed {
@@ -68,13 +69,26 @@ impl Writer {
         self.put(values.flat_map(f32::to_le_bytes))
     }
 
-    fn shorts(&mut self, values: impl Iterator<Item = u16>) -> usize {
-        self.put(values.flat_map(u16::to_le_bytes))
+    /// Two bytes each, as differences from the value `stride` before.
+    fn shorts(&mut self, stride: usize, values: impl Iterator<Item = u16>) -> usize {
+        self.put(
+            differences(stride, values.map(u32::from)).into_iter().flat_map(|d| (d as u16).to_le_bytes()),
+        )
     }
 
-    fn words(&mut self, values: impl Iterator<Item = u32>) -> usize {
-        self.put(values.flat_map(u32::to_le_bytes))
+    /// Four bytes each, as differences from the value `stride` before.
+    fn words(&mut self, stride: usize, values: impl Iterator<Item = u32>) -> usize {
+        self.put(differences(stride, values).into_iter().flat_map(u32::to_le_bytes))
     }
+}
+
+/// Each value less the one `stride` before it, the first ones as they are; below zero they go round, in two bytes as in four.
+fn differences(stride: usize, values: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut out: Vec<u32> = values.collect();
+    for k in (stride..out.len()).rev() {
+        out[k] = out[k].wrapping_sub(out[k - stride]);
+    }
+    out
 }
 
 /// The steps of a coordinate box.
@@ -130,7 +144,7 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
                     face.id, clean.dropped
                 ));
             }
-            face_head(&mut out, clean, &face.id, &steps)
+            face_head(&mut out, clean, face, &steps)
         })
         .collect();
     let path = path_head(&mut out, report, &steps, &mut notes);
@@ -156,7 +170,7 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
         .filter(|p| finite(&p.tip_mm) && finite(&p.axis))
         .flat_map(|p| {
             let ([x, y, z], [i, j, k]) = (p.tip_mm, p.axis);
-            [x, y, z, i, j, k, p.time_min, p.pass.map_or(-1.0, |n| n as f32), p.tool as f32]
+            [x, y, z, i, j, k, p.time_min, p.pass.map_or(-1.0, |n| n as f32), p.tool as f32, p.line as f32]
         })
         .collect();
     let pose_count = poses.len() / POSE_NUMBERS;
@@ -177,20 +191,21 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
     Packed { bytes: out.bytes, head, notes }
 }
 
-fn face_head(out: &mut Writer, face: &Clean, id: &str, steps: &Steps) -> Value {
+fn face_head(out: &mut Writer, face: &Clean, of: &FaceMesh, steps: &Steps) -> Value {
     let vertices = face.positions.len();
     let wide = vertices > usize::from(u16::MAX);
     let indices = face.triangles.iter().flatten().copied();
     json!({
-        "id": id,
+        "id": of.id,
+        "checked": of.checked,
         "vertices": vertices,
         "triangles": face.triangles.len(),
         "wide": wide,
-        "position": out.shorts(face.positions.iter().flat_map(|p| steps.of(p))),
-        "normal": out.shorts(face.normals.iter().flat_map(|n| octahedral(*n))),
+        "position": out.shorts(3, face.positions.iter().flat_map(|p| steps.of(p))),
+        "normal": out.shorts(2, face.normals.iter().flat_map(|n| octahedral(*n))),
         "deviation": out.floats(face.deviation_mm.iter().copied()),
-        "index": if wide { out.words(indices) } else { out.shorts(indices.map(|i| i as u16)) },
-        "border": out.words(face.borders.iter().flatten().copied()),
+        "index": if wide { out.words(1, indices) } else { out.shorts(1, indices.map(|i| i as u16)) },
+        "border": out.words(1, face.borders.iter().flatten().copied()),
         "borders": face.borders.len(),
         "scalars": face.scalars.iter().map(|s| out.floats(s.iter().copied())).collect::<Vec<_>>(),
     })
@@ -223,14 +238,14 @@ fn path_head(out: &mut Writer, report: &Report, steps: &Steps, notes: &mut Vec<S
     json!({
         "counts": counts,
         "points": kept.len(),
-        "position": out.shorts(kept.iter().flat_map(|k| k.0)),
+        "position": out.shorts(3, kept.iter().flat_map(|k| k.0)),
         "width": out.floats(kept.iter().map(|k| k.1)),
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::data::{FaceMesh, Link, Pass};
+    use super::super::data::{Link, Pass};
     use super::super::mesh::clean;
     use super::*;
     use proptest::prelude::*;
@@ -282,6 +297,17 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// What the viewer does to have the values back: each more than the one `stride` before, going round.
+        #[test]
+        fn differences_come_back(values in prop::collection::vec(any::<u16>(), 0..40), stride in 1..4_usize) {
+            let mut back: Vec<u16> =
+                differences(stride, values.iter().map(|v| u32::from(*v))).into_iter().map(|d| d as u16).collect();
+            for k in stride..back.len() {
+                back[k] = back[k].wrapping_add(back[k - stride]);
+            }
+            prop_assert_eq!(back, values);
+        }
 
         /// Half a step in each of two coordinates of a map that stretches lengths by at most 3 (a corner of the
         /// octahedron against the sphere): 3 * sqrt(2) * 0.5 / 32767 = 6.5e-5.

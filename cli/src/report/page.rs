@@ -11,9 +11,13 @@ use super::pack::pack;
 use super::text::{base64, count, escape, figure, fixed, script_json, short};
 use super::tool_body::{Piece, outlines};
 use super::viewer::{LEGEND_PX, Scales, viewer};
+use miniz_oxide::deflate::compress_to_vec_zlib;
 use osculate_geom::Severity;
 use serde_json::{Value, json};
 use std::fmt::Write;
+
+/// How hard the block is packed, of 10: more takes longer and saves little.
+const PACKED: u8 = 6;
 
 const THREE: &str = include_str!("../../assets/three.bundle.min.js");
 const VIEWER: &str = include_str!("../../assets/viewer.js");
@@ -36,6 +40,7 @@ pub fn html(report: &Report) -> String {
     let mut head = packed.head;
     head["limits"] = json!({"scallop": limits.scallop_mm, "gouge": limits.gouge_mm});
     head["unknown"] = json!(UNKNOWN);
+    head["measured"] = json!(!report.faces_only);
     head["legend_length"] = json!(LEGEND_PX);
     head["deviation"] = scale_json(&scales.deviation);
     head["width"] = scales.width.as_ref().map_or(Value::Null, scale_json);
@@ -61,7 +66,9 @@ pub fn html(report: &Report) -> String {
         escape(&report.title),
         escape(&report.subtitle)
     );
-    verdict(&mut out, &report.verdict);
+    if !report.faces_only {
+        verdict(&mut out, &report.verdict);
+    }
 
     let (beside, below): (Vec<&Table>, Vec<&Table>) =
         report.tables.iter().partition(|t| t.columns.len() <= NARROW_COLUMNS);
@@ -75,7 +82,9 @@ pub fn html(report: &Report) -> String {
         out.push_str("</div></aside>\n");
     }
     out.push_str("</main>\n");
-    charts(&mut out, report, &scales);
+    if !report.faces_only {
+        charts(&mut out, report, &scales);
+    }
     if !below.is_empty() {
         out.push_str("<div class=\"wide-tables\">");
         for t in below {
@@ -87,19 +96,19 @@ pub fn html(report: &Report) -> String {
         out.push_str("</div>\n");
     }
     findings(&mut out, report, &packed.notes);
-    let _ = write!(
-        out,
-        "<footer>osculate {}. Lengths in mm; deviation along the outward normal: positive is material left, negative is \
-         gouge.</footer>\n</div>\n",
-        env!("CARGO_PKG_VERSION")
-    );
+    let frame = if report.faces_only {
+        "Lengths in mm. Click a face to copy its id."
+    } else {
+        "Lengths in mm; deviation along the outward normal: positive is material left, negative is gouge."
+    };
+    let _ = write!(out, "<footer>osculate {}. {frame}</footer>\n</div>\n", env!("CARGO_PKG_VERSION"));
     let _ = write!(
         out,
         "<script id=\"report-head\" type=\"application/json\">{}</script>\n\
          <script id=\"report-data\" type=\"text/plain\">{}</script>\n<script>{THREE}</script>\n<script>\n{VIEWER}</script>\n\
          </body>\n</html>\n",
         script_json(&head),
-        base64(&packed.bytes)
+        base64(&compress_to_vec_zlib(&packed.bytes, PACKED))
     );
     out
 }
@@ -204,9 +213,10 @@ fn worst(out: &mut String, v: &Verdict, limits: Limits) {
             fixed(z, 2)
         );
         if place.at_mm.iter().all(|c| c.is_finite()) {
+            let pose = place.pose.map_or_else(String::new, |k| format!(" data-pose=\"{k}\""));
             let _ = write!(
                 out,
-                "<button type=\"button\" class=\"needs-live\" data-at=\"{x} {y} {z}\">Show</button>"
+                "<button type=\"button\" class=\"needs-live\" data-at=\"{x} {y} {z}\"{pose}>Show</button>"
             );
         }
         out.push_str("</td></tr>");
@@ -274,6 +284,7 @@ fn charts(out: &mut String, report: &Report, scales: &Scales) {
             chart::strip_widths(&report.passes, scales.width.as_ref()),
             "No strip widths are known.",
         ),
+        ("Feed over the time", chart::pace(&report.pace), "No times of motions are known."),
         ("Computing time", chart::stages(&report.stages), "No times are known."),
     ];
     out.push_str("<div class=\"charts\">");

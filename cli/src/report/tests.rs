@@ -40,6 +40,7 @@ fn sheet(n: u32) -> Report {
         time_min: k as f32,
         pass: Some(k),
         tool: 0,
+        line: 10 * k,
     };
     Report {
         title: "Sheet".into(),
@@ -142,13 +143,14 @@ fn the_picture_stays_small() {
     assert!((60_000..300_000).contains(&text.len()), "{}", text.len());
 }
 
-/// 100 000 shared vertices at 14 bytes and 200 000 triangles at 12 make 5.1 MB of base64; the rest is the page.
+/// 100 000 shared vertices at 14 bytes and 200 000 triangles at 12 would be 5.1 MB of base64; packed they leave room for the
+/// scripts, 0.6 MB, and the still picture.
 #[test]
-fn the_page_of_200_000_triangles_stays_below_8_mb() {
+fn the_page_of_200_000_triangles_stays_below_3_mb() {
     let report = sheet(317);
     assert!(report.faces[0].triangles.len() > 200_000);
     let text = html(&report);
-    assert!((5_000_000..8_000_000).contains(&text.len()), "{}", text.len());
+    assert!((1_000_000..3_000_000).contains(&text.len()), "{}", text.len());
 }
 
 #[test]
@@ -202,7 +204,8 @@ fn names_cannot_break_out() {
     report.verdict.words = evil.into();
     report.verdict.source = evil.into();
     report.verdict.samples = 1;
-    report.verdict.worst = vec![Worst { deviation_mm: 0.1, at_mm: [0.0; 3], place: evil.into() }];
+    report.verdict.worst =
+        vec![Worst { deviation_mm: 0.1, at_mm: [0.0; 3], place: evil.into(), pose: Some(1) }];
     report.histogram = Histogram { edges_mm: vec![0.0, 1.0], weights: vec![1.0], unit: evil.into() };
     report.diagnostics = vec![Diagnostic::warning(evil, evil)];
     report.stages = vec![Stage { name: evil.into(), wall_s: 1.0 }];

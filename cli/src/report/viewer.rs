@@ -43,6 +43,9 @@ impl Scales {
 /// Writes the section.
 pub fn viewer(out: &mut String, report: &Report, faces: &[Clean], scales: &Scales) {
     let mut part = vec![("deviation".to_owned(), "Deviation".to_owned()), ("plain".into(), "Plain".into())];
+    if report.faces_only {
+        part.remove(0);
+    }
     let shown = scales.scalars.iter().enumerate();
     part.extend(shown.filter_map(|(i, s)| Some((i.to_string(), escape(&s.as_ref()?.name)))));
     let mut path = vec![("off".to_owned(), "Off".to_owned()), ("plain".into(), "Lines".into())];
@@ -54,7 +57,15 @@ pub fn viewer(out: &mut String, report: &Report, faces: &[Clean], scales: &Scale
         PathPoints::Tip => "tool tip",
     };
     out.push_str("<section class=\"card viewer\"><div class=\"bar needs-live\">");
-    segment(out, ["part", "Part", ""], &part, "deviation");
+    // Of faces alone the first map is what tells them apart.
+    let first = if !report.faces_only {
+        "deviation"
+    } else if report.scalars.is_empty() {
+        "plain"
+    } else {
+        "0"
+    };
+    segment(out, ["part", "Part", ""], &part, first);
     if report.passes.iter().any(|p| p.points_mm.len() > 1) {
         segment(out, ["path", "Path", which], &path, "plain");
     } else {

@@ -15,6 +15,12 @@ pub struct Cli {
     /// One JSON object on stdout and nothing else there.
     #[arg(long, global = true)]
     pub json: bool,
+    /// No results as text on stdout and no progress: exit code, files and messages of failures say what came of it.
+    #[arg(long, global = true, conflicts_with = "json")]
+    pub quiet: bool,
+    /// Words in colour.
+    #[arg(long, global = true, value_name = "WHEN", value_parser = ["auto", "always", "never"], default_value = "auto")]
+    pub color: String,
     /// A line on stderr for every stage and per cent of it, for other programs: `progress: verify 42 %`.
     #[arg(long, global = true)]
     pub progress: bool,
@@ -24,7 +30,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// What is in a CAD file: faces with kind, degrees, poles, area, curvature range, what was not understood.
-    Inspect(PartArgs),
+    Inspect(InspectArgs),
     /// A first job for a part: faces, tool, axes and tolerance chosen, each with its reason, ready for `plan`.
     Init(InitArgs),
     /// What fits and what is not reached or not set, without planning.
@@ -117,8 +123,8 @@ pub enum Verb {
     },
     /// The built-in dialects.
     Dialects,
-    /// The cutter kinds that a job can ask for.
-    Tools,
+    /// The cutter kinds that a job can ask for; with a library of tools, what stands in it, also as another kind of library.
+    Tools(ToolsArgs),
     /// The surfaces with a name, for --builtin and for jobs.
     Gallery,
     /// All keys of a job file: what each takes, what holds where it is left out, and what it means.
@@ -165,6 +171,20 @@ impl PartArgs {
     }
 }
 
+/// What `inspect` takes.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// The part.
+    #[command(flatten)]
+    pub part: PartArgs,
+    /// The faces in groups that look alike and go on smoothly, with what each is, and how neighbours meet.
+    #[arg(long)]
+    pub groups: bool,
+    /// Folder for faces.html: the part in 3D, its faces with their ids, coloured by group.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+}
+
 /// What `init` takes.
 #[derive(Debug, Args)]
 pub struct InitArgs {
@@ -182,6 +202,20 @@ pub struct InitArgs {
     /// Folder for job.toml.
     #[arg(long)]
     pub out: PathBuf,
+}
+
+/// What `tools` takes.
+#[derive(Debug, Args)]
+pub struct ToolsArgs {
+    /// A library: .toml of ours, .tbl of LinuxCNC, .fctl or .fctb of FreeCAD, .json of Fusion; "shipped" is that of the program.
+    #[arg(value_name = "LIBRARY")]
+    pub library: Option<PathBuf>,
+    /// Write the tools to a library of the kind that its ending says.
+    #[arg(long, value_name = "FILE", requires = "library")]
+    pub out: Option<PathBuf>,
+    /// The lengths of a table of LinuxCNC are inches.
+    #[arg(long, requires = "library")]
+    pub inch: bool,
 }
 
 /// What `lines` takes.

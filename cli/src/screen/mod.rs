@@ -5,3 +5,4 @@ pub mod cancel;
 pub mod output;
 pub mod progress;
 pub mod render;
+pub mod usage;

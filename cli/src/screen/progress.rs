@@ -20,6 +20,7 @@ const STEPS: u64 = 1000;
 /// The screen of this process, which hears how work goes on.
 pub static SCREEN: Screen = Screen {
     lines: AtomicBool::new(false),
+    quiet: AtomicBool::new(false),
     next_line: AtomicU64::new(0),
     bars: Mutex::new(Vec::new()),
     folder: Mutex::new(None),
@@ -29,6 +30,8 @@ pub static SCREEN: Screen = Screen {
 pub struct Screen {
     /// Whether per cents are printed as lines.
     lines: AtomicBool,
+    /// Whether no bars are shown.
+    quiet: AtomicBool,
     /// The next per cent to print a line for.
     next_line: AtomicU64,
     /// The stages that go on, each within the one before.
@@ -53,6 +56,11 @@ impl Screen {
     /// Prints per cents as lines from here on, or not.
     pub fn lines(&self, yes: bool) {
         self.lines.store(yes, Ordering::Relaxed);
+    }
+
+    /// Shows no bars from here on, or does.
+    pub fn quiet(&self, yes: bool) {
+        self.quiet.store(yes, Ordering::Relaxed);
     }
 
     /// A run that is stopped from here on saves what is finished in this folder.
@@ -92,7 +100,8 @@ impl Watch for Screen {
             self.line(name, fraction);
             return;
         }
-        if start.elapsed() > QUIET && bar.is_hidden() && std::io::stderr().is_terminal() {
+        let shown = !self.quiet.load(Ordering::Relaxed) && std::io::stderr().is_terminal();
+        if start.elapsed() > QUIET && bar.is_hidden() && shown {
             bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
         }
         // A fraction of a thousand fits.

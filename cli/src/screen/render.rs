@@ -6,12 +6,40 @@ use osculate::failure::Failure;
 use osculate::words;
 use serde::Serialize;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+
+/// Whether text is printed, and whether in colour: 0 as stdout is a terminal, 1 always, 2 never.
+static SPEAKS: AtomicBool = AtomicBool::new(true);
+static COLOUR: AtomicU8 = AtomicU8::new(0);
+
+/// Sets whether results are printed as text, and when in colour: "auto", "always" or "never".
+pub fn speak(text: bool, colour: &str) {
+    SPEAKS.store(text, Ordering::Relaxed);
+    let colour = match colour {
+        "always" => 1,
+        "never" => 2,
+        _ => 0,
+    };
+    COLOUR.store(colour, Ordering::Relaxed);
+}
+
+/// Whether words are in colour. Who has set `NO_COLOR` wants none where nothing is said.
+fn coloured() -> bool {
+    match COLOUR.load(Ordering::Relaxed) {
+        1 => true,
+        2 => false,
+        _ => std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty()),
+    }
+}
 
 /// Prints lines to stdout; a closed pipe ends the output quietly.
 ///
 /// # Errors
 /// Where stdout does not take them, such as a file on a full disk.
 pub fn text(s: &str) -> Result<(), Failure> {
+    if !SPEAKS.load(Ordering::Relaxed) {
+        return Ok(());
+    }
     put(&words::visible(s))
 }
 
@@ -20,7 +48,7 @@ pub fn text(s: &str) -> Result<(), Failure> {
 /// # Errors
 /// As [`text`].
 pub fn warning(s: &str, red: Option<&str>) -> Result<(), Failure> {
-    let Some(red) = red.filter(|_| std::io::stdout().is_terminal()) else { return text(s) };
+    let Some(red) = red.filter(|_| coloured() && SPEAKS.load(Ordering::Relaxed)) else { return text(s) };
     let red = words::visible(red);
     put(&words::visible(s).replace(&*red, &format!("\u{1b}[1;31m{red}\u{1b}[0m")))
 }

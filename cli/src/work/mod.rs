@@ -6,6 +6,7 @@ pub mod check;
 pub mod choice;
 pub mod drop;
 pub mod extras;
+pub mod faces_page;
 pub mod flank;
 pub mod goal;
 pub mod ideal;

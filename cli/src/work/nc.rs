@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use crate::job::control::machine_file;
 use crate::job::language::Language;
-use crate::job::problem::meant;
 use crate::job::{Control, Job};
 use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
@@ -26,7 +25,8 @@ pub fn machine(word: &str) -> Result<Machine, Failure> {
     if !built_in_names().contains(&word) && (word.ends_with(".toml") || file.exists()) {
         return machine_file(file).map(|m| m.0);
     }
-    Machine::built_in(word).map_err(|e| meant(&e, word, built_in_names()))
+    Machine::built_in(word)
+        .map_err(|_| Failure::unknown("machine", "built-in machine", word, &built_in_names()))
 }
 
 /// The language of a program: as said, by a name or a dialect file, or by its extension.

@@ -162,7 +162,9 @@ pub fn cl_path(job: &Job, linked: &Linked) -> ClPath {
 /// The name of a job in programs and reports: that of its folder, or else of the file.
 pub fn title(job: &Job) -> String {
     let path = job.path();
-    let name = path.parent().and_then(Path::file_name).or_else(|| path.file_stem());
+    // A file that is called no more than a job is told apart by its folder.
+    let own = path.file_stem().filter(|stem| !stem.to_string_lossy().starts_with("job"));
+    let name = own.or_else(|| path.parent().and_then(Path::file_name)).or_else(|| path.file_stem());
     name.map_or_else(|| "osculate".to_owned(), |t| t.to_string_lossy().into_owned())
 }
 

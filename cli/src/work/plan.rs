@@ -13,7 +13,7 @@ use crate::work::joints::JointFigures;
 use crate::work::nc::Motions;
 use crate::work::passes::{self, Way};
 use crate::work::program::{Planned, Posted, WallS};
-use crate::work::summary::{Productivity, Summary};
+use crate::work::summary::{Productivity, SetupSummary, Summary};
 use crate::work::verify::{VerdictKeys, Verified};
 use crate::work::{drop, ideal, left_out, rough};
 use osculate_geom::Diagnostic;
@@ -202,7 +202,7 @@ impl Proved<'_> {
         };
         wall_s.ideal = stage.end();
         let stage = Stage::begin(watch, "report");
-        let Posted { cl_text, control, program, read, diagnostics } = posted;
+        let Posted { cl_text, control, program, setup, read, diagnostics } = posted;
         let title = passes::title(job);
         let before = [&faces.part.diagnostics, &planned.passes.diagnostics, &planned.extras.diagnostics];
         let diagnostics: Vec<Diagnostic> = before
@@ -213,10 +213,13 @@ impl Proved<'_> {
             .chain(verified.diagnostics.iter().cloned())
             .collect();
         let times = Times::of(&read);
+        let times_min = times.time_min;
         let mut summary = summary_of(job, faces, &planned, times, &verified)?;
         summary.ideal = ideal;
         summary.wall_s = wall_s;
         summary.compared = compared;
+        let file = format!("program.{}", control.extension);
+        summary.setups = vec![SetupSummary::of("setup", &file, times_min, &setup)];
         summary.diagnostics = diagnostics.iter().map(ToString::to_string).collect();
         let story = Story {
             title: &title,
@@ -234,7 +237,7 @@ impl Proved<'_> {
         let pages = fill::pages(&story, &|f| stage.at(f));
         let mut files = vec![
             PlanFile::of_text("path.cl", cl_text),
-            PlanFile::of_text(format!("program.{}", control.extension), program.text),
+            PlanFile::of_text(file, program.text),
             PlanFile::of_text(REPORT, pages.html),
             PlanFile::of_text("picture.svg", pages.svg),
             PlanFile::of_text("path.svg", pages.path_svg),

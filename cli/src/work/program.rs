@@ -65,6 +65,8 @@ pub struct Posted {
     pub control: Control,
     /// The program.
     pub program: post::Posted,
+    /// Where the part sits.
+    pub setup: Setup,
     /// What the program does.
     pub read: Motions,
     /// Findings.
@@ -102,6 +104,7 @@ impl Posted {
             Ok((program, read))
         };
         let mut best = written(&base);
+        let mut place = base;
         stage.at(0.6);
         let first_min = best.as_ref().ok().map(|(_, read)| read.time_min);
         let worth_min = first_min.map_or(f64::INFINITY, |min| (1.0 - setup::WORTH_A_TURN) * min);
@@ -113,6 +116,7 @@ impl Posted {
             if now_min < least_min.min(worth_min) {
                 setup_notes = setup::notes_of_turned(&turned, first_min, now_min);
                 best = Ok(other);
+                place = turned;
             }
         }
         let (program, _) = best?;
@@ -121,7 +125,7 @@ impl Posted {
         wall_s.post += stage.end();
         let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
         let diagnostics = notes.into_iter().flatten().cloned().collect();
-        Ok(Self { cl_text, control, program, read, diagnostics })
+        Ok(Self { cl_text, control, program, setup: place, read, diagnostics })
     }
 
     /// Time of the program, min.

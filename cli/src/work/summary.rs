@@ -9,6 +9,7 @@ use crate::work::operations::behind::OnFace;
 use crate::work::operations::standing::LeftStanding;
 use crate::work::program::WallS;
 use crate::work::verify::{VerdictKeys, Verification, WorstPlace};
+use osculate_postproc::Setup;
 use serde::Serialize;
 
 /// Productivity at three levels, mm2/min.
@@ -88,7 +89,7 @@ pub struct Summary {
     /// Of a list of operations, what stands too high on the finished part, by face.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_standing: Vec<LeftStanding>,
-    /// Of a list of operations, how the part is held, in order.
+    /// How the part is held, in order; one where the job is no list of operations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub setups: Vec<SetupSummary>,
     /// Of a list of operations, each of them, in order.
@@ -109,6 +110,20 @@ pub struct SetupSummary {
     pub rotate_deg: [f64; 3],
     /// Where the part's origin sits from the table's reference point.
     pub part_zero_mm: [f64; 3],
+}
+
+impl SetupSummary {
+    /// Of a program in this file.
+    pub fn of(name: &str, program: &str, time_min: f64, setup: &Setup) -> Self {
+        let t = setup.part_zero.translation.vector;
+        Self {
+            name: name.to_owned(),
+            program: program.to_owned(),
+            time_min,
+            rotate_deg: setup.turn_rad().map(f64::to_degrees),
+            part_zero_mm: [t.x, t.y, t.z],
+        }
+    }
 }
 
 /// An operation of a list, with the keys that a plan of it alone has.

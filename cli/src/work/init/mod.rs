@@ -13,6 +13,7 @@ mod text;
 use crate::failure::Failure;
 use crate::job::Normals;
 use crate::part::{self, LoadedFace};
+use crate::work::faces_page;
 pub use asked::{Grouped, Wanted, name, relative};
 use fit::Fit;
 use osculate_geom::{Diagnostic, Surface};
@@ -28,6 +29,8 @@ const GRID: usize = 24;
 pub struct First {
     /// Its text.
     pub text: String,
+    /// A page that shows the part's faces with their ids.
+    pub page: String,
     /// What was chosen, in sentences.
     pub told: Vec<String>,
     /// Ids of the faces to machine.
@@ -104,5 +107,8 @@ fn first(
     let told = text::told(grouped, target, fit, tried);
     let faces = target.faces.iter().map(|f| grouped.part.faces[*f].id.clone()).collect();
     let text = text::job(wanted, (grouped, normals), target, fit);
-    First { text, told, faces, diagnostics: grouped.part.diagnostics.clone() }
+    let title =
+        wanted.part.file_stem().map_or_else(|| "part".to_owned(), |n| n.to_string_lossy().into_owned());
+    let page = faces_page::page(grouped, &title);
+    First { text, page, told, faces, diagnostics: grouped.part.diagnostics.clone() }
 }

@@ -96,7 +96,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     diagnostics.extend(whole.diagnostics.iter().cloned());
     summary.diagnostics = diagnostics.iter().map(ToString::to_string).collect();
     summary.left_standing = standing::left(list, part, &steps, &whole);
-    let mut tables = vec![table(&operations)];
+    let mut tables = vec![table(&operations, &steps)];
     if !summary.left_standing.is_empty() {
         tables.push(standing::table(&summary.left_standing));
     }
@@ -187,14 +187,7 @@ fn operation(
 fn setups(list: &Operations, programs: &[Program], course: &Course) -> Vec<SetupSummary> {
     let all = list.setups().iter().zip(programs).zip(&course.setup_min);
     all.map(|((held, program), time_min)| {
-        let t = program.setup.part_zero.translation.vector;
-        SetupSummary {
-            name: held.name.clone(),
-            program: program.file.clone(),
-            time_min: *time_min,
-            rotate_deg: program.setup.turn_rad().map(f64::to_degrees),
-            part_zero_mm: [t.x, t.y, t.z],
-        }
+        SetupSummary::of(&held.name, &program.file, *time_min, &program.setup)
     })
     .collect()
 }
@@ -238,12 +231,14 @@ fn motions(course: Course) -> Motions {
 }
 
 /// The operations with the figures that one compares.
-fn table(operations: &[OperationSummary]) -> Table {
+fn table(operations: &[OperationSummary], steps: &[Step<'_>]) -> Table {
     let names = [
         "operation",
         "setup",
         "tool",
         "strategy",
+        "rpm",
+        "feed mm/min",
         "time min",
         "cut mm",
         "air mm",
@@ -251,13 +246,15 @@ fn table(operations: &[OperationSummary]) -> Table {
         "uncut mm2",
         "step",
     ];
-    let row = |o: &OperationSummary| {
+    let row = |(o, step): (&OperationSummary, &Step<'_>)| {
         let f: &Summary = &o.figures;
         vec![
             o.name.clone(),
             o.setup.clone(),
             format!("T{} {}", o.tool_number, f.tool_words),
             f.strategy.clone(),
+            step.job.spindle_rpm().map_or_else(|| "\u{2013}".to_owned(), |n| number(n, 6)),
+            number(step.job.feed_mm_min(), 6),
             format!("{:.2}", f.time_min),
             format!("{:.0}", f.cutting_length_mm),
             format!("{:.0}", f.air_length_mm),
@@ -269,7 +266,7 @@ fn table(operations: &[OperationSummary]) -> Table {
     Table {
         caption: "Operations, each judged after all before it".to_owned(),
         columns: names.map(|n| Column { name: n.to_owned(), ..Column::default() }).to_vec(),
-        rows: operations.iter().map(row).collect(),
+        rows: operations.iter().zip(steps).map(row).collect(),
     }
 }
 
