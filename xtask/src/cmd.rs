@@ -55,6 +55,8 @@ pub enum Failure {
     },
     /// Comparisons with another program that came out differently.
     Differs(usize),
+    /// Damaged files with which something was found.
+    Mutants(usize),
     /// A step of `ci` failed.
     Step {
         /// The step.
@@ -77,6 +79,7 @@ impl std::fmt::Display for Failure {
             }
             Self::NoPeer { what, how } => write!(f, "{what} is missing: {how}"),
             Self::Differs(count) => write!(f, "{count} parts came out differently, see above"),
+            Self::Mutants(count) => write!(f, "{count} findings on damaged files, see above"),
             Self::Untidy(1) => write!(f, "tidy: 1 finding, see above"),
             Self::Untidy(count) => write!(f, "tidy: {count} findings, see above"),
             Self::Step { name, why } => write!(f, "step {name} FAILED: {why}"),

@@ -1,5 +1,6 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
-//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask plans` and `cargo xtask truth`.
+//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask plans`, `cargo xtask mutate` and
+//! `cargo xtask truth`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -12,6 +13,7 @@ mod cmd;
 mod figures;
 mod interop;
 mod measured;
+mod mutate;
 mod parts;
 mod plans;
 mod test;
@@ -47,6 +49,9 @@ usage: cargo xtask COMMAND
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
   parts [--only TEXT] [--program FILE]
                 docs/parts.md: the examples that are whole parts, from the block to finished, planned and verified
+  mutate --data FOLDER [--count N] [--seed S] [--program FILE] [--keep FOLDER]
+                damaged files of every kind that is read, of a reference collection and of the examples, given to the verbs
+                below 20 s and 2 GiB: panics, signals, runs out of bounds and success with nonsense
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -80,6 +85,14 @@ fn main() -> ExitCode {
         ["parts", rest @ ..] => match parts::Options::of(rest) {
             Some(options) => parts::run(&options),
             None => return wrong_usage("parts takes --only TEXT and --program FILE"),
+        },
+        ["mutate", rest @ ..] => match mutate::Options::of(rest) {
+            Some(options) => mutate::run(&options),
+            None => {
+                return wrong_usage(
+                    "mutate takes --data FOLDER, --count N, --seed S, --program FILE and --keep FOLDER",
+                );
+            }
         },
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),

@@ -3,6 +3,7 @@
 mod fingerprint;
 pub mod hidden;
 mod loaded;
+pub mod mesh;
 mod sides;
 mod turned;
 
@@ -16,6 +17,7 @@ use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
+use osculate_surfaces::facets::mesh_format;
 use osculate_surfaces::structure::Structure;
 use osculate_tools::removal::Unseen;
 use sides::Told;
@@ -43,12 +45,16 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         hidden: Vec::new(),
         not_used: Vec::new(),
         truncated: None,
+        mesh: None,
         diagnostics: Vec::new(),
     })
 }
 
 fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
     let bytes = read(path)?;
+    if mesh_format(&bytes).is_some() {
+        return mesh::loaded(path, &bytes, unit_mm);
+    }
     let mut part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
     if unit_mm.is_some() {
         part = match part.format {
@@ -59,7 +65,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
                 osculate_surfaces::patches::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?
             }
             _ => {
-                let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
+                let text = "[part] unit_mm goes with point sections, sets of patches and meshes; this file says its unit itself";
                 return Err(Failure::file(path, text));
             }
         };
@@ -101,6 +107,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
                 "is truncated: faces may be missing (inspect shows what was read); export or copy it again";
             format!("{}: the file {what}", path.display())
         }),
+        mesh: None,
         diagnostics: part.diagnostics,
     })
 }
@@ -260,6 +267,9 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
     if !allowed.is_empty() {
         unseen.push(Unseen::MayBeHit(allowed));
     }
+    if let Some(mesh) = &part.mesh {
+        unseen.push(Unseen::Mesh(mesh.words()));
+    }
     if !part.hidden.is_empty() {
         unseen.push(Unseen::Hidden(part.hidden.iter().map(InBodies::words).collect()));
     }
@@ -282,7 +292,9 @@ fn both_kinds(job: &Job, key: &str, id: &str, why: &str) -> Failure {
 
 /// The single face of a job.
 pub fn one_face(job: &Job) -> Result<LoadedFace, Failure> {
-    let mut all = of_job(job)?.faces;
+    let part = of_job(job)?;
+    part.part.to_plan(job.path())?;
+    let mut all = part.faces;
     match (all.pop(), all.len()) {
         (Some(one), 0) => Ok(one),
         (_, more) => Err(Failure::file(
