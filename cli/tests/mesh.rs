@@ -207,3 +207,17 @@ fn what_a_mesh_does_not_allow_is_said() {
     scratch.write("block.stl", "ply\nformat ascii 1.0\nelement vertex 3\nend_header\n");
     osculate(&["inspect", part]).refused(&["PLY", "no vertex"]);
 }
+
+/// A block of which a damage has put a corner far away: it is shown, and refused for work.
+#[test]
+fn what_lies_farther_than_any_part_is_refused() {
+    let scratch = Scratch::new();
+    let near = stl(&block());
+    let far = near.replacen("6e0", "6e9", 1);
+    assert_ne!(near, far);
+    let part = scratch.write("far.stl", &far);
+    let run = osculate(&["inspect", part.to_str().unwrap(), "--json"]);
+    assert_eq!(run.code, 1);
+    assert!(run.json()["error"]["what"].as_str().unwrap().contains("no part is"), "{}", run.out);
+    verify(&scratch, "file = \"far.stl\"", "", true).refused(&["F1", "numbers of the file are damaged"]);
+}

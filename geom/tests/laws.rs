@@ -10,8 +10,8 @@ use osculate_geom::geodesic::GeodesicState;
 use osculate_geom::laws::{Accuracy, Kind, Sample};
 use osculate_geom::line::{GeodesicLine, IsoLine, SurfaceLine};
 use osculate_geom::{
-    Axis, Curve, Domain, Extruded, Facets, Flipped, Interval, Offset, Patch, Point3, Relative, Revolved,
-    Ruled, Side, Surface, ToolCurvature, TurnAxis, Unit3, Vec3, laws, quadrature, uv,
+    Axis, Curve, Domain, Extruded, Flipped, Interval, Offset, Patch, Point3, Relative, Revolved, Ruled, Side,
+    Surface, ToolCurvature, TurnAxis, Unit3, Vec3, laws, quadrature, uv,
 };
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -63,10 +63,6 @@ fn kinds() -> Vec<Kind> {
     };
     vec![
         kind("plane", move |x| Plane::new(Domain { u: i(x), v: i(x) })),
-        kind("triangle", |x| {
-            let corners = [[0.0, 0.0, 0.0], [3.0, 0.5, 1.0], [-1.0, 2.0, 0.7]];
-            Facets::new(vec![corners.map(|c| Point3::from(c) * x)]).unwrap()
-        }),
         kind("cylinder", move |x| Cylinder::new(2.0 * x, i(x)).unwrap()),
         kind("cone", move |x| Cone::new(4.0 * x, 0.4, i(x)).unwrap()),
         kind("sphere", move |x| Sphere::new(2.5 * x).unwrap()),

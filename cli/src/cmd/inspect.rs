@@ -249,6 +249,9 @@ fn failure(args: &PartArgs, part: &Loaded) -> Option<Failure> {
     if let Some(message) = &part.truncated {
         return Some(Failure::job(message));
     }
+    if let Some(message) = part::far(part) {
+        return Some(Failure::job(message));
+    }
     let path = args.part.as_ref().filter(|_| part.faces.is_empty())?;
     let what = "no face of it could be read: what is lost and what is not used say why; export it again with surfaces";
     Some(Failure::file(path, what))

@@ -23,6 +23,8 @@ const LOOK: u64 = 1 << 16;
 const STL: [u64; 2] = [84, 50];
 /// What a PLY file begins with.
 const PLY: &[u8] = b"ply";
+/// What a 3MF file begins with.
+const ZIP: &[u8] = b"PK\x03\x04";
 
 /// What raw material is.
 #[derive(Debug, Clone, PartialEq)]
@@ -150,7 +152,7 @@ fn mesh(places: &Places, table: &str, key: &str, file: &str) -> Result<PathBuf, 
         Ok(None) => Ok(path),
         Ok(Some(why)) => {
             let what = format!("{key} = \"{file}\" is no mesh that is read: {why}");
-            Err(places.full(table, key, what, "an STL or PLY mesh, binary or text".to_owned(), None))
+            Err(places.full(table, key, what, "an STL, PLY or 3MF mesh".to_owned(), None))
         }
         Err(e) => Err(places.refuse(table, key, format!("{key} = \"{file}\" cannot be read: {e}"))),
     }
@@ -165,7 +167,7 @@ fn why_no_mesh(path: &Path) -> std::io::Result<Option<String>> {
     }
     let mut head = Vec::new();
     file.by_ref().take(LOOK).read_to_end(&mut head)?;
-    if head.starts_with(PLY) {
+    if [PLY, ZIP].iter().any(|begin| head.starts_with(begin)) {
         return Ok(None);
     }
     let [before, each] = STL;

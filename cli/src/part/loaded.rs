@@ -56,7 +56,7 @@ impl InBodies {
 /// A part ready for work.
 #[derive(Clone)]
 pub struct Loaded {
-    /// `step`, `iges`, `patches`, `sections`, `json`, `stl`, `ply` or `builtin`.
+    /// `step`, `iges`, `patches`, `sections`, `json`, `stl`, `ply`, `3mf` or `builtin`.
     pub format: &'static str,
     /// The file's unit.
     pub unit: String,

@@ -80,6 +80,7 @@ pub(super) fn loaded(path: &Path, bytes: &[u8], unit_mm: Option<f64>) -> Result<
     let format = match file.format {
         MeshFormat::Stl => "stl",
         MeshFormat::Ply => "ply",
+        MeshFormat::ThreeMf => "3mf",
     };
     let triangles = scaled(file.triangles, file.unit_mm.or(unit_mm).unwrap_or(1.0));
     let part = mesh_part(&triangles, SHARP_RAD).map_err(|e| Failure::file(path, e))?;

@@ -20,6 +20,7 @@ use osculate_surfaces::TrimmedSurface;
 use osculate_surfaces::facets::mesh_format;
 use osculate_surfaces::structure::Structure;
 use osculate_tools::removal::Unseen;
+use rayon::prelude::*;
 use sides::Told;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -112,12 +113,38 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
     })
 }
 
-/// The part, unless its file ends too early.
+/// Places farther from the origin than this belong to no part, mm: a thousand kilometres.
+const FAR_MM: f64 = 1e9;
+/// Ids of such faces that a message lists at most.
+const FAR_LISTED: usize = 12;
+
+/// The part, unless its file ends too early or has places that no part has.
+///
+/// # Errors
+/// In these cases.
 pub fn whole(part: Loaded) -> Result<Loaded, Failure> {
-    match &part.truncated {
-        Some(message) => Err(Failure::job(message)),
-        None => Ok(part),
+    match (&part.truncated, far(&part)) {
+        (Some(message), _) => Err(Failure::job(message)),
+        (None, Some(message)) => Err(Failure::job(message)),
+        (None, None) => Ok(part),
     }
+}
+
+/// What is to be said of a part with faces that lie farther away than any part is large: numbers of its file are damaged.
+#[must_use]
+pub fn far(part: &Loaded) -> Option<String> {
+    let is_far = |f: &LoadedFace| {
+        let b = f.surface.bbox(1);
+        // What is no number is no place of a part either.
+        !b.is_empty() && !b.min.iter().chain(b.max.iter()).all(|x| x.abs() <= FAR_MM)
+    };
+    let each: Vec<bool> = part.faces.par_iter().map(is_far).collect();
+    let ids: Vec<&str> = part.faces.iter().zip(each).filter(|f| f.1).map(|f| f.0.id.as_str()).collect();
+    let more = if ids.len() > FAR_LISTED { ", ..." } else { "" };
+    let shown = ids[..ids.len().min(FAR_LISTED)].join(", ");
+    (!ids.is_empty()).then(|| {
+        format!("{shown}{more}: farther than {FAR_MM:e} mm from the origin, as no part is: numbers of the file are damaged; export or copy it again")
+    })
 }
 
 /// The part of a file.

@@ -11,11 +11,15 @@
 mod groups;
 mod ply;
 mod stl;
+mod threemf;
 mod weld;
+mod zip;
 
 pub use groups::{MOST_FACES, MeshFace, MeshPart, SHARP_RAD, mesh_part};
 pub use ply::PlyError;
 pub use stl::{StlError, read_stl};
+pub use threemf::ThreeMfError;
+pub use zip::ZipError;
 
 use osculate_geom::Point3;
 use std::fmt;
@@ -27,6 +31,8 @@ pub enum MeshFormat {
     Stl,
     /// PLY, binary or text.
     Ply,
+    /// 3MF.
+    ThreeMf,
 }
 
 impl fmt::Display for MeshFormat {
@@ -34,6 +40,7 @@ impl fmt::Display for MeshFormat {
         f.write_str(match self {
             Self::Stl => "STL",
             Self::Ply => "PLY",
+            Self::ThreeMf => "3MF",
         })
     }
 }
@@ -53,7 +60,7 @@ pub struct MeshFile {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshFileError {
     /// None of the formats.
-    #[error("no mesh that is read: STL, binary or text, and PLY are")]
+    #[error("no mesh that is read: STL, PLY and 3MF are")]
     Unknown,
     /// An STL file that cannot be read.
     #[error("STL: {0}")]
@@ -61,6 +68,9 @@ pub enum MeshFileError {
     /// A PLY file that cannot be read.
     #[error("PLY: {0}")]
     Ply(#[from] PlyError),
+    /// A 3MF file that cannot be read.
+    #[error("3MF: {0}")]
+    ThreeMf(#[from] ThreeMfError),
 }
 
 /// The format of a file, by its beginning and its size.
@@ -68,6 +78,8 @@ pub enum MeshFileError {
 pub fn mesh_format(bytes: &[u8]) -> Option<MeshFormat> {
     if ply::looks_like(bytes) {
         Some(MeshFormat::Ply)
+    } else if threemf::looks_like(bytes) {
+        Some(MeshFormat::ThreeMf)
     } else if stl::looks_like(bytes) {
         Some(MeshFormat::Stl)
     } else {
@@ -84,6 +96,10 @@ pub fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileError> {
     let (triangles, unit_mm) = match format {
         MeshFormat::Stl => (read_stl(bytes)?, None),
         MeshFormat::Ply => (ply::read(bytes)?, None),
+        MeshFormat::ThreeMf => {
+            let (triangles, unit_mm) = threemf::read(bytes)?;
+            (triangles, Some(unit_mm))
+        }
     };
     Ok(MeshFile { format, triangles, unit_mm })
 }

@@ -89,7 +89,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 return Ok(());
             }
             let mut dice = Dice::new(options.seed.wrapping_mul(0x1_0000_0001).wrapping_add(number as u64));
-            let seed = &seeds[number % seeds.len()];
+            let seed = seeds.nth(number);
             let bytes = damage::damaged(&seed.bytes, &mut dice);
             let file = folder.join(&seed.name);
             std::fs::write(&file, &bytes).map_err(|why| Failure::Write { path: file.clone(), why })?;
@@ -123,7 +123,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let mut found = found.into_inner().unwrap_or_default();
     found.sort_by_key(|f| f.number);
-    println!("{} files damaged of {} that are whole, {} findings", options.count, seeds.len(), found.len());
+    println!("{} files damaged of {} that are whole, {} findings", options.count, seeds.count(), found.len());
     for f in &found {
         println!("  {}: {}: {}", f.number, f.what, f.line);
     }

@@ -104,8 +104,43 @@ impl Seed {
     }
 }
 
-/// The whole files of a collection and of the workspace, those of one kind and the next in turn.
-pub fn all(data: &Path, root: &Path) -> Result<Vec<Seed>, Failure> {
+/// Whole files by their kind.
+pub struct Seeds {
+    kinds: Vec<Vec<Seed>>,
+}
+
+/// In which order kinds take turns: parts are of many forms.
+const TURNS: [Kind; 10] = [
+    Kind::Part,
+    Kind::Program,
+    Kind::Part,
+    Kind::Path,
+    Kind::Part,
+    Kind::Job,
+    Kind::Part,
+    Kind::Machine,
+    Kind::Part,
+    Kind::Dialect,
+];
+
+impl Seeds {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.kinds.iter().map(Vec::len).sum()
+    }
+
+    /// The file whose turn it is.
+    pub fn nth(&self, number: usize) -> &Seed {
+        let kind = TURNS[number % TURNS.len()];
+        let own = &self.kinds[kind as usize];
+        let before = TURNS[..number % TURNS.len()].iter().filter(|k| **k == kind).count();
+        let each = TURNS.iter().filter(|k| **k == kind).count();
+        &own[(number / TURNS.len() * each + before) % own.len()]
+    }
+}
+
+/// The whole files of a collection and of the workspace.
+pub fn all(data: &Path, root: &Path) -> Result<Seeds, Failure> {
     let mut kinds: Vec<Vec<Seed>> = (0..6).map(|_| Vec::new()).collect();
     let mut take = |path: PathBuf, kind: Kind| -> Result<(), Failure> {
         let about = std::fs::metadata(&path).map_err(|why| Failure::Read { path: path.clone(), why })?;
@@ -144,22 +179,14 @@ pub fn all(data: &Path, root: &Path) -> Result<Vec<Seed>, Failure> {
         let beside = beside(Kind::Part, name, Path::new(name));
         kinds[Kind::Part as usize].push(Seed { name: name.to_owned(), bytes, beside, kind: Kind::Part });
     }
-    // Kinds take turns, so that few parts of a kind are as often damaged as many of another.
-    let mut turns: Vec<_> = kinds
-        .into_iter()
-        .filter(|k| !k.is_empty())
-        .map(|k| k.into_iter().map(Some).collect::<Vec<_>>())
-        .collect();
-    let most = turns.iter().map(Vec::len).max().unwrap_or(0);
-    let mut out = Vec::new();
-    for k in 0..most {
-        for kind in &mut turns {
-            if let Some(seed) = kind.get_mut(k).and_then(Option::take) {
-                out.push(seed);
-            }
-        }
+    let names = ["parts", "programs", "paths", "jobs", "machines", "dialects"];
+    if let Some(none) = kinds.iter().position(Vec::is_empty) {
+        return Err(Failure::NoPeer {
+            what: names[none],
+            how: "say a folder with files of a reference collection by --data",
+        });
     }
-    Ok(out)
+    Ok(Seeds { kinds })
 }
 
 /// What stands beside a file of a kind.
