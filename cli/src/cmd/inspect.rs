@@ -208,10 +208,12 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
 }
 
 /// Runs the verb.
-pub fn run(args: &PartArgs, json: bool) -> Outcome {
+pub fn run(args: &PartArgs, areas: bool, json: bool) -> Outcome {
     let mut part = args.load()?;
-    let off = unbalanced(&part);
-    part.diagnostics.extend(off);
+    if areas {
+        let off = unbalanced(&part);
+        part.diagnostics.extend(off);
+    }
     let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
     let found = hidden::find(&part, &oriented);
     let why = failure(args, &part);

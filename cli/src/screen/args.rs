@@ -24,7 +24,14 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// What is in a CAD file: faces with kind, degrees, poles, area, curvature range, what was not understood.
-    Inspect(PartArgs),
+    Inspect {
+        /// The part.
+        #[command(flatten)]
+        part: PartArgs,
+        /// Hold the area of every face against the curves of its boundary, a second method, and warn where they differ.
+        #[arg(long)]
+        areas: bool,
+    },
     /// A first job for a part: faces, tool, axes and tolerance chosen, each with its reason, ready for `plan`.
     Init(InitArgs),
     /// What fits and what is not reached or not set, without planning.

@@ -192,10 +192,10 @@ fn triangles_have_samples_by_their_size() {
     let got = sample_surface(&facets, 2, 0.5, 100_000).unwrap();
     assert!((got.area_mm2 - want).abs() < 1e-9 * want, "{} {want}", got.area_mm2);
     assert_eq!(got.lost_area_mm2, 0.0);
-    // One for each small triangle, and over the large ones about as many as 50 mm2 at half a millimetre have: with those on the
-    // sides of both not twice as many.
+    // One for each small triangle, and over the large ones as many as 51.5 mm2 at half a millimetre have, up to two and a half times: the rows
+    // of each are as close as its longest line across asks for, and have samples at both ends.
     let large = got.samples.len() - 10_000;
-    assert!((206..420).contains(&large), "{large}");
+    assert!((206..515).contains(&large), "{large}");
     let normal = Vec3::new(-0.25, 0.0, 1.0).normalize();
     for (s, patch) in got.samples.iter().zip(&got.patches) {
         assert!((s.normal.into_inner() - normal).norm() < 1e-12 && s.area_mm2 > 0.0);
