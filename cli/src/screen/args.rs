@@ -153,7 +153,7 @@ pub enum Verb {
 /// A part: a file or a built-in surface.
 #[derive(Debug, Args)]
 pub struct PartArgs {
-    /// A STEP or IGES file.
+    /// A STEP or IGES file, or a mesh (STL, PLY, 3MF) to look at.
     #[arg(required_unless_present = "builtin", conflicts_with = "builtin")]
     pub part: Option<PathBuf>,
     /// A built-in surface as a TOML table's keys, for example 'kind = "torus", major_radius_mm = 200, ...'.
