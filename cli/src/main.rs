@@ -17,7 +17,7 @@ const NOT_WITHIN: u8 = 1;
 
 fn run(cli: &Cli) -> Outcome {
     match &cli.verb {
-        Verb::Inspect(part) => cmd::inspect::run(part, cli.json),
+        Verb::Inspect(options) => cmd::inspect::run(options, cli.json),
         Verb::Init(options) => cmd::init::run(options, cli.json),
         Verb::Check { job } => cmd::check::run(job, cli.json),
         Verb::Export(options) => cmd::export::run(options, cli.json),

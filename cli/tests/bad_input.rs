@@ -221,7 +221,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
         "[stock]\nfile = \"none.stl\"\n[verification]",
         &["file", "none.stl", "cannot be read"],
     ),
-    ("[verification]", "[stock]\nfile = \"job.toml\"\n[verification]", &["file", "no STL"]),
+    ("[verification]", "[stock]\nfile = \"job.toml\"\n[verification]", &["file", "no mesh"]),
     (
         "[verification]",
         "[stock]\nallowance_mm = 1\nbox_mm = [0, 0, 0, 1, 1, 1]\n[verification]",

@@ -200,7 +200,7 @@ fn what_is_no_part_is_not_repeated() {
         let path: PathBuf = scratch.write(name, text);
         osculate(&["inspect", path.to_str().unwrap()]).err
     };
-    assert!(said("a.stl", "solid a\nendsolid a\n").contains("a mesh as STL text"));
+    assert!(said("a.stl", "solid a\nendsolid a\n").contains("STL: there is no triangle in it"));
     assert!(said("a.pdf", "%PDF-1.4\n").contains("a PDF document"));
     assert!(said("a.txt", "It was a dark and stormy night.\n").contains("other text"));
 }

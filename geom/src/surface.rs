@@ -62,6 +62,12 @@ pub trait Surface: Send + Sync {
             .filter(|at| self.contains(*at))
             .collect()
     }
+
+    /// Rectangles of parameters that are looked at one by one, where a surface is of several pieces that need not meet, such as
+    /// triangles; pieces may be flat and as small as they come. A surface of one piece gives its domain.
+    fn pieces(&self) -> Vec<Domain> {
+        vec![self.domain()]
+    }
 }
 
 /// Stretches of inside on a grid of cells, ends refined by bisection.
@@ -98,7 +104,7 @@ fn scanned_spans(line: Interval, inside: &dyn Fn(f64) -> bool) -> Vec<Interval> 
 ///
 /// A wrapper that writes them by hand forgets the provided ones, whose defaults then hide what the surface below knows: a
 /// trimmed surface would have the corners of its rectangle for its turns. `trims` is everything about where the surface
-/// is (domain, contains, breaks, spans, turns), `shape` everything about its points, `all` is both; single methods go by
+/// is (domain, contains, breaks, spans, turns, pieces), `shape` everything about its points, `all` is both; single methods go by
 /// their names.
 ///
 /// ```
@@ -133,6 +139,10 @@ macro_rules! forward_surface {
         $crate::forward_surface!(domain | $s | $base);
         $crate::forward_surface!(breaks | $s | $base);
         $crate::forward_surface!(turns | $s | $base);
+        fn pieces(&self) -> Vec<$crate::Domain> {
+            let $s = self;
+            $base.pieces()
+        }
         fn contains(&self, uv: $crate::Uv) -> bool {
             let $s = self;
             $base.contains(uv)

@@ -70,7 +70,7 @@ fn is_wide(bytes: &[u8]) -> bool {
 const KNOWN: [(&[u8], &str); 12] = [
     (b"solid", "a mesh as STL text"),
     (b"ply", "a PLY mesh"),
-    (b"PK\x03\x04", "a ZIP archive, as 3MF meshes and zipped files are: unpack it"),
+    (b"PK\x03\x04", "a ZIP archive without a 3MF model: unpack it"),
     (b"\x1f\x8b", "compressed by gzip: unpack it"),
     (b"%PDF", "a PDF document"),
     (b"\x89PNG", "a PNG picture"),

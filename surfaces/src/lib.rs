@@ -22,6 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod facets;
 pub mod fit;
 pub mod gallery;
 pub mod groups;

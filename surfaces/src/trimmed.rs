@@ -10,7 +10,7 @@ use crate::trim::region::{Chain, Known, Region};
 use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::solve::symmetric;
 use osculate_geom::{
-    Axis, Box3, Domain, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, forward_surface, uv,
+    Axis, Box3, Domain, Facets, Interval, Jet2, Jet3, Point3, Side, Surface, Taylor, Uv, forward_surface, uv,
 };
 use std::sync::Arc;
 
@@ -85,6 +85,8 @@ pub struct TrimmedSurface {
     region: Option<Arc<Region>>,
     /// The edges of the file; none for a surface that was not imported.
     edges: Arc<[FaceEdge]>,
+    /// The triangles, where it is made of such.
+    facets: Option<Arc<Facets>>,
 }
 
 impl std::fmt::Debug for TrimmedSurface {
@@ -160,6 +162,7 @@ impl TrimmedSurface {
                 loops: vec![rectangle],
                 region: None,
                 edges: Arc::new([]),
+                facets: None,
             });
         }
         let mut outlines: Vec<Loop> = region
@@ -181,7 +184,30 @@ impl TrimmedSurface {
             loops: outlines,
             region: Some(Arc::new(region)),
             edges: Arc::new([]),
+            facets: None,
         })
+    }
+
+    /// Triangles as a surface, none of which is cut away; on its natural side the material is where they do not look.
+    #[must_use]
+    pub fn of_facets(facets: Arc<Facets>) -> Self {
+        let domain = facets.domain();
+        let corners = [domain.at(0.0, 0.0), domain.at(1.0, 0.0), domain.at(1.0, 1.0), domain.at(0.0, 1.0)];
+        Self {
+            carrier: facets.clone(),
+            domain,
+            side: Side::Along,
+            loops: vec![Loop { points: corners.to_vec() }],
+            region: None,
+            edges: Arc::new([]),
+            facets: Some(facets),
+        }
+    }
+
+    /// The triangles that it is made of, where it is a mesh: outward where [`side`](Self::side) is the natural one.
+    #[must_use]
+    pub const fn facets(&self) -> Option<&Arc<Facets>> {
+        self.facets.as_ref()
     }
 
     /// The surface with the edges that its loops were made of.
@@ -241,7 +267,7 @@ impl TrimmedSurface {
     /// Area, mm2, to about 1e-6 plus the effect of the loops' chord tolerance.
     #[must_use]
     pub fn area_mm2(&self) -> f64 {
-        self.integrate(1e-7, &|_| 1.0)
+        self.facets.as_ref().map_or_else(|| self.integrate(1e-7, &|_| 1.0), |f| f.area_mm2())
     }
 
     /// A box around the inside, mm: from boundary points and the points of a grid of `lines` per span, with each side
@@ -250,6 +276,9 @@ impl TrimmedSurface {
     pub fn bbox(&self, lines: usize) -> Box3 {
         /// Direction slots: the coordinate upwards, then downwards.
         const SIGNS: [f64; 2] = [1.0, -1.0];
+        if let Some(facets) = &self.facets {
+            return facets.bounds();
+        }
         let mut found = Box3::empty();
         // The best samples of each of the six directions, inside and on the boundary.
         let mut inside = [(f64::NEG_INFINITY, uv(0.0, 0.0)); 6];
@@ -371,10 +400,18 @@ impl Surface for TrimmedSurface {
         self.domain
     }
     fn contains(&self, uv: Uv) -> bool {
-        self.domain.contains(uv) && self.region.as_ref().is_none_or(|r| r.inside(self.domain.bring(uv)))
+        self.domain.contains(uv)
+            && self.region.as_ref().is_none_or(|r| r.inside(self.domain.bring(uv)))
+            && self.facets.as_ref().is_none_or(|f| f.contains(uv))
+    }
+    fn pieces(&self) -> Vec<Domain> {
+        self.facets.as_ref().map_or_else(|| vec![self.domain], |f| f.pieces())
     }
     /// Exact for the loops' polygons. Empty where `fixed` is outside the rectangle.
     fn spans(&self, axis: Axis, fixed: f64) -> Vec<Interval> {
+        if let Some(facets) = &self.facets {
+            return facets.spans(axis, fixed);
+        }
         let across = self.domain.get(axis.other());
         if !across.contains(fixed) {
             return Vec::new();

@@ -57,6 +57,8 @@ pub enum Failure {
     Differs(usize),
     /// What is wrong with pages in a browser.
     Pages(usize),
+    /// Damaged files with which something was found.
+    Mutants(usize),
     /// A step of `ci` failed.
     Step {
         /// The step.
@@ -80,6 +82,7 @@ impl std::fmt::Display for Failure {
             Self::NoPeer { what, how } => write!(f, "{what} is missing: {how}"),
             Self::Differs(count) => write!(f, "{count} parts came out differently, see above"),
             Self::Pages(count) => write!(f, "browser: {count} findings, see above"),
+            Self::Mutants(count) => write!(f, "{count} findings on damaged files, see above"),
             Self::Untidy(1) => write!(f, "tidy: 1 finding, see above"),
             Self::Untidy(count) => write!(f, "tidy: {count} findings, see above"),
             Self::Step { name, why } => write!(f, "step {name} FAILED: {why}"),

@@ -1,5 +1,6 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
-//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask browser`, `cargo xtask plans` and `cargo xtask truth`.
+//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask browser`, `cargo xtask plans`, `cargo xtask mutate`
+//! and `cargo xtask truth`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -13,6 +14,7 @@ mod cmd;
 mod figures;
 mod interop;
 mod measured;
+mod mutate;
 mod parts;
 mod plans;
 mod test;
@@ -54,6 +56,9 @@ usage: cargo xtask COMMAND
   browser [--only TEXT] [--program FILE] [--report FILE] [--bless]
                 reports of three parts in a real browser (Debian: apt-get install chromium): what they show and do, pictures
                 below target/browser, held against xtask/browser/golden.json; --report looks at another one
+  mutate --data FOLDER [--count N] [--seed S] [--program FILE] [--keep FOLDER]
+                damaged files of every kind that is read, of a reference collection and of the examples, given to the verbs
+                below 20 s and 2 GiB: panics, signals, runs out of bounds and success with nonsense
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
@@ -93,6 +98,14 @@ fn main() -> ExitCode {
             Some(options) => browser::run(&options),
             None => {
                 return wrong_usage("browser takes --only TEXT, --program FILE, --report FILE and --bless");
+            }
+        },
+        ["mutate", rest @ ..] => match mutate::Options::of(rest) {
+            Some(options) => mutate::run(&options),
+            None => {
+                return wrong_usage(
+                    "mutate takes --data FOLDER, --count N, --seed S, --program FILE and --keep FOLDER",
+                );
             }
         },
         ["figures"] => figures::run(),

@@ -76,6 +76,7 @@ pub fn run(path: &Path, out: Option<&Path>, nodes: usize, json: bool) -> Outcome
     let mut pictures = Vec::new();
     let stage = Stage::begin(&SCREEN, "import");
     let faces = part::of_job(&job)?;
+    faces.part.to_plan(job.path())?;
     stage.end();
     let stage = Stage::begin(&SCREEN, "ideal");
     let ideal = ideal::of_job(&job, &faces)?;

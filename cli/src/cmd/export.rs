@@ -90,6 +90,10 @@ pub fn run(args: &ExportArgs, as_json: bool) -> Outcome {
 /// The faces asked for, of a file that is whole.
 fn chosen(args: &ExportArgs) -> Result<Vec<Face>, Failure> {
     let bytes = read(&args.part)?;
+    if osculate_surfaces::facets::mesh_format(&bytes).is_some() {
+        let what = format!("it is a mesh, which has no faces to export: {}", osculate::part::mesh::USES);
+        return Err(Failure::file(&args.part, what));
+    }
     let part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(&args.part, e))?;
     if part.truncated {
         let what = "the file is truncated: faces may be missing; export or copy it again";

@@ -58,6 +58,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let mut wall_s = WallS::default();
     let stage = Stage::begin(&SCREEN, "import");
     let faces = part::of_job(&job)?;
+    faces.part.to_plan(job.path())?;
     let FlankFace { face, along, straying_mm, .. } = FlankFace::of(&job, &faces)?;
     let faces = judged(&job, faces)?;
     wall_s.import = stage.end();

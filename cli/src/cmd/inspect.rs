@@ -12,7 +12,7 @@ use osculate::words;
 use osculate::words::{Table, number};
 use osculate::work::faces_page;
 use osculate::work::init::Grouped;
-use osculate_geom::{Box3, Surface};
+use osculate_geom::{Box3, Diagnostic, Surface};
 use osculate_surfaces::Colour;
 use osculate_surfaces::structure::{Body, Shell, Structure};
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ struct FaceRow {
     /// Each of these bodies, by its faces.
     hidden_in: Vec<String>,
     bbox_mm: Vec<f64>,
-    /// Least and greatest; empty where no point of the face has a tangent plane.
+    /// Least and greatest; empty where no point of the face has a tangent plane, and for triangles.
     principal_curvature_per_mm: Vec<f64>,
     u_range: [f64; 2],
     v_range: [f64; 2],
@@ -211,7 +211,9 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
         hidden_mm2: 0.0,
         hidden_in: Vec::new(),
         bbox_mm: corners(&b),
+        // Triangles are flat, whatever the face bends by.
         principal_curvature_per_mm: part::curvature_range(&*face.surface)
+            .filter(|_| face.surface.facets().is_none())
             .map_or_else(Vec::new, |r| r.to_vec()),
         u_range: [d.u.lo, d.u.hi],
         v_range: [d.v.lo, d.v.hi],
@@ -223,7 +225,11 @@ fn row(face: &LoadedFace) -> (FaceRow, Box3) {
 pub fn run(options: &InspectArgs, json: bool) -> Outcome {
     let args = &options.part;
     options.out.as_deref().map_or(Ok(()), output::folder)?;
-    let part = args.load()?;
+    let mut part = args.load()?;
+    if options.areas {
+        let off = unbalanced(&part);
+        part.diagnostics.extend(off);
+    }
     let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
     let found = hidden::find(&part, &oriented);
     let why = failure(args, &part);
@@ -259,9 +265,27 @@ pub fn run(options: &InspectArgs, json: bool) -> Outcome {
     }))
 }
 
+/// Faces whose area does not fit their boundary, by a second method.
+fn unbalanced(part: &Loaded) -> Vec<Diagnostic> {
+    let of = |f: &LoadedFace| {
+        let off = f.source.as_ref()?.imbalance()?;
+        let [loops, curves] = [off.loops_mm2, off.boundary_mm2].map(|x| number(x, 6));
+        let text = format!(
+            "as its loops were put together it has {loops} mm2 seen along its mean normal, and by the curves of its boundary {curves}: look at it \
+             (lines) before it is machined or checked"
+        );
+        Some(Diagnostic::warning(f.id.clone(), text))
+    };
+    let each: Vec<Option<Diagnostic>> = part.faces.par_iter().map(of).collect();
+    each.into_iter().flatten().collect()
+}
+
 /// Why what is shown is not the file.
 fn failure(args: &PartArgs, part: &Loaded) -> Option<Failure> {
     if let Some(message) = &part.truncated {
+        return Some(Failure::job(message));
+    }
+    if let Some(message) = part::far(part) {
         return Some(Failure::job(message));
     }
     let path = args.part.as_ref().filter(|_| part.faces.is_empty())?;

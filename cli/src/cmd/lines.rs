@@ -25,6 +25,9 @@ pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     let wanted = wanted(args)?;
     let tool = args.postures.tool.as_deref().map(|keys| limits(keys, &args.postures)).transpose()?;
     let loaded = part::whole(args.part.load()?)?;
+    if let Some(path) = &args.part.part {
+        loaded.to_plan(path)?;
+    }
     let face = loaded.one(args.face.as_deref())?;
     let study = Study::of(&face.surface, face.nurbs(), &wanted)
         .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;

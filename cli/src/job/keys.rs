@@ -122,7 +122,7 @@ static OWN: &[Table] = &[
     ]),
     table("setup", false, "in a list of operations [[setup]] is a list; one with all defaults where none is given", &[
         may("name", Kind::Text, "op and its place times ten", "\"op10\"", "how operations name it, and its program"),
-        may("fixtures", Kind::Files, "none", "[\"vice.stl\"]", "what holds the part in it: STL meshes in the part's frame, mm"),
+        may("fixtures", Kind::Files, "none", "[\"vice.stl\"]", "what holds the part in it: STL, PLY or 3MF meshes in the part's frame, mm"),
         may("fixture_spacing_mm", MM, "1", "1", "distance of the places looked at on fixtures"),
     ]),
     table("operation", false, "what is done, one after the other, each from the material that the one before left", &[
@@ -164,7 +164,7 @@ pub static TABLES: &[Table] = &[
         may("file", Kind::File, "", "\"part.step\"", "STEP, IGES, JSON, point sections or patches"),
         may("builtin", Kind::Builtin, "", "{ kind = \"paraboloid\", a_per_mm = 0.005, b_per_mm = -0.003, half_size_mm = 20 }",
             "a built-in surface instead of a file"),
-        may("unit_mm", MM, "as the file says", "25.4", "millimetres in a unit of point sections or patches"),
+        may("unit_mm", MM, "as the file says", "25.4", "millimetres in a unit of point sections, patches or meshes"),
         may("faces", Kind::Faces, "all", "[\"F1\", \"F2\"]", "faces to machine, as `inspect` prints their ids"),
         may("check_faces", Kind::Faces, "none named", "\"all\"", "faces that the tool must not touch"),
         may("may_hit", Kind::Others, "none", "[\"F3\"]", "faces not machined that the tool may cut or hit; the verdict's scope says so"),
@@ -264,7 +264,7 @@ pub static TABLES: &[Table] = &[
     ]),
     table("stock", false, "raw material: one of box_mm, [stock.cylinder], file, allowance_mm", &[
         may("box_mm", Kind::Corners("mm"), "", "[-10, -10, -20, 10, 10, 5]", "two corners in the part's frame"),
-        may("file", Kind::File, "", "\"stock.stl\"", "a closed STL mesh in the part's frame, mm, or stock-N.stock of a plan of the same part"),
+        may("file", Kind::File, "", "\"stock.stl\"", "a closed STL, PLY or 3MF mesh in the part's frame, mm, or stock-N.stock of a plan of the same part"),
         may("allowance_mm", MM, "", "2", "a layer around the faces, or around the file's solid"),
         may("cell_mm", MM, "a 256th of its size", "0.5", "sides of cells"),
         may("memory_mb", Kind::Number(ABOVE, "MB"), "512", "512", "memory for it"),
@@ -275,7 +275,7 @@ pub static TABLES: &[Table] = &[
         must("z_mm", Kind::Between(FAR, "mm"), "[0, 60]", "where it begins and ends along the axis"),
     ]),
     table("fixture", false, "what holds the part", &[
-        must("files", Kind::Files, "[\"vice.stl\"]", "STL meshes in the part's frame, mm"),
+        must("files", Kind::Files, "[\"vice.stl\"]", "STL, PLY or 3MF meshes in the part's frame, mm"),
         may("spacing_mm", MM, "1", "1", "distance of the places looked at"),
     ]),
     table("flank", false, "the side of the cutter on a ruled face, for `flank`", &[

@@ -147,10 +147,3 @@ impl Places {
         }))
     }
 }
-
-/// A name that is none, with the nearest one that is.
-pub fn meant<'n>(error: &dyn Display, name: &str, known: impl IntoIterator<Item = &'n str>) -> Failure {
-    let near =
-        crate::job::words::nearest(name, known).map_or_else(String::new, |n| format!(" (is {n} meant?)"));
-    Failure::job(format!("{error}{near}"))
-}

@@ -21,6 +21,10 @@ const SAVED: &str = "stock";
 const LOOK: u64 = 1 << 16;
 /// Head of a binary STL file and what each triangle takes, bytes.
 const STL: [u64; 2] = [84, 50];
+/// What a PLY file begins with.
+const PLY: &[u8] = b"ply";
+/// What a 3MF file begins with.
+const ZIP: &[u8] = b"PK\x03\x04";
 
 /// What raw material is.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +67,7 @@ pub struct Stock {
 /// What holds the part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fixture {
-    /// STL meshes in the part's frame.
+    /// Meshes in the part's frame.
     pub files: Vec<PathBuf>,
     /// Distance of the places looked at.
     pub spacing_mm: f64,
@@ -144,18 +148,18 @@ pub(super) fn present(places: &Places, table: &str, key: &str, file: &str) -> Re
 /// A mesh that is there.
 fn mesh(places: &Places, table: &str, key: &str, file: &str) -> Result<PathBuf, Failure> {
     let path = present(places, table, key, file)?;
-    match why_no_stl(&path) {
+    match why_no_mesh(&path) {
         Ok(None) => Ok(path),
         Ok(Some(why)) => {
-            let what = format!("{key} = \"{file}\" is no STL mesh: {why}");
-            Err(places.full(table, key, what, "an STL mesh, binary or text".to_owned(), None))
+            let what = format!("{key} = \"{file}\" is no mesh that is read: {why}");
+            Err(places.full(table, key, what, "an STL, PLY or 3MF mesh".to_owned(), None))
         }
         Err(e) => Err(places.refuse(table, key, format!("{key} = \"{file}\" cannot be read: {e}"))),
     }
 }
 
-/// Why a file is no STL mesh, by its beginning and its size.
-fn why_no_stl(path: &Path) -> std::io::Result<Option<String>> {
+/// Why a file is no mesh, by its beginning and its size.
+fn why_no_mesh(path: &Path) -> std::io::Result<Option<String>> {
     let mut file = File::open(path)?;
     let size = file.metadata()?.len();
     if size > LARGEST {
@@ -163,6 +167,9 @@ fn why_no_stl(path: &Path) -> std::io::Result<Option<String>> {
     }
     let mut head = Vec::new();
     file.by_ref().take(LOOK).read_to_end(&mut head)?;
+    if [PLY, ZIP].iter().any(|begin| head.starts_with(begin)) {
+        return Ok(None);
+    }
     let [before, each] = STL;
     let count = head.get(80..84).map(|b| u64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])));
     if count.is_some_and(|n| n > 0 && before + each * n == size) {

@@ -1,6 +1,7 @@
 //! A part as it was read: its faces with names, and what was found on the way.
 
 use crate::failure::Failure;
+use crate::part::mesh::MeshFacts;
 use crate::words::number;
 use osculate_geom::Diagnostic;
 use osculate_surfaces::structure::Structure;
@@ -55,7 +56,7 @@ impl InBodies {
 /// A part ready for work.
 #[derive(Clone)]
 pub struct Loaded {
-    /// `step`, `iges`, `patches`, `sections`, `json` or `builtin`.
+    /// `step`, `iges`, `patches`, `sections`, `json`, `stl`, `ply`, `3mf` or `builtin`.
     pub format: &'static str,
     /// The file's unit.
     pub unit: String,
@@ -73,6 +74,8 @@ pub struct Loaded {
     pub not_used: Vec<NotUsed>,
     /// The message for a file that ends too early.
     pub truncated: Option<String>,
+    /// What it is known by where it is a mesh.
+    pub mesh: Option<MeshFacts>,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
 }

@@ -3,6 +3,7 @@
 mod fingerprint;
 pub mod hidden;
 mod loaded;
+pub mod mesh;
 mod sides;
 mod turned;
 
@@ -16,8 +17,10 @@ use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
+use osculate_surfaces::facets::mesh_format;
 use osculate_surfaces::structure::Structure;
 use osculate_tools::removal::Unseen;
+use rayon::prelude::*;
 use sides::Told;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -43,12 +46,16 @@ fn from_builtin(b: Builtin) -> Result<Loaded, Failure> {
         hidden: Vec::new(),
         not_used: Vec::new(),
         truncated: None,
+        mesh: None,
         diagnostics: Vec::new(),
     })
 }
 
 fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
     let bytes = read(path)?;
+    if mesh_format(&bytes).is_some() {
+        return mesh::loaded(path, &bytes, unit_mm);
+    }
     let mut part = osculate_surfaces::read(&bytes).map_err(|e| Failure::file(path, e))?;
     if unit_mm.is_some() {
         part = match part.format {
@@ -59,7 +66,7 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
                 osculate_surfaces::patches::read_in(&bytes, unit_mm).map_err(|e| Failure::file(path, e))?
             }
             _ => {
-                let text = "[part] unit_mm goes with point sections and sets of patches; this file says its unit itself";
+                let text = "[part] unit_mm goes with point sections, sets of patches and meshes; this file says its unit itself";
                 return Err(Failure::file(path, text));
             }
         };
@@ -101,16 +108,43 @@ fn from_file(path: &Path, unit_mm: Option<f64>) -> Result<Loaded, Failure> {
                 "is truncated: faces may be missing (inspect shows what was read); export or copy it again";
             format!("{}: the file {what}", path.display())
         }),
+        mesh: None,
         diagnostics: part.diagnostics,
     })
 }
 
-/// The part, unless its file ends too early.
+/// Places farther from the origin than this belong to no part, mm: a thousand kilometres.
+const FAR_MM: f64 = 1e9;
+/// Ids of such faces that a message lists at most.
+const FAR_LISTED: usize = 12;
+
+/// The part, unless its file ends too early or has places that no part has.
+///
+/// # Errors
+/// In these cases.
 pub fn whole(part: Loaded) -> Result<Loaded, Failure> {
-    match &part.truncated {
-        Some(message) => Err(Failure::job(message)),
-        None => Ok(part),
+    match (&part.truncated, far(&part)) {
+        (Some(message), _) => Err(Failure::job(message)),
+        (None, Some(message)) => Err(Failure::job(message)),
+        (None, None) => Ok(part),
     }
+}
+
+/// What is to be said of a part with faces that lie farther away than any part is large: numbers of its file are damaged.
+#[must_use]
+pub fn far(part: &Loaded) -> Option<String> {
+    let is_far = |f: &LoadedFace| {
+        let b = f.surface.bbox(1);
+        // What is no number is no place of a part either.
+        !b.is_empty() && !b.min.iter().chain(b.max.iter()).all(|x| x.abs() <= FAR_MM)
+    };
+    let each: Vec<bool> = part.faces.par_iter().map(is_far).collect();
+    let ids: Vec<&str> = part.faces.iter().zip(each).filter(|f| f.1).map(|f| f.0.id.as_str()).collect();
+    let more = if ids.len() > FAR_LISTED { ", ..." } else { "" };
+    let shown = ids[..ids.len().min(FAR_LISTED)].join(", ");
+    (!ids.is_empty()).then(|| {
+        format!("{shown}{more}: farther than {FAR_MM:e} mm from the origin, as no part is: numbers of the file are damaged; export or copy it again")
+    })
 }
 
 /// The part of a file.
@@ -264,6 +298,9 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
     if !allowed.is_empty() {
         unseen.push(Unseen::MayBeHit(allowed));
     }
+    if let Some(mesh) = &part.mesh {
+        unseen.push(Unseen::Mesh(mesh.words()));
+    }
     if !part.hidden.is_empty() {
         unseen.push(Unseen::Hidden(part.hidden.iter().map(InBodies::words).collect()));
     }
@@ -286,7 +323,9 @@ fn both_kinds(job: &Job, key: &str, id: &str, why: &str) -> Failure {
 
 /// The single face of a job.
 pub fn one_face(job: &Job) -> Result<LoadedFace, Failure> {
-    let mut all = of_job(job)?.faces;
+    let part = of_job(job)?;
+    part.part.to_plan(job.path())?;
+    let mut all = part.faces;
     match (all.pop(), all.len()) {
         (Some(one), 0) => Ok(one),
         (_, more) => Err(Failure::file(

@@ -152,7 +152,7 @@ pub enum Verb {
 /// A part: a file or a built-in surface.
 #[derive(Debug, Args)]
 pub struct PartArgs {
-    /// A STEP or IGES file.
+    /// A STEP or IGES file, or a mesh (STL, PLY, 3MF) to look at.
     #[arg(required_unless_present = "builtin", conflicts_with = "builtin")]
     pub part: Option<PathBuf>,
     /// A built-in surface as a TOML table's keys, for example 'kind = "torus", major_radius_mm = 200, ...'.
@@ -180,6 +180,9 @@ pub struct InspectArgs {
     /// The faces in groups that look alike and go on smoothly, with what each is, and how neighbours meet.
     #[arg(long)]
     pub groups: bool,
+    /// Hold the area of every face against the curves of its boundary, a second method, and warn where they differ.
+    #[arg(long)]
+    pub areas: bool,
     /// Folder for faces.html: the part in 3D, its faces with their ids, coloured by group.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,

@@ -132,6 +132,7 @@ fn not_planned(job: &Job) -> Failure {
 /// # Errors
 /// Where no path can be planned or posted. A plan that does not hold is none: its verdict says so.
 pub fn plan(part: &Part, job: &Job, watch: &dyn Watch) -> Result<Plan, Failure> {
+    part.part.to_plan(job.path())?;
     let mut wall_s = WallS { import: part.import_s, ..WallS::default() };
     if job.is_open() {
         let (job, chosen) = chosen(job, part, &mut wall_s, watch).map_err(|why| part.warned(why))?;

@@ -149,6 +149,7 @@ fn out_of_reach_mm2(part: &Part, all: &[(Vec<String>, &Reached)]) -> f64 {
 /// # Errors
 /// Where the part cannot be read or sampled.
 pub fn of_job(job: &Job, part: &Part) -> Result<Checked, Failure> {
+    part.part.to_plan(job.path())?;
     let reached: Vec<Reached> =
         job.each_tool().iter().map(|one| of_tool("", one, part)).collect::<Result<_, _>>()?;
     let best = reached.iter().map(|r| r.area_mm2 - r.reached_mm2).fold(f64::INFINITY, f64::min);
@@ -160,6 +161,7 @@ pub fn of_job(job: &Job, part: &Part) -> Result<Checked, Failure> {
 /// # Errors
 /// As [`of_job`].
 pub fn of_list(list: &Operations, part: &Part) -> Result<Checked, Failure> {
+    part.part.to_plan(list.path())?;
     let mut reached = Vec::new();
     let mut faces: Vec<Vec<String>> = Vec::new();
     for operation in list.all().iter().filter(|o| o.kind != OperationWord::Rough) {

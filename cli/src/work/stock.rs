@@ -2,10 +2,11 @@
 
 use crate::failure::{Failure, read};
 use crate::job::{Blank as Raw, Job, Source};
+use crate::part::mesh::triangles;
 use crate::part::{self, Part};
 use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
-use osculate_tools::removal::stock::{Blank, Resolution, Stock, read_stl};
+use osculate_tools::removal::stock::{Blank, Resolution, Stock};
 use osculate_tools::removal::{Body, GoalStock, Sample, StockFound, sample_triangles};
 use serde::Serialize;
 use std::path::Path;
@@ -135,17 +136,13 @@ fn saved(path: &Path, job: &Job, faces: &Part) -> Result<Stock, Failure> {
     Ok(stock)
 }
 
-fn mesh(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
-    read_stl(&read(path)?).map_err(|e| Failure::file(path, e))
-}
-
 /// Places on the fixtures, as faces that carry no material, numbered after those of the part.
 pub fn fixtures(job: &Job, faces: &Part) -> Result<Vec<Sample>, Failure> {
     let Some(table) = job.fixture() else { return Ok(Vec::new()) };
     let face = (faces.faces.len() + faces.check.len()) as u32;
     let mut out = Vec::new();
     for (k, file) in table.files.iter().enumerate() {
-        out.extend(sample_triangles(&mesh(file)?, face + k as u32, table.spacing_mm));
+        out.extend(sample_triangles(&triangles(file)?, face + k as u32, table.spacing_mm));
     }
     Ok(out)
 }
@@ -222,7 +219,7 @@ pub fn bounds(job: &Job, faces: &Part) -> Result<Option<Box3>, Failure> {
             Box3::around(prism(*axis, *diameter_mm, *along_mm).iter().flatten())
         }
         Raw::File { path, layer_mm } => {
-            Box3::around(mesh(path)?.iter().flatten()).grown(layer_mm.unwrap_or(0.0))
+            Box3::around(triangles(path)?.iter().flatten()).grown(layer_mm.unwrap_or(0.0))
         }
         Raw::Saved(path) => *saved(path, job, faces)?.bounds(),
         Raw::Layer(thickness_mm) => around(faces).grown(*thickness_mm),
@@ -285,7 +282,7 @@ impl<'a> RawMaterial<'a> {
             Raw::File { path, layer_mm } => {
                 let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
                 let more = layer_mm.map_or_else(String::new, |a| format!(" and {a} mm around it"));
-                (mesh(path)?, format!("the solid of {name}{more}"))
+                (triangles(path)?, format!("the solid of {name}{more}"))
             }
             Raw::Layer(thickness) => {
                 let chord = 0.5 * job.tolerance().scallop_mm;

@@ -8,7 +8,7 @@
 use crate::trim::region::{Chain, Known, Region};
 use crate::trim::{Cell, Crossing, crossing};
 use crate::trimmed::TrimmedSurface;
-use osculate_geom::{Axis, Surface, Uv, Vec3, uv};
+use osculate_geom::{Axis, Facets, Side, Surface, Uv, Vec3, uv};
 use std::collections::HashMap;
 
 /// A triangle mesh.
@@ -32,9 +32,12 @@ const SAME: f64 = 1e-10;
 
 /// Triangulates the inside of a surface. `chord_mm` is the largest distance between mesh and surface aimed at,
 /// `max_edge_mm` the longest side of a cell. Tolerances that are not positive count as one part in a thousand of the
-/// surface's size.
+/// surface's size. Of a surface that is made of triangles these are the mesh, as they are.
 #[must_use]
 pub fn tessellate(surface: &TrimmedSurface, chord_mm: f64, max_edge_mm: Option<f64>) -> Mesh {
+    if let Some(facets) = surface.facets() {
+        return as_they_are(facets, surface.side());
+    }
     let size = surface.bbox(1).diagonal_mm();
     let chord_mm = if chord_mm > 0.0 { chord_mm } else { 1e-3 * size };
     let edge_mm = max_edge_mm.filter(|e| *e > 0.0).unwrap_or(f64::INFINITY);
@@ -60,6 +63,26 @@ pub fn tessellate(surface: &TrimmedSurface, chord_mm: f64, max_edge_mm: Option<f
         }
     }
     builder.mesh
+}
+
+/// Triangles with a normal of their own each.
+fn as_they_are(facets: &Facets, side: Side) -> Mesh {
+    let mut mesh = Mesh::default();
+    for (k, t) in facets.triangles().iter().enumerate() {
+        let first = mesh.positions.len() as u32;
+        let normal = Facets::normal_of(t).map_or([0.0; 3], |n| (n.into_inner() * side.sign()).into());
+        for (c, p) in t.iter().enumerate() {
+            let at = Facets::corner(k, c);
+            mesh.positions.push((*p).into());
+            mesh.normals.push(normal);
+            mesh.uvs.push([at.u, at.v]);
+        }
+        mesh.triangles.push(match side {
+            Side::Along => [first, first + 1, first + 2],
+            Side::Against => [first, first + 2, first + 1],
+        });
+    }
+    mesh
 }
 
 /// Grid lines of one parameter: every span halved until the sagitta of its chords and their length are small enough
@@ -200,7 +223,7 @@ impl Builder<'_> {
         if t[0] == t[1] || t[1] == t[2] || t[2] == t[0] {
             return;
         }
-        let turned = self.surface.side() == osculate_geom::Side::Against;
+        let turned = self.surface.side() == Side::Against;
         self.mesh.triangles.push(if turned { [t[0], t[2], t[1]] } else { t });
     }
 

@@ -127,7 +127,7 @@ impl Trial<'_> {
     pub fn only(&self) -> Option<String> {
         let names: Vec<String> = self.goal.machined.iter().map(|f| f.name.to_owned()).collect();
         let part = self.goal.machined.iter().any(|f| f.part_of_it.is_some());
-        let out = self.goal.unseen.iter().any(|u| !matches!(u, Unseen::Hidden(_)));
+        let out = self.goal.unseen.iter().any(|u| !matches!(u, Unseen::Hidden(_) | Unseen::Mesh(_)));
         (part || out).then(|| listed(&names))
     }
 
@@ -153,10 +153,15 @@ impl Trial<'_> {
                     others +=
                         &format!("; NOT looked at, as their material side is not known: {}", listed(faces));
                 }
-                Unseen::Hidden(_) => {}
+                Unseen::Hidden(_) | Unseen::Mesh(_) => {}
             }
         }
         row("other faces", others);
+        for unseen in &goal.unseen {
+            if let Unseen::Mesh(words) = unseen {
+                row("mesh", words.clone());
+            }
+        }
         let hidden =
             goal.unseen.iter().filter_map(|u| if let Unseen::Hidden(words) = u { Some(words) } else { None });
         let hidden: Vec<&str> = hidden.flatten().map(String::as_str).collect();

@@ -34,6 +34,8 @@ pub enum Unseen {
     /// They lie in the material of other bodies, wholly or in part: in words, each with its area. That leaves nothing of the
     /// part's surface out.
     Hidden(Vec<String>),
+    /// A mesh stands for the part: in words, what that leaves open. All of its triangles are looked at.
+    Mesh(String),
 }
 
 /// A tool that motions carry.

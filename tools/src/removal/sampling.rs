@@ -6,11 +6,14 @@
 //! has an edge, samples lie on it. Cells that a trim crosses are divided further: the part inside gives the
 //! area, and where the cell's own sample is outside one is put on the trim. A strip of the face narrower than
 //! half a spacing may be missed by this: [`sample_boundary`] puts samples on the trims themselves.
+//!
+//! A surface of several pieces (the triangles of a mesh) is sampled piece by piece; a piece that is smaller than the spacing has one
+//! sample in its middle, and its whole rectangle for a cell.
 
 use super::density::Density;
 use super::grid::{Cell, Table, normal, weight};
 use super::job::Sample;
-use osculate_geom::{Axis, Surface, Uv, quadrature, uv};
+use osculate_geom::{Axis, Box3, Domain, Interval, Surface, Uv, quadrature, uv};
 use rayon::prelude::*;
 
 /// The samples of a face.
@@ -97,6 +100,18 @@ pub enum SamplingError {
         /// The spacing used, mm.
         spacing_mm: f64,
     },
+    /// A mesh of more triangles than samples are allowed.
+    #[error(
+        "face {face}: its mesh has {pieces} triangles and each needs a sample, but max_samples = {max}: allow more, or coarsen the mesh"
+    )]
+    Pieces {
+        /// The face.
+        face: u32,
+        /// Its triangles.
+        pieces: usize,
+        /// The samples allowed.
+        max: usize,
+    },
     /// The area of the face is not a number.
     #[error("face {face}: its area is {area_mm2} mm2; the surface has points that are not finite")]
     Area {
@@ -109,6 +124,10 @@ pub enum SamplingError {
 
 /// Lines across the rows on which the distance of rows is measured.
 const ACROSS: usize = 17;
+/// Where in a triangle that has its pole at v = 0 its centre of area is along v.
+const MIDDLE: f64 = 2.0 / 3.0;
+/// Normals that turn by less than this from sample to sample, rad, do so by rounding: the face is flat.
+const LEVEL: f64 = 1e-9;
 /// Attempts to get below the allowed count; each aims at it, and the second nearly always meets it.
 const MAX_ATTEMPTS: u32 = 40;
 
@@ -134,11 +153,20 @@ pub fn sample_surface(
     if !area.is_finite() {
         return Err(SamplingError::Area { face, area_mm2: area });
     }
+    let pieces = surface.pieces();
+    if pieces.len() > 1 {
+        return sample_pieces(
+            (surface, &pieces),
+            face,
+            spacing_mm.max((area / max_samples as f64).sqrt()),
+            max_samples,
+        );
+    }
     let most = max_samples as f64;
     let inside = quadrature::share_within_trims(surface);
     let mut spacing = spacing_mm.max((area * inside / most).sqrt());
     for _ in 0..MAX_ATTEMPTS {
-        let grid = Grid { surface, face, spacing };
+        let grid = Grid { surface, domain: surface.domain(), face, spacing };
         let rows = grid.rows();
         // Every row has a cell at least, so that this also bounds the work of counting.
         let wanted =
@@ -159,8 +187,36 @@ pub fn sample_surface(
     Err(SamplingError::Nothing { face, spacing_mm: spacing })
 }
 
+/// Samples of a surface of many pieces.
+fn sample_pieces(
+    (surface, pieces): (&dyn Surface, &[Domain]),
+    face: u32,
+    spacing_mm: f64,
+    max_samples: usize,
+) -> Result<Sampling, SamplingError> {
+    if pieces.len() > max_samples {
+        return Err(SamplingError::Pieces { face, pieces: pieces.len(), max: max_samples });
+    }
+    let mut spacing = spacing_mm;
+    for _ in 0..MAX_ATTEMPTS {
+        let owned: Vec<Vec<Owned>> = pieces
+            .par_iter()
+            .map(|domain| Grid { surface, domain: *domain, face, spacing }.of_piece())
+            .collect();
+        let sampling = Grid { surface, domain: surface.domain(), face, spacing }.gathered(owned);
+        match sampling.samples.len() {
+            0 => break,
+            n if n <= max_samples => return Ok(sampling),
+            n => spacing *= 1.02 * (n as f64 / max_samples as f64).sqrt().max(1.1),
+        }
+    }
+    Err(SamplingError::Nothing { face, spacing_mm: spacing })
+}
+
 struct Grid<'a> {
     surface: &'a dyn Surface,
+    /// What of the surface is looked at.
+    domain: Domain,
     face: u32,
     spacing: f64,
 }
@@ -174,8 +230,8 @@ struct Owned {
 
 impl Grid<'_> {
     fn rows(&self) -> Table {
-        let domain = self.surface.domain();
-        let breaks = self.surface.breaks(Axis::V);
+        let domain = self.domain;
+        let breaks = domain.v.breaks(self.surface.breaks(Axis::V));
         Table::new(domain.v, &breaks, |v| {
             (0..ACROSS)
                 .map(|k| {
@@ -187,7 +243,7 @@ impl Grid<'_> {
     }
 
     fn row(&self, breaks: &[f64], v: f64) -> Table {
-        Table::new(self.surface.domain().u, breaks, |u| {
+        Table::new(self.domain.u, breaks, |u| {
             let jet = self.surface.jet2(uv(u, v));
             weight(&jet.du, &jet.duu, normal(&jet).as_ref(), self.spacing)
         })
@@ -209,6 +265,30 @@ impl Grid<'_> {
                 cells.iter().filter_map(|cell| self.own(cell, row)).collect()
             })
             .collect();
+        self.gathered(owned)
+    }
+
+    /// What is owned on a piece: by one sample where the piece is smaller than samples are apart.
+    fn of_piece(&self) -> Vec<Owned> {
+        /// Places of a piece along each side by which its size is known.
+        const SIDE: [f64; 3] = [0.0, 0.5, 1.0];
+        let Domain { u, v } = self.domain;
+        let places = SIDE.iter().flat_map(|f| SIDE.map(|g| self.surface.point(self.domain.at(*f, g))));
+        if Box3::around(&places.collect::<Vec<_>>()).diagonal_mm() <= self.spacing {
+            let whole = |i: &Interval, at: f64| Cell { lo: i.lo, at: i.at(at), hi: i.hi };
+            return self.own(&whole(&u, 0.5), &whole(&v, MIDDLE)).into_iter().collect();
+        }
+        let rows = self.rows();
+        let along = [u.lo, u.hi];
+        let of_row = |row: Cell| {
+            let cells = self.row(&along, row.at).cells();
+            cells.into_iter().filter_map(move |cell| self.own(&cell, &row))
+        };
+        rows.cells().into_iter().flat_map(of_row).collect()
+    }
+
+    /// Samples and cells of all rows.
+    fn gathered(&self, owned: Vec<Vec<Owned>>) -> Sampling {
         let mut out = Sampling {
             samples: Vec::with_capacity(owned.iter().map(Vec::len).sum()),
             patches: Vec::with_capacity(owned.iter().map(Vec::len).sum()),
@@ -274,11 +354,9 @@ impl Grid<'_> {
         let sample =
             Sample { point, normal: forms.normal, face: self.face, uv, area_mm2: area, check_only: false };
         let principal = forms.principal();
-        let patch = Patch {
-            concave_per_mm: (-principal.k_min).max(0.0),
-            convex_per_mm: principal.k_max.max(0.0),
-            ..flat
-        };
+        let bend = |k: f64| if k * self.spacing > LEVEL { k } else { 0.0 };
+        let patch =
+            Patch { concave_per_mm: bend(-principal.k_min), convex_per_mm: bend(principal.k_max), ..flat };
         Some(Owned { sample: Some(sample), patch, area })
     }
 

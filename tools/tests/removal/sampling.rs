@@ -1,7 +1,7 @@
 //! Samples: areas, edges, poles, trims, density.
 
 use osculate_geom::analytic::{Cone, Cylinder, Plane, Sphere, Torus};
-use osculate_geom::{Domain, Interval, Jet2, Patch, Side, Surface, Taylor, Uv, uv};
+use osculate_geom::{Domain, Facets, Interval, Jet2, Patch, Point3, Side, Surface, Taylor, Uv, Vec3, uv};
 use osculate_tools::removal::{Density, SamplingError, sample_surface};
 use std::f64::consts::PI;
 
@@ -168,4 +168,44 @@ fn nonsense_is_refused() {
 /// The disc above is built on the plane's own parameters.
 fn plane_point_is_plain() -> bool {
     square(1.0).point(uv(0.25, 0.5)).coords.as_slice() == [0.25, 0.5, 0.0]
+}
+
+/// A square of 10 mm as triangles: two large ones over the left half, a fan of small ones over the right half.
+fn parted() -> Facets {
+    let p = |x: f64, y: f64| Point3::new(x, y, 0.25 * x);
+    let mut triangles =
+        vec![[p(0.0, 0.0), p(5.0, 0.0), p(5.0, 10.0)], [p(0.0, 0.0), p(5.0, 10.0), p(0.0, 10.0)]];
+    for i in 0..50 {
+        for j in 0..100 {
+            let (x, y) = (5.0 + 0.1 * f64::from(i), 0.1 * f64::from(j));
+            let [a, b, c, d] = [p(x, y), p(x + 0.1, y), p(x + 0.1, y + 0.1), p(x, y + 0.1)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    Facets::new(triangles).unwrap()
+}
+
+#[test]
+fn triangles_have_samples_by_their_size() {
+    let facets = parted();
+    let want = 100.0 * 1.0625f64.sqrt();
+    let got = sample_surface(&facets, 2, 0.5, 100_000).unwrap();
+    assert!((got.area_mm2 - want).abs() < 1e-9 * want, "{} {want}", got.area_mm2);
+    assert_eq!(got.lost_area_mm2, 0.0);
+    // One for each small triangle, and over the large ones as many as 51.5 mm2 at half a millimetre have, up to two and a half times: the rows
+    // of each are as close as its longest line across asks for, and have samples at both ends.
+    let large = got.samples.len() - 10_000;
+    assert!((206..515).contains(&large), "{large}");
+    let normal = Vec3::new(-0.25, 0.0, 1.0).normalize();
+    for (s, patch) in got.samples.iter().zip(&got.patches) {
+        assert!((s.normal.into_inner() - normal).norm() < 1e-12 && s.area_mm2 > 0.0);
+        assert!((facets.point(s.uv) - s.point).norm() < 1e-12);
+        assert_eq!((patch.concave_per_mm, patch.convex_per_mm), (0.0, 0.0));
+    }
+    // However far samples are apart, each triangle has one; fewer are refused.
+    assert!(sample_surface(&facets, 0, 50.0, 100_000).unwrap().samples.len() == 10_002);
+    assert_eq!(
+        sample_surface(&facets, 4, 50.0, 10_001),
+        Err(SamplingError::Pieces { face: 4, pieces: 10_002, max: 10_001 })
+    );
 }

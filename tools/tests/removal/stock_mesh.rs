@@ -1,8 +1,9 @@
 //! What is left as a mesh: closed, of the volume that is left, and read back as raw material.
 
 use osculate_geom::{Box3, Point3, Vec3};
+use osculate_surfaces::facets::read_stl;
 use osculate_tools::removal::Swept;
-use osculate_tools::removal::stock::{Blank, Mesh, Resolution, Stock, StockJob, read_stl};
+use osculate_tools::removal::stock::{Blank, Mesh, Resolution, Stock, StockJob};
 use osculate_tools::{Cutter, CutterSpec, Pose};
 use std::collections::HashMap;
 

@@ -64,6 +64,7 @@ fn bent(face: &LoadedFace) -> Normals {
 pub fn init(wanted: &Wanted<'_>) -> Result<First, Failure> {
     let refuse = |what: String| Failure::file(wanted.part, what);
     let read = part::whole(part::open(wanted.part)?)?;
+    read.to_plan(wanted.part)?;
     if read.faces.is_empty() {
         return Err(refuse("has no faces to machine (inspect says what it has)".to_owned()));
     }

@@ -55,6 +55,7 @@ pub fn seen(operation: &Operation, job: &Job, part: &Part) -> Result<Part, Failu
 /// # Errors
 /// Where an operation cannot be planned or posted. A part that is not held is none: the verdict says so.
 pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, Failure> {
+    part.part.to_plan(list.path())?;
     let mut wall_s = WallS { import: part.import_s, ..WallS::default() };
     let begin = Instant::now();
     let stage = Stage::begin(watch, "stock");

@@ -28,14 +28,12 @@ mod query;
 mod rays;
 mod report;
 mod saved;
-mod stl;
 mod world;
 
 pub use blank::{Blank, BlankError, Made, Resolution};
 pub use mesh::Mesh;
 pub use report::{Carved, Collision, Volume, Work};
 pub use saved::{SavedError, sum_of};
-pub use stl::{StlError, read_stl};
 pub use world::{StockJob, Upper};
 
 use lattice::{Lattice, Tile};

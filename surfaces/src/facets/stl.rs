@@ -1,4 +1,4 @@
-//! Triangles from STL, binary or ASCII. STL has no unit: coordinates are taken as they are.
+//! Triangles from STL, binary or text. STL has no unit: coordinates are taken as they are.
 
 use osculate_geom::Point3;
 
@@ -31,6 +31,9 @@ pub enum StlError {
         /// How many.
         vertices: usize,
     },
+    /// Text that ends too early.
+    #[error("it does not end with endsolid: it is truncated")]
+    Endless,
     /// A coordinate that is not finite.
     #[error("triangle {triangle} has a coordinate that is not finite")]
     NotFinite {
@@ -45,6 +48,24 @@ pub enum StlError {
 /// Bytes of a binary file before the triangles, and of each triangle.
 const HEADER: usize = 84;
 const FACET: usize = 50;
+
+/// What the last line of text begins with.
+const END: &str = "endsolid";
+/// How much of a file is looked at to tell that it is STL text, bytes.
+const LOOK: usize = 4096;
+
+/// Whether bytes are STL: text that begins with its word and goes on with a facet, or binary whose size goes with its number of
+/// triangles.
+pub(super) fn looks_like(bytes: &[u8]) -> bool {
+    let count = bytes.get(80..HEADER).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let fits = |n: usize| n.checked_mul(FACET).and_then(|x| x.checked_add(HEADER));
+    if count.is_some_and(|n| n > 0 && fits(n) == Some(bytes.len())) {
+        return true;
+    }
+    let head = &bytes[..bytes.len().min(LOOK)];
+    let text = String::from_utf8_lossy(head).to_lowercase();
+    text.trim_start().starts_with("solid") && (text.contains("facet") || text.contains("endsolid"))
+}
 
 /// The triangles of an STL file; normals are left aside.
 ///
@@ -97,6 +118,10 @@ fn ascii(text: &str) -> Result<Vec<[Point3; 3]>, StlError> {
     if points.len() % 3 != 0 {
         return Err(StlError::Count { vertices: points.len() });
     }
+    let last = text.trim_end().lines().next_back().unwrap_or_default().trim_start();
+    if !last.get(..END.len()).is_some_and(|word| word.eq_ignore_ascii_case(END)) {
+        return Err(StlError::Endless);
+    }
     Ok(points.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect())
 }
 
@@ -126,9 +151,11 @@ mod tests {
         assert!(matches!(read_stl(&bytes[..100]), Err(StlError::Size { triangles: 1, need: 134, got: 100 })));
         assert!(matches!(read_stl(b"solid\nvertex 1 2"), Err(StlError::Vertex { line: 2, .. })));
         assert!(matches!(read_stl(b"solid\nvertex 1 2 3"), Err(StlError::Count { vertices: 1 })));
-        assert!(matches!(read_stl(b"solid\n"), Err(StlError::Empty)));
-        assert!(matches!(read_stl(b""), Err(StlError::Empty)));
-        let bad = b"solid\nvertex 1 2 3\nvertex 1 2 nan\nvertex 1 2 4\n";
+        assert!(matches!(read_stl(b"solid\nEndSolid a\n\n"), Err(StlError::Empty)));
+        assert!(matches!(read_stl(b""), Err(StlError::Endless)));
+        let part = text.find("endsolid").unwrap();
+        assert!(matches!(read_stl(text[..part].as_bytes()), Err(StlError::Endless)));
+        let bad = b"solid\nvertex 1 2 3\nvertex 1 2 nan\nvertex 1 2 4\nendsolid\n";
         assert!(matches!(read_stl(bad), Err(StlError::NotFinite { triangle: 0 })));
     }
 }
