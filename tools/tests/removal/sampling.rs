@@ -182,7 +182,7 @@ fn parted() -> Facets {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    Facets::new(triangles).unwrap()
+    Facets::new(triangles).expect("triangles")
 }
 
 #[test]
