@@ -298,7 +298,7 @@ mod tests {
             good.iter().enumerate().map(turn).collect()
         };
         for (which, told) in [
-            (&(|k: usize| k % 7 == 0) as &dyn Fn(usize) -> bool, "were turned over"),
+            (&(|k: usize| k.is_multiple_of(7)) as &dyn Fn(usize) -> bool, "were turned over"),
             (&|_| true, "inside out"),
             (&|k| k % 7 != 0, "inside out"),
         ] {

@@ -154,7 +154,7 @@ mod tests {
         assert!(matches!(read_stl(b"solid\nEndSolid a\n\n"), Err(StlError::Empty)));
         assert!(matches!(read_stl(b""), Err(StlError::Endless)));
         let part = text.find("endsolid").unwrap();
-        assert!(matches!(read_stl(text[..part].as_bytes()), Err(StlError::Endless)));
+        assert!(matches!(read_stl(&text.as_bytes()[..part]), Err(StlError::Endless)));
         let bad = b"solid\nvertex 1 2 3\nvertex 1 2 nan\nvertex 1 2 4\nendsolid\n";
         assert!(matches!(read_stl(bad), Err(StlError::NotFinite { triangle: 0 })));
     }
