@@ -24,33 +24,23 @@
 //! *Gouges* are looked for in [`digs`](super::digs).
 
 use super::body::Body;
+use super::cell::{Cell, Level, Near};
 use super::cluster::clusters;
-use super::deepest::Passage;
 use super::density::Hidden;
 use super::digs::{DIVISIONS, Depth, Digs};
 use super::edges::Edges;
 use super::job::{Cut, Job, JobError};
-use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
 use super::target::Target;
-use super::tree::{Ways, Which};
-use crate::cutter::Line;
-use osculate_geom::{Point3, Surface, Unit3, uv};
+use super::tree::Ways;
+use osculate_geom::Surface;
 use rayon::prelude::*;
 use std::collections::HashSet;
 
-/// Motions around a cell that are tried.
-const MOST_MOTIONS: usize = 8;
-/// Bounds are expected within this multiple of the highest standoff seen.
-const MOST_SEEN: f64 = 3.0;
 /// Cells that are divided before the highest bound is looked at again.
 const TOGETHER: usize = 256;
-/// Height at which a motion counts as met, mm: bounds are above the truth by more.
-const MET: f64 = 1e-9;
 /// Depth that is asked for at least, mm: a path that is to dig in nowhere touches the part.
 const LEAST_DEPTH: f64 = 1e-6;
-/// Accuracy of the instant, of the motion: an instant that is off gives a bound that is higher.
-const INSTANT: f64 = 1e-7;
 
 /// What is asked of the bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,13 +165,14 @@ pub(super) fn judged(job: &Job<'_>, cuts: &[Cut], uncut_mm: f64, k: usize) -> bo
     !job.samples[k].check_only && cuts[k].by.is_some() && cuts[k].standoff_mm <= uncut_mm
 }
 
-struct World<'a> {
-    job: &'a Job<'a>,
-    bodies: Vec<Body<'a>>,
-    ways: &'a Ways,
+/// Motions and what was left at samples.
+pub(super) struct World<'a> {
+    pub job: &'a Job<'a>,
+    pub bodies: Vec<Body<'a>>,
+    pub ways: &'a Ways,
     edges: Option<&'a Edges<'a>>,
     /// The highest standoff at a sample: bounds below need not be sharper.
-    seen: f64,
+    pub seen: f64,
 }
 
 /// Samples around a cell whose motions are tried first.
@@ -215,18 +206,56 @@ impl<'a> World<'a> {
         (patches, cuts): (&[Option<Patch>], &[Cut]),
         wanted: Wanted,
     ) -> Result<Vec<Bounded<'a>>, JobError> {
-        let groups = clusters(self.job.samples)?;
-        let cell = |k: usize, members: &[u32]| -> Option<Bounded<'a>> {
+        let cell = |k: usize, members: &[u32]| -> Option<(usize, Cell<'a>)> {
             let patch = patches[k].filter(|_| judged(self.job, cuts, wanted.uncut_mm, k))?;
             let surface = surfaces[self.job.samples[k].face as usize];
             let own = cuts[k].by.map_or(0, |by| by.motion);
-            let cell = Cell { surface, world: self, patch, own, beside: self.beside(k, members, cuts) };
-            let height_mm = cell.bound(self.seen, 0, &mut Vec::new());
-            Some(Bounded { cell, sample: k, height_mm })
+            Some((
+                k,
+                Cell {
+                    surface,
+                    world: self,
+                    patch,
+                    own,
+                    beside: self.beside(k, members, cuts),
+                    around: None,
+                },
+            ))
         };
-        let of =
-            |members: &[u32]| members.iter().filter_map(|k| cell(*k as usize, members)).collect::<Vec<_>>();
+        let of = |members: &[u32]| {
+            self.bounded(members.iter().filter_map(|k| cell(*k as usize, members)).collect())
+        };
+        let groups = clusters(self.job.samples)?;
         Ok(groups.par_iter().flat_map_iter(|group| of(&group.members)).collect())
+    }
+
+    /// Cells next to each other with their bounds. What comes near those for which the motions that cut the samples around do not do is
+    /// looked for once.
+    fn bounded(&'a self, cells: Vec<(usize, Cell<'a>)>) -> Vec<Bounded<'a>> {
+        let (mut bounded, mut open) = (Vec::with_capacity(cells.len()), Vec::new());
+        for (sample, cell) in cells {
+            // Without a tangent plane in its middle nothing is said of a cell.
+            let mut height_mm = self.seen;
+            if let Some(mut level) = Level::new(&cell, &cell.patch) {
+                let holds = cell.try_known(&mut level, self.seen);
+                height_mm = level.best;
+                if !holds {
+                    open.push((bounded.len(), level.target(self.job.stock_mm), level));
+                }
+            }
+            bounded.push(Bounded { cell, sample, height_mm });
+        }
+        let Some((first, ..)) = open.first() else { return bounded };
+        let normal = self.job.samples[bounded[*first].sample].normal;
+        let whole = Target::around(open.iter().flat_map(|(_, target, _)| target.corners()), &normal);
+        let near = Near::of(self, &whole);
+        for (k, target, mut level) in open {
+            let Bounded { cell, height_mm, .. } = &mut bounded[k];
+            cell.around = Some(near.least(cell, &level, &target));
+            cell.try_around(&mut level, self.seen);
+            *height_mm = level.best;
+        }
+        bounded
     }
 
     /// The motions that cut the samples nearest to sample `k` among `members`: at a cusp they are the other side.
@@ -249,220 +278,5 @@ impl<'a> World<'a> {
             }
         }
         motions
-    }
-}
-
-/// The corners of a cell that is wider by `margin` on every side, stretched from its middle; at most twice as wide.
-fn stretched(corners: [Point3; 4], middle: Point3, margin: f64) -> [Point3; 4] {
-    let side = |k: usize| {
-        let (a, b) = (corners[k] - middle, corners[(k + 1) % 4] - middle);
-        let along = b - a;
-        // From the middle to the line through the side, or to the corner where the side is none.
-        along.try_normalize(0.0).map_or(a.norm(), |e| (a - e * a.dot(&e)).norm())
-    };
-    let inner = (0..4).map(side).fold(f64::INFINITY, f64::min);
-    let by = if inner > 0.0 { (margin / inner).min(1.0) } else { 1.0 };
-    corners.map(|p| p + (p - middle) * by)
-}
-
-/// The cell of one sample.
-struct Cell<'a> {
-    surface: &'a dyn Surface,
-    world: &'a World<'a>,
-    patch: Patch,
-    /// The motion that cut the sample.
-    own: u32,
-    /// Motions that cut the samples around.
-    beside: Vec<u32>,
-}
-
-/// What the motions tried so far leave above one patch.
-struct Level {
-    points: [Point3; 4],
-    middle: Point3,
-    normal: Unit3,
-    /// Corners of the patch that is wider by what turning normals need.
-    wide: [Point3; 4],
-    slack: f64,
-    /// Above this the allowance is of first order.
-    most: f64,
-    first: f64,
-    second: f64,
-    /// The least bound, and the motions whose mean it is.
-    best: f64,
-    pair: [u32; 2],
-    tried: Vec<(u32, [f64; 4])>,
-}
-
-impl Level {
-    /// Nothing tried yet; none where the patch has no tangent plane in its middle.
-    fn new(cell: &Cell<'_>, patch: &Patch) -> Option<Self> {
-        let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
-        let jet = cell.surface.jet2(patch.middle());
-        let points = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)].map(|c| cell.surface.point(c));
-        let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
-        let normal = jet.normal().ok()?;
-        let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
-        // Nothing stands higher than the stock, and what does stand higher than this gets the allowance of first order.
-        let most = (MOST_SEEN * cell.world.seen).min(cell.world.job.stock_mm);
-        let wide = stretched(points, jet.point, most * bend);
-        let radius_wide = wide.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
-        Some(Self {
-            points,
-            middle: jet.point,
-            normal,
-            wide,
-            slack: 0.5 * patch.concave_per_mm * radius_wide * radius_wide,
-            most,
-            first: 1.0 / (1.0 - bend.min(0.5)),
-            second: 1.0 / (1.0 - (3.0 * bend * bend).min(0.5)),
-            best: f64::INFINITY,
-            pair: [cell.own; 2],
-            tried: Vec::new(),
-        })
-    }
-
-    /// Bound from heights at the corners, no higher at any of them.
-    fn upper(&self, heights: [f64; 4]) -> f64 {
-        let top = heights.into_iter().fold(f64::NEG_INFINITY, f64::max) + self.slack;
-        let bound = top * self.second;
-        if bound <= self.most { bound } else { bound.max(top * self.first) }
-    }
-
-    /// The bound with one motion more, alone and in the mean with those before.
-    fn with(&mut self, cell: &Cell<'_>, motion: u32) -> f64 {
-        let other: [f64; 4] = std::array::from_fn(|c| {
-            // From here on no mean with a motion tried before is lower than the best.
-            let lowest = self.tried.iter().map(|(_, h)| h[c]).fold(f64::INFINITY, f64::min);
-            let useful = if lowest < self.best { 2.0 * self.best - lowest } else { f64::INFINITY };
-            cell.height(motion, self.wide[c], self.normal, useful).unwrap_or(f64::INFINITY)
-        });
-        self.tried.push((motion, other));
-        for (one, heights) in &self.tried {
-            let bound = self.upper(std::array::from_fn(|c| 0.5 * (heights[c] + other[c])));
-            if bound < self.best {
-                (self.best, self.pair) = (bound, [*one, motion]);
-            }
-        }
-        self.best
-    }
-
-    /// Motions for a part of the patch: those of the bound, and the two that leave least at each corner.
-    fn likely(&self) -> Vec<u32> {
-        let mut motions = self.pair.to_vec();
-        for c in 0..4 {
-            let mut lowest = [(f64::INFINITY, None); 2];
-            for (motion, heights) in &self.tried {
-                let this = (heights[c], Some(*motion));
-                if this.0 < lowest[0].0 {
-                    lowest = [this, lowest[0]];
-                } else if this.0 < lowest[1].0 {
-                    lowest[1] = this;
-                }
-            }
-            motions.extend(lowest.into_iter().filter_map(|l| l.1));
-        }
-        let mut once = Vec::with_capacity(motions.len());
-        for motion in motions {
-            if !once.contains(&motion) {
-                once.push(motion);
-            }
-        }
-        once
-    }
-}
-
-impl Cell<'_> {
-    /// Bound on the heights over the cell, divided so often; a bound that is not above `enough` need not be sharper. The last parts whose own bounds are above it are put into `above`.
-    fn bound(&self, enough: f64, divisions: u32, above: &mut Vec<(Patch, f64)>) -> f64 {
-        self.bound_of(&self.patch, None, enough, (divisions, above))
-    }
-
-    /// The same over a patch, from `motions` or, without, from all around.
-    fn bound_of(
-        &self,
-        patch: &Patch,
-        motions: Option<&[u32]>,
-        enough: f64,
-        (divisions, above): (u32, &mut Vec<(Patch, f64)>),
-    ) -> f64 {
-        let Some(mut level) = Level::new(self, patch) else { return enough };
-        let holds = self.try_all(&mut level, motions, enough);
-        if holds || divisions == 0 {
-            if !holds {
-                above.push((*patch, level.best));
-            }
-            return level.best;
-        }
-        let likely = level.likely();
-        let mut divided = 0.0f64;
-        for part in patch.parts() {
-            if self.on_face(&part) {
-                let below = (divisions - 1, &mut *above);
-                divided = divided.max(self.bound_of(&part, Some(&likely), enough, below));
-            }
-        }
-        level.best.min(divided)
-    }
-
-    /// Whether the motions, tried one after the other, bring the bound down to `enough`.
-    fn try_all(&self, level: &mut Level, motions: Option<&[u32]>, enough: f64) -> bool {
-        if let Some(motions) = motions {
-            return motions.iter().any(|m| level.with(self, *m) <= enough);
-        }
-        if level.with(self, self.own) <= enough {
-            return true;
-        }
-        let other = |m: &&u32| **m != self.own;
-        if self.beside.iter().filter(other).any(|m| level.with(self, *m) <= enough) {
-            return true;
-        }
-        let height = level.best.min(self.world.job.stock_mm);
-        let around = self.around(level.points, level.middle, level.normal, height);
-        around
-            .iter()
-            .filter(other)
-            .filter(|m| !self.beside.contains(m))
-            .any(|m| level.with(self, *m) <= enough)
-    }
-
-    /// The motions of the cutter that leave least above the middle of a cell, of those that come near what is up to
-    /// `height` above it.
-    fn around(&self, corners: [Point3; 4], middle: Point3, normal: Unit3, height: f64) -> Vec<u32> {
-        let World { job, bodies, ways, .. } = self.world;
-        let raised = normal.into_inner() * height;
-        let target = Target::around(corners.into_iter().flat_map(|p| [p, p + raised]), &normal);
-        let mut found = Vec::new();
-        ways.near(bodies, &target, Which::Cutting, |k, body, _| {
-            let piece = &ways.pieces[k as usize];
-            let swept = &job.motions[piece.motion as usize];
-            if !swept.rapid && Approach::new(swept, piece).passes(body, &target, 0.0) != Passes::Clear {
-                found.push(piece.motion);
-            }
-        });
-        found.sort_unstable();
-        found.dedup();
-        let above = |m: u32| self.height(m, middle, normal, f64::INFINITY).unwrap_or(f64::INFINITY);
-        let mut ranked: Vec<(f64, u32)> = found.into_iter().map(|m| (above(m), m)).collect();
-        ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        ranked.truncate(MOST_MOTIONS);
-        ranked.into_iter().map(|r| r.1).collect()
-    }
-
-    /// Whether a raster of places of a patch meets the face.
-    fn on_face(&self, patch: &Patch) -> bool {
-        patch.raster().any(|place| self.surface.contains(place))
-    }
-
-    /// What one motion leaves above a point along a direction; none where that is not below `useful`.
-    fn height(&self, motion: u32, origin: Point3, direction: Unit3, useful: f64) -> Option<f64> {
-        let World { job, .. } = self.world;
-        let body =
-            Body { cutter: job.cutter_of(motion), above_mm: 0.0, tool: job.tool_of(motion), intrudes: false };
-        let swept = &job.motions[motion as usize];
-        let piece = Piece { motion, range: [0.0, 1.0] };
-        let line = Line { origin, direction };
-        let passage = Passage { body, swept, piece, line, instant: INSTANT, met: MET };
-        passage.height(useful, job.depth_mm)
     }
 }

@@ -46,6 +46,7 @@
 mod answer;
 mod body;
 mod boundary;
+mod cell;
 mod cluster;
 mod conclude;
 mod crest;
