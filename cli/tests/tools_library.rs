@@ -117,8 +117,13 @@ fn a_table_of_linuxcnc_says_what_it_does_not_say() {
                 T4 P4 Z0 ;end mill\nT1 P9 D0.375 ;ball again\n";
     let table = scratch.write("tool.tbl", text);
     let library = Library::load_in(&table, Unit::Inch).unwrap();
-    let found: Vec<_> =
-        library.tools.iter().map(|t| (t.number(), t.kind().word(), 2.0 * t.cutter().radius_mm())).collect();
+    // Inches are binary fractions of a millimetre as little as decimals are.
+    let rounded = |mm: f64| (mm * 1e9).round() / 1e9;
+    let found: Vec<_> = library
+        .tools
+        .iter()
+        .map(|t| (t.number(), t.kind().word(), rounded(2.0 * t.cutter().radius_mm())))
+        .collect();
     // The second T1 gets the next free number.
     assert_eq!(found, [(1, "ball", 6.35), (2, "flat", 12.7), (3, "ball", 9.525)]);
     let told: Vec<String> = library.diagnostics.iter().map(ToString::to_string).collect();
