@@ -2,11 +2,12 @@
 
 use super::body::Body;
 use super::deepest::Passage;
-use super::hidden::World;
+use super::edges::Edges;
+use super::job::{Cut, Job};
 use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
 use super::target::Target;
-use super::tree::Which;
+use super::tree::{Ways, Which};
 use crate::cutter::Line;
 use osculate_geom::{Point3, Surface, Unit3, uv};
 
@@ -30,6 +31,34 @@ fn stretched(corners: [Point3; 4], middle: Point3, margin: f64) -> [Point3; 4] {
     let inner = (0..4).map(side).fold(f64::INFINITY, f64::min);
     let by = if inner > 0.0 { (margin / inner).min(1.0) } else { 1.0 };
     corners.map(|p| p + (p - middle) * by)
+}
+
+/// Whether a sample is judged by the height that was left: one that something cut, of a machined face.
+pub(super) fn judged(job: &Job<'_>, cuts: &[Cut], uncut_mm: f64, k: usize) -> bool {
+    !job.samples[k].check_only && cuts[k].by.is_some() && cuts[k].standoff_mm <= uncut_mm
+}
+
+/// Motions and what was left at samples.
+pub(super) struct World<'a> {
+    pub job: &'a Job<'a>,
+    pub bodies: Vec<Body<'a>>,
+    pub ways: &'a Ways,
+    pub edges: Option<&'a Edges<'a>>,
+    /// The highest standoff at a sample: bounds below need not be sharper.
+    pub seen: f64,
+}
+
+impl<'a> World<'a> {
+    pub fn new(
+        (job, ways): (&'a Job<'a>, &'a Ways),
+        edges: Option<&'a Edges<'a>>,
+        cuts: &[Cut],
+        uncut_mm: f64,
+    ) -> Self {
+        let judged = (0..cuts.len()).filter(|k| judged(job, cuts, uncut_mm, *k));
+        let seen = judged.map(|k| cuts[k].standoff_mm).fold(0.0, f64::max);
+        World { job, bodies: Body::all(job), ways, edges, seen }
+    }
 }
 
 /// The cell of one sample.

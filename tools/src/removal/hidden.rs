@@ -23,8 +23,7 @@
 //!
 //! *Gouges* are looked for in [`digs`](super::digs).
 
-use super::body::Body;
-use super::cell::{Cell, Level, Near};
+use super::cell::{Cell, Level, Near, World, judged};
 use super::cluster::clusters;
 use super::density::Hidden;
 use super::digs::{DIVISIONS, Depth, Digs};
@@ -160,36 +159,10 @@ struct Bounded<'a> {
     height_mm: f64,
 }
 
-/// Whether a sample is judged by the height that was left: one that something cut, of a machined face.
-pub(super) fn judged(job: &Job<'_>, cuts: &[Cut], uncut_mm: f64, k: usize) -> bool {
-    !job.samples[k].check_only && cuts[k].by.is_some() && cuts[k].standoff_mm <= uncut_mm
-}
-
-/// Motions and what was left at samples.
-pub(super) struct World<'a> {
-    pub job: &'a Job<'a>,
-    pub bodies: Vec<Body<'a>>,
-    pub ways: &'a Ways,
-    edges: Option<&'a Edges<'a>>,
-    /// The highest standoff at a sample: bounds below need not be sharper.
-    pub seen: f64,
-}
-
 /// Samples around a cell whose motions are tried first.
 const BESIDE: usize = 10;
 
 impl<'a> World<'a> {
-    fn new(
-        (job, ways): (&'a Job<'a>, &'a Ways),
-        edges: Option<&'a Edges<'a>>,
-        cuts: &[Cut],
-        uncut_mm: f64,
-    ) -> Self {
-        let judged = (0..cuts.len()).filter(|k| judged(job, cuts, uncut_mm, *k));
-        let seen = judged.map(|k| cuts[k].standoff_mm).fold(0.0, f64::max);
-        World { job, bodies: Body::all(job), ways, edges, seen }
-    }
-
     /// What looks for gouges deeper than this.
     fn digs(&'a self, depth_mm: f64) -> Result<Digs<'a>, JobError> {
         if !(depth_mm >= 0.0 && depth_mm.is_finite()) {

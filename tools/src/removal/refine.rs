@@ -5,10 +5,11 @@
 //! limit: an eighth of a cell wide. Samples in their middles show what is there, and have cells of their own, whose bounds
 //! are 64 times as near.
 
+use super::cell::judged;
 use super::cut::cut_by;
 use super::density::Hidden;
 use super::edges::Edges;
-use super::hidden::{Doubts, Wanted, doubts, judged};
+use super::hidden::{Doubts, Wanted, doubts};
 use super::job::{Cut, Job, JobError, Sample};
 use super::sampling::Patch;
 use super::tree::Ways;
