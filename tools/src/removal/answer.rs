@@ -210,7 +210,8 @@ impl Trial<'_> {
         );
         row(
             "machine",
-            "reach of its joints as posted; table, head and their bodies are NOT described".to_owned(),
+            "reach of its joints as posted, slides read at the tip whatever the length of a tool; table, head and their bodies are NOT described"
+                .to_owned(),
         );
         rows
     }
