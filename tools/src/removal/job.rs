@@ -130,8 +130,8 @@ pub enum JobError {
         /// Places at which it is given.
         before: usize,
     },
-    /// A motion with a coordinate that is not finite.
-    #[error("motion {motion} (block {block}) has a coordinate that is not finite")]
+    /// A motion with a coordinate that is not finite, or so large that its square is not.
+    #[error("motion {motion} (block {block}) has a coordinate that is not finite, or beyond 1e9 mm")]
     NotFinite {
         /// Index of the motion.
         motion: usize,

@@ -79,6 +79,8 @@ const MIN_AXIS_SUM: f64 = 0.01;
 
 /// Most pieces: 24 bytes each, and the tree as much again.
 const MAX_PIECES: usize = 1 << 28;
+/// No motion goes farther than this: products of coordinates stay numbers.
+const FAR_MM: f64 = 1e9;
 
 /// Splits the motions; `reach_mm` is the largest distance of a point of tool or holder from the tip.
 pub(super) fn pieces(motions: &[Swept], reach_mm: f64) -> Result<Vec<Piece>, JobError> {
@@ -87,7 +89,7 @@ pub(super) fn pieces(motions: &[Swept], reach_mm: f64) -> Result<Vec<Piece>, Job
         let too_many =
             JobError::TooMany { what: "motions, turning ones counted in pieces", limit: MAX_PIECES };
         let motion = u32::try_from(k).map_err(|_| too_many)?;
-        let finite = |p: &Point3, a: &Unit3| p.iter().chain(a.iter()).all(|x| x.is_finite());
+        let finite = |p: &Point3, a: &Unit3| p.iter().chain(a.iter()).all(|x| x.abs() <= FAR_MM);
         if !finite(&swept.from.tip, &swept.from.axis) || !finite(&swept.to.tip, &swept.to.axis) {
             return Err(JobError::NotFinite { motion: k, block: swept.block });
         }
