@@ -155,9 +155,9 @@ impl Liner<'_> {
         let table = self.setup.to_table(pose);
         let joints = self.machine.with_tip(rotary, &table.tip, self.setup.gauge_length_mm);
         let joints = joints.ok_or_else(|| SolveError::flat(index, pose))?;
-        match self.machine.out_of_limits(&joints) {
+        match self.machine.out_of_limits(&joints, self.setup.gauge_length_mm) {
             None => Ok(joints),
-            Some((place, _)) => Err(SolveError::limit(self.machine, index, pose, place, joints[place])),
+            Some(out) => Err(SolveError::limit(self.machine, index, pose, (out.place, out.at))),
         }
     }
 

@@ -290,16 +290,16 @@ fn node(
                 offer(f64::MAX, None);
                 continue;
             };
-            match machine.out_of_limits(&joints) {
+            match machine.out_of_limits(&joints, setup.gauge_length_mm) {
                 None => node.states.push(*state),
-                Some((place, excess)) => offer(excess, Some((place, joints[place]))),
+                Some(out) => offer(out.by, Some((out.place, out.at))),
             }
         }
     }
     match nearest {
         Some((_, at)) if node.states.is_empty() => Err(at.map_or_else(
             || SolveError::flat(index, &m.pose),
-            |(place, value)| SolveError::limit(machine, index, &m.pose, place, value),
+            |out| SolveError::limit(machine, index, &m.pose, out),
         )),
         _ => Ok(node),
     }

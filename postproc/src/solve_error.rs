@@ -60,7 +60,7 @@ pub enum SolveError {
         tip: Point3,
         /// The joint that is out by least.
         joint: String,
-        /// Where it would be.
+        /// Where it would be; a slide at the spindle nose.
         value: f64,
         /// mm or deg.
         unit: &'static str,
@@ -141,7 +141,8 @@ impl SolveError {
         Self::Unreachable { index, tip: pose.tip, axis, off_deg: e.off_rad.to_degrees() }
     }
 
-    pub(crate) fn limit(machine: &Machine, index: usize, pose: &Pose, place: usize, value: f64) -> Self {
+    pub(crate) fn limit(machine: &Machine, index: usize, pose: &Pose, out: (usize, f64)) -> Self {
+        let (place, value) = out;
         let joint = machine.joint_at(place);
         Self::Limit {
             index,

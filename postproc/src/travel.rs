@@ -20,7 +20,7 @@ const MET: f64 = 1e-9;
 
 /// The linear joints with one stance of the rotary ones.
 struct Stance {
-    /// Where they are as the part stands, mm.
+    /// Where they are as the part stands, mm, at the spindle nose.
     at_mm: [f64; 3],
     /// How they go with its place.
     ways: [Vec3; 3],
@@ -51,7 +51,7 @@ pub fn in_travel(pose: &Pose, machine: &Machine, setup: &Setup) -> bool {
     let pose = setup.to_table(pose);
     rotary(machine, &pose).iter().any(|rotary_rad| {
         let values = machine.with_tip(rotary_rad, &pose.tip, setup.gauge_length_mm);
-        values.is_some_and(|values| machine.out_of_limits(&values).is_none())
+        values.is_some_and(|values| machine.out_of_limits(&values, setup.gauge_length_mm).is_none())
     })
 }
 
@@ -78,7 +78,11 @@ fn stances(machine: &Machine, setup: &Setup, pose: &Pose) -> Vec<Stance> {
     let one = |rotary_rad: &[f64; 2]| {
         let linear = |tip: Point3| {
             let values = machine.with_tip(rotary_rad, &tip, setup.gauge_length_mm)?;
-            Some(machine.linear().map(|place| values[place]))
+            Some(
+                machine
+                    .linear()
+                    .map(|place| machine.joint_at(place).at_nose(values[place], setup.gauge_length_mm)),
+            )
         };
         let at_mm = linear(pose.tip)?;
         let mut ways = [Vec3::zeros(); 3];

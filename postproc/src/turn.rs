@@ -51,7 +51,7 @@ fn time_min(moves: &[Move], machine: &Machine, setup: &Setup) -> Option<f64> {
                 let wish = NearWish { rotary_rad, cone_rad: CONE_RAD };
                 rotary_rad = machine.rotary_near(&pose.axis, &wish).ok()?;
                 let joints = machine.with_tip(&rotary_rad, &pose.tip, setup.gauge_length_mm)?;
-                if machine.out_of_limits(&joints).is_some() {
+                if machine.out_of_limits(&joints, setup.gauge_length_mm).is_some() {
                     return None;
                 }
                 *end = Some(joints);

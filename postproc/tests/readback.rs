@@ -214,8 +214,8 @@ fn machine_coordinates_with_tool_centre_point_control() {
     let place = |letter: &str| m.joint_named(letter).unwrap();
     let [first, up, along, ..] = back.blocks[..] else { panic!("{:?}", back.blocks) };
     let mut want = first.to;
-    // The top of Z is at 3000 mm.
-    want[place("Z")] = 50.0;
+    // The top of Z is at 3000 mm, where the nose is: the tip is a gauge length below it.
+    want[place("Z")] = 3000.0 - 2950.0 - setup.gauge_length_mm;
     // Through the tip and back: the rounding of a few products of some 100 mm.
     let near = |a: &[f64; 5], b: &[f64; 5]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-11);
     assert!(near(&up.from, &first.to) && near(&up.to, &want), "{up:?}");

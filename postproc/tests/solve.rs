@@ -28,7 +28,11 @@ fn rotary_deg(machine: &Machine, joints: &JointPath, letter: &str) -> Vec<f64> {
 fn sound(machine: &Machine, setup: &Setup, path: &ClPath, joints: &JointPath, axis_tol_rad: f64) {
     for block in &joints.blocks {
         for (joint, value) in machine.joints().iter().zip(block.joints) {
-            assert!(joint.excess(value) < 1e-8, "{} at {value}", joint.letter);
+            assert!(
+                joint.excess(joint.at_nose(value, setup.gauge_length_mm)) < 1e-8,
+                "{} at {value}",
+                joint.letter
+            );
         }
         let reached = machine.forward(&block.joints, setup);
         assert!((reached.tip - block.tip).norm() < 1e-8);

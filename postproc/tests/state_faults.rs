@@ -281,10 +281,12 @@ fn retracts_are_moves() {
             assert!(last.rapid && last.own_frame && last.line > 1, "{last:?}");
             last.to[z]
         };
-        assert!((end(&text) - top_mm).abs() < 1e-9);
+        // The nose goes there, and the tip is a gauge length below.
+        let below_mm = setup().gauge_length_mm;
+        assert!((end(&text) - (top_mm - below_mm)).abs() < 1e-9);
         let at = text.rfind(from).unwrap_or_else(|| panic!("{dialect}: {text}"));
         let bad = format!("{}{}", &text[..at], text[at..].replacen(from, to, 1));
-        assert!((end(&bad) - 10.0).abs() < 1e-9);
+        assert!((end(&bad) - (10.0 - below_mm)).abs() < 1e-9);
     }
     for dialect in [Dialect::Fanuc, Dialect::LinuxCnc] {
         let bad = put(&good(dialect), &Amid("G91 G28 Z0\nG90"), dialect);

@@ -10,6 +10,9 @@
 //! `D` is a shift along or a rotation about the joint's direction, k the last table joint, `u` the tool axis at zero
 //! and L the gauge length (tip to gauge point). The shift in the middle is the control's tool length compensation: at
 //! zero rotation the linear joints read the place of the **tip**, whatever the tool's length.
+//!
+//! What the slides themselves know, and with them ends of travel and places of the machine's own frame, is the gauge point at the
+//! spindle nose: [`Joint::at_nose`] has the one from the other.
 
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::Pose;
@@ -57,11 +60,14 @@ pub struct Joint {
     pub direction: Unit3,
     /// A point on the axis of rotation; see [`super::spec`] for where it is measured from.
     pub point: Point3,
-    /// Smallest value, mm or rad.
+    /// By how much a slide is ahead of its word for each mm of gauge length: the word is of the tip, the slide carries the nose. Zero for
+    /// rotary joints.
+    pub nose_per_mm: f64,
+    /// Smallest value, mm or rad; of a slide at the spindle nose.
     pub min: Option<f64>,
-    /// Largest value, mm or rad.
+    /// Largest value, mm or rad; of a slide at the spindle nose.
     pub max: Option<f64>,
-    /// Value where the control's own coordinate reads zero, mm or rad, where the machine file says it.
+    /// Value where the control's own coordinate reads zero, mm or rad, at the spindle nose, where the machine file says it.
     pub machine_zero: Option<f64>,
     /// Where `G28` leads, in the control's own coordinate, where the machine file says it.
     pub home: Option<f64>,
@@ -78,7 +84,20 @@ impl Joint {
         self.kind == JointKind::Rotary && self.min.is_none() && self.max.is_none()
     }
 
-    /// By how much the value is out of the joint's range; zero inside.
+    /// What the joint itself reads where a program's word for it is `value` and the tool in hand has this gauge length, mm: the control
+    /// adds the length to the word of a slide along the tool.
+    #[must_use]
+    pub fn at_nose(&self, value: f64, gauge_length_mm: f64) -> f64 {
+        value + self.nose_per_mm * gauge_length_mm
+    }
+
+    /// The word for a place of the joint itself: the other way round.
+    #[must_use]
+    pub fn word_at(&self, at_nose: f64, gauge_length_mm: f64) -> f64 {
+        at_nose - self.nose_per_mm * gauge_length_mm
+    }
+
+    /// By how much the joint itself ([`Self::at_nose`]) is out of its range; zero inside.
     #[must_use]
     pub fn excess(&self, value: f64) -> f64 {
         let below = self.min.map_or(0.0, |m| m - value);
@@ -86,7 +105,7 @@ impl Joint {
         below.max(above).max(0.0)
     }
 
-    /// The value where the control's own coordinate reads zero: as the machine file says; else the top of a slide called
+    /// The value at the spindle nose where the control's own coordinate reads zero: as the machine file says; else the top of a slide called
     /// Z, not known where that has no limit, and zero of any other joint.
     #[must_use]
     pub fn own_zero(&self) -> Option<f64> {

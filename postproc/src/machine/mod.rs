@@ -13,8 +13,8 @@ use osculate_tools::Pose;
 pub use built_in::{built_in_names, built_in_text};
 pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
 pub use gaps::Gap;
+pub(crate) use pose::{Beyond, LIMIT_SLACK, NearWish, angle_between, nearest_turn};
 pub use pose::{Candidate, Orientations};
-pub(crate) use pose::{LIMIT_SLACK, NearWish, angle_between, nearest_turn};
 use spec::{ControlSpec, FeedReading, JointSpec, MachineSpec, Sense};
 pub use two_axis::{Angles, AxisUnreachable, Solutions, TwoAxis, TwoAxisError};
 pub(crate) use two_axis::{REACH_TOLERANCE_RAD, angle_about};
@@ -137,7 +137,7 @@ impl Machine {
             return Err(MachineError::Format { got: spec.format });
         }
         let tool_axis = direction("the machine", "tool_axis", spec.tool_axis)?;
-        let joints = spec.joint.iter().map(joint).collect::<Result<Vec<_>, _>>()?;
+        let mut joints = spec.joint.iter().map(joint).collect::<Result<Vec<_>, _>>()?;
         check_control(&spec.control)?;
         check_names_and_order(&joints)?;
         let of_kind = |kind| (0..joints.len()).filter(|&i| joints[i].kind == kind).collect::<Vec<_>>();
@@ -148,9 +148,14 @@ impl Machine {
         }
         let Ok(linear) = <[usize; 3]>::try_from(linear) else { return Err(count) };
         let [x, y, z] = linear.map(|i| joints[i].direction);
-        let volume = x.cross(&y).dot(&z).abs();
-        if volume < SMALLEST_VOLUME {
-            return Err(MachineError::LinearDependent { volume });
+        let volume = x.cross(&y).dot(&z);
+        if volume.abs() < SMALLEST_VOLUME {
+            return Err(MachineError::LinearDependent { volume: volume.abs() });
+        }
+        // The tool along the slides, with rotary joints at zero: what a control adds to their words as the tool's length.
+        let along = [tool_axis.cross(&y).dot(&z), x.cross(&tool_axis).dot(&z), x.cross(&y).dot(&tool_axis)];
+        for (place, share) in linear.into_iter().zip(along) {
+            joints[place].nose_per_mm = share / volume;
         }
         let pair = match rotary[..] {
             [outer, inner] => {
@@ -354,6 +359,7 @@ fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
         side,
         direction,
         point: Point3::from(point),
+        nose_per_mm: 0.0,
         min: min.map(|m| m * to),
         max: max.map(|m| m * to),
         machine_zero,

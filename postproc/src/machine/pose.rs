@@ -40,6 +40,17 @@ impl Orientations {
     }
 }
 
+/// A joint out of its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Beyond {
+    /// Place of the joint.
+    pub place: usize,
+    /// What the joint itself reads, mm at the spindle nose or rad.
+    pub at: f64,
+    /// By how much it is out, mm or rad.
+    pub by: f64,
+}
+
 /// What to do near a pole when a pose is solved close to given joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NearWish {
@@ -173,11 +184,14 @@ impl Machine {
         if joint.excess(other) <= LIMIT_SLACK { other } else { best }
     }
 
-    /// The first joint out of its range, with its place.
-    pub(crate) fn out_of_limits(&self, values: &JointValues) -> Option<(usize, f64)> {
-        (0..self.joints().len())
-            .map(|i| (i, self.joints()[i].excess(values[i])))
-            .find(|(_, e)| *e > LIMIT_SLACK)
+    /// The first joint out of its range with a tool of this gauge length.
+    pub(crate) fn out_of_limits(&self, values: &JointValues, gauge_length_mm: f64) -> Option<Beyond> {
+        (0..self.joints().len()).find_map(|place| {
+            let joint = &self.joints()[place];
+            let at = joint.at_nose(values[place], gauge_length_mm);
+            let by = joint.excess(at);
+            (by > LIMIT_SLACK).then_some(Beyond { place, at, by })
+        })
     }
 
     /// Values of the rotary joints, outer first.

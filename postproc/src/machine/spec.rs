@@ -51,11 +51,12 @@ pub enum JointSpec {
         /// How its sign is read.
         #[serde(default)]
         sense: Sense,
-        /// Smallest value; absent: no limit.
+        /// Smallest value at the spindle nose, as a control counts its travel: a program's word for the tip is short of it by the
+        /// gauge length along the tool. Absent: no limit.
         min_mm: Option<f64>,
-        /// Largest value; absent: no limit.
+        /// Largest value at the spindle nose; absent: no limit.
         max_mm: Option<f64>,
-        /// Its value where the control's own coordinate of it (`G53`, `SUPA`, `M91`) reads zero. Absent: the upper limit
+        /// Its value at the spindle nose where the control's own coordinate of it (`G53`, `SUPA`, `M91`) reads zero. Absent: the upper limit
         /// of a joint called Z, whose zero is the top of its travel, and zero of any other.
         #[serde(default)]
         machine_zero_mm: Option<f64>,

@@ -281,6 +281,32 @@ proptest! {
         }
     }
 
+    /// The nose is a gauge length up the axis from the tip, wherever the rotary joints stand.
+    #[test]
+    fn slides_carry_the_nose(
+        machine in random_machine(),
+        linear in prop::array::uniform3(-200.0..200.0f64),
+        angles in prop::array::uniform2(-3.1..3.1f64),
+        gauge in 0.0..200.0f64,
+    ) {
+        let mut words = [0.0; MAX_JOINTS];
+        for (place, v) in machine.linear().into_iter().zip(linear) {
+            words[place] = v;
+        }
+        for (place, v) in machine.rotary().iter().zip(angles) {
+            words[*place] = v;
+        }
+        let mut slides = words;
+        for (place, joint) in machine.joints().iter().enumerate() {
+            slides[place] = joint.at_nose(words[place], gauge);
+            prop_assert!((joint.word_at(slides[place], gauge) - words[place]).abs() < 1e-12);
+        }
+        // Without a tool the tip is the nose.
+        let (bare, held) = (Setup::at(Vec3::zeros(), 0.0), Setup::at(Vec3::zeros(), gauge));
+        let (nose, tip) = (machine.forward(&slides, &bare), machine.forward(&words, &held));
+        prop_assert!((nose.tip - tip.tip - tip.axis.into_inner() * gauge).norm() < 1e-9, "{nose:?} {tip:?}");
+    }
+
     /// What is called unreachable is: the reported angle leads exactly to the border.
     #[test]
     fn unreachable_axes(machine in random_machine(), wanted in unit()) {

@@ -22,11 +22,7 @@ impl<S: Sink> Interpreter<'_, S> {
         }
         if let (true, Some(tool)) = (asked.change, self.selected) {
             let before = self.control.tool;
-            self.control.change(tool);
-            if let Tool::Number(number) = tool {
-                let own = self.lengths.iter().find(|t| t.0 == number);
-                self.setup.gauge_length_mm = own.map_or(self.gauge_length_mm, |t| t.1);
-            }
+            self.change_tool(tool);
             // Which edge is then in force is the machine's data.
             if self.dialect == Dialect::Sinumerik && before != tool {
                 self.control.length = Length::Unsaid;
@@ -42,6 +38,16 @@ impl<S: Sink> Interpreter<'_, S> {
         }
         self.control.speed_rpm = self.state.speed;
         self.settle_corner(asked);
+    }
+
+    /// Another tool in the spindle, which stays where it is: the tip is elsewhere.
+    fn change_tool(&mut self, tool: Tool) {
+        self.control.change(tool);
+        if let Tool::Number(number) = tool {
+            let own = self.lengths.iter().find(|t| t.0 == number);
+            let length_mm = own.map_or(self.gauge_length_mm, |t| t.1);
+            self.state.take_length(length_mm, self.machine, &mut self.setup);
+        }
     }
 
     fn settle_length(&mut self, asked: &Asked) {
@@ -121,7 +127,7 @@ impl<S: Sink> Interpreter<'_, S> {
         let Some(rest) = arguments.strip_prefix("CALL") else { return };
         let rest = rest.trim_start();
         if rest.starts_with(['"', '\'']) || rest.starts_with('Q') {
-            self.control.change(Tool::Named);
+            self.change_tool(Tool::Named);
         } else if let Some(Ok(number)) = rest
             .split_whitespace()
             .next()
@@ -129,10 +135,10 @@ impl<S: Sink> Interpreter<'_, S> {
             .map(str::parse::<u32>)
         {
             self.record.select(number, line);
-            self.control.change(Tool::Number(number));
+            self.change_tool(Tool::Number(number));
         } else if rest.starts_with(|c: char| c.is_ascii_digit()) {
             // A step of an indexed tool (5.1) has a length of its own.
-            self.control.change(Tool::Named);
+            self.change_tool(Tool::Named);
         } else {
             return;
         }

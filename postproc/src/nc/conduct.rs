@@ -370,6 +370,16 @@ impl Judge<'_> {
             ("machine coordinates are taken from the joint's own zero: the machine file has no machine_zero_mm", ""),
             r.guessed,
         );
+        for out in &r.beyond {
+            let what = format!(
+                "{} would have to go to {:.3}, beyond its travel of {}{}",
+                out.letter,
+                out.at,
+                out.range,
+                if out.slides { " at the spindle nose" } else { "" }
+            );
+            found.add(Grade::Breaks, (&what, MOVE), out.seen);
+        }
         let tools = &self.expected.tools;
         let cuts = |n: u32| r.uses.iter().any(|u| u.feed.count > 0 && u.control.tool == Tool::Number(n));
         let strange = |n: u32| !tools.is_empty() && !tools.iter().any(|t| t.number == n) && !cuts(n);

@@ -6,6 +6,7 @@
 
 use super::Dialect;
 use super::work_offset::WorkOffset;
+use crate::machine::{Beyond, Joint, JointKind};
 
 /// The tool in the spindle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -178,7 +179,28 @@ pub struct Record {
     pub(super) sent_first: Seen,
     /// Machine coordinates of joints whose zero the machine file does not say.
     pub(super) guessed: Seen,
+    /// Joints that would have to leave their range, one entry each.
+    pub(super) beyond: Vec<Outside>,
 }
+
+/// A joint that a program sends out of its range.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Outside {
+    pub letter: String,
+    /// Moves that end there.
+    pub seen: Seen,
+    /// Farthest out, in the unit of the joint; a slide at the spindle nose.
+    pub at: f64,
+    /// By so much, in the unit of the joint.
+    pub by: f64,
+    /// The range in words.
+    pub range: String,
+    /// A slide, read at the spindle nose.
+    pub slides: bool,
+}
+
+/// Joints may be out of their range by this, mm or degrees: positions in programs are rounded.
+const NOT_OUT: f64 = 1e-3;
 
 /// States that are looked through for the one in force.
 const LOOKED_BACK: usize = 16;
@@ -201,6 +223,31 @@ impl Record {
             Kind::Feed => self.uses[place].feed.again(line),
             Kind::Plunge => self.uses[place].plunge.again(line),
             Kind::Rapid => {}
+        }
+    }
+
+    /// A move ends with a joint out of its range.
+    pub(super) fn outside(&mut self, line: usize, joint: &Joint, out: &Beyond) {
+        let (at, by) = (joint.shown(out.at), joint.shown(out.by));
+        if by <= NOT_OUT {
+            return;
+        }
+        let k = self.beyond.iter().position(|b| b.letter == joint.letter).unwrap_or_else(|| {
+            let end = |v: Option<f64>| v.map_or("no limit".into(), |v| joint.shown(v).to_string());
+            self.beyond.push(Outside {
+                letter: joint.letter.clone(),
+                seen: Seen::default(),
+                at,
+                by,
+                range: format!("{} to {} {}", end(joint.min), end(joint.max), joint.unit()),
+                slides: joint.kind == JointKind::Linear,
+            });
+            self.beyond.len() - 1
+        });
+        let this = &mut self.beyond[k];
+        this.seen.again(line);
+        if by > this.by {
+            (this.at, this.by) = (at, by);
         }
     }
 

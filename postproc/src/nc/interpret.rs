@@ -279,6 +279,9 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             return Ok(());
         };
         let joints = known.joints(self.machine, &self.setup).ok_or(ReadError::Flat { line })?;
+        if let Some(out) = self.machine.out_of_limits(&joints, self.setup.gauge_length_mm) {
+            self.record.outside(line, &self.machine.joints()[out.place], &out);
+        }
         let rapid = match rapid {
             Some(rapid) => rapid,
             None => self.rapid(line)?,

@@ -1,7 +1,8 @@
 //! Moves to places of the machine's own frame: `G53`, `SUPA`, `M91`, and `G28` by way of a point to the home.
 //!
 //! The control's own coordinate of a joint is the joint's value less the value at which it reads zero
-//! ([`crate::machine::Joint::own_zero`]); the tool's length is not in it twice, as joints read the tip in any case. All
+//! ([`crate::machine::Joint::own_zero`]), of slides at the spindle nose: G53 of Fanuc and LinuxCNC, M91 and SUPA with D0 leave the tool's
+//! length out, so the tip of the tool in hand is that much beyond. All
 //! joints that are not named stay, also with tool-centre-point control or in a tilted plane, where X Y Z mean
 //! something else: what they are afterwards follows from the joints.
 
@@ -48,7 +49,7 @@ impl<S: Sink> Interpreter<'_, S> {
             if zero.is_none() {
                 self.sent(line);
             }
-            targets.push((place, zero.map(|zero| value + zero)));
+            targets.push((place, zero.map(|zero| joint.word_at(value + zero, self.setup.gauge_length_mm))));
         }
         Ok(targets)
     }
@@ -63,7 +64,7 @@ impl<S: Sink> Interpreter<'_, S> {
             if home.is_none() {
                 self.sent(line);
             }
-            targets.push((place, home));
+            targets.push((place, home.map(|home| joint.word_at(home, self.setup.gauge_length_mm))));
         }
         targets
     }

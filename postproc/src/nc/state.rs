@@ -135,6 +135,34 @@ impl State {
         }
     }
 
+    /// Another gauge length with the slides where they are: what X Y Z are for the new tip.
+    pub fn take_length(&mut self, length_mm: f64, machine: &Machine, setup: &mut Setup) {
+        let before_mm = setup.gauge_length_mm;
+        if length_mm == before_mm {
+            return;
+        }
+        let stands = self.known(machine).and_then(|k| k.joints(machine, setup));
+        setup.gauge_length_mm = length_mm;
+        let word = |place: usize, value: f64| {
+            let joint = &machine.joints()[place];
+            joint.word_at(joint.at_nose(value, before_mm), length_mm)
+        };
+        match stands {
+            Some(mut joints) => {
+                for place in machine.linear() {
+                    joints[place] = word(place, joints[place]);
+                }
+                self.stand_at(&joints, machine, setup);
+            }
+            None if self.of_tip() => self.linear = [None; 3],
+            None => {
+                for (place, slot) in machine.linear().into_iter().zip(&mut self.linear) {
+                    *slot = slot.map(|value| word(place, value));
+                }
+            }
+        }
+    }
+
     /// The machine stands at these joints: what X Y Z and the rotary words are there.
     pub fn stand_at(&mut self, joints: &JointValues, machine: &Machine, setup: &Setup) {
         for (slot, place) in machine.rotary().iter().enumerate() {

@@ -210,7 +210,8 @@ impl Trial<'_> {
         );
         row(
             "machine",
-            "reach of its joints as posted, slides read at the tip whatever the length of a tool; table, head and their bodies are NOT described"
+            "travel of its joints at the ends of an NC program's blocks, slides at the spindle nose; table, head and their bodies are NOT \
+             described"
                 .to_owned(),
         );
         rows
