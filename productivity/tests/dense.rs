@@ -13,7 +13,7 @@ mod cutting;
 use osculate_geom::analytic::{Paraboloid, Sphere, Torus};
 use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Along, DropTask, Entry, Headings, Links, Named, Pass, Passes, PlanError, Rates, RoughTask, Sizes,
+    Along, DropTask, Entry, Headings, Links, Named, Pass, Passes, PlanError, Rates, RoughTask, Rows, Sizes,
     Strategy, Task, Tolerance, drop_cutter, gradient_3c, rough, run,
 };
 use osculate_tools::removal::Swept;
@@ -225,7 +225,7 @@ fn roughing_keeps_its_allowance() {
         check: &[],
         cutter: &TOROIDAL.cutter(),
         from: Headings::Along(Vec3::z_axis()),
-        feed: Vec3::x(),
+        rows: Rows::Along(Vec3::x()),
         stock: &stock,
         repeat: None,
         sizes,

@@ -9,7 +9,7 @@ use heights::{Done, Heights};
 use osculate_geom::analytic::{Placed, Placement, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Search, Sizes, rough,
+    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Rows, Search, Sizes, rough,
 };
 use osculate_tools::removal::Swept;
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
@@ -87,7 +87,7 @@ fn planned(faces: &[Placed<Plane>], block: Box3, stock: &Stock, how: How<'_>) ->
         check: &[],
         cutter: &cutter,
         from: how.from,
-        feed: Vec3::x(),
+        rows: Rows::Along(Vec3::x()),
         stock,
         repeat: None,
         sizes: SIZES,

@@ -5,7 +5,7 @@
 use osculate_geom::analytic::{Paraboloid, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Surface, Vec3};
 use osculate_productivity::plan::{
-    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Sizes, rough as roughed,
+    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Rows, Sizes, rough as roughed,
 };
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
@@ -49,7 +49,7 @@ fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Resu
         check: &[],
         cutter,
         from: Headings::Along(Vec3::z_axis()),
-        feed: Vec3::x(),
+        rows: Rows::Along(Vec3::x()),
         stock: &stock,
         repeat: None,
         sizes,

@@ -13,7 +13,7 @@ use crate::work::setup;
 use crate::work::stock::RawMaterial;
 use osculate_geom::{Offset, Unit3};
 use osculate_postproc::Orienting;
-use osculate_productivity::plan::{self, Headings, Places, RoughTask, Search, Sizes};
+use osculate_productivity::plan::{self, Headings, Places, RoughTask, Rows, Search, Sizes};
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::Lean;
 use osculate_tools::reach::Directions;
@@ -66,7 +66,7 @@ pub fn planned(
     (layers, stock, repeat): (&Layers, &Stock, Option<Places>),
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Planned<'static>, Failure> {
-    let (axis, feed) = drop::directions(job, faces);
+    let (axis, longest) = drop::directions(job, faces);
     let cutter = job.cutter();
     let links = passes::links(job, faces, &cutter);
     let (named, check) = (drop::names(&faces.faces), drop::names(&faces.check));
@@ -80,7 +80,10 @@ pub fn planned(
         check: &check,
         cutter: &cutter,
         from,
-        feed,
+        rows: match job.strategy().feed_direction {
+            Some(asked) => Rows::Along(asked),
+            None => Rows::Quickest(longest),
+        },
         stock,
         repeat,
         sizes: sizes(job, layers),

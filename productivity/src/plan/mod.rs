@@ -33,8 +33,8 @@ mod walk;
 
 pub use contour::contour_2cl;
 pub use drop::{
-    DropTask, Entry, Heading, Headings, Places, RoughTask, Roughing, Search, Sizes, drop_cutter, gradient_3c,
-    rough, waterline_3c,
+    DropTask, Entry, Heading, Headings, Places, RoughTask, Roughing, Rows, Search, Sizes, drop_cutter,
+    gradient_3c, rough, waterline_3c,
 };
 pub use isoparametric::isoparametric;
 pub use lead::{LeadField, Leaning, LocalLead};

@@ -24,5 +24,5 @@ mod waterline;
 pub use gradient::gradient_3c;
 pub use ground::DropTask;
 pub use planes::drop_cutter;
-pub use rough::{Entry, Heading, Headings, Places, RoughTask, Roughing, Search, Sizes, rough};
+pub use rough::{Entry, Heading, Headings, Places, RoughTask, Roughing, Rows, Search, Sizes, rough};
 pub use waterline::waterline_3c;

@@ -1,5 +1,7 @@
 //! How long moves between passes take: enough to choose among ways and orders, not the time of a program.
 
+use osculate_tools::cl::{ClMove, ClPath, Motion};
+
 /// How fast the machine goes where it does not cut.
 ///
 /// A rapid move goes from rest to rest: it takes `d / v + v / a`, or `2 sqrt(d / a)` where it is too short to get up to its speed. Of a
@@ -51,8 +53,21 @@ impl Rates {
         way.max(from_rest(step.turn_rad, self.turn_rad_min, self.turn_rad_min2))
     }
 
+    /// Time of a whole path, min, from its first place on.
+    pub(in crate::plan) fn path_min(&self, path: &ClPath) -> f64 {
+        let pair = |w: &[ClMove]| {
+            let (a, b) = (&w[0].pose, &w[1].pose);
+            let step = Step { length_mm: (b.tip - a.tip).norm(), turn_rad: a.axis.angle(&b.axis) };
+            match w[1].motion {
+                Motion::Rapid => self.rapid_min(step),
+                Motion::Feed(feed_mm_min) => self.feed_min(step, feed_mm_min),
+            }
+        };
+        path.moves.windows(2).map(pair).sum()
+    }
+
     /// Time of a move at a feed, min.
-    pub(super) fn feed_min(&self, step: Step, feed_mm_min: f64) -> f64 {
+    pub(in crate::plan) fn feed_min(&self, step: Step, feed_mm_min: f64) -> f64 {
         (step.length_mm / feed_mm_min).max(step.turn_rad / self.turn_rad_min)
     }
 }

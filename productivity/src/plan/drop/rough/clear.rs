@@ -24,6 +24,14 @@ pub(super) struct Part {
     below: Vec<usize>,
 }
 
+impl Part {
+    /// How far the nearest end of its lines is across the axis; endless where it has none.
+    fn away_mm(&self, here: [f64; 3]) -> f64 {
+        let ends = self.cuts.iter().flat_map(|c| c.places.first().into_iter().chain(c.places.last()));
+        ends.map(|p| (p[0] - here[0]).hypot(p[1] - here[1])).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// The parts of all layers, from the top, each knowing those below it.
 pub(super) fn parts(
     grid: &Grid,
@@ -130,10 +138,17 @@ fn parted(grid: &Grid, part: &[u32], cut: Cut) -> Vec<(usize, Cut)> {
 
 /// Cuts all parts, each after those above it.
 pub(super) fn clear(parts: &mut [Part], sheets: &[Sheet], moves: &mut Moves<'_>, apart_mm: f64) {
-    let mut ready: Vec<usize> = (0..parts.len()).filter(|p| parts[*p].above == 0).rev().collect();
+    let mut ready: Vec<Vec<usize>> = vec![(0..parts.len()).filter(|p| parts[*p].above == 0).collect()];
     let mut left: Vec<usize> = parts.iter().map(|p| p.above).collect();
-    // What lies below the part that was cut last comes next: the list is a stack.
-    while let Some(p) = ready.pop() {
+    // What lies below the part that was cut last comes next, the nearest of it first: the list is a stack.
+    while let Some(group) = ready.last_mut() {
+        let here = moves.here();
+        let away = |p: &usize| here.map_or(0.0, |h| parts[*p].away_mm(h));
+        let nearest = (0..group.len()).min_by(|a, b| away(&group[*a]).total_cmp(&away(&group[*b])));
+        let Some(p) = nearest.map(|k| group.remove(k)) else {
+            ready.pop();
+            continue;
+        };
         let cuts = std::mem::take(&mut parts[p].cuts);
         cut_part(moves, &sheets[parts[p].layer], cuts, apart_mm);
         let mut next = Vec::new();
@@ -143,7 +158,7 @@ pub(super) fn clear(parts: &mut [Part], sheets: &[Sheet], moves: &mut Moves<'_>,
                 next.push(b);
             }
         }
-        ready.extend(next.into_iter().rev());
+        ready.push(next);
     }
 }
 

@@ -113,7 +113,8 @@ impl Views {
         let seen: Vec<(Vec<u64>, f64)> = candidates
             .par_iter()
             .map(|axis| {
-                let (frame, area, cell) = view(material, (*axis, &known.task.feed), &known.rougher, CELL);
+                let (frame, area, cell) =
+                    view(material, (*axis, &known.task.rows.given()), &known.rougher, CELL);
                 let relief = Relief::of(&part, (frame, material.bounds()), &known.rougher, (area, cell));
                 let mut bits = vec![0u64; points.len().div_ceil(WORD)];
                 let is_once = places.is_some_and(|p| p.of_axis(axis).is_none());
@@ -170,7 +171,7 @@ impl Views {
 
     /// How many cells of its layers a candidate has to go over.
     fn way(&self, k: usize, left: &[u64], known: &Known<'_>) -> usize {
-        let frame = super::super::frame::Frame::new(self.candidates[k], &known.task.feed);
+        let frame = super::super::frame::Frame::new(self.candidates[k], &known.task.rows.given());
         let (apart, deep) = (self.each_mm3.cbrt(), known.task.sizes.stepdown_mm);
         let mut cells: BTreeSet<[i64; 3]> = BTreeSet::new();
         let bits = common(&self.takes[k], left);

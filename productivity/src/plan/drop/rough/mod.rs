@@ -31,5 +31,5 @@ mod task;
 mod ways;
 mod whole;
 
-pub use task::{Entry, Heading, Headings, Places, RoughTask, Roughing, Search, Sizes};
+pub use task::{Entry, Heading, Headings, Places, RoughTask, Roughing, Rows, Search, Sizes};
 pub use whole::rough;

@@ -16,8 +16,8 @@ pub struct RoughTask<'a> {
     pub cutter: &'a Cutter,
     /// From where it is roughed.
     pub from: Headings<'a>,
-    /// The way of rows, brought into the plane across the axis.
-    pub feed: Vec3,
+    /// The way of rows.
+    pub rows: Rows,
     /// What operations before have left.
     pub stock: &'a Stock,
     /// Equal places in a circle, of which the first is planned.
@@ -43,6 +43,24 @@ pub enum Headings<'a> {
     Along(Unit3),
     /// Along the axes that take most, one after the other.
     Found(Search<'a>),
+}
+
+/// The way of rows, brought into the plane across the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rows {
+    /// Along a direction.
+    Along(Vec3),
+    /// Along this direction or turned about the axis from it, whichever takes the least time for what it takes.
+    Quickest(Vec3),
+}
+
+impl Rows {
+    /// The direction itself.
+    pub(super) const fn given(self) -> Vec3 {
+        match self {
+            Self::Along(way) | Self::Quickest(way) => way,
+        }
+    }
 }
 
 /// How axes are found.
@@ -119,6 +137,8 @@ impl Sizes {
 pub struct Heading {
     /// The axis, from the tip to the holder.
     pub axis: Unit3,
+    /// The way of its rows, across the axis.
+    pub rows: Unit3,
     /// Heights of the layers along it, from the top, mm.
     pub layers: Vec<f64>,
     /// What the tool takes, in the one place that is planned, mm3.
