@@ -49,9 +49,9 @@ pub enum SolveError {
     },
     /// Every way to reach a pose leaves a joint's range.
     #[error(
-        "CL move {index}: at ({:.3}, {:.3}, {:.3}) joint {joint} would be at {value:.4} {unit}, its range is {min:.4} to \
+        "CL move {index}: at ({:.3}, {:.3}, {:.3}) joint {joint} would be at {value:.4} {unit}{}, its range is {min:.4} to \
          {max:.4} {unit}: move or turn the part in its setup, or change lead and tilt",
-        tip.x, tip.y, tip.z
+        tip.x, tip.y, tip.z, if *unit == "mm" { " at the spindle nose" } else { "" }
     )]
     Limit {
         /// The move.

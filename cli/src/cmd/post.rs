@@ -169,6 +169,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
             tool_number: tool.number.unwrap_or(usual.tool_number),
             auxiliary: stopping(args, k, section),
             preselect: args.preselect,
+            blend_mm: args.blend_mm.unwrap_or(usual.blend_mm),
             orientation,
             subprogram: args.subprogram,
             work_offset,

@@ -341,6 +341,9 @@ pub struct PostArgs {
     /// Put the next tool ready while one is at work (`T7`, `TOOL DEF 7`).
     #[arg(long)]
     pub preselect: bool,
+    /// By how much the control may leave the way at corners and in smoothing (`G64 P`, `CYCLE832`, cycle 32), mm; 0.002 where not given.
+    #[arg(long, value_name = "MM", value_parser = blend)]
+    pub blend_mm: Option<f64>,
     /// Stop before each further tool where the operator asks for it (`M1`).
     #[arg(long)]
     pub stops: bool,
@@ -407,6 +410,12 @@ fn numbers<const N: usize>(s: &str) -> Result<[f64; N], String> {
 
 fn pair(s: &str) -> Result<[f64; 2], String> {
     numbers(s)
+}
+
+/// What programs word with four decimals, and no part is meant to be off by more.
+fn blend(s: &str) -> Result<f64, String> {
+    let mm: f64 = s.parse().map_err(|_| format!("'{s}' is not a number"))?;
+    if (1e-4..=1.0).contains(&mm) { Ok(mm) } else { Err("0.0001 to 1 mm is wanted".into()) }
 }
 
 fn triple(s: &str) -> Result<[f64; 3], String> {

@@ -15,8 +15,10 @@ use crate::cmd::{self, Failure};
 /// Where the sample configurations lie in the packages.
 const SAMPLE: &str =
     "usr/share/doc/linuxcnc/examples/sample-configs/sim/axis/vismach/5axis/table-rotary-tilting";
-/// A tip may be off the way by what the control may round corners by (`G64 P`), and by rounding, mm.
-const WAY_MM: f64 = 0.002 + 0.002;
+/// A tip may be off the way by so much, mm: corners, chords and rounding.
+const WAY_MM: f64 = 0.002;
+/// What of it the control may round corners by (`G64 P`).
+const BLEND_MM: &str = "0.001";
 
 struct Sample {
     kind: &'static str,
@@ -97,7 +99,7 @@ fn post(witness: &Witness, cl: &Path, kind: &str) -> Result<(PathBuf, usize), Fa
     let machine = witness.root.join(format!("xtask/interop/sim-{kind}.toml"));
     let mut post = cmd::cargo(&witness.root, &["run", "-q", "--locked", "-p", "osculate", "--", "post"]);
     post.arg(cl).arg("--machine").arg(machine);
-    post.args(["--dialect", "linuxcnc", "--feed", "tcp", "--json", "--out"]).arg(&program);
+    post.args(["--dialect", "linuxcnc", "--feed", "tcp", "--json", "--blend-mm", BLEND_MM, "--out"]).arg(&program);
     cmd::output_quietly(post)?;
     let text =
         std::fs::read_to_string(&program).map_err(|why| Failure::Read { path: program.clone(), why })?;
