@@ -43,6 +43,9 @@ feed_mm_min = {feed}
 [machine]
 name = "3-axis"
 dialect = "linuxcnc"
+feed = "none"
+[setup]
+part_zero_mm = [0, 0, 0]
 [verification]
 spacing_mm = {spacing}
 accept = "samples"
@@ -125,7 +128,8 @@ def pocket(text):
     for before, at in zip(found, found[1:]):
         a, b = (math.atan2(p[2], p[1]) for p in (before, at))
         step = (a - b) % (2 * math.pi)  # clockwise
-        if turn + step > 2 * math.pi:
+        # Before the end of the turn the tool has cut farther out when it began.
+        if turn + step > 2 * math.pi - 0.2:
             break
         r = [math.hypot(p[1], p[2]) for p in (before, at)]
         for k in range(STEPS):

@@ -70,7 +70,7 @@ const fn lines(kind: Kind) -> (&'static [&'static str], &'static [&'static str])
         Kind::Part => (
             &["inspect FILE", "verify path-of.cl --job job-of.toml"],
             &[
-                "inspect FILE --areas --groups --out faces",
+                "inspect FILE --groups --out faces",
                 "export FILE --out out.stl",
                 "export FILE --out out.step",
                 "export FILE --out out.igs",
@@ -83,7 +83,7 @@ const fn lines(kind: Kind) -> (&'static [&'static str], &'static [&'static str])
             ],
         ),
         Kind::Mesh => (
-            &["inspect FILE --areas", "verify path-of.cl --job job-of.toml"],
+            &["inspect FILE", "verify path-of.cl --job job-of.toml"],
             &[
                 "verify path-of.cl --job stock-of.toml",
                 "plan job-of.toml --out plan",
