@@ -25,7 +25,7 @@ GRID_MM = 0.05
 STEP_MM = 0.02
 UP_MM = 0.1
 WINDOW = (34.0, 44.0, 18.0, 24.0)  # of the mould, mm: from its floor up a wall.
-STEPS = 24  # of an arc of the spiral: chords are 1e-4 mm off.
+STEPS = 8  # of an arc of the spiral: chords are 1e-3 mm off.
 
 JOB = """format = 1
 [part]
@@ -160,7 +160,7 @@ def main():
     flat = f'kind = "flat"\ndiameter_mm = {FLAT_MM}'
     for name, file, made, tool, about in (
         ("mould", "camotics_flower_mold.nc", bowl, ball, {"rpm": 2000, "feed": 508, "spacing": 0.05}),
-        ("spiral", "linuxcnc_arcspiral.ngc", pocket, flat, {"rpm": 3400, "feed": 610, "spacing": 0.4}),
+        ("spiral", "linuxcnc_arcspiral.ngc", pocket, flat, {"rpm": 3400, "feed": 610, "spacing": 1.0}),
     ):
         mesh = made((nc / file).read_text())
         (out / f"{name}.ngc").write_text((nc / file).read_text())
