@@ -74,7 +74,7 @@ pub enum MachineError {
         letter: String,
     },
     /// A number that makes no sense.
-    #[error("{}{what} of {whose} is {value}: {wanted}", at(*line))]
+    #[error("{}{what} of {whose} is {value:?}: {wanted}", at(*line))]
     Value {
         /// The line of the file that says it, where there is one.
         line: Option<usize>,

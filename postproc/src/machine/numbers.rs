@@ -63,7 +63,7 @@ fn limits(
     }
     match (min, max) {
         (Some(a), Some(b)) if a >= b => {
-            Err(value(whose, least, a, &format!("it must be smaller than {most}, which is {b}")))
+            Err(value(whose, least, a, &format!("it must be smaller than {most}, which is {b:?}")))
         }
         _ => Ok(()),
     }
