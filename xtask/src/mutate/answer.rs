@@ -10,8 +10,15 @@ const MEASURED: [(&str, f64); 6] =
 
 /// Those of them that are absent where nothing is known: the ends of a histogram, what nothing bounds, radii of what is flat, marks of tools
 /// whose speed nobody says.
-const OPEN: [&str; 6] =
-    ["from_mm", "to_mm", "hidden_scallop_mm", "hidden_gouge_mm", "smallest_radius_mm", "tooth_mark_max_mm"];
+const OPEN: [&str; 7] = [
+    "from_mm",
+    "to_mm",
+    "hidden_scallop_mm",
+    "hidden_gouge_mm",
+    "smallest_radius_mm",
+    "hollow_radius_mm",
+    "tooth_mark_max_mm",
+];
 
 /// The exit code of a run; 128 and the signal where one ended it.
 pub fn code(status: ExitStatus) -> i32 {
