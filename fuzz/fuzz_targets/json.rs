@@ -1,11 +1,8 @@
-//! Bytes to the JSON reader: faces or an error with its place, and faces that it gives can be written again.
+//! The fuzzer's way to `looks/json.rs`, which says what is looked at.
 
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
+#[path = "../looks/json.rs"]
+mod json;
 
-fuzz_target!(|bytes: &[u8]| {
-    if let Ok(faces) = osculate_surfaces::json::read(bytes) {
-        let _ = osculate_surfaces::json::write(&faces);
-    }
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| json::look(bytes));

@@ -10,6 +10,7 @@ use crate::draft::{Draft, linear_decimals};
 use crate::feed::{FeedMode, fastest_durations_min};
 use crate::joint_path::JointBlock;
 use crate::machine::Machine;
+use crate::motion::TooLong;
 use crate::nc::block::RotaryName;
 use crate::nc::number;
 use crate::nc::writer::Writer;
@@ -197,7 +198,7 @@ where
     let s = joints.summary;
     let summary = PostSummary {
         blocks,
-        time_min: draft.time_min,
+        time_min: TooLong::refused(draft.time_min)?,
         rewinds: s.rewinds,
         singular_mm: s.singular_mm,
         inserted_points: s.inserted_points,

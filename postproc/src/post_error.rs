@@ -3,6 +3,7 @@
 use std::io;
 
 use crate::cldata::ClStreamError;
+use crate::motion::TooLong;
 use crate::nc::WriteError;
 use crate::solve_error::SolveError;
 
@@ -18,6 +19,9 @@ pub enum PostError {
     /// The moves cannot be had.
     #[error(transparent)]
     Source(#[from] ClStreamError),
+    /// It runs longer than anybody waits.
+    #[error(transparent)]
+    TooLong(#[from] TooLong),
     /// The sink takes no more.
     #[error("the program cannot be written: {kind}")]
     Sink {

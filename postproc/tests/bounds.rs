@@ -75,3 +75,19 @@ fn numbers_that_no_control_holds() {
         assert!(matches!(e, ClReadError::Feed { line: at, .. } if at == line), "{e}");
     }
 }
+
+#[test]
+fn programs_that_nobody_waits_for() {
+    let e = back("G0 X0 Y0 Z0 A0 C0\nG1 X900000000 F0.01\nM30\n", Dialect::LinuxCnc).unwrap_err();
+    assert!(matches!(e, ReadError::TooLong(t) if t.time_min > 8e10), "{e}");
+    assert!(e.to_string().contains("longer than ten years"), "{e}");
+    // The same of the clock, and of a path that is posted for a slow machine.
+    let text = "G0 X0 Y0 Z0 A0 C0\nG1 X900000000 F0.01\nM30\n";
+    let timed =
+        osculate_postproc::nc::timing::time(text, Dialect::Fanuc, &endless(), &Setup::default(), true);
+    assert!(matches!(timed, Err(ReadError::TooLong(_))), "{timed:?}");
+    let path = read_cl("RAPID\nGOTO/0,0,5\nFEDRAT/0.0001\nGOTO/2000,0,0\n").unwrap().path;
+    let options = PostOptions::new(Dialect::Heidenhain, FeedMode::Tcp);
+    let posted = post(&path, &endless(), &Setup::default(), &options);
+    assert!(matches!(posted, Err(PostError::TooLong(_))), "{posted:?}");
+}

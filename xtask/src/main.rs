@@ -1,6 +1,6 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
 //! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask browser`, `cargo xtask plans`, `cargo xtask mutate`
-//! and `cargo xtask truth`.
+//! `cargo xtask truth` and `cargo xtask sides`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -61,7 +61,10 @@ usage: cargo xtask COMMAND
                 below 20 s and 2 GiB: panics, signals, runs out of bounds and success with nonsense
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
-                --data FOLDER [--only TEXT] [--all] [--json] [--malformed]";
+                --data FOLDER [--only TEXT] [--all] [--json] [--malformed]
+  sides --data FOLDER
+                the sides of all parts of a reference collection, found without the word of their files, as a table: beside that word,
+                volumes of another kernel and rays through triangles; FILE... instead tells the groups of single files";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -77,6 +80,7 @@ fn main() -> ExitCode {
         ["bench", "--peers"] => bench::run(true),
         ["reference", rest @ ..] => example("reference", rest),
         ["truth", rest @ ..] => example("truth", rest),
+        ["sides", rest @ ..] if !rest.is_empty() => example("sides", rest),
         ["papers", rest @ ..] if !rest.is_empty() && rest.iter().all(|p| ["r97", "m86"].contains(p)) => {
             strips(rest)
         }

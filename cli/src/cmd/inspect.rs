@@ -12,7 +12,7 @@ use osculate::words;
 use osculate::words::{Table, number};
 use osculate::work::faces_page;
 use osculate::work::init::Grouped;
-use osculate_geom::{Box3, Diagnostic, Surface};
+use osculate_geom::{Box3, Surface};
 use osculate_surfaces::Colour;
 use osculate_surfaces::structure::{Body, Shell, Structure};
 use rayon::prelude::*;
@@ -226,13 +226,14 @@ pub fn run(options: &InspectArgs, json: bool) -> Outcome {
     let args = &options.part;
     options.out.as_deref().map_or(Ok(()), output::folder)?;
     let mut part = args.load()?;
-    if options.areas {
-        let off = unbalanced(&part);
+    let why = failure(args, &part);
+    // Faces with places that no part has can take minutes.
+    if why.is_none() {
+        let off = part::unbalanced(&part);
         part.diagnostics.extend(off);
     }
     let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
     let found = hidden::find(&part, &oriented);
-    let why = failure(args, &part);
     let grouped = (options.groups || options.out.is_some()).then(|| Grouped::of(part.clone(), Normals::Auto));
     let page = options.out.as_ref().map(|folder| folder.join("faces.html"));
     if let (Some(to), Some(grouped)) = (&page, &grouped) {
@@ -263,21 +264,6 @@ pub fn run(options: &InspectArgs, json: bool) -> Outcome {
         render::complaint(why.message());
         Done::NotWithinTolerance
     }))
-}
-
-/// Faces whose area does not fit their boundary, by a second method.
-fn unbalanced(part: &Loaded) -> Vec<Diagnostic> {
-    let of = |f: &LoadedFace| {
-        let off = f.source.as_ref()?.imbalance()?;
-        let [loops, curves] = [off.loops_mm2, off.boundary_mm2].map(|x| number(x, 6));
-        let text = format!(
-            "as its loops were put together it has {loops} mm2 seen along its mean normal, and by the curves of its boundary {curves}: look at it \
-             (lines) before it is machined or checked"
-        );
-        Some(Diagnostic::warning(f.id.clone(), text))
-    };
-    let each: Vec<Option<Diagnostic>> = part.faces.par_iter().map(of).collect();
-    each.into_iter().flatten().collect()
 }
 
 /// Why what is shown is not the file.

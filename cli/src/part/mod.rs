@@ -13,7 +13,8 @@ pub use turned::{TurnedFaces, turned};
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
-use osculate_geom::{Box3, Point3, Side, Surface, Unit3};
+use crate::words::number;
+use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
@@ -147,6 +148,22 @@ pub fn far(part: &Loaded) -> Option<String> {
     })
 }
 
+/// A warning for every face whose area does not fit the curves of its boundary, by a second method (Stokes).
+#[must_use]
+pub fn unbalanced(part: &Loaded) -> Vec<Diagnostic> {
+    let of = |f: &LoadedFace| {
+        let off = f.source.as_ref()?.imbalance()?;
+        let [loops, curves] = [off.loops_mm2, off.boundary_mm2].map(|x| number(x, 6));
+        let text = format!(
+            "as its loops were put together it has {loops} mm2 seen along its mean normal, and by the curves of its boundary {curves}: look at it \
+             (lines) before it is machined or checked"
+        );
+        Some(Diagnostic::warning(f.id.clone(), text))
+    };
+    let each: Vec<Option<Diagnostic>> = part.faces.par_iter().map(of).collect();
+    each.into_iter().flatten().collect()
+}
+
 /// The part of a file.
 pub fn open(path: &Path) -> Result<Loaded, Failure> {
     from_file(path, None)
@@ -239,6 +256,8 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         Source::File { path, unit_mm } => whole(from_file(path, *unit_mm)?)?,
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
+    let off = unbalanced(&part);
+    part.diagnostics.extend(off);
     let chosen = machined(job, &part)?;
     let said = sides::said(job, &part)?;
     let open = settle(&mut part, (job.part().normals(), &said), &chosen);

@@ -180,9 +180,6 @@ pub struct InspectArgs {
     /// The faces in groups that look alike and go on smoothly, with what each is, and how neighbours meet.
     #[arg(long)]
     pub groups: bool,
-    /// Hold the area of every face against the curves of its boundary, a second method, and warn where they differ.
-    #[arg(long)]
-    pub areas: bool,
     /// Folder for faces.html: the part in 3D, its faces with their ids, coloured by group.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,

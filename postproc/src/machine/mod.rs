@@ -3,11 +3,12 @@
 mod built_in;
 mod chain;
 mod gaps;
+mod numbers;
 mod pose;
 pub mod spec;
 mod two_axis;
 
-use osculate_geom::{Point3, Unit3, Vec3};
+use osculate_geom::Unit3;
 use osculate_tools::Pose;
 
 pub use built_in::{built_in_names, built_in_text};
@@ -15,7 +16,7 @@ pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
 pub use gaps::Gap;
 pub(crate) use pose::{Beyond, LIMIT_SLACK, NearWish, angle_between, nearest_turn};
 pub use pose::{Candidate, Orientations};
-use spec::{ControlSpec, FeedReading, JointSpec, MachineSpec, Sense};
+use spec::{ControlSpec, MachineSpec};
 pub use two_axis::{Angles, AxisUnreachable, Solutions, TwoAxis, TwoAxisError};
 pub(crate) use two_axis::{REACH_TOLERANCE_RAD, angle_about};
 
@@ -73,16 +74,18 @@ pub enum MachineError {
         letter: String,
     },
     /// A number that makes no sense.
-    #[error("{what} of {whose} is {value}: {wanted}")]
+    #[error("{}{what} of {whose} is {value:?}: {wanted}", at(*line))]
     Value {
-        /// The joint, or "the machine".
+        /// The line of the file that says it, where there is one.
+        line: Option<usize>,
+        /// The joint, "the machine" or "the control".
         whose: String,
         /// The key.
         what: &'static str,
         /// What stands there.
         value: f64,
         /// What would do.
-        wanted: &'static str,
+        wanted: String,
     },
     /// The linear joints do not span space.
     #[error("the three linear directions span a volume of only {volume:.2e}: they must be independent")]
@@ -93,6 +96,11 @@ pub enum MachineError {
     /// The rotary joints cannot orient a tool.
     #[error(transparent)]
     Orientation(#[from] TwoAxisError),
+}
+
+/// A line in front of what is said of it.
+fn at(line: Option<usize>) -> String {
+    line.map_or_else(String::new, |line| format!("line {line}: "))
 }
 
 /// A checked machine tool.
@@ -114,7 +122,7 @@ impl Machine {
     /// # Errors
     /// Where the file is malformed or describes no machine.
     pub fn from_toml(text: &str) -> Result<Self, MachineError> {
-        Self::from_spec(&toml::from_str::<MachineSpec>(text)?)
+        Self::from_spec(&toml::from_str::<MachineSpec>(text)?).map_err(|e| numbers::with_line(e, text))
     }
 
     /// A machine by the name of a file that comes with the library; see [`built_in_names`].
@@ -136,9 +144,9 @@ impl Machine {
         if spec.format != FORMAT {
             return Err(MachineError::Format { got: spec.format });
         }
-        let tool_axis = direction("the machine", "tool_axis", spec.tool_axis)?;
-        let mut joints = spec.joint.iter().map(joint).collect::<Result<Vec<_>, _>>()?;
-        check_control(&spec.control)?;
+        let tool_axis = numbers::direction("the machine", "tool_axis", spec.tool_axis)?;
+        let mut joints = spec.joint.iter().map(numbers::joint).collect::<Result<Vec<_>, _>>()?;
+        numbers::check_control(&spec.control)?;
         check_names_and_order(&joints)?;
         let of_kind = |kind| (0..joints.len()).filter(|&i| joints[i].kind == kind).collect::<Vec<_>>();
         let (linear, rotary) = (of_kind(JointKind::Linear), of_kind(JointKind::Rotary));
@@ -249,139 +257,6 @@ impl Machine {
         let pose = chain::forward(&self.joints, &self.tool_axis, setup.gauge_length_mm, values);
         setup.to_part(&pose)
     }
-}
-
-fn direction(whose: &str, what: &'static str, d: [f64; 3]) -> Result<Unit3, MachineError> {
-    let v = Vec3::from(d);
-    // The square must not underflow; anything a person writes is far above.
-    Unit3::try_new(v, 1e-9).filter(|u| u.iter().all(|c| c.is_finite())).ok_or_else(|| MachineError::Value {
-        whose: whose.into(),
-        what,
-        value: v.norm(),
-        wanted: "a finite direction that is not zero",
-    })
-}
-
-fn positive(whose: &str, what: &'static str, value: f64) -> Result<f64, MachineError> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(MachineError::Value { whose: whose.into(), what, value, wanted: "a finite number above zero" })
-    }
-}
-
-fn limits(whose: &str, min: Option<f64>, max: Option<f64>) -> Result<(), MachineError> {
-    let value = match (min, max) {
-        (Some(a), Some(b)) if a >= b => a,
-        (Some(a), _) if !a.is_finite() => a,
-        (_, Some(b)) if !b.is_finite() => b,
-        _ => return Ok(()),
-    };
-    Err(MachineError::Value {
-        whose: whose.into(),
-        what: "a limit",
-        value,
-        wanted: "limits must be finite, the smaller one first",
-    })
-}
-
-fn joint(spec: &JointSpec) -> Result<Joint, MachineError> {
-    let (letter, side, dir, sense, kind) = match spec {
-        JointSpec::Linear { letter, side, direction, sense, .. } => {
-            (letter, *side, *direction, *sense, JointKind::Linear)
-        }
-        JointSpec::Rotary { letter, side, direction, sense, .. } => {
-            (letter, *side, *direction, *sense, JointKind::Rotary)
-        }
-    };
-    let whose = format!("joint {letter}");
-    let dir = direction(&whose, "direction", dir)?;
-    let direction = if sense == Sense::Iso { dir } else { -dir };
-    let (point, min, max, v, a, j, to) = match *spec {
-        JointSpec::Linear {
-            min_mm,
-            max_mm,
-            max_velocity_mm_s,
-            max_acceleration_mm_s2,
-            max_jerk_mm_s3,
-            ..
-        } => ([0.0; 3], min_mm, max_mm, max_velocity_mm_s, max_acceleration_mm_s2, max_jerk_mm_s3, 1.0),
-        JointSpec::Rotary {
-            point_mm,
-            min_deg,
-            max_deg,
-            max_velocity_deg_s,
-            max_acceleration_deg_s2,
-            max_jerk_deg_s3,
-            ..
-        } => (
-            point_mm,
-            min_deg,
-            max_deg,
-            max_velocity_deg_s,
-            max_acceleration_deg_s2,
-            max_jerk_deg_s3,
-            1f64.to_radians(),
-        ),
-    };
-    let decimals = match *spec {
-        JointSpec::Linear { decimals, .. } | JointSpec::Rotary { decimals, .. } => decimals,
-    };
-    // Without a decimal some controls read a number in their smallest unit.
-    if !(1..=4).contains(&decimals) {
-        let (what, value) = ("decimals", f64::from(decimals));
-        return Err(MachineError::Value { whose, what, value, wanted: "from 1 to 4" });
-    }
-    limits(&whose, min, max)?;
-    if let Some(bad) = point.into_iter().find(|c| !c.is_finite()) {
-        return Err(MachineError::Value {
-            whose,
-            what: "point_mm",
-            value: bad,
-            wanted: "finite coordinates",
-        });
-    }
-    let (machine_zero, home, retract) = match *spec {
-        JointSpec::Linear { machine_zero_mm, home_mm, retract_mm, .. } => {
-            (machine_zero_mm, home_mm, retract_mm)
-        }
-        JointSpec::Rotary { .. } => (None, None, None),
-    };
-    for (what, value) in [("machine_zero_mm", machine_zero), ("home_mm", home), ("retract_mm", retract)] {
-        if let Some(value) = value.filter(|v| !v.is_finite()) {
-            return Err(MachineError::Value { whose, what, value, wanted: "a finite number" });
-        }
-    }
-    Ok(Joint {
-        letter: letter.clone(),
-        kind,
-        decimals: usize::from(decimals),
-        side,
-        direction,
-        point: Point3::from(point),
-        nose_per_mm: 0.0,
-        min: min.map(|m| m * to),
-        max: max.map(|m| m * to),
-        machine_zero,
-        home,
-        retract,
-        drive: Drive {
-            velocity_per_s: positive(&whose, "max_velocity", v)? * to,
-            acceleration_per_s2: positive(&whose, "max_acceleration", a)? * to,
-            jerk_per_s3: j.map(|j| positive(&whose, "max_jerk", j)).transpose()?.map(|j| j * to),
-        },
-    })
-}
-
-fn check_control(control: &ControlSpec) -> Result<(), MachineError> {
-    positive("the control", "largest_feed", control.largest_feed)?;
-    if let Some(v) = control.max_path_velocity_mm_s {
-        positive("the control", "max_path_velocity_mm_s", v)?;
-    }
-    if let FeedReading::Arc { radius_mm } = control.feed_reading {
-        positive("the control", "feed_reading.radius_mm", radius_mm)?;
-    }
-    Ok(())
 }
 
 /// Letters that mean something else in every dialect.

@@ -4,7 +4,7 @@ use osculate_geom::{Point3, Unit3, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::machine::spec::{CarriedSide, TcpWords};
+use crate::machine::spec::{CarriedSide, FeedReading, JointSpec, Sense, TcpWords};
 
 fn setup() -> Setup {
     Setup::default()
@@ -152,8 +152,37 @@ fn files_that_are_no_machines() {
     assert!(matches!(change("letter = \"C\"", "letter = \"A\""), MachineError::Letter { .. }));
     assert!(matches!(change("side = \"table\"", "side = \"head\""), MachineError::Order { .. }));
     assert!(matches!(change("direction = [0, 0, 1]", "direction = [0, 0, 0]"), MachineError::Value { .. }));
-    assert!(matches!(change("min_deg = -120", "min_deg = 130"), MachineError::Value { .. }));
-    assert!(matches!(change("velocity_deg_s = 360", "velocity_deg_s = 0"), MachineError::Value { .. }));
+    // Numbers that no machine has, each with its line.
+    for (from, to, says) in [
+        ("max_velocity_deg_s = 360", "max_velocity_deg_s = 0", "is 0.0: a number from 1e-3 to 1e6 is wanted"),
+        ("max_velocity_mm_s = 500", "max_velocity_mm_s = 1e-308", "of joint X is 1e-308: "),
+        ("max_velocity_mm_s = 500", "max_velocity_mm_s = nan", "of joint X is NaN"),
+        (
+            "max_acceleration_mm_s2 = 4000",
+            "max_acceleration_mm_s2 = 1e300",
+            "a number from 1e-3 to 1e9 is wanted",
+        ),
+        (
+            "max_jerk_mm_s3 = 50000",
+            "max_jerk_mm_s3 = -1",
+            "of joint X is -1.0: a number from 1e-2 to 1e12 is wanted",
+        ),
+        (
+            "min_deg = -120",
+            "min_deg = -1e12",
+            "min_deg of joint A is -1000000000000.0: a number from -1e9 to 1e9",
+        ),
+        (
+            "min_deg = -120",
+            "min_deg = 130",
+            "min_deg of joint A is 130.0: it must be smaller than max_deg, which is 120.0",
+        ),
+    ] {
+        let e = change(from, to);
+        let line = 1 + good.lines().position(|l| l == from).expect("it stands on a line of its own");
+        let told = e.to_string();
+        assert!(told.starts_with(&format!("line {line}: ")) && told.contains(says), "{told}");
+    }
     assert!(matches!(
         change("direction = [0, 1, 0]", "direction = [1, 0, 0]"),
         MachineError::LinearDependent { .. }

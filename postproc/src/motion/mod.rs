@@ -91,6 +91,27 @@ impl ProgramTime {
     }
 }
 
+/// The longest that a program may run, min: ten years. What takes longer has a feed, a dwell or a speed in another unit.
+pub const LONGEST_MIN: f64 = 10.0 * 365.0 * 24.0 * 60.0;
+
+/// A program that nobody waits for.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the program runs for {time_min:.1e} min, longer than ten years: is a feed, a dwell or a speed of the machine in another unit?"
+)]
+pub struct TooLong {
+    /// How long it runs, min.
+    pub time_min: f64,
+}
+
+impl TooLong {
+    /// The time, where it is one that can be waited for.
+    pub(crate) fn refused(time_min: f64) -> Result<f64, Self> {
+        // Not a number is no time either.
+        if time_min <= LONGEST_MIN { Ok(time_min) } else { Err(Self { time_min }) }
+    }
+}
+
 /// Time of a program: feed moves at their F or at the slowest joint's greatest speed, without ramps between them;
 /// rapid moves from rest to rest.
 #[must_use]

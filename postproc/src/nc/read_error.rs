@@ -1,5 +1,6 @@
 //! Why an NC text cannot be read.
 
+use crate::motion::TooLong;
 use crate::setup::SetupError;
 
 /// Why a text cannot be read. Lines count from 1.
@@ -82,6 +83,9 @@ pub enum ReadError {
     /// The setup is none.
     #[error(transparent)]
     Setup(#[from] SetupError),
+    /// It runs longer than anybody waits.
+    #[error(transparent)]
+    TooLong(#[from] TooLong),
     /// A tolerance that is none.
     #[error("read option {what} is {value}: it must be finite and above zero")]
     Tolerance {

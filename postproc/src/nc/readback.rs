@@ -20,7 +20,7 @@ pub use super::read_error::ReadError;
 use super::state::FeedReading;
 use super::way::MOST_PIECES;
 use crate::machine::{JointValues, Machine};
-use crate::motion::{FeedBlock, JointDemand, TimedMove, rapid_time_min};
+use crate::motion::{FeedBlock, JointDemand, TimedMove, TooLong, rapid_time_min};
 use crate::setup::Setup;
 
 /// How a text is to be read.
@@ -170,6 +170,7 @@ pub fn read_tools(
     reader.end()?;
     let Reader { control, .. } = reader;
     let mut out = control.sink.out;
+    TooLong::refused(out.time_min())?;
     out.spindle_rpm = control.spindle_rpm;
     out.diagnostics = control.diagnostics;
     out.record = control.record;

@@ -13,7 +13,7 @@ use super::read_error::ReadError;
 use super::state::{FeedReading, Known};
 use crate::machine::{MAX_JOINTS, Machine};
 use crate::motion::linuxcnc::{Canon, CanonArc, CanonFeed, CanonMove, Limits, PathControl};
-use crate::motion::{FeedBlock, JointDemand, LookAhead, ProgramTime, Stretch, rapid_time_min};
+use crate::motion::{FeedBlock, JointDemand, LookAhead, ProgramTime, Stretch, TooLong, rapid_time_min};
 use crate::setup::Setup;
 use osculate_geom::Diagnostic;
 
@@ -99,6 +99,7 @@ impl<'a> Clock<'a> {
                 time.limited_by.insert(letter.clone(), count);
             }
         }
+        TooLong::refused(time.time_min())?;
         Ok(Timed { time, joints: planned.joints, diagnostics: self.control.diagnostics })
     }
 }

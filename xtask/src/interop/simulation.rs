@@ -99,7 +99,8 @@ fn post(witness: &Witness, cl: &Path, kind: &str) -> Result<(PathBuf, usize), Fa
     let machine = witness.root.join(format!("xtask/interop/sim-{kind}.toml"));
     let mut post = cmd::cargo(&witness.root, &["run", "-q", "--locked", "-p", "osculate", "--", "post"]);
     post.arg(cl).arg("--machine").arg(machine);
-    post.args(["--dialect", "linuxcnc", "--feed", "tcp", "--json", "--blend-mm", BLEND_MM, "--out"]).arg(&program);
+    post.args(["--dialect", "linuxcnc", "--feed", "tcp", "--json", "--blend-mm", BLEND_MM, "--out"])
+        .arg(&program);
     cmd::output_quietly(post)?;
     let text =
         std::fs::read_to_string(&program).map_err(|why| Failure::Read { path: program.clone(), why })?;

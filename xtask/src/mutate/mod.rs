@@ -7,6 +7,7 @@
 
 mod answer;
 mod damage;
+mod made;
 mod seeds;
 
 use crate::cmd::{Failure, root};
@@ -76,7 +77,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     let scratch = std::env::temp_dir().join(format!("osculate-mutate-{}", std::process::id()));
-    let seeds = seeds::all(&options.data, &root)?;
+    let seeds = seeds::all(&options.data, &root, &program, &scratch.join("made"))?;
     let next = AtomicUsize::new(0);
     let found: Mutex<Vec<Found>> = Mutex::new(Vec::new());
     let codes: Mutex<BTreeMap<(String, i32), usize>> = Mutex::new(BTreeMap::new());
@@ -89,7 +90,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 return Ok(());
             }
             let mut dice = Dice::new(options.seed.wrapping_mul(0x1_0000_0001).wrapping_add(number as u64));
-            let seed = seeds.nth(number);
+            let (seed, turn) = seeds.nth(number);
             let bytes = damage::damaged(&seed.bytes, &mut dice);
             let file = folder.join(&seed.name);
             std::fs::write(&file, &bytes).map_err(|why| Failure::Write { path: file.clone(), why })?;
@@ -97,8 +98,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 let path = folder.join(name);
                 std::fs::write(&path, text).map_err(|why| Failure::Write { path, why })?;
             }
-            for arguments in seed.runs() {
-                let (code, what, line) = run_one(&program, &folder, &arguments)?;
+            for arguments in seed.runs(turn) {
+                let (code, what, line) = run_one(&program, &folder, &arguments, LIMITS)?;
                 *lock(&codes).entry((arguments[0].clone(), code)).or_default() += 1;
                 let Some(what) = what else { continue };
                 println!("{number}: {what}: {line}");
@@ -140,9 +141,9 @@ fn run_one(
     program: &Path,
     folder: &Path,
     arguments: &[String],
+    [seconds, memory]: [u64; 2],
 ) -> Result<(i32, Option<String>, String), Failure> {
     let line = arguments.join(" ");
-    let [seconds, memory] = LIMITS;
     let limited = format!("ulimit -t {seconds} && ulimit -v {memory} && exec \"$@\"");
     let mut command = Command::new("sh");
     command.args(["-c", &limited, "sh"]).arg(program).args(arguments).current_dir(folder);
@@ -151,4 +152,24 @@ fn run_one(
     let code = answer::code(output.status);
     let what = answer::wrong(code, &output.stdout, &String::from_utf8_lossy(&output.stderr));
     Ok((code, what, line))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    /// Both bounds of a run hold: a loop without end is stopped, and so is what asks for more memory than it may have.
+    #[test]
+    fn runs_are_stopped_at_their_bounds() {
+        let run = |text: &str, limits| {
+            let arguments = ["-c", text].map(str::to_owned);
+            run_one(Path::new("/bin/sh"), &std::env::temp_dir(), &arguments, limits).expect("it starts")
+        };
+        let (code, what, _) = run("while :; do :; done", [1, 2 << 20]);
+        assert!(code == 152 || code == 137, "{code}");
+        assert_eq!(what.as_deref(), Some("out of time or memory"));
+        let takes = "exec dd if=/dev/zero of=/dev/null bs=300M count=1";
+        assert_eq!(run(takes, [20, 2 << 20]).0, 0);
+        assert_ne!(run(takes, [20, 100 << 10]).0, 0);
+    }
 }

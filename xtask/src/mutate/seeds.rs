@@ -1,17 +1,11 @@
 //! Whole files of every kind, with the verbs that read them.
 
+use super::made;
 use crate::cmd::Failure;
 use std::path::{Path, PathBuf};
 
 /// Files that are larger take too long for thousands of runs, bytes.
 const LARGEST: u64 = 400_000;
-/// The job beside NC and CL files, and the path beside others.
-const JOB: &str = "format = 1\n[part]\nbuiltin = { kind = \"plane\", u_range = [0, 20], v_range = [0, 20] }\n[tool]\nkind = \"ball\"\n\
-    diameter_mm = 6\nlength_mm = 30\n[tolerance]\nscallop_mm = 0.05\ngouge_mm = 0.05\n[cutting]\nfeed_mm_min = 1000\n\
-    [machine]\nname = \"trunnion-ac\"\ndialect = \"linuxcnc\"\n[verification]\nmax_samples = 2000\n";
-/// A path of a few moves.
-const PATH: &str = "UNITS/MM\nCUTTER/6, 3, 0, 0, 0, 0, 30\nSPINDL/RPM,8000,CLW\nFEDRAT/1000,MMPM\nRAPID\nGOTO/0,0,40,0,0,1\nGOTO/0,0,0,0,0,1\n\
-    GOTO/20,0,0,0,0,1\nGOTO/20,1,0,0,0.1,1\nRAPID\nGOTO/20,1,40,0,0,1\nFINI\n";
 /// Places in a collection.
 const FOLDERS: [&str; 10] = [
     "files/step",
@@ -28,14 +22,27 @@ const FOLDERS: [&str; 10] = [
 
 /// What reads a file.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub enum Kind {
+    /// STEP, IGES, JSON of faces, patches, sections.
     Part,
+    /// STL, PLY, 3MF.
+    Mesh,
     Program,
     Path,
+    /// Jobs of examples, which are not planned.
     Job,
+    /// Jobs of a few mm2, which are.
+    SmallJob,
     Machine,
     Dialect,
+    /// Libraries of tools.
+    Library,
+    /// What an operation has left.
+    Stock,
 }
+
+/// How many kinds there are.
+const KINDS: usize = 10;
 
 /// A file that is whole.
 pub struct Seed {
@@ -47,60 +54,90 @@ pub struct Seed {
 }
 
 impl Seed {
-    /// The command lines on it.
-    pub fn runs(&self) -> Vec<Vec<String>> {
-        let name = self.name.as_str();
-        let lines: &[&[&str]] = match self.kind {
-            Kind::Part => {
-                &[&["inspect", name, "--json"], &["verify", "path-of.cl", "--job", "job-of.toml", "--json"]]
-            }
-            Kind::Program => &[
-                &["time", name, "--machine", "trunnion-ac", "--json"],
-                &["verify", name, "--job", "job-of.toml", "--json", "--lenient"],
+    /// The command lines on it: those that every file of the kind gets, and one of the others, which take turns.
+    pub fn runs(&self, turn: usize) -> Vec<Vec<String>> {
+        let (always, others) = lines(self.kind);
+        let other = (!others.is_empty()).then(|| &others[turn % others.len()]);
+        let name = |w: &str| if w == "FILE" { self.name.clone() } else { w.to_owned() };
+        let words = |line: &&str| line.split_whitespace().map(name).chain(["--json".to_owned()]).collect();
+        always.iter().chain(other).map(words).collect()
+    }
+}
+
+/// The command lines on a file of a kind: those that every one gets, and those that take turns. Results lie in folders of the run.
+const fn lines(kind: Kind) -> (&'static [&'static str], &'static [&'static str]) {
+    match kind {
+        Kind::Part => (
+            &["inspect FILE", "verify path-of.cl --job job-of.toml"],
+            &[
+                "inspect FILE --groups --out faces",
+                "export FILE --out out.stl",
+                "export FILE --out out.step",
+                "export FILE --out out.igs",
+                "export FILE --out out.json",
+                "export FILE --out out.obj",
+                "probe FILE --face F1 --at 0.5,0.5",
+                "lines FILE --face F1 --out lines",
+                "init FILE --faces F1 --out init",
+                "check job-of.toml",
             ],
-            Kind::Path => &[
-                &[
-                    "post",
-                    name,
-                    "--machine",
-                    "trunnion-ac",
-                    "--dialect",
-                    "heidenhain",
-                    "--out",
-                    "out.h",
-                    "--json",
-                    "--lenient",
-                ],
-                &["verify", name, "--job", "job-of.toml", "--json", "--lenient"],
+        ),
+        Kind::Mesh => (
+            &["inspect FILE", "verify path-of.cl --job job-of.toml"],
+            &[
+                "verify path-of.cl --job stock-of.toml",
+                "plan job-of.toml --out plan",
+                "export FILE --out out.step",
             ],
-            Kind::Job => &[&["check", name, "--json"]],
-            Kind::Machine => &[
-                &["machines", "--check", name, "--json"],
-                &[
-                    "post",
-                    "path-of.cl",
-                    "--machine",
-                    name,
-                    "--dialect",
-                    "heidenhain",
-                    "--out",
-                    "out.h",
-                    "--json",
-                ],
+        ),
+        Kind::Program => (
+            &["time FILE --machine trunnion-ac", "verify FILE --job job-of.toml --lenient"],
+            &[
+                "readback FILE --machine trunnion-ac --out back.cl",
+                "time FILE --machine 3-axis --dialect sinumerik",
+                "time FILE --machine trunnion-bc --dialect heidenhain",
+                "readback FILE --machine linuxcnc-xyzac --dialect fanuc --out back.cl",
+                "verify FILE --job job-of.toml --lenient --second-opinion",
             ],
-            Kind::Dialect => &[&[
-                "post",
-                "path-of.cl",
-                "--machine",
-                "trunnion-ac",
-                "--dialect",
-                name,
-                "--out",
-                "out.nc",
-                "--json",
-            ]],
-        };
-        lines.iter().map(|l| l.iter().map(|w| (*w).to_owned()).collect()).collect()
+        ),
+        Kind::Path => (
+            &["verify FILE --job job-of.toml --lenient"],
+            &[
+                "post FILE --machine trunnion-ac --dialect heidenhain --out out.h --lenient",
+                "post FILE --machine head-ca --dialect sinumerik --orientation vectors --out out.mpf --lenient",
+                "post FILE --machine 3-axis --dialect fanuc --feed kf --out out.nc --lenient",
+                "post FILE --machine linuxcnc-xyzac --dialect linuxcnc --feed fastest --out out.ngc --lenient",
+                "verify FILE --job job-of.toml --lenient --ply out.ply --blocks out.csv",
+            ],
+        ),
+        Kind::Job => (&["check FILE"], &["strip FILE", "verify path-of.cl --job FILE"]),
+        Kind::SmallJob => (
+            &["check FILE"],
+            &[
+                "plan FILE --out plan",
+                "compare FILE",
+                "strip FILE",
+                "flank FILE",
+                "verify path-of.cl --job FILE",
+            ],
+        ),
+        Kind::Machine => (
+            &["machines --check FILE", "post path-of.cl --machine FILE --dialect heidenhain --out out.h"],
+            &["time program-of.nc --machine FILE", "readback program-of.nc --machine FILE --out back.cl"],
+        ),
+        Kind::Dialect => (
+            &["post path-of.cl --machine trunnion-ac --dialect FILE --out out.nc"],
+            &["time program-of.nc --machine trunnion-ac --dialect FILE"],
+        ),
+        Kind::Library => (
+            &["tools FILE"],
+            &[
+                "tools FILE --out out.json",
+                "tools FILE --out out.tbl",
+                "init sheet-of.json --tools FILE --out init",
+            ],
+        ),
+        Kind::Stock => (&["plan left-of.toml --out plan"], &["check left-of.toml"]),
     }
 }
 
@@ -110,7 +147,7 @@ pub struct Seeds {
 }
 
 /// In which order kinds take turns: parts are of many forms.
-const TURNS: [Kind; 10] = [
+const TURNS: [Kind; 20] = [
     Kind::Part,
     Kind::Program,
     Kind::Part,
@@ -120,7 +157,17 @@ const TURNS: [Kind; 10] = [
     Kind::Part,
     Kind::Machine,
     Kind::Part,
+    Kind::Mesh,
+    Kind::Part,
+    Kind::Program,
+    Kind::Part,
+    Kind::Path,
+    Kind::Part,
+    Kind::SmallJob,
     Kind::Dialect,
+    Kind::Mesh,
+    Kind::Library,
+    Kind::Stock,
 ];
 
 impl Seeds {
@@ -129,19 +176,20 @@ impl Seeds {
         self.kinds.iter().map(Vec::len).sum()
     }
 
-    /// The file whose turn it is.
-    pub fn nth(&self, number: usize) -> &Seed {
+    /// The file whose turn it is, and how often its kind came before.
+    pub fn nth(&self, number: usize) -> (&Seed, usize) {
         let kind = TURNS[number % TURNS.len()];
         let own = &self.kinds[kind as usize];
         let before = TURNS[..number % TURNS.len()].iter().filter(|k| **k == kind).count();
         let each = TURNS.iter().filter(|k| **k == kind).count();
-        &own[(number / TURNS.len() * each + before) % own.len()]
+        let turn = number / TURNS.len() * each + before;
+        (&own[turn % own.len()], turn)
     }
 }
 
-/// The whole files of a collection and of the workspace.
-pub fn all(data: &Path, root: &Path) -> Result<Seeds, Failure> {
-    let mut kinds: Vec<Vec<Seed>> = (0..6).map(|_| Vec::new()).collect();
+/// The whole files of a collection, of the workspace, and those that are made here or by the program.
+pub fn all(data: &Path, root: &Path, program: &Path, scratch: &Path) -> Result<Seeds, Failure> {
+    let mut kinds: Vec<Vec<Seed>> = (0..KINDS).map(|_| Vec::new()).collect();
     let mut take = |path: PathBuf, kind: Kind| -> Result<(), Failure> {
         let about = std::fs::metadata(&path).map_err(|why| Failure::Read { path: path.clone(), why })?;
         if !about.is_file() || about.len() > LARGEST {
@@ -149,7 +197,11 @@ pub fn all(data: &Path, root: &Path) -> Result<Seeds, Failure> {
         }
         let bytes = std::fs::read(&path).map_err(|why| Failure::Read { path: path.clone(), why })?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        kinds[kind as usize].push(Seed { beside: beside(kind, &name, &path), name, bytes, kind });
+        let mut beside = made::beside(kind, &name);
+        if kind == Kind::Job {
+            beside.extend(others(&path));
+        }
+        kinds[kind as usize].push(Seed { name, bytes, beside, kind });
         Ok(())
     };
     for folder in FOLDERS {
@@ -175,11 +227,22 @@ pub fn all(data: &Path, root: &Path) -> Result<Seeds, Failure> {
     for path in files(&root.join("postproc/dialects"))? {
         take(path, Kind::Dialect)?;
     }
-    for (name, bytes) in meshes() {
-        let beside = beside(Kind::Part, name, Path::new(name));
-        kinds[Kind::Part as usize].push(Seed { name: name.to_owned(), bytes, beside, kind: Kind::Part });
+    for (kind, name, bytes) in made::all(program, scratch)? {
+        let beside = made::beside(kind, &name);
+        kinds[kind as usize].push(Seed { name, bytes, beside, kind });
     }
-    let names = ["parts", "programs", "paths", "jobs", "machines", "dialects"];
+    let names = [
+        "parts",
+        "meshes",
+        "programs",
+        "paths",
+        "jobs",
+        "small jobs",
+        "machines",
+        "dialects",
+        "libraries",
+        "stocks",
+    ];
     if let Some(none) = kinds.iter().position(Vec::is_empty) {
         return Err(Failure::NoPeer {
             what: names[none],
@@ -189,30 +252,15 @@ pub fn all(data: &Path, root: &Path) -> Result<Seeds, Failure> {
     Ok(Seeds { kinds })
 }
 
-/// What stands beside a file of a kind.
-fn beside(kind: Kind, name: &str, path: &Path) -> Vec<(String, Vec<u8>)> {
-    let part = format!("[part]\nfile = \"{name}\"\n[tool]");
-    let of_part = JOB.replace(
-        "[part]\nbuiltin = { kind = \"plane\", u_range = [0, 20], v_range = [0, 20] }\n[tool]",
-        &part,
-    );
-    let mut out = match kind {
-        Kind::Part => vec![("job-of.toml".to_owned(), of_part.into_bytes())],
-        _ => vec![("job-of.toml".to_owned(), JOB.to_owned().into_bytes())],
+/// The files that a job names lie in its folder.
+fn others(path: &Path) -> Vec<(String, Vec<u8>)> {
+    let others = path.parent().map(files).and_then(Result::ok).unwrap_or_default();
+    let read = |other: PathBuf| {
+        let name = other.file_name()?.to_string_lossy().into_owned();
+        let bytes = std::fs::read(&other).ok()?;
+        (bytes.len() as u64 <= 10 * LARGEST).then_some((name, bytes))
     };
-    out.push(("path-of.cl".to_owned(), PATH.to_owned().into_bytes()));
-    if kind == Kind::Job {
-        // The files that a job names lie in its folder.
-        let others = path.parent().map(files).and_then(Result::ok).unwrap_or_default();
-        for other in others.into_iter().filter(|o| o != path && o.is_file()) {
-            if let (Some(name), Ok(bytes)) = (other.file_name(), std::fs::read(&other))
-                && bytes.len() as u64 <= 10 * LARGEST
-            {
-                out.push((name.to_string_lossy().into_owned(), bytes));
-            }
-        }
-    }
-    out
+    others.into_iter().filter(|o| o != path && o.is_file()).filter_map(read).collect()
 }
 
 /// What is in a folder, in the order of names.
@@ -225,49 +273,4 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         .map_err(read)?;
     out.sort();
     Ok(out)
-}
-
-/// A block as STL in both forms and as PLY in both forms.
-fn meshes() -> [(&'static str, Vec<u8>); 4] {
-    let corner = |k: usize| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|bit| 20.0 * bit as f32);
-    let sides: [[usize; 4]; 6] =
-        [[4, 5, 7, 6], [0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
-    let triangles: Vec<[usize; 3]> =
-        sides.iter().flat_map(|s| [[s[0], s[1], s[2]], [s[0], s[2], s[3]]]).collect();
-    let mut text = "solid block\n".to_owned();
-    let mut binary = vec![b' '; 80];
-    binary.extend((triangles.len() as u32).to_le_bytes());
-    for t in &triangles {
-        text += "facet normal 0 0 0\nouter loop\n";
-        binary.extend([0; 12]);
-        for p in t.map(corner) {
-            text += &format!("vertex {} {} {}\n", p[0], p[1], p[2]);
-            p.iter().for_each(|x| binary.extend(x.to_le_bytes()));
-        }
-        text += "endloop\nendfacet\n";
-        binary.extend([0; 2]);
-    }
-    text += "endsolid block\n";
-    let head = |form: &str| {
-        format!(
-            "ply\nformat {form} 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 12\n\
-             property list uchar int vertex_indices\nend_header\n"
-        )
-    };
-    let (mut ply, mut ply_binary) = (head("ascii"), head("binary_little_endian").into_bytes());
-    for p in (0..8).map(corner) {
-        ply += &format!("{} {} {}\n", p[0], p[1], p[2]);
-        p.iter().for_each(|x| ply_binary.extend(x.to_le_bytes()));
-    }
-    for [a, b, c] in &triangles {
-        ply += &format!("3 {a} {b} {c}\n");
-        ply_binary.push(3);
-        [a, b, c].iter().for_each(|k| ply_binary.extend((**k as i32).to_le_bytes()));
-    }
-    [
-        ("text.stl", text.into_bytes()),
-        ("binary.stl", binary),
-        ("text.ply", ply.into_bytes()),
-        ("binary.ply", ply_binary),
-    ]
 }

@@ -3,13 +3,44 @@
 //! Where a file says all sides, its faces are turned over at random and the sides found again, without the file's word. A line for
 //! each file: faces right, wrong and open, groups, neighbours that do not fit, time. Then each group, and the volume behind the
 //! faces that are not open, mm3.
+//!
+//! With `--data FOLDER` all parts of a reference collection as one table, with rays through triangles as a second opinion on each face
+//! and the volume that another kernel computed (`table.rs`).
 
 #![allow(clippy::print_stdout, reason = "it prints its findings")]
 
 use osculate_geom::{Jet2, Point3, Side, Vec3};
 use osculate_surfaces::Face;
+use osculate_surfaces::Part;
 use osculate_surfaces::sides::settle;
+use std::path::Path;
+use std::process::ExitCode;
 use std::time::Instant;
+
+mod parity;
+mod table;
+
+/// The faces of a part, some of those whose side the file says turned over, and the side that each should get then.
+struct Turned {
+    faces: Vec<Face>,
+    truth: Vec<Side>,
+}
+
+fn turned(part: &Part) -> Turned {
+    let mut seed = 1_u64;
+    let mut truth = Vec::new();
+    let faces = part
+        .faces
+        .iter()
+        .map(|f| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let turn = f.oriented && seed >> 63 == 1;
+            truth.push(if turn { Side::Against } else { Side::Along });
+            if turn { f.clone().flipped() } else { f.clone() }
+        })
+        .collect();
+    Turned { faces, truth }
+}
 
 /// Volume behind a face seen from a point, mm3.
 fn behind(face: &Face, side: Side, from: Point3) -> f64 {
@@ -29,9 +60,24 @@ fn leak(faces: &[Face], sides: &[Option<Side>]) -> f64 {
     sum.norm()
 }
 
-fn main() {
-    for path in std::env::args().skip(1) {
-        let part = match std::fs::read(&path).map_err(|e| e.to_string()) {
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.as_slice() {
+        [flag, data] if flag == "--data" => {
+            if let Err(why) = table::print(Path::new(data)) {
+                println!("{why}");
+                return ExitCode::FAILURE;
+            }
+        }
+        files => each(files),
+    }
+    ExitCode::SUCCESS
+}
+
+/// What was found of each file, with its groups.
+fn each(files: &[String]) {
+    for path in files {
+        let part = match std::fs::read(path).map_err(|e| e.to_string()) {
             Ok(bytes) => osculate_surfaces::read(&bytes).map_err(|e| e.to_string()),
             Err(e) => Err(e),
         };
@@ -42,27 +88,16 @@ fn main() {
                 continue;
             }
         };
-        let mut seed = 1_u64;
-        let mut turned = Vec::new();
-        let faces: Vec<Face> = part
-            .faces
-            .iter()
-            .map(|f| {
-                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                turned.push(f.oriented && seed >> 63 == 1);
-                if f.oriented && seed >> 63 == 1 { f.clone().flipped() } else { f.clone() }
-            })
-            .collect();
+        let Turned { faces, truth } = turned(&part);
         let all: Vec<&Face> = faces.iter().collect();
         let start = Instant::now();
         let found = settle(&all, &vec![None; all.len()], part.uncertainty_mm);
         let time = start.elapsed().as_secs_f64();
         let (mut right, mut wrong, mut open) = (0, Vec::new(), Vec::new());
         for (k, f) in part.faces.iter().enumerate() {
-            let truth = if turned[k] { Side::Against } else { Side::Along };
             match found.of[k] {
                 None => open.push(f.id.as_str()),
-                Some(s) if s == truth || !f.oriented => right += 1,
+                Some(s) if s == truth[k] || !f.oriented => right += 1,
                 Some(_) => wrong.push(f.id.as_str()),
             }
         }

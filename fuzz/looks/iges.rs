@@ -1,0 +1,11 @@
+//! Bytes to the IGES reader: it must answer, without panic, within bounded time and memory; what it makes of them must
+//! bear being looked at.
+
+/// Looks at the bytes.
+pub fn look(bytes: &[u8]) {
+    let Ok(part) = osculate_surfaces::iges::read(bytes) else { return };
+    for face in part.faces.iter().take(4) {
+        let _ = face.bbox();
+        let _ = face.degree();
+    }
+}
