@@ -2,9 +2,11 @@
 //!
 //! Cells are cubes in picture space, the same for all faces, so that the result is equally fine everywhere and faces
 //! stay joined. A cell is stood for by a corner of the face's border where it has one, otherwise by a vertex on the
-//! border, so that outlines stay on the part. A facet's value is the mean over its cells, or their worst as soon as
-//! that is out of tolerance in two of them, or in one that no other facet shows: the picture may show a bad spot too
-//! large by a cell, and never hides one.
+//! border, so that outlines stay on the part. A facet's value is the mean over its cells, and their worst where all of
+//! them are out of tolerance everywhere. Where a part of a cell is, its own triangles stand on the facets: the border of
+//! what is out of tolerance is that of the samples, and no bad spot is hidden. Where there are too many of them for the
+//! budget a facet is the worst of its cells as soon as two are out of tolerance, or one that no other facet shows: then a
+//! bad spot may be too large by a cell.
 
 use super::legend::Limits;
 use super::mesh::Clean;
@@ -18,6 +20,8 @@ pub struct Facet {
     pub corners: [u32; 3],
     /// Deviation, mm; NaN where not known.
     pub deviation_mm: f64,
+    /// How far nearer to the viewer it is painted than it lies, px: what stands on coarser facets is not to be hidden by them.
+    pub lift: f64,
 }
 
 struct Cell {
@@ -26,19 +30,34 @@ struct Cell {
     distance: f64,
     sum: f64,
     known: usize,
+    /// Vertices out of tolerance.
+    bad: usize,
+    /// The sum of those within it.
+    sum_good: f64,
     worst: f64,
     /// Shares a facet with another cell out of tolerance.
     shown: bool,
+    /// A facet of it is not painted as out of tolerance.
+    open: bool,
 }
 
 impl Cell {
     fn mean(&self) -> f64 {
         self.sum / self.known as f64
     }
+
+    /// The mean of what is within tolerance; NaN where nothing is.
+    fn within(&self) -> f64 {
+        if self.known > self.bad { self.sum_good / (self.known - self.bad) as f64 } else { f64::NAN }
+    }
 }
 
 /// A border that turns by more than this has a corner there: cos 30 degrees.
 const CORNER_COS: f64 = 0.866;
+/// Own triangles of a face are no more than the budget by this.
+const OWN: usize = 4;
+/// They are painted so many cells nearer: facets leave the surface by less.
+const LIFT: f64 = 2.0;
 
 /// At most about `budget` facets that stand for the triangles of `faces`, whose vertices lie at `pictures`; a list a
 /// face.
@@ -51,19 +70,24 @@ pub fn simplify(
     let total: usize = faces.iter().map(|f| f.triangles.len()).sum();
     if total <= budget {
         let value = |face: &Clean, t: &[u32; 3]| facet_value(t.map(|i| value_of(face, i)), limits);
-        let facet = |face, t: &[u32; 3]| Facet { corners: *t, deviation_mm: value(face, t) };
+        let facet = |face, t: &[u32; 3]| Facet { corners: *t, deviation_mm: value(face, t), lift: 0.0 };
         return faces.iter().map(|face| face.triangles.iter().map(|t| facet(face, t)).collect()).collect();
     }
     let ranks = ranks(faces);
     // Cells only grow: once all vertices of a face share one, it has no facet left, so the loop ends.
     let mut size = 2.0;
+    let mut own = true;
     loop {
         let facets: Vec<Vec<Facet>> = faces
             .iter()
             .zip(pictures)
             .zip(&ranks)
-            .map(|((face, picture), ranks)| merged(face, picture, ranks, limits, size))
+            .map(|((face, picture), ranks)| merged(face, (picture, ranks), limits, (size, own)))
             .collect();
+        if own && facets.iter().flatten().filter(|f| f.lift > 0.0).count() > budget / OWN {
+            own = false;
+            continue;
+        }
         let count: usize = facets.iter().map(Vec::len).sum();
         if count <= budget {
             return facets;
@@ -123,7 +147,12 @@ fn mean(values: [f64; 3]) -> f64 {
     known().sum::<f64>() / known().count() as f64
 }
 
-fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size: f64) -> Vec<Facet> {
+fn merged(
+    face: &Clean,
+    (picture, ranks): (&[[f64; 3]], &[u8]),
+    limits: Limits,
+    (size, own): (f64, bool),
+) -> Vec<Facet> {
     let mut cells: Vec<Cell> = Vec::new();
     let mut index: HashMap<[i64; 3], usize> = HashMap::new();
     let cell_of: Vec<usize> = picture
@@ -137,7 +166,18 @@ fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size
             let vertex = i as u32;
             let at = *index.entry(key).or_insert(cells.len());
             if at == cells.len() {
-                cells.push(Cell { vertex, rank, distance, sum: 0.0, known: 0, worst: value, shown: false });
+                cells.push(Cell {
+                    vertex,
+                    rank,
+                    distance,
+                    sum: 0.0,
+                    known: 0,
+                    bad: 0,
+                    sum_good: 0.0,
+                    worst: value,
+                    shown: false,
+                    open: false,
+                });
             }
             let cell = &mut cells[at];
             if (rank, -distance) > (cell.rank, -cell.distance) {
@@ -146,6 +186,11 @@ fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size
             if !value.is_nan() {
                 cell.sum += value;
                 cell.known += 1;
+                if limits.severity(value) > 1.0 {
+                    cell.bad += 1;
+                } else {
+                    cell.sum_good += value;
+                }
                 if cell.worst.is_nan() || limits.severity(value) > limits.severity(cell.worst) {
                     cell.worst = value;
                 }
@@ -163,23 +208,67 @@ fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size
             kept.push(three);
         }
     }
+    if own {
+        bordered(face, &mut cells, (&cell_of, &kept), limits, size)
+    } else {
+        enlarged(&mut cells, &kept, limits)
+    }
+}
+
+/// Facets that are out of tolerance where all of their cells are, everywhere, and on them the face's own triangles where only a part is.
+fn bordered(
+    face: &Clean,
+    cells: &mut [Cell],
+    (cell_of, kept): (&[usize], &[[usize; 3]]),
+    limits: Limits,
+    size: f64,
+) -> Vec<Facet> {
+    let mut out = Vec::with_capacity(kept.len());
+    for three in kept {
+        let wholly = three.iter().all(|c| cells[*c].bad > 0 && cells[*c].bad == cells[*c].known);
+        let values = three.map(|c| if wholly { cells[c].worst } else { cells[c].within() });
+        let deviation_mm = if wholly { facet_value(values, limits) } else { mean(values) };
+        out.push(Facet { corners: three.map(|c| cells[c].vertex), deviation_mm, lift: 0.0 });
+        if !wholly {
+            three.iter().for_each(|c| cells[*c].open = true);
+        }
+    }
+    let wrong = |i: &u32| limits.severity(value_of(face, *i)) > 1.0;
+    let count = |corners: &[u32; 3]| corners.iter().filter(|i| wrong(i)).count();
+    // A place shows between it and another one; where all around it are within tolerance it shows in what is around it.
+    let mut paired = vec![false; face.positions.len()];
+    for corners in face.triangles.iter().filter(|t| count(t) > 1) {
+        corners.iter().filter(|i| wrong(i)).for_each(|i| paired[*i as usize] = true);
+    }
+    let lone = |corners: &[u32; 3]| corners.iter().any(|i| wrong(i) && !paired[*i as usize]);
+    let open = |corners: &[u32; 3]| corners.iter().any(|i| cells[cell_of[*i as usize]].open);
+    let own = face.triangles.iter().filter(|t| (count(t) > 1 || lone(t)) && open(t));
+    out.extend(own.map(|corners| Facet {
+        corners: *corners,
+        deviation_mm: facet_value(corners.map(|i| value_of(face, i)), limits),
+        lift: LIFT * size,
+    }));
+    out
+}
+
+/// Facets that are out of tolerance where two of their cells are in some place, or one that no other facet shows.
+fn enlarged(cells: &mut [Cell], kept: &[[usize; 3]], limits: Limits) -> Vec<Facet> {
     // Two cells out of tolerance show in the facets between them; one alone shows in all facets around it.
-    let bad = |cells: &[Cell], c: usize| limits.severity(cells[c].worst) > 1.0;
-    for three in &kept {
-        let wrong: Vec<usize> = three.iter().copied().filter(|&c| bad(&cells, c)).collect();
+    let bad = |cells: &[Cell], c: usize| cells[c].bad > 0;
+    for three in kept {
+        let wrong: Vec<usize> = three.iter().copied().filter(|&c| bad(cells, c)).collect();
         if wrong.len() > 1 {
             wrong.into_iter().for_each(|c| cells[c].shown = true);
         }
     }
-    kept.into_iter()
-        .map(|three| {
-            let wrong = || three.into_iter().filter(|&c| bad(&cells, c));
-            let shows = wrong().count() > 1 || wrong().any(|c| !cells[c].shown);
-            let values = three.map(|c| if shows { cells[c].worst } else { cells[c].mean() });
-            let deviation_mm = if shows { facet_value(values, limits) } else { mean(values) };
-            Facet { corners: three.map(|c| cells[c].vertex), deviation_mm }
-        })
-        .collect()
+    let facet = |three: &[usize; 3]| {
+        let wrong = || three.iter().copied().filter(|&c| bad(cells, c));
+        let shows = wrong().count() > 1 || wrong().any(|c| !cells[c].shown);
+        let values = three.map(|c| if shows { cells[c].worst } else { cells[c].mean() });
+        let deviation_mm = if shows { facet_value(values, limits) } else { mean(values) };
+        Facet { corners: three.map(|c| cells[c].vertex), deviation_mm, lift: 0.0 }
+    };
+    kept.iter().map(facet).collect()
 }
 
 #[cfg(test)]
@@ -233,6 +322,38 @@ mod tests {
             let shown = facets.iter().filter(|f| (f.deviation_mm - f64::from(bad)).abs() < 1e-9).count();
             // The facets around its cell, and not half of the picture.
             assert!((1..=12).contains(&shown), "{shown}");
+        }
+    }
+
+    /// Every vertex of one half is out of tolerance: what is painted so is that half, to an edge of the face and not of a facet.
+    #[test]
+    fn the_border_of_what_is_bad_is_that_of_the_samples() {
+        let (mut face, picture) = square(60, None);
+        for (value, p) in face.deviation_mm.iter_mut().zip(&picture) {
+            // A slanted border meets cells in all ways.
+            if p[0] + 0.3 * p[1] > 37.0 {
+                *value = 0.5;
+            }
+        }
+        let facets = simplify_one(&face, &picture);
+        assert!(facets.len() <= 500, "{}", facets.len());
+        let inside = |f: &Facet, x: f64, y: f64| {
+            let c = f.corners.map(|i| picture[i as usize]);
+            let side = |a: [f64; 3], b: [f64; 3]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+            let sides = [side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])];
+            sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
+        };
+        // What is painted last of all that covers a place is seen there.
+        let seen = |x: f64, y: f64| {
+            let over = facets.iter().filter(|f| inside(f, x, y));
+            over.max_by(|a, b| a.lift.total_cmp(&b.lift)).map(|f| f.deviation_mm)
+        };
+        for k in 0..3600 {
+            let (x, y) = (f64::from(k % 60) + 0.41, f64::from(k / 60) + 0.37);
+            let from_border = (x + 0.3 * y - 37.0) / 1.09_f64.sqrt();
+            if let Some(value) = seen(x, y).filter(|_| from_border.abs() > 1.5) {
+                assert_eq!(value > 0.01, from_border > 0.0, "({x}, {y}) is {value}");
+            }
         }
     }
 
