@@ -142,7 +142,8 @@ fn one(
     options: &Options<'_>,
     root: &Path,
 ) -> Result<(String, String), Failure> {
-    let file = PARTS.iter().map(|p| options.data.join(p.1)).find(|f| f.file_stem().is_some_and(|s| s == name));
+    let file =
+        PARTS.iter().map(|p| options.data.join(p.1)).find(|f| f.file_stem().is_some_and(|s| s == name));
     let file = file.unwrap_or_default().display().to_string();
     let folder = root.join("target/first-hour").join(name);
     // Results of an earlier run must not be taken for this one's.
@@ -158,10 +159,15 @@ fn one(
     match init.took.code {
         Some(0) => {}
         Some(_) => {
-            let row = format!("{begin} - | - | {} | - | - | refused before planning | - | - | - |\n", init.seconds());
+            let row = format!(
+                "{begin} - | - | {} | - | - | refused before planning | - | - | - |\n",
+                init.seconds()
+            );
             return Ok((row, because("init", &told(&init))));
         }
-        None => return Ok((format!("{begin} - | - | {} | {rest} - | - |\n", init.seconds()), not_ended("init"))),
+        None => {
+            return Ok((format!("{begin} - | - | {} | {rest} - | - |\n", init.seconds()), not_ended("init")));
+        }
     }
     let job = at("job/job.toml");
     let check = said(program, &["check", &job, "--json"], within)?;
@@ -170,12 +176,8 @@ fn one(
     let text = std::fs::read_to_string(&job).unwrap_or_default();
     let head = text.lines().find(|l| l.starts_with("# The part has ")).unwrap_or_default();
     let groups = head.split_whitespace().rev().nth(1).unwrap_or("-");
-    let begin = format!(
-        "{begin} {own} of {} | {groups} | {} | {} |",
-        own + others,
-        init.seconds(),
-        check.seconds()
-    );
+    let begin =
+        format!("{begin} {own} of {} | {groups} | {} | {} |", own + others, init.seconds(), check.seconds());
     if check.took.code != Some(0) {
         let row = format!("{begin} - | refused before planning | - | - | - |\n");
         return Ok((row, because("check", &told(&check))));

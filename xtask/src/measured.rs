@@ -38,10 +38,8 @@ pub fn run(mut command: Command) -> Result<Measured, Failure> {
 pub fn run_to(mut command: Command, limit: Duration) -> Result<Measured, Failure> {
     let program = command.get_program().to_string_lossy().into_owned();
     let begun = Instant::now();
-    let mut child = command
-        .stdin(Stdio::null())
-        .spawn()
-        .map_err(|why| Failure::Start { line: program.clone(), why })?;
+    let mut child =
+        command.stdin(Stdio::null()).spawn().map_err(|why| Failure::Start { line: program.clone(), why })?;
     let place = format!("/proc/{}", child.id());
     let mut out = Measured::default();
     loop {

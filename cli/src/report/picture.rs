@@ -151,8 +151,7 @@ fn part_facets(faces: &[Clean], pictures: &[Vec<[f64; 3]>], look: Look, budget: 
                 Some(scale) => shaded(scale.colour(facet.deviation_mm), 0.66 + 0.34 * light),
                 None => shaded([0xc3, 0xce, 0xd8], 0.5 + 0.5 * light),
             };
-            let lifted = |[x, y, z]: [f64; 3]| [x, y, z + facet.lift];
-            facets.push(Facet { corners: facet.corners.map(|i| lifted(picture[i as usize])), colour });
+            facets.push(Facet { corners: facet.corners.map(|i| picture[i as usize]), colour });
         }
     }
     facets

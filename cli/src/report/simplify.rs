@@ -1,12 +1,11 @@
 //! Fewer triangles for the static picture: vertices that fall into one cell of the picture become one.
 //!
 //! Cells are cubes in picture space, the same for all faces, so that the result is equally fine everywhere and faces
-//! stay joined. A cell is stood for by a corner of the face's border where it has one, otherwise by a vertex on the
-//! border, so that outlines stay on the part. A facet's value is the mean over its cells, and their worst where all of
-//! them are out of tolerance everywhere. Where a part of a cell is, its own triangles stand on the facets: the border of
-//! what is out of tolerance is that of the samples, and no bad spot is hidden. Where there are too many of them for the
-//! budget a facet is the worst of its cells as soon as two are out of tolerance, or one that no other facet shows: then a
-//! bad spot may be too large by a cell.
+//! stay joined. Vertices out of tolerance have cells of their own. A cell is stood for by a corner of the face's border where
+//! it has one, otherwise by a vertex on the border, so that outlines stay on the part, otherwise by one where what is out of
+//! tolerance ends, so that this border is where its samples are. A facet's value is the mean over its cells, or their worst
+//! where two of them are out of tolerance, or one that no other facet shows: the picture may show a lone bad spot too large by a
+//! cell, and never hides one.
 
 use super::legend::Limits;
 use super::mesh::Clean;
@@ -20,8 +19,6 @@ pub struct Facet {
     pub corners: [u32; 3],
     /// Deviation, mm; NaN where not known.
     pub deviation_mm: f64,
-    /// How far nearer to the viewer it is painted than it lies, px: what stands on coarser facets is not to be hidden by them.
-    pub lift: f64,
 }
 
 struct Cell {
@@ -30,34 +27,21 @@ struct Cell {
     distance: f64,
     sum: f64,
     known: usize,
-    /// Vertices out of tolerance.
-    bad: usize,
-    /// The sum of those within it.
-    sum_good: f64,
     worst: f64,
+    /// Its vertices are out of tolerance; otherwise none is.
+    bad: bool,
     /// Shares a facet with another cell out of tolerance.
     shown: bool,
-    /// A facet of it is not painted as out of tolerance.
-    open: bool,
 }
 
 impl Cell {
     fn mean(&self) -> f64 {
         self.sum / self.known as f64
     }
-
-    /// The mean of what is within tolerance; NaN where nothing is.
-    fn within(&self) -> f64 {
-        if self.known > self.bad { self.sum_good / (self.known - self.bad) as f64 } else { f64::NAN }
-    }
 }
 
 /// A border that turns by more than this has a corner there: cos 30 degrees.
 const CORNER_COS: f64 = 0.866;
-/// Own triangles of a face are no more than the budget by this.
-const OWN: usize = 4;
-/// They are painted so many cells nearer: facets leave the surface by less.
-const LIFT: f64 = 2.0;
 
 /// At most about `budget` facets that stand for the triangles of `faces`, whose vertices lie at `pictures`; a list a
 /// face.
@@ -70,24 +54,19 @@ pub fn simplify(
     let total: usize = faces.iter().map(|f| f.triangles.len()).sum();
     if total <= budget {
         let value = |face: &Clean, t: &[u32; 3]| facet_value(t.map(|i| value_of(face, i)), limits);
-        let facet = |face, t: &[u32; 3]| Facet { corners: *t, deviation_mm: value(face, t), lift: 0.0 };
+        let facet = |face, t: &[u32; 3]| Facet { corners: *t, deviation_mm: value(face, t) };
         return faces.iter().map(|face| face.triangles.iter().map(|t| facet(face, t)).collect()).collect();
     }
     let ranks = ranks(faces);
     // Cells only grow: once all vertices of a face share one, it has no facet left, so the loop ends.
     let mut size = 2.0;
-    let mut own = true;
     loop {
         let facets: Vec<Vec<Facet>> = faces
             .iter()
             .zip(pictures)
             .zip(&ranks)
-            .map(|((face, picture), ranks)| merged(face, (picture, ranks), limits, (size, own)))
+            .map(|((face, picture), ranks)| merged(face, picture, ranks, limits, size))
             .collect();
-        if own && facets.iter().flatten().filter(|f| f.lift > 0.0).count() > budget / OWN {
-            own = false;
-            continue;
-        }
         let count: usize = facets.iter().map(Vec::len).sum();
         if count <= budget {
             return facets;
@@ -147,37 +126,32 @@ fn mean(values: [f64; 3]) -> f64 {
     known().sum::<f64>() / known().count() as f64
 }
 
-fn merged(
-    face: &Clean,
-    (picture, ranks): (&[[f64; 3]], &[u8]),
-    limits: Limits,
-    (size, own): (f64, bool),
-) -> Vec<Facet> {
+fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size: f64) -> Vec<Facet> {
+    let bad: Vec<bool> =
+        (0..picture.len()).map(|i| limits.severity(value_of(face, i as u32)) > 1.0).collect();
+    // A border of the face counts for more than where what is out of tolerance ends.
+    let mut ranks: Vec<u8> = ranks.iter().map(|r| 2 * r).collect();
+    for triangle in &face.triangles {
+        let three = triangle.map(|i| i as usize);
+        if three.iter().any(|i| bad[*i] != bad[three[0]]) {
+            three.iter().for_each(|i| ranks[*i] = ranks[*i].max(1));
+        }
+    }
     let mut cells: Vec<Cell> = Vec::new();
-    let mut index: HashMap<[i64; 3], usize> = HashMap::new();
+    let mut index: HashMap<([i64; 3], bool), usize> = HashMap::new();
     let cell_of: Vec<usize> = picture
         .iter()
-        .zip(ranks)
+        .zip(&ranks)
         .enumerate()
         .map(|(i, (p, &rank))| {
             let key = p.map(|x| (x / size).floor() as i64);
             let distance = p.iter().zip(key).map(|(x, k)| (x / size - k as f64 - 0.5).powi(2)).sum::<f64>();
             let value = value_of(face, i as u32);
-            let vertex = i as u32;
-            let at = *index.entry(key).or_insert(cells.len());
+            let (vertex, bad) = (i as u32, bad[i]);
+            let at = *index.entry((key, bad)).or_insert(cells.len());
             if at == cells.len() {
-                cells.push(Cell {
-                    vertex,
-                    rank,
-                    distance,
-                    sum: 0.0,
-                    known: 0,
-                    bad: 0,
-                    sum_good: 0.0,
-                    worst: value,
-                    shown: false,
-                    open: false,
-                });
+                let (sum, known, shown) = (0.0, 0, false);
+                cells.push(Cell { vertex, rank, distance, sum, known, worst: value, bad, shown });
             }
             let cell = &mut cells[at];
             if (rank, -distance) > (cell.rank, -cell.distance) {
@@ -186,11 +160,6 @@ fn merged(
             if !value.is_nan() {
                 cell.sum += value;
                 cell.known += 1;
-                if limits.severity(value) > 1.0 {
-                    cell.bad += 1;
-                } else {
-                    cell.sum_good += value;
-                }
                 if cell.worst.is_nan() || limits.severity(value) > limits.severity(cell.worst) {
                     cell.worst = value;
                 }
@@ -208,67 +177,48 @@ fn merged(
             kept.push(three);
         }
     }
-    if own {
-        bordered(face, &mut cells, (&cell_of, &kept), limits, size)
-    } else {
-        enlarged(&mut cells, &kept, limits)
-    }
-}
-
-/// Facets that are out of tolerance where all of their cells are, everywhere, and on them the face's own triangles where only a part is.
-fn bordered(
-    face: &Clean,
-    cells: &mut [Cell],
-    (cell_of, kept): (&[usize], &[[usize; 3]]),
-    limits: Limits,
-    size: f64,
-) -> Vec<Facet> {
-    let mut out = Vec::with_capacity(kept.len());
-    for three in kept {
-        let wholly = three.iter().all(|c| cells[*c].bad > 0 && cells[*c].bad == cells[*c].known);
-        let values = three.map(|c| if wholly { cells[c].worst } else { cells[c].within() });
-        let deviation_mm = if wholly { facet_value(values, limits) } else { mean(values) };
-        out.push(Facet { corners: three.map(|c| cells[c].vertex), deviation_mm, lift: 0.0 });
-        if !wholly {
-            three.iter().for_each(|c| cells[*c].open = true);
-        }
-    }
-    let wrong = |i: &u32| limits.severity(value_of(face, *i)) > 1.0;
-    let count = |corners: &[u32; 3]| corners.iter().filter(|i| wrong(i)).count();
-    // A place shows between it and another one; where all around it are within tolerance it shows in what is around it.
-    let mut paired = vec![false; face.positions.len()];
-    for corners in face.triangles.iter().filter(|t| count(t) > 1) {
-        corners.iter().filter(|i| wrong(i)).for_each(|i| paired[*i as usize] = true);
-    }
-    let lone = |corners: &[u32; 3]| corners.iter().any(|i| wrong(i) && !paired[*i as usize]);
-    let open = |corners: &[u32; 3]| corners.iter().any(|i| cells[cell_of[*i as usize]].open);
-    let own = face.triangles.iter().filter(|t| (count(t) > 1 || lone(t)) && open(t));
-    out.extend(own.map(|corners| Facet {
-        corners: *corners,
-        deviation_mm: facet_value(corners.map(|i| value_of(face, i)), limits),
-        lift: LIFT * size,
-    }));
-    out
-}
-
-/// Facets that are out of tolerance where two of their cells are in some place, or one that no other facet shows.
-fn enlarged(cells: &mut [Cell], kept: &[[usize; 3]], limits: Limits) -> Vec<Facet> {
+    surfaced(face, &cell_of, &kept, (&mut cells, limits));
     // Two cells out of tolerance show in the facets between them; one alone shows in all facets around it.
-    let bad = |cells: &[Cell], c: usize| cells[c].bad > 0;
-    for three in kept {
-        let wrong: Vec<usize> = three.iter().copied().filter(|&c| bad(cells, c)).collect();
+    for three in &kept {
+        let wrong: Vec<usize> = three.iter().copied().filter(|&c| cells[c].bad).collect();
         if wrong.len() > 1 {
             wrong.into_iter().for_each(|c| cells[c].shown = true);
         }
     }
-    let facet = |three: &[usize; 3]| {
-        let wrong = || three.iter().copied().filter(|&c| bad(cells, c));
-        let shows = wrong().count() > 1 || wrong().any(|c| !cells[c].shown);
-        let values = three.map(|c| if shows { cells[c].worst } else { cells[c].mean() });
-        let deviation_mm = if shows { facet_value(values, limits) } else { mean(values) };
-        Facet { corners: three.map(|c| cells[c].vertex), deviation_mm, lift: 0.0 }
-    };
-    kept.iter().map(facet).collect()
+    kept.into_iter()
+        .map(|three| {
+            let wrong = || three.into_iter().filter(|&c| cells[c].bad);
+            let shows = wrong().count() > 1 || wrong().any(|c| !cells[c].shown);
+            let corners = three.map(|c| cells[c].vertex);
+            if shows {
+                let deviation_mm = facet_value(three.map(|c| cells[c].worst), limits);
+                return Facet { corners, deviation_mm };
+            }
+            let good = three.map(|c| if cells[c].bad { f64::NAN } else { cells[c].mean() });
+            Facet { corners, deviation_mm: mean(good) }
+        })
+        .collect()
+}
+
+/// Lets what is out of tolerance inside a single cell, which has no facet, be seen: that cell is out of tolerance then.
+fn surfaced(face: &Clean, cell_of: &[usize], kept: &[[usize; 3]], (cells, limits): (&mut [Cell], Limits)) {
+    let mut has_facet = vec![false; cells.len()];
+    kept.iter().flatten().for_each(|c| has_facet[*c] = true);
+    for triangle in &face.triangles {
+        let three = triangle.map(|i| cell_of[i as usize]);
+        for hidden in three {
+            if !cells[hidden].bad || has_facet[hidden] {
+                continue;
+            }
+            let worst = cells[hidden].worst;
+            for c in three.into_iter().filter(|c| has_facet[*c]) {
+                let cell = &mut cells[c];
+                if !cell.bad || limits.severity(worst) > limits.severity(cell.worst) {
+                    (cell.bad, cell.worst) = (true, worst);
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -343,11 +293,7 @@ mod tests {
             let sides = [side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])];
             sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
         };
-        // What is painted last of all that covers a place is seen there.
-        let seen = |x: f64, y: f64| {
-            let over = facets.iter().filter(|f| inside(f, x, y));
-            over.max_by(|a, b| a.lift.total_cmp(&b.lift)).map(|f| f.deviation_mm)
-        };
+        let seen = |x: f64, y: f64| facets.iter().find(|f| inside(f, x, y)).map(|f| f.deviation_mm);
         for k in 0..3600 {
             let (x, y) = (f64::from(k % 60) + 0.41, f64::from(k / 60) + 0.37);
             let from_border = (x + 0.3 * y - 37.0) / 1.09_f64.sqrt();

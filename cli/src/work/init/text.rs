@@ -160,7 +160,8 @@ fn block(wanted: &Wanted<'_>, grouped: &Grouped, fit: &Fit) -> String {
     };
     let corners: Vec<String> = [-1.0, 1.0].iter().flat_map(|s| (0..3).map(|k| end(k, *s))).collect();
     let depth_mm = 0.5 * flat.cutter().radius_mm();
-    let mut lines = format!("[stock]\nbox_mm = [{}]\n\n{}\n", corners.join(", "), library::toml(flat, 2).trim_end());
+    let mut lines =
+        format!("[stock]\nbox_mm = [{}]\n\n{}\n", corners.join(", "), library::toml(flat, 2).trim_end());
     for (k, (from, _)) in fit.axes.iter().enumerate() {
         let _ = write!(
             lines,
@@ -171,7 +172,8 @@ fn block(wanted: &Wanted<'_>, grouped: &Grouped, fit: &Fit) -> String {
             direction(&from.axis)
         );
     }
-    let marked: String = lines.lines().map(|l| if l.is_empty() { "#\n".to_owned() } else { format!("#{l}\n") }).collect();
+    let marked: String =
+        lines.lines().map(|l| if l.is_empty() { "#\n".to_owned() } else { format!("#{l}\n") }).collect();
     format!("{begin}. Without the marks before these lines it comes from the block around it:\n{marked}\n")
 }
 
