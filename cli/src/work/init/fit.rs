@@ -187,7 +187,7 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
             cutter: &cutter,
             gouge_mm: coarse_mm(tolerance),
             left: Left::default(),
-            most: Around::COARSE,
+            most: Around::ALL,
         };
         let asked = Asked {
             around,
