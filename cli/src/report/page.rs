@@ -140,14 +140,15 @@ fn tool_json(tool: &Tool) -> Value {
 
 /// What stands first on the page, and how it looks: with an uncut area nothing is plainly within tolerance.
 fn headline(v: &Verdict) -> (&'static str, String) {
+    let uncut = v.uncut_area_mm2 > 0.0;
     let (class, word) = match v.outcome {
-        Outcome::Within if v.uncut_area_mm2 > 0.0 => ("partly", "Within tolerance where it is cut"),
+        Outcome::Within if uncut => ("partly", "Within tolerance where it is cut"),
         Outcome::Within => ("within", "Within tolerance"),
         Outcome::Outside => ("outside", "Out of tolerance"),
         Outcome::NotShown => ("unknown", "Not shown to hold"),
         Outcome::NotVerified => ("unknown", "Not verified"),
     };
-    if !(v.uncut_area_mm2 > 0.0) {
+    if !uncut {
         return (class, word.to_owned());
     }
     let mut words = format!("{word}; {} mm\u{b2} stay uncut", figure(v.uncut_area_mm2, 4));
