@@ -214,9 +214,10 @@ fn told(said: &Said) -> String {
     })
 }
 
-/// A verdict's words.
+/// Why a verdict is what it is.
 fn verdict(s: &Value) -> String {
-    s["verdict"]["words"].as_str().map_or_else(|| s["verdict"].to_string(), str::to_owned)
+    let why = &s["verdict"]["why"];
+    why.as_str().map_or_else(|| why.to_string(), str::to_owned)
 }
 
 #[cfg(test)]
