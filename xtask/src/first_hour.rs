@@ -50,7 +50,7 @@ const PARTS: [(&str, &str); 10] = [
     ("hull, 2.5 m", "files/iges/dealii_wigley_hull.iges"),
     ("bulbous bow", "files/iges/dealii_dtmb5415_bow.iges"),
     ("prismatic part with holes", "files/step/nist_ctc_01_asme1_ap242.stp"),
-    ("hollow of a spherical shell", "files/step/caxif_s1_c5_214__HEAD_FRONT.stp"),
+    ("half of a spherical shell", "files/step/caxif_s1_c5_214__HEAD_FRONT.stp"),
     ("cube with a round edge", "files/iges/igesio_rounded_cube.igs"),
 ];
 
