@@ -52,6 +52,26 @@ fn a_first_job_can_be_meant() {
         "{reached} {area}"
     );
     osculate(&["init", &part, "--out", &folder]).refused(&["job.toml", "is there already"]);
+    // Without the marks it begins with the block: the part's box is 260.3 x 11.2 x 49.8 mm, and 1 mm and a tenth at most stand over it.
+    let unmarked: String = text
+        .lines()
+        .map(|l| l.strip_prefix('#').filter(|l| !l.starts_with(' ')).unwrap_or(l).to_owned() + "\n")
+        .collect();
+    let read: toml::Table = unmarked.parse().unwrap();
+    let corners: Vec<f64> = read["stock"]["box_mm"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|x| x.as_float().or(x.as_integer().map(|x| x as f64)).unwrap())
+        .collect();
+    for (k, size) in [260.3, 11.2, 49.8].iter().enumerate() {
+        let over = corners[k + 3] - corners[k] - size;
+        assert!((1.85..2.4).contains(&over), "{corners:?}");
+    }
+    let block = scratch.write("first/block.toml", &unmarked);
+    let check = osculate(&["check", &block.display().to_string(), "--json"]);
+    assert_eq!(check.code, 0, "{}{}", check.out, check.err);
+    assert!(!check.json()["unset"].to_string().contains("[stock]"));
 }
 
 /// The hull's file says where the material is; a face of the blade's sections does not, and the job says what it is taken to be.

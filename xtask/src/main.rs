@@ -1,6 +1,6 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
-//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask browser`, `cargo xtask plans`, `cargo xtask mutate`
-//! `cargo xtask truth` and `cargo xtask sides`.
+//! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask first-hour`, `cargo xtask browser`, `cargo xtask plans`,
+//! `cargo xtask mutate`, `cargo xtask truth` and `cargo xtask sides`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -12,6 +12,7 @@ mod browser;
 mod ci;
 mod cmd;
 mod figures;
+mod first_hour;
 mod interop;
 mod measured;
 mod mutate;
@@ -53,6 +54,8 @@ usage: cargo xtask COMMAND
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
   parts [--only TEXT] [--program FILE]
                 docs/parts.md: the examples that are whole parts, from the block to finished, planned and verified
+  first-hour --data FOLDER [--only TEXT] [--program FILE] [--limit S]
+                docs/first-hour.md: ten real parts of a reference collection by init, check and plan, no key changed
   browser [--only TEXT] [--program FILE] [--report FILE] [--bless]
                 reports of three parts in a real browser (Debian: apt-get install chromium): what they show and do, pictures
                 below target/browser, held against xtask/browser/golden.json; --report looks at another one
@@ -97,6 +100,14 @@ fn main() -> ExitCode {
         ["parts", rest @ ..] => match parts::Options::of(rest) {
             Some(options) => parts::run(&options),
             None => return wrong_usage("parts takes --only TEXT and --program FILE"),
+        },
+        ["first-hour", rest @ ..] => match first_hour::Options::of(rest) {
+            Some(options) => first_hour::run(&options),
+            None => {
+                return wrong_usage(
+                    "first-hour takes --data FOLDER, --only TEXT, --program FILE and --limit SECONDS",
+                );
+            }
         },
         ["browser", rest @ ..] => match browser::Options::of(rest) {
             Some(options) => browser::run(&options),

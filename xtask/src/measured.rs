@@ -27,14 +27,19 @@ pub struct Measured {
 /// # Errors
 /// Where it cannot be started.
 pub fn run(mut command: Command) -> Result<Measured, Failure> {
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    run_to(command, Duration::MAX)
+}
+
+/// Runs a program without terminal, whose output goes where the command says; it is ended after so long.
+///
+/// # Errors
+/// Where it cannot be started.
+pub fn run_to(mut command: Command, limit: Duration) -> Result<Measured, Failure> {
     let program = command.get_program().to_string_lossy().into_owned();
     let begun = Instant::now();
-    let mut child = command
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(|why| Failure::Start { line: program.clone(), why })?;
+    let mut child =
+        command.stdin(Stdio::null()).spawn().map_err(|why| Failure::Start { line: program.clone(), why })?;
     let place = format!("/proc/{}", child.id());
     let mut out = Measured::default();
     loop {
@@ -47,6 +52,10 @@ pub fn run(mut command: Command) -> Result<Measured, Failure> {
         let read = |name: &str| std::fs::read_to_string(format!("{place}/{name}")).ok();
         out.memory_mb = read("status").and_then(|t| memory_mb(&t)).or(out.memory_mb);
         out.cpu_s = read("stat").and_then(|t| cpu_s(&t)).or(out.cpu_s);
+        if begun.elapsed() > limit {
+            // It has ended by itself meanwhile where this fails.
+            let _ = child.kill();
+        }
         std::thread::sleep(EVERY);
     }
 }

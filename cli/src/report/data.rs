@@ -76,6 +76,10 @@ pub struct Verdict {
     pub gouge_max_mm: f64,
     /// Area that no pass reached, mm2.
     pub uncut_area_mm2: f64,
+    /// Area that the job accepts as not reached, mm2; NaN where it is not known.
+    pub uncut_accepted_mm2: f64,
+    /// Area of the faces to machine, mm2; NaN where it is not known.
+    pub area_mm2: f64,
     /// Accepted scallop, mm.
     pub scallop_tolerance_mm: f64,
     /// Accepted gouge, mm, as a positive number.
@@ -95,6 +99,8 @@ impl Default for Verdict {
             scallop_p99_mm: f64::NAN,
             gouge_max_mm: f64::NAN,
             uncut_area_mm2: f64::NAN,
+            uncut_accepted_mm2: f64::NAN,
+            area_mm2: f64::NAN,
             scallop_tolerance_mm: f64::NAN,
             gouge_tolerance_mm: f64::NAN,
             worst: Vec::new(),

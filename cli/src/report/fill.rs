@@ -182,6 +182,8 @@ fn verdict(story: &Story<'_>, kept: &[usize]) -> Verdict {
         scallop_p99_mm: v.scallop_p99_mm,
         gouge_max_mm: v.gouge_max_mm,
         uncut_area_mm2: v.uncut_area_mm2,
+        uncut_accepted_mm2: story.job.unreached_mm2(),
+        area_mm2: story.summary.area_mm2,
         scallop_tolerance_mm: t.scallop_mm,
         gouge_tolerance_mm: t.gouge_mm,
         worst: story

@@ -138,13 +138,32 @@ fn tool_json(tool: &Tool) -> Value {
     json!({"label": tool.label, "pieces": pieces})
 }
 
-fn verdict(out: &mut String, v: &Verdict) {
+/// What stands first on the page, and how it looks: with an uncut area nothing is plainly within tolerance.
+fn headline(v: &Verdict) -> (&'static str, String) {
+    let uncut = v.uncut_area_mm2 > 0.0;
     let (class, word) = match v.outcome {
+        Outcome::Within if uncut => ("partly", "Within tolerance where it is cut"),
         Outcome::Within => ("within", "Within tolerance"),
         Outcome::Outside => ("outside", "Out of tolerance"),
         Outcome::NotShown => ("unknown", "Not shown to hold"),
         Outcome::NotVerified => ("unknown", "Not verified"),
     };
+    if !uncut {
+        return (class, word.to_owned());
+    }
+    let mut words = format!("{word}; {} mm\u{b2} stay uncut", figure(v.uncut_area_mm2, 4));
+    let share = 100.0 * v.uncut_area_mm2 / v.area_mm2;
+    if share.is_finite() {
+        let _ = write!(words, ", {} % of the faces", figure(share, 2));
+    }
+    if v.outcome == Outcome::Within {
+        words.push_str(", as the job accepts");
+    }
+    (class, words)
+}
+
+fn verdict(out: &mut String, v: &Verdict) {
+    let (class, word) = headline(v);
     let _ = write!(
         out,
         "<section class=\"card verdict {class}\"><div class=\"call\"><div class=\"word\">{word}</div><p>{}</p>",
@@ -159,10 +178,15 @@ fn verdict(out: &mut String, v: &Verdict) {
     tile(out, "Scallop, 99 of 100 below", v.scallop_p99_mm, v.scallop_tolerance_mm);
     tile(out, "Gouge, deepest", v.gouge_max_mm, v.gouge_tolerance_mm);
     let bad = if v.uncut_area_mm2 > 0.0 { " bad" } else { "" };
+    let of = if v.uncut_accepted_mm2 > 0.0 {
+        format!("no pass reached; {} are accepted", figure(v.uncut_accepted_mm2, 4))
+    } else {
+        "that no pass reached".to_owned()
+    };
     let _ = writeln!(
         out,
         "<div class=\"tile{bad}\"><div class=\"name\">Uncut area</div><div class=\"value\">{} <small>mm\u{b2}</small></div>\
-         <div class=\"of\">that no pass reached</div></div></section>",
+         <div class=\"of\">{of}</div></div></section>",
         figure(v.uncut_area_mm2, 3)
     );
 }

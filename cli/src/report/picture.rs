@@ -25,6 +25,8 @@ pub use view::{PartColours, PathColours, View};
 const FACETS: usize = 14_000;
 /// What the painted facets may take, bytes; lines, tool and legends take the rest of about 300 kB.
 const FACET_BYTES: usize = 225_000;
+/// Triangles so much farther than what is seen are left out, px: what stands for several of them may lie in front of it.
+const BEHIND: f64 = 8.0;
 /// Width of a legend with its title, px.
 const LEGEND: f64 = 118.0;
 /// The picture of `report` as an SVG document.
@@ -67,12 +69,18 @@ pub fn svg_of(report: &Report, faces: &[Clean], view: &View) -> String {
     for (face, picture) in faces.iter().zip(&pictures) {
         face.triangles.iter().for_each(|t| depth.fill(t.map(|i| picture[i as usize])));
     }
+    // What lies behind takes no share of the facets.
+    let seen = |(face, picture): (&Clean, &Vec<[f64; 3]>)| {
+        let shown = |t: &&[u32; 3]| depth.shows(t.map(|i| picture[i as usize]), BEHIND);
+        Clean { triangles: face.triangles.iter().filter(shown).copied().collect(), ..face.clone() }
+    };
+    let front: Vec<Clean> = faces.iter().zip(&pictures).map(seen).collect();
     let tool =
         tool::placed(report, view.tool_at).map(|t| tool::facets(&t, &camera, &mut depth)).unwrap_or_default();
     let look = Look { camera: &camera, limits, scale: part_scale.as_ref() };
     let mut budget = FACETS;
     let painted = loop {
-        let mut facets = part_facets(faces, &pictures, look, budget);
+        let mut facets = part_facets(&front, &pictures, look, budget);
         facets.extend(&tool);
         facets.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
         let painted = paint(&facets, columns, rows);

@@ -139,6 +139,16 @@ impl DepthMap {
         }
     }
 
+    /// Is any of a triangle no more than `slack` pixels behind what is drawn?
+    pub fn shows(&self, corners: [[f64; 3]; 3], slack: f64) -> bool {
+        let [a, b, c] = corners.map(|p| p[2]);
+        let depth = |(pixel, v, w): (usize, f64, f64)| (pixel, a + v * (b - a) + w * (c - a));
+        corners.iter().any(|p| self.sees(*p, slack))
+            || covered(corners, self.width, self.height)
+                .map(depth)
+                .any(|(pixel, z)| f64::from(self.nearest[pixel]) <= z + slack)
+    }
+
     /// Is nothing drawn more than `slack` pixels in front of `p`, there or in one of the pixels around? The
     /// neighbours count because on a steep surface the depth changes much within a pixel. Outside the picture
     /// nothing is hidden.
@@ -197,5 +207,13 @@ mod tests {
         assert!(map.sees([9.5, 9.5, 4.0], 0.1), "outside the triangle");
         assert!(map.sees([-3.0, 50.0, 4.0], 0.1), "outside the picture");
         map.fill([[0.0; 3], [1.0, f64::NAN, 0.0], [1.0; 3]]);
+        // Behind a smaller triangle all corners of a larger one may be seen or none; what is right behind it counts as seen.
+        let mut map = DepthMap::new(10, 10);
+        map.fill([[-20.0, -20.0, 5.0], [60.0, -20.0, 5.0], [-20.0, 60.0, 5.0]]);
+        let at = |z: f64| [[2.0, 2.0, z], [8.0, 2.0, z], [2.0, 8.0, z]];
+        assert!(map.shows(at(5.0), 0.5) && map.shows(at(4.6), 0.5) && !map.shows(at(3.0), 0.5));
+        let mut wall = DepthMap::new(10, 10);
+        wall.fill([[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [0.0, 4.0, 5.0]]);
+        assert!(wall.shows([[0.5, 0.5, 0.0], [9.5, 0.5, 0.0], [0.5, 9.5, 0.0]], 0.5));
     }
 }

@@ -1,10 +1,11 @@
 //! Fewer triangles for the static picture: vertices that fall into one cell of the picture become one.
 //!
 //! Cells are cubes in picture space, the same for all faces, so that the result is equally fine everywhere and faces
-//! stay joined. A cell is stood for by a corner of the face's border where it has one, otherwise by a vertex on the
-//! border, so that outlines stay on the part. A facet's value is the mean over its cells, or their worst as soon as
-//! that is out of tolerance in two of them, or in one that no other facet shows: the picture may show a bad spot too
-//! large by a cell, and never hides one.
+//! stay joined. Vertices out of tolerance have cells of their own. A cell is stood for by a corner of the face's border where
+//! it has one, otherwise by a vertex on the border, so that outlines stay on the part, otherwise by one where what is out of
+//! tolerance ends, so that this border is where its samples are. A facet's value is the mean over its cells, or their worst
+//! where two of them are out of tolerance, or one that no other facet shows: the picture may show a lone bad spot too large by a
+//! cell, and never hides one.
 
 use super::legend::Limits;
 use super::mesh::Clean;
@@ -27,6 +28,8 @@ struct Cell {
     sum: f64,
     known: usize,
     worst: f64,
+    /// Its vertices are out of tolerance; otherwise none is.
+    bad: bool,
     /// Shares a facet with another cell out of tolerance.
     shown: bool,
 }
@@ -124,20 +127,31 @@ fn mean(values: [f64; 3]) -> f64 {
 }
 
 fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size: f64) -> Vec<Facet> {
+    let bad: Vec<bool> =
+        (0..picture.len()).map(|i| limits.severity(value_of(face, i as u32)) > 1.0).collect();
+    // A border of the face counts for more than where what is out of tolerance ends.
+    let mut ranks: Vec<u8> = ranks.iter().map(|r| 2 * r).collect();
+    for triangle in &face.triangles {
+        let three = triangle.map(|i| i as usize);
+        if three.iter().any(|i| bad[*i] != bad[three[0]]) {
+            three.iter().for_each(|i| ranks[*i] = ranks[*i].max(1));
+        }
+    }
     let mut cells: Vec<Cell> = Vec::new();
-    let mut index: HashMap<[i64; 3], usize> = HashMap::new();
+    let mut index: HashMap<([i64; 3], bool), usize> = HashMap::new();
     let cell_of: Vec<usize> = picture
         .iter()
-        .zip(ranks)
+        .zip(&ranks)
         .enumerate()
         .map(|(i, (p, &rank))| {
             let key = p.map(|x| (x / size).floor() as i64);
             let distance = p.iter().zip(key).map(|(x, k)| (x / size - k as f64 - 0.5).powi(2)).sum::<f64>();
             let value = value_of(face, i as u32);
-            let vertex = i as u32;
-            let at = *index.entry(key).or_insert(cells.len());
+            let (vertex, bad) = (i as u32, bad[i]);
+            let at = *index.entry((key, bad)).or_insert(cells.len());
             if at == cells.len() {
-                cells.push(Cell { vertex, rank, distance, sum: 0.0, known: 0, worst: value, shown: false });
+                let (sum, known, shown) = (0.0, 0, false);
+                cells.push(Cell { vertex, rank, distance, sum, known, worst: value, bad, shown });
             }
             let cell = &mut cells[at];
             if (rank, -distance) > (cell.rank, -cell.distance) {
@@ -163,23 +177,48 @@ fn merged(face: &Clean, picture: &[[f64; 3]], ranks: &[u8], limits: Limits, size
             kept.push(three);
         }
     }
+    surfaced(face, &cell_of, &kept, (&mut cells, limits));
     // Two cells out of tolerance show in the facets between them; one alone shows in all facets around it.
-    let bad = |cells: &[Cell], c: usize| limits.severity(cells[c].worst) > 1.0;
     for three in &kept {
-        let wrong: Vec<usize> = three.iter().copied().filter(|&c| bad(&cells, c)).collect();
+        let wrong: Vec<usize> = three.iter().copied().filter(|&c| cells[c].bad).collect();
         if wrong.len() > 1 {
             wrong.into_iter().for_each(|c| cells[c].shown = true);
         }
     }
     kept.into_iter()
         .map(|three| {
-            let wrong = || three.into_iter().filter(|&c| bad(&cells, c));
+            let wrong = || three.into_iter().filter(|&c| cells[c].bad);
             let shows = wrong().count() > 1 || wrong().any(|c| !cells[c].shown);
-            let values = three.map(|c| if shows { cells[c].worst } else { cells[c].mean() });
-            let deviation_mm = if shows { facet_value(values, limits) } else { mean(values) };
-            Facet { corners: three.map(|c| cells[c].vertex), deviation_mm }
+            let corners = three.map(|c| cells[c].vertex);
+            if shows {
+                let deviation_mm = facet_value(three.map(|c| cells[c].worst), limits);
+                return Facet { corners, deviation_mm };
+            }
+            let good = three.map(|c| if cells[c].bad { f64::NAN } else { cells[c].mean() });
+            Facet { corners, deviation_mm: mean(good) }
         })
         .collect()
+}
+
+/// Lets what is out of tolerance inside a single cell, which has no facet, be seen: that cell is out of tolerance then.
+fn surfaced(face: &Clean, cell_of: &[usize], kept: &[[usize; 3]], (cells, limits): (&mut [Cell], Limits)) {
+    let mut has_facet = vec![false; cells.len()];
+    kept.iter().flatten().for_each(|c| has_facet[*c] = true);
+    for triangle in &face.triangles {
+        let three = triangle.map(|i| cell_of[i as usize]);
+        for hidden in three {
+            if !cells[hidden].bad || has_facet[hidden] {
+                continue;
+            }
+            let worst = cells[hidden].worst;
+            for c in three.into_iter().filter(|c| has_facet[*c]) {
+                let cell = &mut cells[c];
+                if !cell.bad || limits.severity(worst) > limits.severity(cell.worst) {
+                    (cell.bad, cell.worst) = (true, worst);
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -233,6 +272,34 @@ mod tests {
             let shown = facets.iter().filter(|f| (f.deviation_mm - f64::from(bad)).abs() < 1e-9).count();
             // The facets around its cell, and not half of the picture.
             assert!((1..=12).contains(&shown), "{shown}");
+        }
+    }
+
+    /// Every vertex of one half is out of tolerance: what is painted so is that half, to an edge of the face and not of a facet.
+    #[test]
+    fn the_border_of_what_is_bad_is_that_of_the_samples() {
+        let (mut face, picture) = square(60, None);
+        for (value, p) in face.deviation_mm.iter_mut().zip(&picture) {
+            // A slanted border meets cells in all ways.
+            if p[0] + 0.3 * p[1] > 37.0 {
+                *value = 0.5;
+            }
+        }
+        let facets = simplify_one(&face, &picture);
+        assert!(facets.len() <= 500, "{}", facets.len());
+        let inside = |f: &Facet, x: f64, y: f64| {
+            let c = f.corners.map(|i| picture[i as usize]);
+            let side = |a: [f64; 3], b: [f64; 3]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+            let sides = [side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])];
+            sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
+        };
+        let seen = |x: f64, y: f64| facets.iter().find(|f| inside(f, x, y)).map(|f| f.deviation_mm);
+        for k in 0..3600 {
+            let (x, y) = (f64::from(k % 60) + 0.41, f64::from(k / 60) + 0.37);
+            let from_border = (x + 0.3 * y - 37.0) / 1.09_f64.sqrt();
+            if let Some(value) = seen(x, y).filter(|_| from_border.abs() > 1.5) {
+                assert_eq!(value > 0.01, from_border > 0.0, "({x}, {y}) is {value}");
+            }
         }
     }
 

@@ -260,3 +260,21 @@ fn the_verdict_is_said() {
     report.verdict.scallop_max_mm = 0.0101;
     assert!(html(&report).contains("<div class=\"tile bad\"><div class=\"name\">Scallop, greatest</div>"));
 }
+
+/// A quarter of the faces that stays uncut stands in the headline, which then is not the one of a part that is done.
+#[test]
+fn what_stays_uncut_stands_in_the_headline() {
+    let mut report = sheet(3);
+    report.verdict.outcome = Outcome::Within;
+    report.verdict.uncut_area_mm2 = 25.0;
+    report.verdict.area_mm2 = 100.0;
+    report.verdict.uncut_accepted_mm2 = 30.0;
+    let page = html(&report);
+    let words =
+        "Within tolerance where it is cut; 25.00 mm\u{b2} stay uncut, 25 % of the faces, as the job accepts";
+    assert!(page.contains(&format!("<div class=\"word\">{words}</div>")));
+    assert!(page.contains("card verdict partly") && !page.contains("card verdict within"));
+    assert!(page.contains("no pass reached; 30.00 are accepted"));
+    report.verdict.outcome = Outcome::Outside;
+    assert!(html(&report).contains("Out of tolerance; 25.00 mm\u{b2} stay uncut, 25 % of the faces</div>"));
+}

@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 
 /// Programs that speak the protocol, by the names that systems give them.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-/// How long an answer may take. A page of a large part is drawn in software where there is no graphics card.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// How long an answer may take. A page of a large part is drawn in software where there is no graphics card, and the machine may be busy.
+const PATIENCE: Duration = Duration::from_secs(240);
 
 /// A browser with one page open at a time.
 pub struct Chrome {

@@ -14,12 +14,20 @@ use osculate_productivity::access::{Access, Asked, From};
 use osculate_productivity::axis::{Around, Left};
 use osculate_productivity::plan::{Named, Tolerance};
 use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write;
 
 /// The scallop as a part of the side of a square with the area of the faces: passes then are some hundreds, and a part of 50 mm is made to
 /// a hundredth.
 const FINE: f64 = 2e-4;
 /// Scallops that are written, mm: steps that people use.
-const STEPS_MM: [f64; 9] = [0.001, 0.002, 0.003, 0.005, 0.01, 0.015, 0.02, 0.03, 0.05];
+const STEPS_MM: [f64; 14] =
+    [0.001, 0.002, 0.003, 0.005, 0.01, 0.015, 0.02, 0.03, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5];
+/// The step that is finest for the largest parts.
+const FINEST_MM: f64 = 0.05;
+/// Passes over a square of the faces' area, of all axes together: what takes more is made to the next step. A first plan then ends in minutes.
+const MOST_PASSES: f64 = 400.0;
+/// Operations are planned for this part of the scallop: the rest is for teeth, rounding, and walls beside which strips turn.
+pub const OF_SCALLOP: f64 = 0.5;
 /// Gouge and chord of the scallop.
 const SHARES: [f64; 2] = [0.5, 0.2];
 /// A ball is no larger than this part of the side of a square with the area of the faces.
@@ -47,6 +55,8 @@ pub struct Fit {
     pub why: String,
     /// What must hold.
     pub tolerance: Tolerance,
+    /// Why it, in words.
+    pub why_tolerance: String,
     /// The axes, each with the faces that it is for, by their places in the target.
     pub axes: Vec<(From, Vec<usize>)>,
     /// Turn of the part about x, y, z, degrees, and which of its axes then is up.
@@ -75,11 +85,37 @@ fn turned([a, b, c]: [f64; 3]) -> UnitQuaternion<f64> {
     turn(Vec3::z(), c) * turn(Vec3::y(), b) * turn(Vec3::x(), a)
 }
 
+fn of_scallop(scallop_mm: f64) -> Tolerance {
+    Tolerance { scallop_mm, gouge_mm: SHARES[0] * scallop_mm, chord_mm: SHARES[1] * scallop_mm }
+}
+
 /// What must hold for faces of such an area.
-pub fn tolerance(area_mm2: f64) -> Tolerance {
-    let wanted = FINE * area_mm2.sqrt();
-    let step = STEPS_MM.iter().copied().filter(|s| *s <= wanted).fold(STEPS_MM[0], f64::max);
-    Tolerance { scallop_mm: step, gouge_mm: SHARES[0] * step, chord_mm: SHARES[1] * step }
+fn finest(area_mm2: f64) -> Tolerance {
+    let wanted = (FINE * area_mm2.sqrt()).min(FINEST_MM);
+    of_scallop(STEPS_MM.iter().copied().filter(|s| *s <= wanted).fold(STEPS_MM[0], f64::max))
+}
+
+/// What must hold where a ball of such a radius goes over areas, one for each axis, of faces of such an area, and why. Passes
+/// on a plane are sqrt(8 r h) apart.
+fn tolerance(area_mm2: f64, radius_mm: f64, each_mm2: &[f64]) -> (Tolerance, String) {
+    let side_mm = area_mm2.sqrt();
+    let passes = |scallop_mm: f64| {
+        let apart_mm = (8.0 * radius_mm * OF_SCALLOP * scallop_mm).sqrt();
+        each_mm2.iter().sum::<f64>() / (side_mm * apart_mm)
+    };
+    let finest = finest(area_mm2);
+    let mut steps = STEPS_MM.iter().copied().filter(|s| *s >= finest.scallop_mm);
+    let step = steps.find(|s| passes(*s) <= MOST_PASSES).unwrap_or(STEPS_MM[STEPS_MM.len() - 1]);
+    let mut why = format!("for faces of {} mm2 together; the drawing says it better", number(area_mm2, 4));
+    if step > finest.scallop_mm {
+        let _ = write!(
+            why,
+            ". To {} mm it would be some {} passes with this tool, and a first plan would take long",
+            finest.scallop_mm,
+            number(passes(finest.scallop_mm), 2)
+        );
+    }
+    (of_scallop(step), why)
 }
 
 /// The balls that may fit, largest first, and why the first of them is no larger.
@@ -141,7 +177,7 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
     let own: Vec<Named<'_>> = target.faces.iter().map(named).collect();
     let seen = |k: &usize| !target.faces.contains(k) && !grouped.open.contains(&faces[*k].id);
     let check: Vec<Named<'_>> = (0..faces.len()).filter(seen).collect::<Vec<_>>().iter().map(named).collect();
-    let tolerance = tolerance(target.area_mm2);
+    let tolerance = finest(target.area_mm2);
     let mut best: Option<(&Tool, Tried, f64)> = None;
     for tool in &balls {
         let cutter = tool.cutter();
@@ -151,6 +187,7 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
             cutter: &cutter,
             gouge_mm: coarse_mm(tolerance),
             left: Left::default(),
+            most: Around::ALL,
         };
         let asked = Asked {
             around,
@@ -197,6 +234,8 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
         tried.axes.iter().map(|from| (from.clone(), faces_from(grouped, target, from))).collect();
     let missed: Vec<usize> =
         (0..target.faces.len()).filter(|k| !axes.iter().any(|(_, own)| own.contains(k))).collect();
+    let each_mm2: Vec<f64> = axes.iter().map(|(from, _)| from.area_mm2).collect();
+    let (tolerance, why_tolerance) = self::tolerance(target.area_mm2, tool.cutter().radius_mm(), &each_mm2);
     if missed.len() == target.faces.len() {
         return Ok(Err("no axis reaches more than slivers of its faces".to_owned()));
     }
@@ -204,6 +243,7 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
         tool: (*tool).clone(),
         why,
         tolerance,
+        why_tolerance,
         axes,
         stands: tried.stands,
         missed,

@@ -1,16 +1,21 @@
 //! The text of a first job, with the reason of every choice beside it.
 
 use super::asked::{Grouped, Wanted, name, relative};
-use super::fit::Fit;
+use super::fit::{Fit, OF_SCALLOP};
 use super::target::{Target, listed};
-use crate::job::Normals;
 use crate::job::library;
+use crate::job::words::ToolKind;
+use crate::job::{Normals, Tool};
 use crate::words::number;
 use osculate_geom::Unit3;
 use std::fmt::Write;
 
-/// Operations are planned for this part of the scallop: the rest is for teeth, rounding, and walls beside which strips turn.
-const OF_SCALLOP: f64 = 0.5;
+/// Raw material stands over the part by this, mm.
+const OVER_MM: f64 = 1.0;
+/// What a roughing leaves, mm.
+const ALLOWANCE_MM: f64 = 0.3;
+/// A roughing tool is no wider than the finishing one by this.
+const FLAT: f64 = 2.0;
 /// Samples of a verification: a first look is to end in minutes.
 const SAMPLES: usize = 600_000;
 
@@ -83,8 +88,8 @@ pub fn job(wanted: &Wanted<'_>, (grouped, word): (&Grouped, Normals), target: &T
     );
     let _ = write!(
         out,
-        "[tolerance]\n# For faces of {} mm2 together; the drawing says it better.\nscallop_mm = {}\ngouge_mm = {}\nchord_mm = {}\n",
-        number(target.area_mm2, 4),
+        "[tolerance]\n# {}.\nscallop_mm = {}\ngouge_mm = {}\nchord_mm = {}\n",
+        capital(&fit.why_tolerance),
         t.scallop_mm,
         plain(t.gouge_mm),
         plain(t.chord_mm)
@@ -116,7 +121,7 @@ pub fn job(wanted: &Wanted<'_>, (grouped, word): (&Grouped, Normals), target: &T
         capital(&format!("{}, of {}", fit.why, wanted.tools.1)),
         library::toml(&fit.tool, 1),
     );
-    out += "# The part is taken to be roughed to a layer of some tenths; a [stock] and an operation of kind = \"rough\" begin with the block.\n";
+    out += &block(wanted, grouped, fit);
     for (k, (from, faces)) in fit.axes.iter().enumerate() {
         let ids: Vec<&str> = faces.iter().map(|f| ids[*f]).collect();
         let share = 100.0 * from.area_mm2 / target.area_mm2;
@@ -132,6 +137,44 @@ pub fn job(wanted: &Wanted<'_>, (grouped, word): (&Grouped, Normals), target: &T
         );
     }
     format!("{}\n", out.trim_end())
+}
+
+/// A number of mm outwards to a tenth, with what stands over the part.
+fn outwards(x: f64, sign: f64) -> String {
+    plain((sign * x * 10.0 + 10.0 * OVER_MM).ceil() / 10.0 * sign)
+}
+
+/// Raw material and its roughing, as lines that begin with a mark and no space: a job without these marks begins with the block.
+fn block(wanted: &Wanted<'_>, grouped: &Grouped, fit: &Fit) -> String {
+    let begin = "# The part is taken to be roughed to a layer of some tenths";
+    let most_mm = FLAT * 2.0 * fit.tool.cutter().radius_mm();
+    let of = |t: &&Tool| t.kind() == ToolKind::Flat && 2.0 * t.cutter().radius_mm() <= most_mm;
+    let wide = |a: &&Tool, b: &&Tool| a.cutter().radius_mm().total_cmp(&b.cutter().radius_mm());
+    let Some(flat) = wanted.tools.0.tools.iter().filter(of).max_by(wide) else {
+        return format!("{begin}; a [stock] and an operation of kind = \"rough\" begin with the block.\n");
+    };
+    let bounds: Vec<_> = grouped.part.faces.iter().map(crate::part::bounds).collect();
+    let end = |k: usize, sign: f64| {
+        let all = bounds.iter().map(|b| sign * if sign < 0.0 { b.min[k] } else { b.max[k] });
+        outwards(all.fold(f64::NEG_INFINITY, f64::max) * sign, sign)
+    };
+    let corners: Vec<String> = [-1.0, 1.0].iter().flat_map(|s| (0..3).map(|k| end(k, *s))).collect();
+    let depth_mm = 0.5 * flat.cutter().radius_mm();
+    let mut lines =
+        format!("[stock]\nbox_mm = [{}]\n\n{}\n", corners.join(", "), library::toml(flat, 2).trim_end());
+    for (k, (from, _)) in fit.axes.iter().enumerate() {
+        let _ = write!(
+            lines,
+            "\n[[operation]]\nname = \"rough {}\"\nkind = \"rough\"\ntools = [2]\nallowance_mm = {}\nstepdown_mm = {}\nstrategy = {{ axis = {} }}\n",
+            k + 1,
+            ALLOWANCE_MM.max(2.0 * fit.tolerance.scallop_mm),
+            plain(depth_mm),
+            direction(&from.axis)
+        );
+    }
+    let marked: String =
+        lines.lines().map(|l| if l.is_empty() { "#\n".to_owned() } else { format!("#{l}\n") }).collect();
+    format!("{begin}. Without the marks before these lines it comes from the block around it:\n{marked}\n")
 }
 
 /// What was chosen, in sentences for a screen.

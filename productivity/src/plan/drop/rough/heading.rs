@@ -21,8 +21,8 @@ use rayon::prelude::*;
 const MOST_LAYERS: f64 = 10_000.0;
 /// Ways of rows that are tried, evenly over half a turn: along what is given, across, and both diagonals.
 const TURNS: usize = 4;
-/// A way of rows that takes less than this share of what another one takes is none.
-const ALL: f64 = 0.8;
+/// A way of rows that takes less than this share of what the given one takes is none.
+const ALL: f64 = 0.999;
 
 /// The part with the tool, for any axis.
 pub(super) struct Known<'a> {
@@ -62,17 +62,15 @@ pub(super) fn along(
     let turn = std::f64::consts::PI / TURNS as f64;
     let ways = (0..TURNS).map(|k| Rotation3::from_axis_angle(&axis, turn * k as f64) * given);
     let silent = |_: f64| {};
-    let made: Vec<Along> = ways
+    let made: Vec<Option<Along>> = ways
         .enumerate()
         .collect::<Vec<_>>()
         .into_par_iter()
         .map(|(k, rows)| one(rows, if k == 0 { progress } else { &silent }))
-        .collect::<Result<Vec<_>, _>>()?
-        .into_iter()
-        .flatten()
-        .collect();
-    let most_mm3 = made.iter().map(|a| a.heading.volume_mm3).fold(0.0, f64::max);
-    let all = made.into_iter().filter(|a| a.heading.volume_mm3 >= ALL * most_mm3);
+        .collect::<Result<_, _>>()?;
+    // What is quick because it leaves something out is none.
+    let given_mm3 = made.first().and_then(Option::as_ref).map_or(0.0, |a| a.heading.volume_mm3);
+    let all = made.into_iter().flatten().filter(|a| a.heading.volume_mm3 >= ALL * given_mm3);
     let links = known.task.links;
     let timed = all.map(|a| (links.rates.path_min(&a.linked.path) / a.heading.volume_mm3, a));
     Ok(timed.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1))
