@@ -13,14 +13,7 @@ use std::f64::consts::PI;
 fn asked(dome: &Paraboloid, axis: Option<Unit3>, test: impl Fn(&Access)) {
     let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 4.0, length_mm: 40.0 }).unwrap();
     let faces = [Named { face: "F1", surface: dome }];
-    let around = Around {
-        faces: &faces,
-        check: &[],
-        cutter: &cutter,
-        gouge_mm: 0.02,
-        left: Left::default(),
-        most: Around::COARSE,
-    };
+    let around = Around { faces: &faces, check: &[], cutter: &cutter, gouge_mm: 0.02, left: Left::default() };
     let lean_rad = [0.0, 30f64.to_radians()];
     test(&Access::of(&Asked { around, holder: None, places: 2000, lean_rad, axis }).unwrap());
 }

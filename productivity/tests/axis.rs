@@ -165,7 +165,6 @@ fn found(tool: &Tool, machine: &Machine, left: Left<'_>) -> Found {
         cutter: tool.cutter(),
         gouge_mm: 0.005,
         left,
-        most: Around::ALL,
     };
     let wish = Wish {
         surface: &floor,

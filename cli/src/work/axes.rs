@@ -160,7 +160,6 @@ fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surroundings
         cutter,
         gouge_mm: accepted * job.tolerance().gouge_mm,
         left: faces.left(),
-        most: Around::ALL,
     };
     Surroundings::of(&around).map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))
 }

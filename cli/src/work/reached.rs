@@ -81,14 +81,7 @@ fn of_tool(operation: &str, job: &Job, part: &Part) -> Result<Reached, Failure> 
     let kept = job.strategy().kept_axis();
     let least = if cutter.is_ball() || kept.is_some() { 0.0 } else { LEAST_RAD };
     let asked = Asked {
-        around: Around {
-            faces: &own,
-            check: &check,
-            cutter: &cutter,
-            gouge_mm,
-            left: Left::default(),
-            most: Around::COARSE,
-        },
+        around: Around { faces: &own, check: &check, cutter: &cutter, gouge_mm, left: Left::default() },
         holder: job.holder(),
         places: PLACES,
         lean_rad: [least, FRAC_PI_2 - UPRIGHT_RAD],

@@ -12,9 +12,9 @@ use osculate_tools::reach::{ObstacleKind, ObstaclePoint, Obstacles};
 use osculate_tools::removal::{Sample, SamplingError};
 use std::collections::HashSet;
 
-/// Fewest points of a face, and the part of all points that this may come to.
+/// Most points over all faces, and fewest of one.
+const MOST: f64 = 5e5;
 const FEWEST: usize = 200;
-const FEW: usize = 2;
 /// Points stand no closer than lets a ball go deeper between them by this part of what it may.
 const HIDDEN: f64 = 0.2;
 /// Edges sharper than this part of the tool's radius count as so round.
@@ -35,16 +35,6 @@ pub struct Around<'a> {
     pub gouge_mm: f64,
     /// Raw material that is left: the cutter takes it, its holder must not meet it.
     pub left: Left<'a>,
-    /// About so many points stand for all faces at most: between points that are then farther apart a tool is taken to fit where it goes
-    /// deeper than it may.
-    pub most: usize,
-}
-
-impl Around<'_> {
-    /// Points enough for axes along which a program runs.
-    pub const ALL: usize = 500_000;
-    /// Points enough for the share of faces that a tool reaches.
-    pub const COARSE: usize = 40_000;
 }
 
 /// Raw material that is left, as points of its surface.
@@ -126,8 +116,7 @@ impl Surroundings {
         let round_mm = around.cutter.corner_mm().max(SHARP * around.cutter.radius_mm());
         let spacing_mm = (8.0 * round_mm * HIDDEN * around.gouge_mm).sqrt();
         let all: Vec<&Named<'_>> = around.faces.iter().chain(around.check).collect();
-        let fewest = FEWEST.min(around.most / (FEW * all.len().max(1)));
-        let found = samples(&all, Wanted { spacing_mm, most: around.most as f64, fewest })?;
+        let found = samples(&all, Wanted { spacing_mm, most: MOST, fewest: FEWEST })?;
         let [machined, others] = {
             let mut found = found;
             let others = found.split_off(around.faces.len());

@@ -187,7 +187,6 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
             cutter: &cutter,
             gouge_mm: coarse_mm(tolerance),
             left: Left::default(),
-            most: Around::ALL,
         };
         let asked = Asked {
             around,

@@ -43,6 +43,8 @@ pub(super) struct Along {
     pub heading: Heading,
     pub linked: Linked,
     pub passes: Vec<Pass>,
+    /// Where more is left of what is to go than may stand, mm2 across the axis.
+    high_mm2: f64,
 }
 
 /// Plans layers along an axis, for what is thicker than `thin_mm`; None where nothing is to go.
@@ -69,8 +71,10 @@ pub(super) fn along(
         .map(|(k, rows)| one(rows, if k == 0 { progress } else { &silent }))
         .collect::<Result<_, _>>()?;
     // What is quick because it leaves something out is none.
-    let given_mm3 = made.first().and_then(Option::as_ref).map_or(0.0, |a| a.heading.volume_mm3);
-    let all = made.into_iter().flatten().filter(|a| a.heading.volume_mm3 >= ALL * given_mm3);
+    let of_given = made.first().and_then(Option::as_ref).map(|a| (a.heading.volume_mm3, a.high_mm2));
+    let (given_mm3, high_mm2) = of_given.unwrap_or((0.0, f64::INFINITY));
+    let fits = |a: &Along| a.heading.volume_mm3 >= ALL * given_mm3 && a.high_mm2 <= high_mm2;
+    let all = made.into_iter().flatten().filter(fits);
     let links = known.task.links;
     let timed = all.map(|a| (links.rates.path_min(&a.linked.path) / a.heading.volume_mm3, a));
     Ok(timed.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1))
@@ -131,7 +135,7 @@ fn rowed(
     let mut moves = Moves::new(&site, pace, manner);
     clear::clear(&mut parts, &sheets, &mut moves, apart_mm);
     progress(1.0);
-    let Moved { linked, passes, taken_mm3, shut_mm3 } = moves.done();
+    let Moved { linked, passes, taken_mm3, shut_mm3, high_mm2 } = moves.done();
     if passes.is_empty() {
         return Ok(None);
     }
@@ -144,7 +148,7 @@ fn rowed(
         shut_mm3,
     };
     let passes = passes.into_iter().map(|places| pass(&frame, &axis, &places)).collect();
-    Ok(Some(Along { heading, linked, passes }))
+    Ok(Some(Along { heading, linked, passes, high_mm2 }))
 }
 
 /// The dropping of the grown cutter along an axis.

@@ -65,6 +65,8 @@ pub(super) struct Moved {
     pub passes: Vec<Vec<[f64; 3]>>,
     pub taken_mm3: f64,
     pub shut_mm3: f64,
+    /// Where more is left of what is to go than may stand, mm2 across the axis.
+    pub high_mm2: f64,
 }
 
 /// A stretch of a line that is run.
@@ -126,7 +128,16 @@ impl<'a> Moves<'a> {
         if let Some([x, y, _]) = self.here {
             self.rapid([x, y, self.manner.safe]);
         }
-        Moved { linked: self.linked, passes: self.passes, taken_mm3: self.taken_mm3, shut_mm3: self.shut_mm3 }
+        let high_mm2 = self.high_mm2();
+        let Self { linked, passes, taken_mm3, shut_mm3, .. } = self;
+        Moved { linked, passes, taken_mm3, shut_mm3, high_mm2 }
+    }
+
+    fn high_mm2(&self) -> f64 {
+        let (tops, least) = (self.columns.tops(), &self.site.least);
+        let stands_mm = self.manner.sizes.stands_mm;
+        let count = tops.iter().zip(least).filter(|(top, least)| **top > **least + stands_mm).count();
+        count as f64 * self.site.grid.cell.powi(2)
     }
 
     fn go(&mut self, at: [f64; 3], motion: Motion, pass: Option<u32>) {
