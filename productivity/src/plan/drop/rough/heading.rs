@@ -70,9 +70,9 @@ pub(super) fn along(
         .into_par_iter()
         .map(|(k, rows)| one(rows, if k == 0 { progress } else { &silent }))
         .collect::<Result<_, _>>()?;
-    // What is quick because it leaves something out is none.
-    let of_given = made.first().and_then(Option::as_ref).map(|a| (a.heading.volume_mm3, a.high_mm2));
-    let (given_mm3, high_mm2) = of_given.unwrap_or((0.0, f64::INFINITY));
+    // What is quick because it leaves something out is none, and slivers that lie so between other nodes are nothing.
+    let Some(given) = made.first().and_then(Option::as_ref) else { return Ok(None) };
+    let (given_mm3, high_mm2) = (given.heading.volume_mm3, given.high_mm2);
     let fits = |a: &Along| a.heading.volume_mm3 >= ALL * given_mm3 && a.high_mm2 <= high_mm2;
     let all = made.into_iter().flatten().filter(fits);
     let links = known.task.links;
