@@ -9,8 +9,8 @@ use osculate_geom::{Point3, Unit3, Vec3};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::MachineError;
 use super::chain::{Drive, Joint, JointKind};
+use super::error::MachineError;
 use super::spec::{ControlSpec, FeedReading, JointSpec, Sense};
 
 /// Speeds, mm/s and deg/s: the slowest feed axes creep at a tenth of a mm/min, the fastest linear motors reach 1e4 mm/s.

@@ -1,6 +1,6 @@
 //! Whole files that no collection has: small jobs, meshes, and what the program itself writes.
 
-use super::seeds::Kind;
+use super::kind::Kind;
 use crate::cmd::Failure;
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -7,6 +7,7 @@
 
 mod answer;
 mod damage;
+mod kind;
 mod made;
 mod seeds;
 

@@ -1,5 +1,6 @@
 //! Whole files of every kind, with the verbs that read them.
 
+use super::kind::{KINDS, Kind};
 use super::made;
 use crate::cmd::Failure;
 use std::path::{Path, PathBuf};
@@ -19,30 +20,6 @@ const FOLDERS: [&str; 10] = [
     "files/malformed",
     "step_dialects",
 ];
-
-/// What reads a file.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// STEP, IGES, JSON of faces, patches, sections.
-    Part,
-    /// STL, PLY, 3MF.
-    Mesh,
-    Program,
-    Path,
-    /// Jobs of examples, which are not planned.
-    Job,
-    /// Jobs of a few mm2, which are.
-    SmallJob,
-    Machine,
-    Dialect,
-    /// Libraries of tools.
-    Library,
-    /// What an operation has left.
-    Stock,
-}
-
-/// How many kinds there are.
-const KINDS: usize = 10;
 
 /// A file that is whole.
 pub struct Seed {
