@@ -1,5 +1,7 @@
 //! Ends of travel and places of the machine's own frame are at the spindle nose; words of programs are of the tip.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use common::{path, pose};
