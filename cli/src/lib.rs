@@ -96,6 +96,7 @@ pub mod job;
 pub mod part;
 pub mod report;
 pub mod second;
+pub mod triangles;
 pub mod watch;
 pub mod words;
 pub mod work;

@@ -21,6 +21,7 @@
 
 pub mod analytic;
 pub mod batch;
+pub mod convex;
 pub mod curve;
 pub mod diagnostic;
 mod domain;

@@ -63,6 +63,7 @@ pub use joint_path::{BlockKind, JointBlock, JointPath, SolveSummary};
 pub use machine::{Machine, MachineError, built_in_names, built_in_text};
 pub use nc::conduct;
 pub use nc::dialect_file::{DialectFile, DialectFileError, shipped_dialect_text, shipped_dialects};
+pub use nc::meetings;
 pub use nc::readback;
 pub use nc::{Coolant, Dialect, Orientation, WorkOffset};
 pub use orienting::Orienting;

@@ -87,6 +87,7 @@ fn machine() -> impl Strategy<Value = Machine> {
                     linuxcnc_tcp: None,
                 },
                 joint,
+                body: Vec::new(),
             };
             fine.then(|| Machine::from_spec(&spec)).and_then(Result::ok)
         },

@@ -7,6 +7,7 @@ use crate::job::language::Language;
 use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::words::{CoolantWord, FeedWord};
+use crate::triangles::triangles;
 use osculate_geom::{Diagnostic, Point3, Vec3};
 use osculate_postproc::feed::FeedMode;
 use osculate_postproc::nc::{Coolant, Dialect};
@@ -178,7 +179,11 @@ impl Control {
 /// The machine of a file, with its text. What stands in a file that is none is not repeated.
 pub fn machine_file(file: &Path) -> Result<(Machine, String), Failure> {
     let text = read_text(file)?;
-    let machine = Machine::from_toml(&text).map_err(|e| match &e {
+    let meshes = |name: &str| {
+        let beside = file.parent().map_or_else(|| name.into(), |folder| folder.join(name));
+        triangles(&beside).map_err(|e| e.message().to_owned())
+    };
+    let machine = Machine::from_toml_with(&text, &meshes).map_err(|e| match &e {
         MachineError::Toml(e) => {
             let at = e.span().map_or_else(String::new, |s| format!(", line {}", line(&text, s.start)));
             Failure::file(file, format!("is no machine{at}: {}", e.message().trim_end()))

@@ -2,10 +2,11 @@
 
 use crate::failure::Failure;
 use crate::part::loaded::{Loaded, LoadedFace};
+use crate::triangles;
 use crate::words::number;
-use osculate_geom::{Diagnostic, Point3};
+use osculate_geom::Diagnostic;
 use osculate_surfaces::TrimmedSurface;
-use osculate_surfaces::facets::{self, MeshFile, MeshFormat, SHARP_RAD, mesh_part};
+use osculate_surfaces::facets::{self, MeshFormat, SHARP_RAD, mesh_part};
 use osculate_surfaces::structure::Structure;
 use std::path::Path;
 use std::sync::Arc;
@@ -41,31 +42,9 @@ impl MeshFacts {
     }
 }
 
-/// Reads a mesh.
-pub(super) fn mesh(path: &Path, bytes: &[u8]) -> Result<MeshFile, Failure> {
-    facets::read(bytes).map_err(|e| Failure::file(path, e))
-}
-
-/// The triangles of a mesh file, mm.
-///
-/// # Errors
-/// Where it cannot be read or is no mesh.
-pub fn triangles(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
-    let file = mesh(path, &crate::failure::read(path)?)?;
-    let scale = file.unit_mm.unwrap_or(1.0);
-    Ok(scaled(file.triangles, scale))
-}
-
-fn scaled(mut triangles: Vec<[Point3; 3]>, scale: f64) -> Vec<[Point3; 3]> {
-    if scale != 1.0 {
-        triangles.iter_mut().flatten().for_each(|p| *p = Point3::from(p.coords * scale));
-    }
-    triangles
-}
-
 /// A mesh as a part; `unit_mm` are the millimetres in a unit of the file, where a job says it.
 pub(super) fn loaded(path: &Path, bytes: &[u8], unit_mm: Option<f64>) -> Result<Loaded, Failure> {
-    let file = mesh(path, bytes)?;
+    let file = triangles::parsed(path, bytes)?;
     if let (Some(_), Some(own)) = (unit_mm, file.unit_mm) {
         let text = format!(
             "[part] unit_mm goes with meshes without a unit; this file says that its unit is {own} mm"
@@ -82,7 +61,7 @@ pub(super) fn loaded(path: &Path, bytes: &[u8], unit_mm: Option<f64>) -> Result<
         MeshFormat::Ply => "ply",
         MeshFormat::ThreeMf => "3mf",
     };
-    let triangles = scaled(file.triangles, file.unit_mm.or(unit_mm).unwrap_or(1.0));
+    let triangles = triangles::scaled(file.triangles, file.unit_mm.or(unit_mm).unwrap_or(1.0));
     let part = mesh_part(&triangles, SHARP_RAD).map_err(|e| Failure::file(path, e))?;
     let face = |(k, f): (usize, facets::MeshFace)| LoadedFace {
         id: format!("F{}", k + 1),

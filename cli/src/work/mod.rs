@@ -1,6 +1,7 @@
 //! From a job to a program and its proof: choosing, passes, posting, verification, and what is told of them.
 
 pub mod axes;
+pub mod bodies;
 pub mod budget;
 pub mod check;
 pub mod choice;

@@ -143,6 +143,11 @@ pub fn gauge_mm(job: &Job) -> f64 {
     job.cutter().length_mm() + job.holder().map_or(0.0, osculate_tools::Holder::length_mm)
 }
 
+/// The lengths of the tools in hand in these jobs, by their numbers.
+pub fn lengths(tools: &[Job]) -> Vec<(u32, f64)> {
+    tools.iter().map(|one| (one.tool().number(), gauge_mm(one))).collect()
+}
+
 /// The state of the control that jobs mean their program to run in, each for the tool that it has in hand.
 fn expected(job: &Job, more: &[Job], gauge_length_mm: f64) -> Expected {
     if let [] | [_] = more {
@@ -199,6 +204,7 @@ fn judged(conduct: &Conduct) -> GoalControl {
         words: format!("tool, length, work offset and spindle in every feed move, retracts{blend}"),
         remarks: remarks.collect(),
         blend_mm: conduct.blend_mm,
+        bodies: String::new(),
     }
 }
 
@@ -223,7 +229,7 @@ pub fn read_back_tools(
 ) -> Result<Motions, String> {
     let expected = expected(job, tools, setup.gauge_length_mm);
     let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
-    let lengths: Vec<(u32, f64)> = tools.iter().map(|one| (one.tool().number(), gauge_mm(one))).collect();
+    let lengths = lengths(tools);
     let length = |number: Option<u32>| {
         let own = lengths.iter().find(|l| Some(l.0) == number);
         own.map_or(setup.gauge_length_mm, |l| l.1)

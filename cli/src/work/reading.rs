@@ -5,7 +5,7 @@ use crate::job::Control;
 use crate::job::Job;
 use crate::part::Part;
 use crate::work::nc::{self, Motions};
-use crate::work::{posted_setup, stock};
+use crate::work::{bodies, posted_setup, stock};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_postproc::cldata;
 use osculate_tools::Cutter;
@@ -135,7 +135,9 @@ pub fn program(
 ) -> Result<(Motions, Vec<Diagnostic>), Failure> {
     let (setup, notes) =
         posted_setup::of_program(job, faces, &control.language.engine_text(text), control.dialect);
-    let motions = nc::read_back(text, job, control, &setup, lenient).map_err(Failure::job)?;
+    let mut motions = nc::read_back(text, job, control, &setup, lenient).map_err(Failure::job)?;
+    let tools = std::slice::from_ref(job);
+    bodies::look(&mut motions.control, text, (job, tools), control, &setup, (faces, lenient))?;
     Ok((motions, notes))
 }
 

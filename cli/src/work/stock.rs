@@ -2,8 +2,9 @@
 
 use crate::failure::{Failure, read};
 use crate::job::{Blank as Raw, Job, Source};
-use crate::part::mesh::triangles;
 use crate::part::{self, Part};
+use crate::triangles::triangles;
+use osculate_geom::convex::Convex;
 use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
 use osculate_surfaces::tessellate;
 use osculate_tools::removal::stock::{Blank, Resolution, Stock};
@@ -13,6 +14,8 @@ use std::path::Path;
 
 /// Cells along the longest side of the stock where the job gives none.
 const DEFAULT_CELLS: f64 = 256.0;
+/// Cubes along the longest side of a saved stock, where bodies of a machine are held against it.
+const SEEN_CUBES: usize = 128;
 /// Blocks listed by what they took.
 const LISTED: usize = 10;
 
@@ -331,6 +334,22 @@ impl<'a> RawMaterial<'a> {
             }
             Raw::File { .. } => leaves(&self.bounds, from, along),
             Raw::Saved(_) => self.saved.as_ref().map_or(0.0, |stock| stock.beyond_mm(from, along)),
+        }
+    }
+
+    /// It, as convex bodies; none of a layer, which is where the part is.
+    #[must_use]
+    pub fn members(&self) -> Vec<Convex> {
+        let all = |triangles: &[[Point3; 3]]| triangles.iter().map(|t| Convex::Triangle(*t)).collect();
+        match self.blank {
+            Raw::Box(b) => vec![Convex::cuboid(b)],
+            Raw::Cylinder { .. } | Raw::File { .. } => all(&self.triangles),
+            Raw::Saved(_) => self.saved.as_ref().map_or_else(Vec::new, |stock| {
+                let mesh = stock.mesh(SEEN_CUBES);
+                let at = |k: u32| mesh.points[k as usize];
+                all(&mesh.triangles.iter().map(|t| t.map(at)).collect::<Vec<_>>())
+            }),
+            Raw::Layer(_) => Vec::new(),
         }
     }
 

@@ -63,6 +63,30 @@ pub enum MachineError {
         /// What would do.
         wanted: String,
     },
+    /// A body without a name of its own.
+    #[error("the machine has a body called '{name}': every [[body]] needs a name, and no two the same")]
+    BodyName {
+        /// What stands there.
+        name: String,
+    },
+    /// A body that moves with nothing there is.
+    #[error("body {body} is carried_by = \"{got}\": give the letter of a joint ({known}), or \"bed\"")]
+    Carrier {
+        /// The body.
+        body: String,
+        /// What stands there.
+        got: String,
+        /// The joints there are.
+        known: String,
+    },
+    /// A body that is none.
+    #[error("body {name}: {why}")]
+    Body {
+        /// Its name.
+        name: String,
+        /// Why not.
+        why: String,
+    },
     /// The linear joints do not span space.
     #[error("the three linear directions span a volume of only {volume:.2e}: they must be independent")]
     LinearDependent {

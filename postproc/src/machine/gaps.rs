@@ -65,6 +65,16 @@ impl Machine {
         if self.control().linuxcnc_tcp.is_none() && !self.rotary().is_empty() {
             open("control.linuxcnc_tcp".into(), "LinuxCNC programs have no tool-centre-point control");
         }
+        let (head, table) =
+            (self.bodies().iter().any(|b| b.of_head), self.bodies().iter().any(|b| !b.of_head));
+        if !(head && table) {
+            let what = match (head, table) {
+                (true, _) => "[[body]] of the table",
+                (_, true) => "[[body]] of the head",
+                _ => "[[body]]",
+            };
+            open(what.into(), "whether head and table run into each other is not judged");
+        }
         gaps
     }
 }

@@ -1,5 +1,6 @@
 //! Machine tools: joints as data, checked; forward and inverse kinematics of single poses.
 
+mod body;
 mod built_in;
 mod chain;
 mod error;
@@ -9,9 +10,11 @@ mod pose;
 pub mod spec;
 mod two_axis;
 
-use osculate_geom::Unit3;
+use osculate_geom::{Point3, Unit3};
 use osculate_tools::Pose;
 
+pub(crate) use body::frames;
+pub use body::{Body, Meshes};
 pub use built_in::{built_in_names, built_in_text};
 pub use chain::{Drive, Joint, JointKind, JointValues, MAX_JOINTS};
 use error::FORMAT;
@@ -40,15 +43,24 @@ pub struct Machine {
     linear: [usize; 3],
     rotary: Vec<usize>,
     pair: Option<TwoAxis>,
+    bodies: Vec<Body>,
 }
 
 impl Machine {
     /// A machine from the text of a TOML file.
     ///
     /// # Errors
-    /// Where the file is malformed or describes no machine.
+    /// Where the file is malformed or describes no machine, and where a body is a mesh: see [`Self::from_toml_with`].
     pub fn from_toml(text: &str) -> Result<Self, MachineError> {
-        Self::from_spec(&toml::from_str::<MachineSpec>(text)?).map_err(|e| numbers::with_line(e, text))
+        Self::from_toml_with(text, &no_meshes)
+    }
+
+    /// As [`Self::from_toml`], with a reader of the meshes that bodies are.
+    ///
+    /// # Errors
+    /// As there, and where a mesh cannot be read.
+    pub fn from_toml_with(text: &str, meshes: Meshes<'_>) -> Result<Self, MachineError> {
+        Self::of_spec(&toml::from_str::<MachineSpec>(text)?, meshes).map_err(|e| numbers::with_line(e, text))
     }
 
     /// A machine by the name of a file that comes with the library; see [`built_in_names`].
@@ -65,8 +77,12 @@ impl Machine {
     /// A machine from its plain description.
     ///
     /// # Errors
-    /// Where the description is of no machine.
+    /// Where the description is of no machine, or a body is a mesh.
     pub fn from_spec(spec: &MachineSpec) -> Result<Self, MachineError> {
+        Self::of_spec(spec, &no_meshes)
+    }
+
+    fn of_spec(spec: &MachineSpec, meshes: Meshes<'_>) -> Result<Self, MachineError> {
         if spec.format != FORMAT {
             return Err(MachineError::Format { got: spec.format });
         }
@@ -98,6 +114,7 @@ impl Machine {
             // A single one may lie along the tool: a turntable, which then stays where it is in a posted path.
             _ => None,
         };
+        let bodies = body::bodies(&spec.body, &joints, meshes)?;
         Ok(Self {
             name: spec.name.clone(),
             description: spec.description.clone(),
@@ -107,6 +124,7 @@ impl Machine {
             linear,
             rotary,
             pair,
+            bodies,
         })
     }
 
@@ -158,6 +176,12 @@ impl Machine {
         self.pair.as_ref()
     }
 
+    /// Bodies of head, table and bed.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
     /// The joint of this letter.
     #[must_use]
     pub fn joint_named(&self, letter: &str) -> Option<usize> {
@@ -183,6 +207,11 @@ impl Machine {
         let pose = chain::forward(&self.joints, &self.tool_axis, setup.gauge_length_mm, values);
         setup.to_part(&pose)
     }
+}
+
+/// Where nobody reads meshes.
+fn no_meshes(file: &str) -> Result<Vec<[Point3; 3]>, String> {
+    Err(format!("{file} is a mesh, which this reader of machine files does not open"))
 }
 
 /// Letters that mean something else in every dialect.

@@ -26,6 +26,9 @@ const RADII: RangeInclusive<f64> = 1e-3..=1e6;
 /// Places and limits, mm and deg: a thousand kilometres, beyond which double precision has no micrometre left.
 const FAR: RangeInclusive<f64> = -1e9..=1e9;
 
+/// Sizes of bodies, mm: a hundredth of a hair to a kilometre.
+const SIZES: RangeInclusive<f64> = 1e-3..=1e6;
+
 fn value(whose: &str, what: &'static str, value: f64, wanted: &str) -> MachineError {
     MachineError::Value { line: None, whose: whose.into(), what, value, wanted: wanted.into() }
 }
@@ -50,6 +53,16 @@ fn within(
         return Ok(x);
     }
     Err(value(whose, what, x, &format!("a number from {:e} to {:e} is wanted", bounds.start(), bounds.end())))
+}
+
+/// A coordinate of a place.
+pub(super) fn place(whose: &str, what: &'static str, x: f64) -> Result<f64, MachineError> {
+    within(whose, what, x, &FAR)
+}
+
+/// A size of a body.
+pub(super) fn size(whose: &str, what: &'static str, x: f64) -> Result<f64, MachineError> {
+    within(whose, what, x, &SIZES)
 }
 
 fn limits(
@@ -183,15 +196,17 @@ pub(super) fn with_line(e: MachineError, text: &str) -> MachineError {
     }
 }
 
-/// The line of a key of a joint, of the control or of the machine itself.
+/// The line of a key of a joint, of a body, of the control or of the machine itself.
 fn line_of(text: &str, whose: &str, what: &str) -> Option<usize> {
     let top = DeTable::parse(text).ok()?;
     let mut table = top.get_ref();
-    if let Some(letter) = whose.strip_prefix("joint ") {
-        let joints = table.get("joint")?.get_ref().as_array()?;
-        let called =
-            |t: &DeTable<'_>| t.get("letter").map(Spanned::get_ref).and_then(DeValue::as_str) == Some(letter);
-        table = joints.iter().filter_map(|j| j.get_ref().as_table()).find(|t| called(t))?;
+    let listed = [("joint", "letter"), ("body", "name")]
+        .into_iter()
+        .find_map(|(list, key)| Some((list, key, whose.strip_prefix(list)?.strip_prefix(' ')?)));
+    if let Some((list, key, called)) = listed {
+        let tables = table.get(list)?.get_ref().as_array()?;
+        let is = |t: &DeTable<'_>| t.get(key).map(Spanned::get_ref).and_then(DeValue::as_str) == Some(called);
+        table = tables.iter().filter_map(|t| t.get_ref().as_table()).find(|t| is(t))?;
     } else if whose == CONTROL {
         table = table.get("control")?.get_ref().as_table()?;
     }

@@ -10,8 +10,7 @@
 //!
 //! Places: a table joint's `point_mm` is measured from the table's reference point, a head joint's from the gauge
 //! point (the spindle nose on the tool axis), both with all joints at zero. Limits of linear joints are measured
-//! from where the tip of the tool, with its length taken into account, touches the table's reference point; so is the
-//! zero of the control's own coordinates.
+//! from where the spindle nose touches the table's reference point; so is the zero of the control's own coordinates.
 
 use serde::{Deserialize, Serialize};
 
@@ -159,6 +158,68 @@ const fn default_largest_feed() -> f64 {
     99_999.0
 }
 
+/// A body of the machine that could run into something: a piece of its head, its table or its bed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+pub enum BodySpec {
+    /// A box along the machine's axes, all joints at zero.
+    Box {
+        /// Its name in messages.
+        name: String,
+        /// The letter of the joint that it moves with, or `"bed"`.
+        carried_by: String,
+        /// The corner where x, y and z are least; from the table's reference point, or on the head from the gauge point.
+        min_mm: [f64; 3],
+        /// The opposite corner.
+        max_mm: [f64; 3],
+    },
+    /// A cylinder or a cone.
+    Cylinder {
+        /// Its name in messages.
+        name: String,
+        /// The letter of the joint that it moves with, or `"bed"`.
+        carried_by: String,
+        /// The centre of one end.
+        from_mm: [f64; 3],
+        /// The centre of the other.
+        to_mm: [f64; 3],
+        /// The diameter, of a cone that at `from_mm`.
+        diameter_mm: f64,
+        /// Of a cone the diameter at `to_mm`.
+        #[serde(default)]
+        to_diameter_mm: Option<f64>,
+    },
+    /// Triangles of an STL, PLY or 3MF file, mm.
+    Mesh {
+        /// Its name in messages.
+        name: String,
+        /// The letter of the joint that it moves with, or `"bed"`.
+        carried_by: String,
+        /// The file, seen from the machine file.
+        file: String,
+    },
+}
+
+impl BodySpec {
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Box { name, .. } | Self::Cylinder { name, .. } | Self::Mesh { name, .. } => name,
+        }
+    }
+
+    /// What carries it.
+    #[must_use]
+    pub fn carried_by(&self) -> &str {
+        match self {
+            Self::Box { carried_by, .. }
+            | Self::Cylinder { carried_by, .. }
+            | Self::Mesh { carried_by, .. } => carried_by,
+        }
+    }
+}
+
 /// A machine file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -177,6 +238,9 @@ pub struct MachineSpec {
     pub control: ControlSpec,
     /// The joints, from the part to the tool.
     pub joint: Vec<JointSpec>,
+    /// Its bodies; none: what head and table run into is not judged.
+    #[serde(default)]
+    pub body: Vec<BodySpec>,
 }
 
 const fn default_tool_axis() -> [f64; 3] {

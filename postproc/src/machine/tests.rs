@@ -262,6 +262,7 @@ fn random_machine() -> impl Strategy<Value = Machine> {
                 tool_axis: [0.0, 0.0, 1.0],
                 control,
                 joint,
+                body: Vec::new(),
             };
             // Axes that nearly close are refused by the machine or ill-conditioned by nature.
             (outer.cross(&inner).norm() > 0.1 && inner.cross(&Vec3::z()).norm() > 0.1)
@@ -334,6 +335,10 @@ proptest! {
         let (bare, held) = (Setup::at(Vec3::zeros(), 0.0), Setup::at(Vec3::zeros(), gauge));
         let (nose, tip) = (machine.forward(&slides, &bare), machine.forward(&words, &held));
         prop_assert!((nose.tip - tip.tip - tip.axis.into_inner() * gauge).norm() < 1e-9, "{nose:?} {tip:?}");
+        // What the last joint carries is the spindle.
+        let spindle = frames(machine.joints(), &slides)[machine.joints().len()];
+        prop_assert!((spindle * Point3::origin() - nose.tip).norm() < 1e-9);
+        prop_assert!((spindle * machine.tool_axis().into_inner() - nose.axis.into_inner()).norm() < 1e-12);
     }
 
     /// What is called unreachable is: the reported angle leads exactly to the border.

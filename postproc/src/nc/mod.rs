@@ -19,6 +19,7 @@ mod interpret;
 mod lines;
 mod linuxcnc;
 mod machine_frame;
+pub mod meetings;
 mod modal;
 mod names;
 pub mod number;

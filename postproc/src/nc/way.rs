@@ -106,7 +106,7 @@ impl Way {
     }
 
     /// The largest angle that anything turns by on the way, rad.
-    fn turned_rad(&self) -> f64 {
+    pub fn turned_rad(&self) -> f64 {
         let rotary = self.step().rotary_rad;
         rotary[0].abs().max(rotary[1].abs()).max(self.arc.map_or(0.0, |a| a.sweep_rad.abs()))
     }

@@ -208,11 +208,14 @@ impl Trial<'_> {
                 control.words.clone()
             },
         );
+        let travel = "travel of its joints at the ends of an NC program's blocks, slides at the spindle nose";
         row(
             "machine",
-            "travel of its joints at the ends of an NC program's blocks, slides at the spindle nose; table, head and their bodies are NOT \
-             described"
-                .to_owned(),
+            if control.bodies.is_empty() {
+                format!("{travel}; table, head and their bodies are NOT described")
+            } else {
+                format!("{travel}; bodies {}", control.bodies)
+            },
         );
         rows
     }

@@ -139,6 +139,8 @@ pub struct GoalControl {
     pub remarks: Vec<Remark>,
     /// Width to which corners are blended, mm.
     pub blend_mm: f64,
+    /// Which bodies of the machine were looked at, in words; empty where none are described.
+    pub bodies: String,
 }
 
 /// What holds the part while some of the motions are made.

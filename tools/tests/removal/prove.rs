@@ -117,7 +117,12 @@ fn judged(asked: Asked) -> Result<Verdict, ProveError> {
         },
         looks: Looks { spacing_mm: Some(0.05), max_samples: 100_000, between: true },
         roughing_mm: None,
-        control: GoalControl { words: String::new(), remarks: asked.remarks, blend_mm: asked.blend_mm },
+        control: GoalControl {
+            words: String::new(),
+            remarks: asked.remarks,
+            blend_mm: asked.blend_mm,
+            bodies: String::new(),
+        },
     };
     let motions = dipped(raster(asked.z), &asked.dips);
     let times_min = times(&motions, asked.feed_mm_min);

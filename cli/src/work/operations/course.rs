@@ -8,7 +8,7 @@ use crate::work::nc::{self, Call};
 use crate::work::operations::Judged;
 use crate::work::operations::passages::Passages;
 use crate::work::verify::{self, Reading, Verified};
-use crate::work::{posted_setup, reading, stock};
+use crate::work::{bodies, posted_setup, reading, stock};
 use osculate_geom::Diagnostic;
 use osculate_postproc::Setup;
 use osculate_tools::removal::{GoalControl, GoalFixture, GoalStep, Program, Remark, Swept, prove_in_steps};
@@ -115,8 +115,10 @@ impl Course {
             let engine_text = job.control().language.engine_text(text.text);
             let (place, notes) = place(job, part, &engine_text);
             let tools = job.each_tool();
-            let read = nc::read_back_tools(text.text, (job, &tools), job.control(), &place, lenient)
+            let mut read = nc::read_back_tools(text.text, (job, &tools), job.control(), &place, lenient)
                 .map_err(|why| Failure::file(text.file, why))?;
+            bodies::look(&mut read.control, text.text, (job, &tools), job.control(), &place, (part, lenient))
+                .map_err(|why| Failure::file(text.file, why.message()))?;
             if read.motions.is_empty() {
                 return Err(Failure::file(text.file, "has no motion: at least two positions are needed"));
             }
@@ -144,6 +146,7 @@ impl Course {
             out.control.blend_mm = out.control.blend_mm.max(read.control.blend_mm);
             if out.control.words.is_empty() {
                 out.control.words = read.control.words;
+                out.control.bodies = read.control.bodies;
             }
         }
         Ok(out)
