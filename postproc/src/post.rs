@@ -2,7 +2,7 @@
 
 use std::io;
 
-use osculate_geom::Diagnostic;
+use osculate_geom::{Box3, Diagnostic, Point3};
 use osculate_tools::cl::ClPath;
 
 use crate::auxiliary::AuxiliaryWord;
@@ -108,7 +108,7 @@ where
     PostError: From<S::Error>,
 {
     check(options)?;
-    let program = program_of(machine, options, comments(machine, setup, options));
+    let program = program_of(machine, setup, options, comments(machine, setup, options));
     let mut writer = Writer::new(options.dialect, &program)?;
     let report = moves_from(source, machine, setup, (options, &program), &mut writer, sink)?;
     writer.finish();
@@ -117,7 +117,12 @@ where
 }
 
 /// What stands around the moves of a program.
-pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec<String>) -> Program {
+pub(crate) fn program_of(
+    machine: &Machine,
+    setup: &Setup,
+    options: &PostOptions,
+    comments: Vec<String>,
+) -> Program {
     let tcp = options.feed == FeedMode::Tcp;
     let planes = options.orientation == Orientation::Planes;
     Program {
@@ -131,6 +136,7 @@ pub(crate) fn program_of(machine: &Machine, options: &PostOptions, comments: Vec
         tool_number: options.tool_number,
         next_tool: None,
         work_offset: options.work_offset,
+        blank: options.blank_mm.and_then(|corners| blank(&corners, setup, tcp)),
         spindle_rpm: options.spindle_rpm,
         counter_clockwise: options.counter_clockwise,
         coolant: options.coolant,
@@ -223,6 +229,20 @@ fn feed_word(options: &PostOptions, machine: &Machine) -> FeedWord {
         FeedMode::Fastest { .. } => FeedWord::PerMinute(Some(options.dialect.feed_metric(machine))),
         mode => FeedWord::PerMinute(mode.metric(options.dialect.feed_metric(machine))),
     }
+}
+
+/// The box around a box of the part's frame in the coordinates of a program.
+fn blank(corners: &[[f64; 3]; 2], setup: &Setup, tcp: bool) -> Option<[[i64; 3]; 2]> {
+    let mut around = Box3::empty();
+    for k in 0..8 {
+        let p = Point3::from([0, 1, 2].map(|axis| corners[k >> axis & 1][axis]));
+        let seen = if tcp { Point3::from(setup.to_program(&p)) } else { setup.part_zero * p };
+        around.add(&seen);
+    }
+    let counts = |p: &Point3| -> Option<[i64; 3]> {
+        Some([number::counts(p.x)?, number::counts(p.y)?, number::counts(p.z)?])
+    };
+    Some([counts(&around.min)?, counts(&around.max)?])
 }
 
 fn rotary_name(machine: &Machine, place: usize) -> RotaryName {

@@ -31,6 +31,9 @@ pub struct PostOptions {
     pub preselect: bool,
     /// Work offset; absent: `G54`, or with Heidenhain the preset that is active.
     pub work_offset: Option<WorkOffset>,
+    /// Two opposite corners of the box around the raw material, part's frame, mm: for the picture of the control, where the dialect has a
+    /// word for it (Heidenhain).
+    pub blank_mm: Option<[[f64; 3]; 2]>,
     /// Coolant.
     pub coolant: Option<Coolant>,
     /// Spindle speed; absent: the path's own.
@@ -57,6 +60,7 @@ impl PostOptions {
             tool_number: 1,
             preselect: false,
             work_offset: None,
+            blank_mm: None,
             coolant: None,
             spindle_rpm: None,
             counter_clockwise: false,

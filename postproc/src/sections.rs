@@ -102,6 +102,7 @@ where
             program_name: first.options.program_name.clone(),
             program_number: first.options.program_number,
             work_offset: first.options.work_offset,
+            blank_mm: first.options.blank_mm,
             ..s.options.clone()
         })
         .collect();
@@ -124,7 +125,7 @@ where
                 said.extend(listed(sections));
             }
             said.push(heading(k, section));
-            program_of(machine, options, said)
+            program_of(machine, setup, options, said)
         })
         .collect();
     let mut programs = programs;

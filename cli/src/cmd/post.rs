@@ -173,6 +173,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
             orientation,
             subprogram: args.subprogram,
             work_offset,
+            blank_mm: args.blank_mm.map(|[a, b, c, d, e, f]| [[a, b, c], [d, e, f]]),
             program_number: args.program_number.unwrap_or(usual.program_number),
             ..usual.clone()
         };

@@ -326,6 +326,9 @@ pub struct PostArgs {
     /// Where the part's origin sits from the table's reference point, mm.
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
     pub part_zero: Option<[f64; 3]>,
+    /// Two opposite corners of the box around the raw material, part's frame, mm: for the picture of a Heidenhain control.
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = sextuple, allow_hyphen_values = true)]
+    pub blank_mm: Option<[f64; 6]>,
     /// From the tip to the spindle nose, mm; cutter and holder of the CL data where not given.
     #[arg(long)]
     pub gauge_length_mm: Option<f64>,
@@ -416,5 +419,9 @@ fn blend(s: &str) -> Result<f64, String> {
 }
 
 fn triple(s: &str) -> Result<[f64; 3], String> {
+    numbers(s)
+}
+
+fn sextuple(s: &str) -> Result<[f64; 6], String> {
     numbers(s)
 }

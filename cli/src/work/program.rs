@@ -9,6 +9,7 @@ use crate::work::nc::{self, Motions};
 use crate::work::passes;
 use crate::work::reading;
 use crate::work::setup::{self, Along};
+use crate::work::stock;
 use crate::work::verify::{self, Verified};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
@@ -95,7 +96,10 @@ impl Posted {
         let stage = Stage::begin(watch, "post");
         let along = Along { path: &cl, axes: &axes_of(planned) };
         let (base, mut setup_notes) = setup::of(job, faces, Some(along));
-        let options = nc::job_options(job, &control, &title);
+        let options = post::PostOptions {
+            blank_mm: stock::corners_of(job, faces)?,
+            ..nc::job_options(job, &control, &title)
+        };
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
             let mut program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
             program.text = control.language.worded(program.text)?;

@@ -229,6 +229,14 @@ pub fn bounds(job: &Job, faces: &Part) -> Result<Option<Box3>, Failure> {
     }))
 }
 
+/// Two opposite corners of the box around the raw material, where the job declares some that is more than a layer.
+pub fn corners_of(job: &Job, faces: &Part) -> Result<Option<[[f64; 3]; 2]>, Failure> {
+    if job.stock().is_none_or(|s| matches!(s.blank, Raw::Layer(_))) {
+        return Ok(None);
+    }
+    Ok(bounds(job, faces)?.map(|b| [b.min.into(), b.max.into()]))
+}
+
 /// How far a ray from a point goes until it leaves a box, mm; zero from outside.
 fn leaves(b: &Box3, from: &Point3, along: &Unit3) -> f64 {
     let each = (0..3).map(|k| match along[k] {

@@ -84,6 +84,8 @@ pub struct Program {
     pub next_tool: Option<u32>,
     /// Where program zero is; `None`: [`WorkOffset::usual`].
     pub work_offset: Option<WorkOffset>,
+    /// The box around the raw material in the coordinates of the program: its least and its greatest corner.
+    pub blank: Option<[[i64; 3]; 2]>,
     /// Spindle speed; `None` leaves the spindle alone.
     pub spindle_rpm: Option<f64>,
     /// The spindle turns counter-clockwise.

@@ -299,6 +299,9 @@ impl<S: Sink> Interpreter<'_, S> {
                 self.state.great_circle = true;
                 self.switch(true);
             }
+            // Raw material for the picture of the control.
+            "BLK" if klartext && arguments.starts_with("FORM ") => {}
+            "WORKPIECE" if self.dialect == Dialect::Sinumerik => {}
             "BEGIN" if klartext => self.state.unit_mm = if arguments.ends_with("INCH") { 25.4 } else { 1.0 },
             "END" if klartext => asked.end = true,
             _ => return self.refuse(line, format!("{name} {arguments}").trim()),

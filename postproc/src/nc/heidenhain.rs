@@ -48,6 +48,13 @@ pub(super) fn head(program: &Program, lines: &mut Lines) -> Result<(), WriteErro
     let work_offset = program.work_offset_words(Dialect::Heidenhain)?;
     (lines.numbered, lines.step) = (Some(""), 1);
     lines.line(&format!("BEGIN PGM {} MM", program.safe_name()));
+    if let Some([least, most]) = program.blank {
+        let corner = |p: [i64; 3]| {
+            ["X", "Y", "Z"].into_iter().zip(p).map(|(n, c)| signed(n, c)).collect::<Vec<_>>().join(" ")
+        };
+        lines.line(&format!("BLK FORM 0.1 Z {}", corner(least)));
+        lines.line(&format!("BLK FORM 0.2 {}", corner(most)));
+    }
     for comment in program.safe_comments() {
         lines.line(&format!("; {comment}"));
     }

@@ -7,7 +7,7 @@ use crate::work::operations::course::Text;
 use crate::work::operations::step::Step;
 use crate::work::program::axes_of;
 use crate::work::setup::{self, Along};
-use crate::work::{budget, nc, passes};
+use crate::work::{budget, nc, passes, stock};
 use osculate_geom::Diagnostic;
 use osculate_postproc::{Section, Setup, post_sections};
 use osculate_tools::cl::ClPath;
@@ -59,6 +59,7 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
         // What a control may round off at corners counts for the whole program.
         let blend_mm =
             own.iter().map(|s| budget::solve(&steps[*s].job).tip_tol_mm).fold(f64::INFINITY, f64::min);
+        let blank_mm = stock::corners_of(&held.job, part)?;
         let sections: Vec<Section<'_>> = own
             .iter()
             .zip(&paths)
@@ -67,6 +68,7 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
                 let mut options = nc::job_options(job, control, &title);
                 options.program_number += k as u32;
                 options.blend_mm = blend_mm;
+                options.blank_mm = blank_mm;
                 Section { name: operation.name.clone(), path, gauge_length_mm: nc::gauge_mm(job), options }
             })
             .collect();
