@@ -79,6 +79,29 @@ fn retracts_are_lower_by_the_length_of_the_tool() {
     }
 }
 
+/// The tip stands still on a table that turns from -30 to 30 deg: the slide swings out between the ends of the block, to the radius.
+#[test]
+fn slides_that_swing_out_within_a_block_are_seen() {
+    let expected = Expected::new(ExpectedTool::new(1, TOOLS[0].1), Some(8000.0), 0.01);
+    let turn = |radius_mm: f64| {
+        let text = format!(
+            "G90 G21 G94 G54 G64 P0.001\nT1 M6\nG43 H1\nS8000 M3\nM428\nG0 X{radius_mm} Y0 Z0 A0 C-30\nG1 C30 F500\nM2"
+        );
+        let read = back(&text, Dialect::LinuxCnc, "linuxcnc-xyzac");
+        let x = read.blocks.last().unwrap().to[2];
+        assert!((x - radius_mm * 30f64.to_radians().cos()).abs() < 1e-9, "the ends are within: {x}");
+        read.conduct(&expected)
+    };
+    let held = turn(399.0);
+    assert!(held.findings.iter().all(|f| !f.what.contains("travel")), "{held:?}");
+    let out = turn(410.0);
+    let found: Vec<_> = out.findings.iter().filter(|f| f.what.contains("travel")).collect();
+    assert_eq!((found.len(), found[0].grade, found[0].line), (1, Grade::Breaks, 7), "{out:?}");
+    let told = found[0].what.strip_prefix("X would have to go to ").and_then(|w| w.split(',').next());
+    let at: f64 = told.unwrap_or_else(|| panic!("{out:?}")).parse().unwrap();
+    assert!((409.8..=410.0).contains(&at), "{out:?}");
+}
+
 /// A tip within the travel whose nose is not: the program is not held, the place named at the nose.
 #[test]
 fn programs_beyond_the_travel_are_broken() {

@@ -187,7 +187,7 @@ pub struct Record {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Outside {
     pub letter: String,
-    /// Moves that end there.
+    /// Moves that bring it there.
     pub seen: Seen,
     /// Farthest out, in the unit of the joint; a slide at the spindle nose.
     pub at: f64,
@@ -226,7 +226,7 @@ impl Record {
         }
     }
 
-    /// A move ends with a joint out of its range.
+    /// A move brings a joint out of its range.
     pub(super) fn outside(&mut self, line: usize, joint: &Joint, out: &Beyond) {
         let (at, by) = (joint.shown(out.at), joint.shown(out.by));
         if by <= NOT_OUT {

@@ -17,12 +17,17 @@ use super::state::{FeedReading, Known, State};
 use super::token::{BadWord, Manner, Word, words};
 use super::way::{Arc, ArcWords, Way};
 use crate::feed::Step;
-use crate::machine::{JointValues, Machine, NearWish, nearest_turn};
+use crate::machine::{Beyond, JointValues, Machine, NearWish, nearest_turn};
 use crate::motion::linuxcnc::PathControl;
 use crate::setup::Setup;
 
 /// Losses that are listed one by one; further ones are counted.
 const LISTED: usize = 10_000;
+
+/// Travel is looked at whenever a block has turned by this, rad: between two looks a slide is off their line by less than 0.0004 of the radius.
+const LOOK_RAD: f64 = 0.05;
+/// Looks along a block at most: 32 turns.
+const MOST_LOOKS: f64 = 4096.0;
 
 /// The control, its machine, and what has come out so far.
 pub(super) struct Interpreter<'a, S> {
@@ -279,9 +284,6 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             return Ok(());
         };
         let joints = known.joints(self.machine, &self.setup).ok_or(ReadError::Flat { line })?;
-        if let Some(out) = self.machine.out_of_limits(&joints, self.setup.gauge_length_mm) {
-            self.record.outside(line, &self.machine.joints()[out.place], &out);
-        }
         let rapid = match rapid {
             Some(rapid) => rapid,
             None => self.rapid(line)?,
@@ -289,6 +291,7 @@ impl<'a, S: Sink> Interpreter<'a, S> {
         let own = asked.machine_frame || asked.builders_place || asked.home;
         let Some(from) = before.filter(|_| self.placed) else {
             self.placed = true;
+            self.look_at_travel(line, self.machine.out_of_limits(&joints, self.setup.gauge_length_mm));
             if !rapid {
                 self.record.from_nowhere.again(line);
             }
@@ -309,12 +312,31 @@ impl<'a, S: Sink> Interpreter<'a, S> {
             None => None,
         };
         let way = Way { from, to: known, arc };
+        self.look_at_travel(line, self.farthest_out(&way, &joints));
         if way.step() != Step::default() {
             let z = self.linear_names().iter().position(|n| *n == "Z");
             let plunges = !own && z.is_some_and(|z| from.linear[z] != known.linear[z]);
             self.record.moved(line, Kind::of(rapid, plunges), &self.control);
         }
         self.moved(line, &way, (joints, rapid, own))
+    }
+
+    fn look_at_travel(&mut self, line: usize, out: Option<Beyond>) {
+        if let Some(out) = out {
+            self.record.outside(line, &self.machine.joints()[out.place], &out);
+        }
+    }
+
+    /// The joint that is farthest out of its range along a way: while the tool turns or goes round, slides are elsewhere between the ends.
+    fn farthest_out(&self, way: &Way, end: &JointValues) -> Option<Beyond> {
+        let length_mm = self.setup.gauge_length_mm;
+        let pieces = (way.turned_rad() / LOOK_RAD).ceil().clamp(1.0, MOST_LOOKS) as u32;
+        let between = (1..pieces).filter_map(|k| {
+            let joints = way.at(f64::from(k) / f64::from(pieces)).joints(self.machine, &self.setup)?;
+            self.machine.out_of_limits(&joints, length_mm)
+        });
+        let all = between.chain(self.machine.out_of_limits(end, length_mm));
+        all.max_by(|a, b| a.by.total_cmp(&b.by))
     }
 
     fn arc(&self, line: usize, from: &Known, to: &Known, asked: (bool, &Asked)) -> Result<Arc, ReadError> {

@@ -208,7 +208,7 @@ impl Trial<'_> {
                 control.words.clone()
             },
         );
-        let travel = "travel of its joints at the ends of an NC program's blocks, slides at the spindle nose";
+        let travel = "travel of its joints along an NC program's blocks, slides at the spindle nose";
         row(
             "machine",
             if control.bodies.is_empty() {
