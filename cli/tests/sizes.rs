@@ -35,7 +35,7 @@ const fn bound(line: &'static str, file: &'static str, times: f64, s_per_mib: f6
 }
 
 #[rustfmt::skip]
-const BOUNDS: [Bound; 19] = [
+const BOUNDS: [Bound; 21] = [
     bound("inspect faces.step --json", "faces.step", 7.0, 4.0),
     bound("probe faces.step --face F1 --at 0.5,0.5", "faces.step", 7.0, 1.0),
     bound("export faces.step --out out.stl", "faces.step", 7.0, 2.0),
@@ -54,7 +54,9 @@ const BOUNDS: [Bound; 19] = [
     bound("verify path.cl --job plane.toml", "path.cl", 20.0, 8.0),
     bound("check remarks.toml", "remarks.toml", 20.0, 4.0),
     bound("machines --check machine.toml", "machine.toml", 20.0, 4.0),
-    bound("tools library.toml", "library.toml", 40.0, 8.0),
+    bound("tools library.toml", "library.toml", 40.0, 2.0),
+    bound("tools library.tbl", "library.tbl", 40.0, 2.0),
+    bound("tools library.json", "library.json", 40.0, 2.0),
 ];
 
 const JOB: &str = "[tool]\nkind = \"ball\"\ndiameter_mm = 6\nlength_mm = 30\n[tolerance]\nscallop_mm = 0.05\ngouge_mm = 0.05\n\
@@ -194,7 +196,12 @@ fn memory_and_time_go_with_the_size_of_the_file() {
              cutting = {{ spindle_rpm = 9000, feed_mm_min = 1500 }}\n"
         )
     };
-    scratch.write("library.toml", &(1..=1000).map(tool).collect::<String>());
+    scratch.write("library.toml", &("format = 1\n".to_owned() + &(1..=9999).map(tool).collect::<String>()));
+    // All tools of a table with one number: each is given the next free one.
+    let line = |n: usize| format!("T1 P{n} Z+40 D+6 ;ball {n}\n");
+    scratch.write("library.tbl", &(1..=9999).map(line).collect::<String>());
+    let [from, to] = ["library.toml", "library.json"].map(|n| scratch.path(n).to_str().unwrap().to_owned());
+    assert_eq!(osculate(&["tools", &from, "--out", &to]).code, 0);
     let folder = scratch.path("");
     let mut over = String::new();
     for Bound { line, file, times, s_per_mib } in &BOUNDS {

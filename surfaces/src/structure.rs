@@ -3,6 +3,7 @@
 //! Faces are named by their ids. A body that stands in several places is one body at each of them. Nothing is found by geometry
 //! here: files without bodies give none.
 
+use std::collections::HashMap;
 use std::fmt;
 
 /// What a body is in its file.
@@ -70,6 +71,16 @@ pub struct Layer {
     pub name: String,
     /// The ids of its faces.
     pub faces: Vec<String>,
+}
+
+impl Structure {
+    /// The place in `bodies` of the solid that each of these ids of faces bounds; none for faces of other bodies and of none.
+    #[must_use]
+    pub fn solids<'i>(&self, ids: impl IntoIterator<Item = &'i str>) -> Vec<Option<usize>> {
+        let solids = self.bodies.iter().enumerate().filter(|(_, b)| b.kind == BodyKind::Solid);
+        let of: HashMap<&str, usize> = solids.flat_map(|(k, b)| b.faces().map(move |id| (id, k))).collect();
+        ids.into_iter().map(|id| of.get(id).copied()).collect()
+    }
 }
 
 /// What a file says of how its faces hang together.

@@ -5,7 +5,7 @@
 mod common;
 
 use common::bezier_graph;
-use osculate_geom::analytic::{Ellipsoid, Paraboloid, Sphere, Torus};
+use osculate_geom::analytic::{Ellipsoid, Paraboloid, Placed, Placement, Sphere, Torus};
 use osculate_geom::{Axis, Point3, Side, Surface, Unit3, Vec3, uv};
 use osculate_surfaces::lines::{
     Chart, Course, Cover, CriticalKind, CurvatureDifference, Family, Gauss, Height, LineEnd, LinePoint,
@@ -23,6 +23,22 @@ fn chart(surface: &dyn Surface) -> Chart<'_> {
 
 fn along(x: f64, y: f64, z: f64) -> Height {
     Height { axis: Unit3::new_normalize(Vec3::new(x, y, z)) }
+}
+
+/// Curvatures of a sphere differ by rounding alone, wherever it lies: nothing of that noise is a critical point, and every cell is flat.
+#[test]
+fn the_noise_of_a_constant_field_has_no_critical_points() {
+    let there = Placement::new(
+        Point3::new(9_400.0, -12_000.0, 17.0),
+        Unit3::new_normalize(Vec3::new(0.3, -0.5, 0.8)),
+        None,
+    );
+    let sphere = Placed { surface: Sphere::new(211.0).unwrap(), placement: there };
+    let c = chart(&sphere);
+    let found = critical_points(&c, &CurvatureDifference);
+    let cells = [Axis::U, Axis::V].map(|a| c.borders(a).len() - 1);
+    assert_eq!(found.flat.len(), cells[0] * cells[1]);
+    assert!(found.points.is_empty() && found.lines.is_empty(), "{:?}", found.points);
 }
 
 /// A plane cuts a sphere in a circle, through the poles and across the seam too.

@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod bodies;
 mod part21;
 mod solids;
 
 use osculate_geom::{Point3, Side, Vec3};
-use osculate_surfaces::sides::{Settled, Sides, settle};
+use osculate_surfaces::sides::{Before, Settled, Sides, settle};
 use osculate_surfaces::{Face, Part, patches};
 use proptest::prelude::*;
 use std::path::Path;
@@ -22,7 +23,11 @@ fn turned(faces: &[Face], seed: u64) -> (Vec<Face>, Vec<Side>) {
 }
 
 fn found(faces: &[Face], known: &[Option<Side>]) -> Sides {
-    settle(&faces.iter().collect::<Vec<_>>(), known, None)
+    of_solids(faces, known, &[])
+}
+
+fn of_solids(faces: &[Face], sides: &[Option<Side>], solids: &[Option<usize>]) -> Sides {
+    settle(&faces.iter().collect::<Vec<_>>(), &Before { sides, solids, uncertainty_mm: None })
 }
 
 fn example(path: &str) -> Part {
@@ -57,6 +62,51 @@ fn closed_bodies_get_the_sides_that_their_files_say() {
             assert_eq!(sides.groups[0].settled, Settled::Enclosed, "{what}");
         }
     }
+}
+
+/// Bodies that lie in each other, touch or overlap: each by its own shell, the walls of a void by the outer shell of the same solid. Without the
+/// word of the file on what is a solid, what lies within is taken for a hollow.
+#[test]
+fn solids_within_others_get_their_sides_from_their_own_faces() {
+    let at = |x: f64, y: f64, z: f64| bodies::frame([x, y, z], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+    let cube = || bodies::block(&at(0.0, 0.0, 0.0), [10.0; 3]);
+    let inner = || bodies::ball(&at(5.0, 5.0, 5.0), 2.0);
+    let hollow = || inner().into_iter().map(Face::flipped).collect::<Vec<_>>();
+    let cases: [(&str, Vec<Vec<Face>>); 6] = [
+        ("a ball in a box", vec![cube(), inner()]),
+        ("a box around a ball", vec![inner(), cube()]),
+        ("a box with a void", vec![[cube(), hollow()].concat()]),
+        ("a box with a void and a ball that fills it", vec![[cube(), hollow()].concat(), inner()]),
+        ("boxes that overlap", vec![cube(), bodies::block(&at(6.0, 3.0, 4.0), [8.0, 9.0, 7.0])]),
+        ("boxes that touch", vec![cube(), bodies::block(&at(10.0, 0.0, 0.0), [4.0, 10.0, 10.0])]),
+    ];
+    for (what, parts) in cases {
+        let solids: Vec<Option<usize>> =
+            parts.iter().enumerate().flat_map(|(k, faces)| vec![Some(k); faces.len()]).collect();
+        let faces: Vec<Face> = parts.concat();
+        for seed in 1..4 {
+            let (given, truth) = turned(&faces, seed);
+            let sides = of_solids(&given, &[], &solids);
+            assert_eq!(sides.of, truth.iter().copied().map(Some).collect::<Vec<_>>(), "{what}, seed {seed}");
+            assert!(sides.conflicts.is_empty() && sides.groups.iter().all(|g| g.certainty > 0.9), "{what}");
+            assert!(sides.groups.is_sorted_by_key(|g| g.faces[0]), "{what}");
+        }
+    }
+    // One part by the word of nobody: the ball is a hollow.
+    let faces = [cube(), inner()].concat();
+    let sides = found(&faces, &[]);
+    assert_eq!(sides.of[..6], [Some(Side::Along); 6]);
+    assert_eq!(sides.of[6], Some(Side::Against));
+}
+
+/// A file says which faces bound which solid.
+#[test]
+fn files_say_which_faces_bound_which_solid() {
+    let part = example("propeller/propeller.step");
+    let ids = |p: &Part| p.faces.iter().map(|f| f.id.clone()).collect::<Vec<_>>();
+    let solids = part.structure.solids(ids(&part).iter().map(String::as_str));
+    assert!(!solids.is_empty() && solids.iter().all(|s| *s == Some(0)), "{solids:?}");
+    assert_eq!(part.structure.solids(["F0"]), [None]);
 }
 
 /// A known face settles those that hang together with it, even against what rays say: a mould is cut from within. Known faces that

@@ -260,6 +260,10 @@ fn developable_faces_are_met_exactly() {
         let task = Task { surface: &flat, side, positions: range, judged: Patch { u: range, ..judged } };
         let f = optimise(&task, &Options { spans: 6, ..Options::default() }, &[]).unwrap();
         assert!(f.value_mm < 1e-6, "{side:?}: {}", f.value_mm);
+        // What is good enough ends the search where it is.
+        let enough = Options { spans: 6, enough_mm: 1e-3, ..Options::default() };
+        let g = optimise(&task, &enough, &[]).unwrap();
+        assert!(g.converged && g.value_mm <= 1e-3 && g.iterations < f.iterations, "{side:?}: {g:?}");
     }
 }
 
@@ -278,6 +282,8 @@ fn impossible_tasks_are_refused() {
     assert!(matches!(with(weight), Err(GlobalError::Weight { what: "gouge_weight", .. })));
     let nan = Options { smoothness_per_mm: f64::NAN, ..Options::default() };
     assert!(matches!(with(nan), Err(GlobalError::Weight { .. })));
+    let less = Options { enough_mm: -1.0, ..Options::default() };
+    assert!(matches!(with(less), Err(GlobalError::Weight { what: "enough_mm", .. })));
     let empty = Task { positions: Interval::new(1.0, 1.0), ..task };
     assert!(matches!(optimise(&empty, &Options::default(), &[]), Err(GlobalError::Axes(_))));
     // At u = 0 the directrix of surface (18) has no tangent.

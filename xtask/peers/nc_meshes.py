@@ -27,6 +27,10 @@ UP_MM = 0.1
 WINDOW = (34.0, 44.0, 18.0, 24.0)  # of the mould, mm: from its floor up a wall.
 STEPS = 8  # of an arc of the spiral: chords are 1e-3 mm off.
 
+# Between samples a floor under the flat end of a tool has no bound of what stands: samples would be added up to the most that a job may
+# have, and every one lies under hundreds of moves.
+SPIRAL = {"rpm": 3400, "feed": 610, "spacing": 1.0, "samples": "max_samples = 60000\n"}
+
 JOB = """format = 1
 [part]
 file = "{mesh}"
@@ -49,7 +53,7 @@ part_zero_mm = [0, 0, 0]
 [verification]
 spacing_mm = {spacing}
 accept = "samples"
-"""
+{samples}"""
 
 
 def stl(path, triangles):
@@ -159,8 +163,8 @@ def main():
     ball = f'kind = "ball"\ndiameter_mm = {BALL_MM}'
     flat = f'kind = "flat"\ndiameter_mm = {FLAT_MM}'
     for name, file, made, tool, about in (
-        ("mould", "camotics_flower_mold.nc", bowl, ball, {"rpm": 2000, "feed": 508, "spacing": 0.05}),
-        ("spiral", "linuxcnc_arcspiral.ngc", pocket, flat, {"rpm": 3400, "feed": 610, "spacing": 1.0}),
+        ("mould", "camotics_flower_mold.nc", bowl, ball, {"rpm": 2000, "feed": 508, "spacing": 0.05, "samples": ""}),
+        ("spiral", "linuxcnc_arcspiral.ngc", pocket, flat, SPIRAL),
     ):
         mesh = made((nc / file).read_text())
         (out / f"{name}.ngc").write_text((nc / file).read_text())

@@ -190,6 +190,18 @@ pub fn built(root: &Path, name: &str) -> PathBuf {
     root.join(target).join("release").join(name)
 }
 
+/// The program that is given, or else the release one, built.
+///
+/// # Errors
+/// Where it cannot be built.
+pub fn program(root: &Path, given: Option<impl AsRef<Path>>) -> Result<PathBuf, Failure> {
+    if let Some(given) = given {
+        return Ok(given.as_ref().to_path_buf());
+    }
+    run(cargo(root, &["build", "--release", "--locked", "-p", "osculate"]))?;
+    Ok(built(root, "osculate"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

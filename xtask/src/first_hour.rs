@@ -3,7 +3,7 @@
 //!
 //! Results stay below `target/first-hour`.
 
-use crate::cmd::{Failure, built, cargo, root, write};
+use crate::cmd::{Failure, program, root, write};
 use crate::measured::{self, Measured};
 use serde_json::Value;
 use std::fmt::Write;
@@ -69,13 +69,7 @@ verdict names. Minutes are those of the machine.\n\n\
 /// Where the program cannot be started, or says nothing that can be read. A part that is refused, or not held, is a row.
 pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let root = root()?;
-    let program = match options.program {
-        Some(given) => given.into(),
-        None => {
-            crate::cmd::run(cargo(&root, &["build", "--release", "--locked", "-p", "osculate"]))?;
-            built(&root, "osculate")
-        }
-    };
+    let program = program(&root, options.program)?;
     let to = root.join("docs/first-hour.md");
     let before = std::fs::read_to_string(&to).unwrap_or_default();
     let mut page = HEAD.to_owned();

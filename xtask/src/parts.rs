@@ -3,7 +3,7 @@
 //!
 //! The verdict of `plan` is held against that of `verify` on the programs that it wrote. Results stay below `target/parts`.
 
-use crate::cmd::{Failure, built, cargo, root, write};
+use crate::cmd::{Failure, program, root, write};
 use crate::measured::{self, Measured};
 use serde_json::Value;
 use std::fmt::Write;
@@ -42,13 +42,7 @@ its programs judged again by `osculate verify`, which must say the same. *Uncut*
 /// Where an example cannot be run, or `verify` and `plan` disagree.
 pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let root = root()?;
-    let program = match options.program {
-        Some(given) => given.into(),
-        None => {
-            crate::cmd::run(cargo(&root, &["build", "--release", "--locked", "-p", "osculate"]))?;
-            built(&root, "osculate")
-        }
-    };
+    let program = program(&root, options.program)?;
     let to = root.join("docs/parts.md");
     let before = std::fs::read_to_string(&to).unwrap_or_default();
     let mut page = HEAD.to_owned();

@@ -27,6 +27,9 @@ use osculate_tools::{CutterSpec, Lean};
 use serde::Serialize;
 use std::path::Path;
 
+/// A motion that leaves no more than this part of the tolerance is good enough: well below what a control resolves.
+const ENOUGH: f64 = 1e-4;
+
 /// What `--json` prints and `flank.json` holds.
 #[derive(Debug, Serialize)]
 struct Comparison {
@@ -89,6 +92,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
     let options = Options {
         gouge_weight: table.gouge_weight,
         smoothness_per_mm: table.smoothness_per_mm,
+        enough_mm: ENOUGH * tolerance.scallop_mm.min(tolerance.gouge_mm),
         ..Options::default()
     };
     let study = Study {

@@ -15,6 +15,8 @@ const SHOWN: usize = 40;
 /// A text with the places of its keys.
 struct Reader<'a> {
     text: &'a str,
+    /// Where lines end.
+    ends: Vec<usize>,
     places: Places,
     schema: &'a Schema,
 }
@@ -30,7 +32,8 @@ struct Wrong {
 /// # Errors
 /// At the first key or value that cannot be meant.
 pub fn places(text: &str, path: &Path, schema: &Schema) -> Result<Places, Failure> {
-    let mut reader = Reader { text, places: Places::new(path), schema };
+    let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(at, _)| at).collect();
+    let mut reader = Reader { text, ends, places: Places::new(path), schema };
     let top = DeTable::parse(text).map_err(|e| reader.syntax(&e))?;
     reader.table("", top.get_ref())?;
     reader.needed("", top.get_ref())?;
@@ -51,7 +54,7 @@ pub fn line(text: &str, at: usize) -> usize {
 
 impl Reader<'_> {
     fn line(&self, at: usize) -> usize {
-        line(self.text, at)
+        1 + self.ends.partition_point(|end| *end < at)
     }
 
     fn syntax(&self, e: &toml::de::Error) -> Failure {

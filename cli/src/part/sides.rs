@@ -5,7 +5,7 @@ use crate::job::words::MaterialWord;
 use crate::job::{Job, Normals};
 use crate::part::loaded::Loaded;
 use osculate_geom::{Diagnostic, Side};
-use osculate_surfaces::sides::{self, Settled, SideGroup, Sides};
+use osculate_surfaces::sides::{self, Before, Settled, SideGroup, Sides};
 use osculate_surfaces::{Face, TrimmedSurface};
 use std::sync::Arc;
 
@@ -41,7 +41,9 @@ pub(super) fn settle((word, said): Told<'_>, part: &mut Loaded, machined: &[Stri
     let shapes: Option<Vec<Face>> =
         part.faces.iter().map(|f| shape(f.source.as_deref(), &f.surface)).collect();
     let Some(shapes) = shapes else { return Vec::new() };
-    let found = sides::settle(&shapes.iter().collect::<Vec<_>>(), &known, part.uncertainty_mm);
+    let solids = part.structure.solids(part.faces.iter().map(|f| f.id.as_str()));
+    let before = Before { sides: &known, solids: &solids, uncertainty_mm: part.uncertainty_mm };
+    let found = sides::settle(&shapes.iter().collect::<Vec<_>>(), &before);
     let mut left = Vec::new();
     for (k, (of, known)) in found.of.iter().zip(&known).enumerate() {
         match of {

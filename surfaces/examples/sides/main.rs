@@ -12,7 +12,7 @@
 use osculate_geom::{Jet2, Point3, Side, Vec3};
 use osculate_surfaces::Face;
 use osculate_surfaces::Part;
-use osculate_surfaces::sides::settle;
+use osculate_surfaces::sides::{Before, settle};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -40,6 +40,16 @@ fn turned(part: &Part) -> Turned {
         })
         .collect();
     Turned { faces, truth }
+}
+
+/// Which faces bound which solid of the file.
+fn solids(part: &Part) -> Vec<Option<usize>> {
+    part.structure.solids(part.faces.iter().map(|f| f.id.as_str()))
+}
+
+/// What is known without the word of the file on sides.
+fn before<'a>(part: &Part, solids: &'a [Option<usize>]) -> Before<'a> {
+    Before { sides: &[], solids, uncertainty_mm: part.uncertainty_mm }
 }
 
 /// Volume behind a face seen from a point, mm3.
@@ -91,7 +101,8 @@ fn each(files: &[String]) {
         let Turned { faces, truth } = turned(&part);
         let all: Vec<&Face> = faces.iter().collect();
         let start = Instant::now();
-        let found = settle(&all, &vec![None; all.len()], part.uncertainty_mm);
+        let solids = solids(&part);
+        let found = settle(&all, &before(&part, &solids));
         let time = start.elapsed().as_secs_f64();
         let (mut right, mut wrong, mut open) = (0, Vec::new(), Vec::new());
         for (k, f) in part.faces.iter().enumerate() {

@@ -2,16 +2,18 @@
 //! the search: the sides that files of solids say, the volume that another kernel computed, and rays through triangles.
 
 use crate::parity::inside;
-use crate::{Turned, behind, leak, turned};
-use osculate_geom::{Point3, Side};
-use osculate_surfaces::sides::{Settled, settle};
-use osculate_surfaces::{Face, tessellate};
+use crate::{Turned, before, behind, leak, solids, turned};
+use osculate_geom::{Box3, Point3, Side};
+use osculate_surfaces::sides::{Settled, SideGroup, settle};
+use osculate_surfaces::{Face, Part, tessellate};
 use rayon::prelude::*;
 use std::path::Path;
 
 /// Chord of the triangles, and how far behind a face a place is looked at, as parts of the part's size.
 const CHORD: f64 = 5e-4;
 const BEHIND: f64 = 1e-4;
+/// What normals times areas do not cancel of faces that close is below this part of their area.
+const CLOSES: f64 = 1e-3;
 /// Places of a face, at its largest triangles.
 const PLACES: usize = 3;
 /// Kinds of files.
@@ -20,9 +22,9 @@ const KINDS: [&str; 2] = ["step", "iges"];
 /// A line for every file with faces.
 pub fn print(data: &Path) -> Result<(), String> {
     println!(
-        "| file | faces | said | right | wrong | open | settled by | volume mm3 | reference mm3 | leak | inside | outside | unclear |"
+        "| file | faces | said | right | wrong | off | open | settled by | volume mm3 | reference mm3 | leak | inside | outside | unclear |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for kind in KINDS {
         let folder = data.join("files").join(kind);
         let read = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -49,16 +51,21 @@ fn reference(file: &Path) -> Option<f64> {
     serde_json::from_str::<serde_json::Value>(&text).ok()?.get("volume")?.as_f64()
 }
 
-fn row(part: &osculate_surfaces::Part, reference: Option<f64>) -> String {
+fn row(part: &Part, reference: Option<f64>) -> String {
     let Turned { faces, truth } = turned(part);
     let all: Vec<&Face> = faces.iter().collect();
-    let found = settle(&all, &vec![None; all.len()], part.uncertainty_mm);
-    let [mut right, mut wrong, mut open] = [0; 3];
-    for (found, (face, truth)) in found.of.iter().zip(part.faces.iter().zip(&truth)) {
-        match found {
-            None => open += 1,
-            Some(s) if face.oriented => *(if s == truth { &mut right } else { &mut wrong }) += 1,
-            Some(_) => {}
+    let solids = solids(part);
+    let found = settle(&all, &before(part, &solids));
+    let [mut right, mut wrong, mut off, mut open] = [0; 4];
+    for group in &found.groups {
+        let no_body = said_of_no_body(part, &faces, group);
+        for k in &group.faces {
+            match found.of[*k] {
+                None => open += 1,
+                Some(s) if part.faces[*k].oriented && s == truth[*k] => right += 1,
+                Some(_) if part.faces[*k].oriented => *(if no_body { &mut off } else { &mut wrong }) += 1,
+                Some(_) => {}
+            }
         }
     }
     let said = part.faces.iter().filter(|f| f.oriented).count();
@@ -73,10 +80,24 @@ fn row(part: &osculate_surfaces::Part, reference: Option<f64>) -> String {
     let [inside, outside, unclear] = parity(&faces, &found.of, part.bbox().diagonal_mm());
     let reference = reference.map_or_else(|| "-".to_owned(), |v| format!("{v:.6e}"));
     format!(
-        "| {} | {said} | {right} | {wrong} | {open} | {} | {volume:.6e} | {reference} | {leak:.0e} | {inside} | {outside} | {unclear} |",
+        "| {} | {said} | {right} | {wrong} | {off} | {open} | {} | {volume:.6e} | {reference} | {leak:.0e} | {inside} | {outside} | {unclear} |",
         faces.len(),
         settled.join(", ")
     )
+}
+
+/// Whether the sides that the file says of a group are those of no body: inside out, or turned against each other so that they leak
+/// more than twice as much as the sides found.
+fn said_of_no_body(part: &Part, faces: &[Face], group: &SideGroup) -> bool {
+    let pick = |all: &[Face]| group.faces.iter().map(|k| all[*k].clone()).collect::<Vec<Face>>();
+    let (own, turned) = (pick(&part.faces), pick(faces));
+    let from = own.iter().fold(Box3::empty(), |b, f| b.union(&f.bbox())).centre();
+    let volume: f64 = own.iter().map(|f| behind(f, Side::Along, from)).sum();
+    let along = vec![Some(Side::Along); own.len()];
+    let found: Vec<Option<Side>> = group.sides.iter().copied().map(Some).collect();
+    let area: f64 = own.iter().map(Face::area_mm2).sum();
+    volume < 0.0 && leak(&own, &along) < CLOSES * area
+        || leak(&own, &along) > 2.0 * leak(&turned, &found) + CLOSES * area
 }
 
 /// Faces with a side behind which most places lie inside, outside, and of which rays say nothing.

@@ -2,7 +2,7 @@
 
 use super::soup::overlap;
 use crate::part::Face;
-use crate::sides::{CLOSED, hanging, volume_sign};
+use crate::sides::{CLOSED, Met, hanging, volume_sign};
 use osculate_geom::{Box3, Side};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -34,10 +34,10 @@ pub(super) fn bodies(faces: &[&Face], known: &[bool], uncertainty_mm: Option<f64
     if !(size_mm.is_finite() && size_mm > 0.0) {
         return Vec::new();
     }
-    let (groups, rims_mm, _) = hanging(faces, size_mm, uncertainty_mm);
+    let (groups, rims, _) = hanging(faces, size_mm, uncertainty_mm);
     let closes = |of: &[usize]| {
-        let [met, whole] = of.iter().fold([0.0; 2], |s, f| [s[0] + rims_mm[*f][0], s[1] + rims_mm[*f][1]]);
-        met >= CLOSED * whole
+        let rim: Met = of.iter().map(|f| rims[*f]).sum();
+        rim.by_one_mm >= CLOSED * rim.whole_mm
     };
     let closed: Vec<_> =
         groups.into_iter().filter(|g| closes(&g.faces)).map(|g| (around(&g.faces), g)).collect();

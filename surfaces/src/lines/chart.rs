@@ -5,6 +5,7 @@
 //! side of the rectangle that shrinks to a point is a *pole*; the search stays a thousandth of the range away from
 //! it, where the parametrisation still has digits, and treats the ring around it as the point.
 
+use super::field::Scale;
 use osculate_geom::{Axis, Domain, Point3, Surface, Uv, uv};
 
 /// How exact lines are and how finely features are looked for.
@@ -195,6 +196,11 @@ impl<'a> Chart<'a> {
         size
     }
 
+    /// How large the face and its curvatures are: what rounding of fields over it is measured by.
+    pub(super) fn scale(&self) -> Scale {
+        Scale { size_mm: self.size_mm, curvature_per_mm: self.curvature_per_mm() }
+    }
+
     /// The tolerances.
     #[must_use]
     pub const fn tolerance(&self) -> &LineTolerance {
@@ -251,10 +257,16 @@ impl<'a> Chart<'a> {
     #[must_use]
     pub(crate) fn half_cell(&self, at: Uv) -> [f64; 2] {
         [Axis::U, Axis::V].map(|axis| {
-            let lines = self.borders(axis);
-            let k = lines.partition_point(|t| *t <= at.get(axis)).clamp(1, lines.len() - 1);
-            0.5 * (lines[k] - lines[k - 1])
+            let (lines, k) = (self.borders(axis), self.column(axis, at.get(axis)));
+            0.5 * (lines[k + 1] - lines[k])
         })
+    }
+
+    /// Which column of cells along a parameter holds it; beyond the ends the first and the last one.
+    #[must_use]
+    pub(crate) fn column(&self, axis: Axis, t: f64) -> usize {
+        let lines = self.borders(axis);
+        lines.partition_point(|x| *x <= t).clamp(1, lines.len() - 1) - 1
     }
 }
 

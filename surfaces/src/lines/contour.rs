@@ -11,7 +11,7 @@
 
 use super::chart::Chart;
 use super::critical::CriticalPoints;
-use super::field::{FieldSample, ScalarField, Scale};
+use super::field::{FieldSample, ScalarField};
 use super::stitch::chains;
 use super::trace::{LineEnd, LinePoint, SurfacePolyline};
 use super::web::{Extreme, Web, edge, same_sense};
@@ -59,8 +59,7 @@ pub fn contours(
     let known: Vec<Extreme> = extremes
         .map(|c| c.points.iter().map(|p| Extreme { at: p.at, value: p.value }).collect())
         .unwrap_or_default();
-    let scale = Scale { size_mm: chart.size_mm(), curvature_per_mm: chart.curvature_per_mm() };
-    let rounding = field.rounding(scale);
+    let rounding = field.rounding(chart.scale());
     // Lines are drawn a rounding below their level: where the field stays at a level but for rounding, as the Gaussian
     // curvature of a cylinder, there is no line.
     let lowered: Vec<f64> = sorted.iter().map(|l| l - rounding).collect();

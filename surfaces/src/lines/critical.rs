@@ -74,7 +74,9 @@ pub fn critical_points(chart: &Chart, field: &dyn ScalarField) -> CriticalPoints
         Some([g[0] * d.u.length(), g[1] * d.v.length()])
     };
     let gradient: Plane = &gradient;
-    let found = zeros(chart, gradient, FLAT * range(chart, field));
+    // A field that is constant but for its rounding has no critical points, and its noise would have them everywhere.
+    let rounding = field.rounding(chart.scale());
+    let found = zeros(chart, gradient, rounding.max(FLAT * range(chart, field)));
     let mut points: Vec<Critical> =
         found.points.iter().filter_map(|z| describe(chart, field, gradient, z)).collect();
     let sum = found.points.iter().map(|z| z.rotation).try_fold(0, |sum, r| r.map(|r| sum + r));
@@ -160,7 +162,8 @@ fn describe_pole(chart: &Chart, field: &dyn ScalarField, pole: &Pole) -> Option<
     };
     let rises: Vec<f64> = far.iter().map(|v| v - value).collect();
     let size = rises.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
-    if size <= FLAT * FLAT.sqrt() * range(chart, field) {
+    let range = range(chart, field);
+    if range <= field.rounding(chart.scale()) || size <= FLAT * FLAT.sqrt() * range {
         return None;
     }
     let changes = (0..AROUND).filter(|k| rises[*k] * rises[(k + 1) % AROUND] < 0.0).count();

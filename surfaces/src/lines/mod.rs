@@ -34,6 +34,7 @@ mod course;
 mod cover;
 mod critical;
 mod field;
+mod near;
 mod ridge;
 mod stitch;
 mod third;

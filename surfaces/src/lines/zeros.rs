@@ -9,6 +9,7 @@
 //! Nothing here trusts the count: the sum of the rotations is to be compared with [`boundary_rotation`].
 
 use super::chart::Chart;
+use super::near::Near;
 use osculate_geom::solve::general;
 use osculate_geom::{Axis, Interval, Uv, uv};
 use rayon::prelude::*;
@@ -78,20 +79,26 @@ pub(crate) fn zeros(chart: &Chart, field: Plane, floor: f64) -> Zeros {
     let found: Vec<Findings> = cells.par_iter().map(|c| search(chart, field, floor, *c)).collect();
     let mut out = Zeros::default();
     let mut simple: Vec<Uv> = Vec::new();
+    let mut known = Near::new(chart);
     let mut open: Vec<Cell> = Vec::new();
     for f in found {
         out.flat.extend(f.flat);
         out.undefined += f.undefined;
         for at in f.zeros {
-            if !simple.iter().any(|z| near(chart, *z, at, SAME)) {
+            if !known.reaches(at) {
+                known.add(at, SAME);
                 simple.push(at);
             }
         }
         open.extend(f.open);
     }
     // Flat cells spoil the pieces at their rim: what touches one belongs to it.
-    open.retain(|c| !out.flat.iter().any(|f| near(chart, *f, c.middle, 2.2)));
-    simple.retain(|z| !out.flat.iter().any(|f| near(chart, *f, *z, 2.2)));
+    if !(open.is_empty() && simple.is_empty()) {
+        let flat = Near::of(chart, out.flat.iter().copied(), BESIDE_FLAT);
+        open.retain(|c| !flat.reaches(c.middle));
+        simple.retain(|z| !flat.reaches(*z));
+    }
+    let known = Near::of(chart, simple.iter().copied(), 2.0 * POINT_EXTENT + SAME);
     let mut singular = Vec::new();
     for cluster in clusters(chart, &open) {
         let extent = extent(chart, &cluster);
@@ -99,17 +106,18 @@ pub(crate) fn zeros(chart: &Chart, field: Plane, floor: f64) -> Zeros {
             out.lines.push(cluster.iter().map(|c| c.middle).collect());
         } else {
             let middle = best(field, &cluster);
-            if !simple.iter().any(|z| near(chart, *z, middle, 2.0 * extent + SAME)) {
+            if !known.around(middle).any(|z| z.1 <= 2.0 * extent + SAME) {
                 singular.push((middle, extent));
             }
         }
     }
     // A simple zero on a line of zeros is a point of that line.
-    simple.retain(|z| !out.lines.iter().flatten().any(|p| near(chart, *p, *z, 4.0 * POINT_EXTENT)));
-    let all: Vec<Uv> = simple.iter().copied().chain(singular.iter().map(|s| s.0)).collect();
+    let lines = Near::of(chart, out.lines.iter().flatten().copied(), 4.0 * POINT_EXTENT);
+    simple.retain(|z| !lines.reaches(*z));
+    let all = Near::of(chart, simple.iter().copied().chain(singular.iter().map(|s| s.0)), CIRCLE);
     let around = |at: Uv, least: f64| {
         // Half the way to the next zero, in cells, and at most a quarter of a cell.
-        let next = all.iter().filter(|z| **z != at).map(|z| apart(chart, *z, at)).fold(0.5, f64::min);
+        let next = all.around(at).filter(|z| z.0 != at).map(|z| z.1).fold(CIRCLE, f64::min);
         circle_rotation(chart, field, at, (0.5 * next).max(least))
     };
     out.points.extend(simple.iter().map(|at| Zero { at: *at, rotation: around(*at, 0.0), simple: true }));
@@ -122,16 +130,10 @@ pub(crate) fn zeros(chart: &Chart, field: Plane, floor: f64) -> Zeros {
 
 /// Two zeros nearer than this, in half cells, are one: Newton's last step is far below.
 const SAME: f64 = 1e-6;
-
-/// Distance of two places in half cells, the larger of both parameters'.
-fn apart(chart: &Chart, a: Uv, b: Uv) -> f64 {
-    let (d, half) = (chart.between(a, b), chart.half_cell(a));
-    (d.u / half[0]).abs().max((d.v / half[1]).abs())
-}
-
-fn near(chart: &Chart, a: Uv, b: Uv, cells: f64) -> bool {
-    apart(chart, a, b) <= cells
-}
+/// What is within this many half cells of the middle of a flat cell touches it: its own half, a cell's, and a tenth for rounding.
+const BESIDE_FLAT: f64 = 2.2;
+/// Diameter of the circle along which turns around a zero are counted, in half cells, where no other zero is nearer.
+const CIRCLE: f64 = 0.5;
 
 #[derive(Default)]
 struct Findings {
@@ -276,11 +278,7 @@ fn clamp_open(chart: &Chart, at: Uv) -> Uv {
 /// only.
 fn clusters(chart: &Chart, open: &[Cell]) -> Vec<Vec<Cell>> {
     let counts = [Axis::U, Axis::V].map(|axis| chart.borders(axis).len() - 1);
-    let place = |axis: Axis, t: f64| {
-        let lines = chart.borders(axis);
-        lines.partition_point(|x| *x <= t).clamp(1, lines.len() - 1) - 1
-    };
-    let key = |c: &Cell| [place(Axis::U, c.middle.u), place(Axis::V, c.middle.v)];
+    let key = |c: &Cell| [chart.column(Axis::U, c.middle.u), chart.column(Axis::V, c.middle.v)];
     let mut boxes: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
     for (k, c) in open.iter().enumerate() {
         boxes.entry(key(c)).or_default().push(k);

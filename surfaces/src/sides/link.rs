@@ -37,8 +37,29 @@ pub(super) struct Links {
     pub(super) clear: Vec<Link>,
     /// Pairs whose common edges say both, with their common length, mm.
     pub(super) mixed: Vec<([usize; 2], f64)>,
-    /// Of each face: length of rim that another face goes on from, and length of rim, mm.
-    pub(super) rims_mm: Vec<[f64; 2]>,
+    /// The rim of each face.
+    pub(super) rims: Vec<Met>,
+}
+
+/// How a rim is met, mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Met {
+    /// Length that one other face goes on from.
+    pub(crate) by_one_mm: f64,
+    /// Length that runs along several others at once.
+    pub(crate) by_several_mm: f64,
+    /// All of it.
+    pub(crate) whole_mm: f64,
+}
+
+impl std::iter::Sum for Met {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |a, b| Self {
+            by_one_mm: a.by_one_mm + b.by_one_mm,
+            by_several_mm: a.by_several_mm + b.by_several_mm,
+            whole_mm: a.whole_mm + b.whole_mm,
+        })
+    }
 }
 
 /// Whether the normals of two faces along a common edge are on the same side of the part; none where the faces are folded onto
@@ -74,8 +95,8 @@ impl<'a> Grid<'a> {
         [p.x, p.y, p.z].map(|c| (c / self.cell_mm).floor() as i64)
     }
 
-    /// The nearest piece of the face that shares the edge with a piece of a rim. None where there is no such face, or more than one.
-    pub(super) fn partner(&self, of: &Bit, slack_mm: [f64; 2]) -> Option<&'a Bit> {
+    /// The nearest pieces of the faces that share the edge with a piece of a rim, one of each face.
+    fn others(&self, of: &Bit, slack_mm: [f64; 2]) -> Vec<&'a Bit> {
         let home = self.cell(&of.points[1]);
         // The nearest piece of each face near by.
         let mut near: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
@@ -94,26 +115,40 @@ impl<'a> Grid<'a> {
         }
         let least = near.values().map(|n| n.0).fold(f64::INFINITY, f64::min);
         let limit = slack_mm[0].max(NEXT * least);
-        let mut meant = near.into_values().filter(|n| n.0 <= limit);
-        let ((_, k), None) = (meant.next()?, meant.next()) else { return None };
-        Some(&self.bits[k])
+        near.into_values().filter(|n| n.0 <= limit).map(|n| &self.bits[n.1]).collect()
+    }
+
+    /// The nearest piece of the face that shares the edge with a piece of a rim. None where there is no such face, or more than one.
+    pub(super) fn partner(&self, of: &Bit, slack_mm: [f64; 2]) -> Option<&'a Bit> {
+        match self.others(of, slack_mm)[..] {
+            [one] => Some(one),
+            _ => None,
+        }
     }
 }
 
 /// The links between `count` faces by the pieces of their rims. Within the first slack rims are one edge, up to the second one where nothing is nearer.
 pub(super) fn links(count: usize, bits: &[Bit], slack_mm: [f64; 2]) -> Links {
     let grid = Grid::new(bits, slack_mm);
-    let other = |b: &Bit| grid.partner(b, slack_mm).and_then(|p| Some((p.face, agree(b, p)?)));
-    let found: Vec<Option<(usize, bool)>> = bits.par_iter().with_min_len(256).map(other).collect();
+    let others = |b: &Bit| {
+        let all = grid.others(b, slack_mm);
+        let one = if let [p] = all[..] { agree(b, p).map(|same| (p.face, same)) } else { None };
+        (one, all.len() > 1)
+    };
+    let found: Vec<(Option<(usize, bool)>, bool)> = bits.par_iter().with_min_len(256).map(others).collect();
     let mut votes: BTreeMap<[usize; 2], [f64; 2]> = BTreeMap::new();
-    let mut out = Links { rims_mm: vec![[0.0; 2]; count], ..Links::default() };
-    for (b, found) in bits.iter().zip(found) {
-        out.rims_mm[b.face][1] += b.length_mm;
-        if let Some((other, same)) = found {
+    let mut out = Links { rims: vec![Met::default(); count], ..Links::default() };
+    for (b, (one, several)) in bits.iter().zip(found) {
+        let rim = &mut out.rims[b.face];
+        rim.whole_mm += b.length_mm;
+        if several {
+            rim.by_several_mm += b.length_mm;
+        }
+        if let Some((other, same)) = one {
+            rim.by_one_mm += b.length_mm;
             let pair = [b.face.min(other), b.face.max(other)];
             // Either face votes for the edge once.
             votes.entry(pair).or_default()[usize::from(same)] += 0.5 * b.length_mm;
-            out.rims_mm[b.face][0] += b.length_mm;
         }
     }
     for (faces, [against, with]) in votes {

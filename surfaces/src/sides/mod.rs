@@ -3,6 +3,9 @@
 //! Faces whose rims run together are joined: along a common edge their normals either agree or not, whatever the angle between
 //! them. Within a group of joined faces one face settles all others: one of which the side is known, or else a single vote of
 //! rays from the whole group, or the volume that it closes around. What none of these says stays open.
+//!
+//! Faces that bound different solids of a file are looked at apart: a solid says by itself where its material is, however it lies in
+//! others, touches or cuts them. The walls of its voids are among its own faces, and rays tell them by the outer ones.
 
 mod groups;
 mod link;
@@ -11,6 +14,7 @@ mod rim;
 mod shell;
 mod tree;
 
+pub(crate) use link::Met;
 pub use meeting::{Meeting, meetings};
 pub(crate) use shell::volume_sign;
 pub(crate) use tree::Tree;
@@ -20,6 +24,7 @@ use crate::mesh::{Mesh, tessellate};
 use crate::part::Face;
 use osculate_geom::{Box3, Point3, Side};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Certainty below which a vote does not count.
 const CLEAR_VOTE: f64 = 0.5;
@@ -43,7 +48,7 @@ pub(crate) const CLOSED: f64 = 0.95;
 pub enum Settled {
     /// Faces of the group whose side was known.
     Known,
-    /// The vote of rays: the part encloses material there.
+    /// The vote of rays: the part, or the solid, encloses material there.
     Enclosed,
     /// The faces close, with the material inside, and rays do not say otherwise: walls so thin that rays miss them.
     Closed,
@@ -88,17 +93,54 @@ pub struct Sides {
     pub conflicts: Vec<SideConflict>,
 }
 
-/// Finds the side of the material of every face. `known` are the faces whose side is known, relative to their present normals;
-/// `uncertainty_mm` is what the file says of its own exactness. The answer is the same for any number of threads.
+/// What is known of faces before their sides are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Before<'a> {
+    /// The sides that are known, relative to the present normals; a list that is too short says nothing of the rest.
+    pub sides: &'a [Option<Side>],
+    /// The number of the solid that each face bounds, as the file says ([`Structure::solids`](crate::structure::Structure::solids)); faces of none
+    /// are one part together.
+    pub solids: &'a [Option<usize>],
+    /// What the file says of its own exactness, mm.
+    pub uncertainty_mm: Option<f64>,
+}
+
+/// Finds the side of the material of every face. The answer is the same for any number of threads.
 #[must_use]
-pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f64>) -> Sides {
+pub fn settle(faces: &[&Face], before: &Before<'_>) -> Sides {
+    let mut solids: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
+    for f in 0..faces.len() {
+        solids.entry(before.solids.get(f).copied().flatten()).or_default().push(f);
+    }
+    let mut out = Sides { of: vec![None; faces.len()], ..Sides::default() };
+    for (solid, own) in solids {
+        let told: Vec<Option<Side>> = own.iter().map(|f| before.sides.get(*f).copied().flatten()).collect();
+        let its: Vec<&Face> = own.iter().map(|f| faces[*f]).collect();
+        let found = alone(&its, &told, before.uncertainty_mm, solid.is_some());
+        own.iter().zip(found.of).for_each(|(f, side)| out.of[*f] = side);
+        let at = |all: Vec<usize>| all.into_iter().map(|k| own[k]).collect::<Vec<_>>();
+        out.groups.extend(found.groups.into_iter().map(|g| SideGroup {
+            faces: at(g.faces),
+            otherwise: at(g.otherwise),
+            ..g
+        }));
+        let named = |c: SideConflict| SideConflict { faces: c.faces.map(|k| own[k]), ..c };
+        out.conflicts.extend(found.conflicts.into_iter().map(named));
+    }
+    out.groups.sort_by_key(|g| g.faces[0]);
+    heaviest_last(&mut out.conflicts);
+    out
+}
+
+/// The sides of faces that are one part by themselves; a solid encloses material, however its faces meet.
+fn alone(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f64>, is_solid: bool) -> Sides {
     let told = |f: usize| known.get(f).copied().flatten();
     let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
     let size_mm = boxes.iter().fold(Box3::empty(), |b, f| b.union(f)).diagonal_mm();
     if !(size_mm.is_finite() && size_mm > 0.0) {
         return Sides { of: (0..faces.len()).map(told).collect(), ..Sides::default() };
     }
-    let (joined, rims_mm, conflicts) = hanging(faces, size_mm, uncertainty_mm);
+    let (joined, rims, conflicts) = hanging(faces, size_mm, uncertainty_mm);
     let meshes: Vec<Mesh> = faces.par_iter().map(|f| tessellate(&f.surface, CHORD * size_mm, None)).collect();
     let at = |m: &Mesh, k: u32| Point3::from(m.positions[k as usize]);
     let soup = meshes.iter().flat_map(|m| m.triangles.iter().map(|t| t.map(|k| at(m, k))));
@@ -112,16 +154,15 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
             |(f, s): (&usize, &Side)| told(*f).map_or(0.0, |k| k.seen(*s).sign() * meshes[*f].area_mm2());
         let word: f64 = group.faces.iter().zip(&group.sides).map(says).sum();
         let vote = vote::enclosure(&vote::places(&of), &part, SKIP * size_mm);
+        let rim: Met = group.faces.iter().map(|f| rims[*f]).sum();
         let (sign, settled) = if word != 0.0 {
             (word, Settled::Known)
-        } else if vote.abs() >= CLEAR_VOTE {
+        } else if vote.abs() >= CLEAR_VOTE && (is_solid || !among_others(&rim)) {
             (vote, Settled::Enclosed)
         } else {
-            let [met, whole] =
-                group.faces.iter().fold([0.0; 2], |s, f| [s[0] + rims_mm[*f][0], s[1] + rims_mm[*f][1]]);
             let of: Vec<(&Face, Side)> =
                 group.faces.iter().zip(&group.sides).map(|(f, s)| (faces[*f], *s)).collect();
-            let closes = met >= CLOSED * whole;
+            let closes = rim.by_one_mm >= CLOSED * rim.whole_mm;
             let sign = if closes { volume_sign(&of) } else { None };
             sign.map_or((1.0, Settled::Open), |sign| (sign, Settled::Closed))
         };
@@ -141,8 +182,14 @@ pub fn settle(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f6
     out
 }
 
-/// Groups, the rims of each face as [`link::Links`] has them, and neighbours that do not fit.
-pub(crate) type Hanging = (Vec<groups::Joined>, Vec<[f64; 2]>, Vec<SideConflict>);
+/// Whether a group that does not close runs along several others at once: sheets of several bodies in one place, of which rays through all
+/// of them say nothing. In a solid they are edges where more than two of its faces meet.
+fn among_others(rim: &Met) -> bool {
+    rim.by_one_mm < CLOSED * rim.whole_mm && rim.by_several_mm > (1.0 - CLOSED) * rim.whole_mm
+}
+
+/// Groups, the rim of each face, and neighbours that do not fit.
+pub(crate) type Hanging = (Vec<groups::Joined>, Vec<Met>, Vec<SideConflict>);
 
 /// The rims of all faces in short pieces, and the slacks within which two of them are one edge: always, and where nothing is nearer.
 fn rims(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> (Vec<rim::Bit>, [f64; 2]) {
@@ -163,6 +210,10 @@ pub(crate) fn hanging(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>
         .chain(among)
         .map(|(faces, length_mm, within)| SideConflict { faces, length_mm, within })
         .collect();
+    heaviest_last(&mut conflicts);
+    (joined, links.rims, conflicts)
+}
+
+fn heaviest_last(conflicts: &mut [SideConflict]) {
     conflicts.sort_by(|a, b| a.length_mm.total_cmp(&b.length_mm).then(a.faces.cmp(&b.faces)));
-    (joined, links.rims_mm, conflicts)
 }

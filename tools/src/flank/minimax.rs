@@ -97,9 +97,14 @@ impl Search<'_> {
     fn deviations(&self, axis: &AxisLine) -> Vec<Least> {
         let cells = self.how.samples.max(5) - 1;
         let v = |k: usize| k as f64 / cells as f64;
+        let level = SETTLED * self.tool.radius_mm();
         let mut all: Vec<Least> = (0..=cells).map(|k| self.at(axis, v(k))).collect();
         for k in 1..cells {
             let [a, b, c] = [k - 1, k, k + 1].map(|k| all[k].deviation_mm);
+            // Between samples that are level but for rounding nothing stands out; beside a developable strip all are.
+            if (a - b).abs().max((c - b).abs()) <= level {
+                continue;
+            }
             for sign in [1.0, -1.0] {
                 if sign * b <= sign * a && sign * b <= sign * c {
                     let at = minimum([v(k - 1), v(k + 1)], FLAT, |v| sign * self.at(axis, v).deviation_mm);
@@ -264,6 +269,10 @@ impl Search<'_> {
 /// Deviations within this fraction of the greatest count as equal: a hundred times what the last program leaves.
 const ACTIVE: f64 = 1e-6;
 
+/// Deviations that differ by less than this part of the radius are level, and what a step could gain of them is none: rounding of lengths
+/// like the radius is a thousand times smaller.
+const SETTLED: f64 = 1e-12;
+
 fn greatest(seen: &[Least]) -> f64 {
     seen.iter().map(|l| l.deviation_mm.abs()).fold(0.0, f64::max)
 }
@@ -307,7 +316,7 @@ pub fn minimax(
         let value = greatest(&there);
         let (gain, hoped) = (worst - value, worst - predicted);
         size = step.rows(0, N - 1).amax();
-        let settled = size <= how.step_mm || hoped <= 1e-12 * tool.radius_mm();
+        let settled = size <= how.step_mm || hoped <= SETTLED * tool.radius_mm();
         if gain > 0.1 * hoped || (settled && gain >= 0.0) {
             (axis, seen, worst) = (next, there, value);
             if gain > 0.75 * hoped {

@@ -9,7 +9,7 @@ mod golden;
 mod page;
 mod report;
 
-use crate::cmd::{Failure, built, cargo, root};
+use crate::cmd::{Failure, program, root};
 use chrome::Chrome;
 use golden::Golden;
 use std::path::{Path, PathBuf};
@@ -72,7 +72,7 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
         let file = std::fs::canonicalize(given).map_err(|why| Failure::Read { path: given.into(), why })?;
         wrong.extend(report::check(&mut chrome, &file, &out.join("given"), None)?);
     } else {
-        let program = program(options, &root)?;
+        let program = program(&root, options.program)?;
         for looked in LOOKED.iter().filter(|l| l.name.contains(options.only)) {
             let folder = out.join(looked.name);
             let page = planned(&program, &root, looked, &folder)?;
@@ -89,15 +89,6 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     }
     println!("browser: pictures are in {}", out.display());
     if wrong.is_empty() { Ok(()) } else { Err(Failure::Pages(wrong.len())) }
-}
-
-/// The release program.
-fn program(options: &Options<'_>, root: &Path) -> Result<PathBuf, Failure> {
-    if let Some(given) = options.program {
-        return Ok(given.into());
-    }
-    crate::cmd::run(cargo(root, &["build", "--release", "--locked", "-p", "osculate"]))?;
-    Ok(built(root, "osculate"))
 }
 
 /// Plans a part; its report.

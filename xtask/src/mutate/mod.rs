@@ -11,7 +11,7 @@ mod kind;
 mod made;
 mod seeds;
 
-use crate::cmd::{Failure, root};
+use crate::cmd::{Failure, program, root};
 use damage::Dice;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -69,14 +69,7 @@ struct Found {
 /// Damages files and runs the program on them.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let root = root()?;
-    let program = match &options.program {
-        Some(path) => path.clone(),
-        None => {
-            let build = ["build", "--release", "--locked", "-p", "osculate"];
-            crate::cmd::run(crate::cmd::cargo(&root, &build))?;
-            root.join("target/release/osculate")
-        }
-    };
+    let program = program(&root, options.program.as_ref())?;
     let scratch = std::env::temp_dir().join(format!("osculate-mutate-{}", std::process::id()));
     let seeds = seeds::all(&options.data, &root, &program, &scratch.join("made"))?;
     let next = AtomicUsize::new(0);

@@ -7,7 +7,7 @@
 mod dense;
 mod speed;
 
-use crate::cmd::{Failure, cargo, root, write};
+use crate::cmd::{Failure, program, root, write};
 use dense::{Cloud, Cutter};
 use serde_json::Value;
 use std::path::Path;
@@ -214,13 +214,7 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let root = root()?;
     let (data, only) = (options.data.unwrap_or("."), options.only);
     let data = std::fs::canonicalize(data).map_err(|why| Failure::Read { path: data.into(), why })?;
-    let program = match options.program {
-        Some(given) => given.into(),
-        None => {
-            crate::cmd::run(cargo(&root, &["build", "--release", "--locked", "-p", "osculate"]))?;
-            crate::cmd::built(&root, "osculate")
-        }
-    };
+    let program = program(&root, options.program)?;
     if options.speed {
         return speed::run(only, &program, &root);
     }

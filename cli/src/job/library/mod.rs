@@ -18,6 +18,7 @@ use crate::job::problem::Places;
 use crate::job::{Tool, check, keys, raw, schema};
 use osculate_geom::Diagnostic;
 use serde::Deserialize;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The library that comes with the program.
@@ -191,17 +192,24 @@ impl Library {
     fn of_found(found: Found, path: &Path) -> Result<Self, Failure> {
         let Found { tools: raw, mut diagnostics } = found;
         let mut tools: Vec<Tool> = Vec::with_capacity(raw.len());
-        let free = |tools: &[Tool], n: u32| !tools.iter().any(|t| t.number() == n);
+        let mut taken = BTreeSet::new();
+        // From where the next free number is looked for: those before are taken, up to the one that was asked for.
+        let mut free: BTreeMap<u32, u32> = BTreeMap::new();
         for (place, mut one) in raw {
             let wanted = one.number.unwrap_or(1);
-            let number = (wanted..).find(|n| free(&tools, *n)).unwrap_or(wanted);
+            let from = free.entry(wanted).or_insert(wanted);
+            let number = (*from..).find(|n| !taken.contains(n)).unwrap_or(wanted);
+            *from = number;
             if one.number.is_some_and(|n| n != number) {
                 let what = format!("number {wanted} is that of a tool before it: it is {number} here");
                 diagnostics.push(Diagnostic::warning(place.clone(), what));
             }
             one.number = Some(number);
             match Tool::of(&Places::new(path), "tool", (&one, number), &raw::Cutting::default()) {
-                Ok(tool) => tools.push(tool),
+                Ok(tool) => {
+                    taken.insert(number);
+                    tools.push(tool);
+                }
                 Err(why) => {
                     diagnostics.push(Diagnostic::warning(place, format!("left out: {}", why.problem().what)));
                 }
@@ -266,10 +274,11 @@ impl Library {
 /// The tools of tables; each has a number of its own.
 fn made(places: &Places, all: &[raw::Tool]) -> Result<Vec<Tool>, Failure> {
     let mut out: Vec<Tool> = Vec::with_capacity(all.len());
+    let mut taken = BTreeSet::new();
     for (t, place) in all.iter().zip(1..) {
         let table = format!("tool[{place}]");
         let tool = Tool::of(places, &table, (t, place), &raw::Cutting::default())?;
-        if out.iter().any(|o| o.number() == tool.number()) {
+        if !taken.insert(tool.number()) {
             let what = format!("number = {} is that of a tool before it", tool.number());
             return Err(places.refuse(&table, "number", what));
         }

@@ -97,12 +97,22 @@ impl<'a> Search<'a> {
         self.options.smoothness_per_mm + self.unique * self.judged.value / (r * r)
     }
 
+    /// Whether no better motion is wanted.
+    fn is_enough(&self) -> bool {
+        let uneven = if self.options.smoothness_per_mm > 0.0 { unevenness_mm2(&self.axes) } else { 0.0 };
+        self.judged.value + self.options.smoothness_per_mm * uneven <= self.options.enough_mm
+    }
+
     fn run(&mut self, most: usize) -> Result<(), GlobalError> {
         let r = self.task.side.radius_mm();
         let end = self.iterations + most;
         self.converged = false;
         let mut kept: Option<(Rows, Moves)> = None;
         while self.iterations < end {
+            if self.is_enough() {
+                self.converged = true;
+                break;
+            }
             self.iterations += 1;
             let (rows, moves) = kept.take().unwrap_or_else(|| {
                 let moves = Moves::new(&self.axes, !self.task.side.is_cylinder());
@@ -220,9 +230,11 @@ fn check(task: &Task<'_>, o: &Options) -> Result<(), GlobalError> {
             return Err(GlobalError::TooFew { what, got, least });
         }
     }
-    for (what, got, least) in
-        [("gouge_weight", o.gouge_weight, 1.0), ("smoothness_per_mm", o.smoothness_per_mm, 0.0)]
-    {
+    for (what, got, least) in [
+        ("gouge_weight", o.gouge_weight, 1.0),
+        ("smoothness_per_mm", o.smoothness_per_mm, 0.0),
+        ("enough_mm", o.enough_mm, 0.0),
+    ] {
         if !(got.is_finite() && got >= least) {
             return Err(GlobalError::Weight { what, got, least });
         }
@@ -262,13 +274,17 @@ pub fn optimise(task: &Task<'_>, options: &Options, more: &[AxisSurface]) -> Res
             s.run(2 * TRIAL)?;
         }
         if best.as_ref().is_none_or(|b| s.judged.value < b.0) {
-            best = Some((s.judged.value, s.axes));
+            best = Some((s.judged.value, s.axes.clone()));
+        }
+        if s.is_enough() {
+            break;
         }
     }
     let (_, axes) = best.ok_or(GlobalError::TooFew { what: "starts", got: 0, least: 1 })?;
     let found = finish(task, options, axes)?;
     // A motion with half the spans is one of these, too, and may have been found more easily.
-    if options.goal == Goal::Minimax && options.spans.is_multiple_of(2) && options.spans > MOST_EVEN {
+    let many = options.spans.is_multiple_of(2) && options.spans > MOST_EVEN;
+    if options.goal == Goal::Minimax && many && found.value_mm > options.enough_mm {
         let half = optimise(task, &Options { spans: options.spans / 2, ..*options }, &[])?;
         if half.value_mm < found.value_mm {
             return finish(task, options, half.axes.refined());
@@ -299,7 +315,7 @@ fn finish(task: &Task<'_>, options: &Options, axes: AxisSurface) -> Result<Found
             best = Some((whole, s.axes.clone(), s.converged));
         }
         axes = s.axes;
-        if options.goal == Goal::Rms || whole <= sampled * (1.0 + EXCESS) {
+        if options.goal == Goal::Rms || whole <= (sampled * (1.0 + EXCESS)).max(options.enough_mm) {
             break;
         }
         let over = |v: f64| goal(std::iter::once(v), options) > sampled * (1.0 + 0.3 * EXCESS);

@@ -30,11 +30,21 @@ pub struct Options {
     pub smoothness_per_mm: f64,
     /// Most linear problems.
     pub iterations: usize,
+    /// A motion whose value, with what its unevenness weighs, is no more than this is good enough, and no better one is looked for, mm.
+    /// Where the face lets the cutter fit exactly the search would go on to rounding.
+    pub enough_mm: f64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { goal: Goal::Minimax, spans: 32, gouge_weight: 1.0, smoothness_per_mm: 0.0, iterations: 60 }
+        Self {
+            goal: Goal::Minimax,
+            spans: 32,
+            gouge_weight: 1.0,
+            smoothness_per_mm: 0.0,
+            iterations: 60,
+            enough_mm: 0.0,
+        }
     }
 }
 
@@ -77,7 +87,7 @@ pub struct Found {
     pub bound_within_mm: f64,
     /// Linear problems solved.
     pub iterations: usize,
-    /// Whether the last linear problem promised next to nothing; false where the iterations ran out.
+    /// Whether the last linear problem promised next to nothing, or the motion is good enough; false where the iterations ran out.
     pub converged: bool,
 }
 
