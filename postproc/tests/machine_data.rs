@@ -136,5 +136,14 @@ fn gaps_of_machine_files() {
     assert!(keys(&trunnion("machine_zero_mm = 0")).contains(&"retract_mm of Z".to_owned()));
     let plain = built_in_text("3-axis").unwrap();
     let said = plain.replace("max_mm = ", "machine_zero_mm = 0\nhome_mm = 0\nmax_mm = ");
-    assert_eq!(keys(&Machine::from_toml(&said).unwrap()), Vec::<String>::new());
+    assert_eq!(keys(&Machine::from_toml(&said).unwrap()), ["[[body]]"]);
+    let body = |name: &str, carrier: &str| {
+        format!(
+            "\n[[body]]\nkind = \"box\"\nname = \"{name}\"\ncarried_by = \"{carrier}\"\nmin_mm = [-9, -9, 0]\nmax_mm = [9, 9, 9]\n"
+        )
+    };
+    let head = said + &body("head", "Z");
+    assert_eq!(keys(&Machine::from_toml(&head).unwrap()), ["[[body]] of the table"]);
+    let all = head + &body("table", "bed");
+    assert_eq!(keys(&Machine::from_toml(&all).unwrap()), Vec::<String>::new());
 }
