@@ -184,6 +184,15 @@ fn a_closed_pocket_needs_a_way_in() {
     assert!(heights_of(block, &plan).rapid_mm < 1e-6);
 }
 
+/// The time of a path, min.
+fn minutes(plan: &Roughing) -> f64 {
+    let each = plan.linked.path.moves.windows(2).map(|w| match w[1].motion {
+        Motion::Feed(feed) => (w[1].pose.tip - w[0].pose.tip).norm() / feed,
+        Motion::Rapid => (w[1].pose.tip - w[0].pose.tip).norm() / 30_000.0,
+    });
+    each.sum()
+}
+
 /// Over a long narrow place rows go along it, whichever way is given; what is taken is the same, with less air and fewer passes.
 #[test]
 fn rows_go_the_quickest_way() {
@@ -198,18 +207,33 @@ fn rows_go_the_quickest_way() {
     assert!(2 * found.passes.passes.len() < across.passes.passes.len());
     let volumes = [&across, &found].map(|plan| carved(&mut stock.clone(), plan));
     assert!((volumes[0] / volumes[1] - 1.0).abs() < 0.02, "{volumes:?}");
-    let minutes = |plan: &Roughing| {
-        let moves = &plan.linked.path.moves;
-        let each = moves.windows(2).map(|w| match w[1].motion {
-            Motion::Feed(feed) => (w[1].pose.tip - w[0].pose.tip).norm() / feed,
-            Motion::Rapid => (w[1].pose.tip - w[0].pose.tip).norm() / 30_000.0,
-        });
-        each.sum::<f64>()
-    };
     assert!(minutes(&found) < minutes(&across), "{} {}", minutes(&found), minutes(&across));
-    // The quickest of four is found from any of them.
+    // The quickest is found from any of them.
     let again = with(Rows::Quickest(Vec3::y()));
     assert_eq!(again.passes.passes.len(), found.passes.passes.len());
+}
+
+/// Two long narrow places across each other have rows of their own, along each: fewer passes and less time than with any one way for both.
+#[test]
+fn rows_go_another_way_in_each_part() {
+    let (up, x) = ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+    let faces = vec![
+        rectangle([-30.0, -4.0, -2.0], up, x, [60.0, 8.0]),
+        rectangle([60.0, -30.0, -2.0], up, x, [8.0, 60.0]),
+    ];
+    let block = boxed([-30.0, -30.0, -4.0], [68.0, 30.0, 0.0]);
+    let stock = filled(block);
+    let with = |rows: Rows| planned(&faces, block, &stock, How { rows, ..How::upright() }).unwrap();
+    let own = with(Rows::Quickest(Vec3::x()));
+    let least = own.passes.passes.len();
+    let volume = carved(&mut stock.clone(), &own);
+    for turn in [0.0, 0.25, 0.5, 0.75] {
+        let (s, c) = (PI * turn).sin_cos();
+        let same = with(Rows::Along(Vec3::new(c, s, 0.0)));
+        let count = same.passes.passes.len();
+        assert!(least < count && minutes(&own) < 0.95 * minutes(&same), "{turn}: {least} of {count}");
+        assert!((volume / carved(&mut stock.clone(), &same) - 1.0).abs() < 0.02, "{turn}");
+    }
 }
 
 /// No more is taken in a minute than the job allows, and without a limit more is.

@@ -55,6 +55,11 @@ impl Rates {
 
     /// Time of a whole path, min, from its first place on.
     pub(in crate::plan) fn path_min(&self, path: &ClPath) -> f64 {
+        self.moves_min(&path.moves)
+    }
+
+    /// Time of moves, min, from the first of their places on.
+    pub(in crate::plan) fn moves_min(&self, moves: &[ClMove]) -> f64 {
         let pair = |w: &[ClMove]| {
             let (a, b) = (&w[0].pose, &w[1].pose);
             let step = Step { length_mm: (b.tip - a.tip).norm(), turn_rad: a.axis.angle(&b.axis) };
@@ -63,7 +68,7 @@ impl Rates {
                 Motion::Feed(feed_mm_min) => self.feed_min(step, feed_mm_min),
             }
         };
-        path.moves.windows(2).map(pair).sum()
+        moves.windows(2).map(pair).sum()
     }
 
     /// Time of a move at a feed, min.

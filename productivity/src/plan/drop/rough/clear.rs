@@ -2,11 +2,12 @@
 //!
 //! A part of a layer hangs together. It comes after those above it, and before another one is begun all that lies below it comes: so the
 //! tool stays in a pocket until that is empty. What a line takes is asked of the material as the moves before have left it, and its
-//! stretches that take nothing are left out.
+//! stretches that take nothing are left out. Rows may lead through each part another way: those that look quickest are tried out there, moves and all.
 
 use super::grid::{Disc, Grid};
 use super::layer::{Cut, Sheet};
-use super::moves::Moves;
+use super::moves::{Moves, apart};
+use super::trial::Tried;
 use std::collections::BTreeMap;
 
 /// Lines of lesser order within this many distances of lines come first.
@@ -14,20 +15,57 @@ const NEAR: f64 = 1.6;
 /// Places of a line that are looked at for what lies near it, in distances of lines.
 const LOOK: f64 = 1.0;
 
+/// A way that takes so much less than another is not quicker, as a share.
+const ALL: f64 = 0.99;
+/// Ways of rows that are tried out in a part besides the first one: those that look quickest, ...
+const TRIED: usize = 2;
+/// ... where going on to the next row counts as so much of a way, in radii of the tool.
+const NEXT: f64 = 4.0;
+
+/// The lines of a layer, or of a part of one.
+#[derive(Clone, Default)]
+pub(super) struct Lines {
+    /// The rows along each way that is tried.
+    pub rows: Vec<Vec<Cut>>,
+    /// The lines along walls.
+    pub walls: Vec<Cut>,
+}
+
+impl Lines {
+    /// Rows along a way, and lines along walls.
+    fn of(&self, way: usize) -> Vec<Cut> {
+        self.rows[way].iter().chain(&self.walls).cloned().collect()
+    }
+}
+
+/// Which way rows lead through parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pick {
+    /// The first one through all.
+    Given,
+    /// Through each the one that takes the least time for what it takes.
+    Own,
+}
+
 /// A part of a layer.
 pub(super) struct Part {
     pub layer: usize,
     nodes: Vec<u32>,
-    cuts: Vec<Cut>,
-    /// How many parts above it are not cut yet, and which lie below.
+    lines: Lines,
+    /// How many parts lie above it, and which below.
     above: usize,
     below: Vec<usize>,
 }
 
 impl Part {
     /// How far the nearest end of its lines is across the axis; endless where it has none.
-    fn away_mm(&self, here: [f64; 3]) -> f64 {
-        let ends = self.cuts.iter().flat_map(|c| c.places.first().into_iter().chain(c.places.last()));
+    fn away_mm(&self, pick: Pick, here: [f64; 3]) -> f64 {
+        let rows = match pick {
+            Pick::Given => &self.lines.rows[..1],
+            Pick::Own => &self.lines.rows[..],
+        };
+        let cuts = rows.iter().flatten().chain(&self.lines.walls);
+        let ends = cuts.flat_map(|c| c.places.first().into_iter().chain(c.places.last()));
         ends.map(|p| (p[0] - here[0]).hypot(p[1] - here[1])).fold(f64::INFINITY, f64::min)
     }
 }
@@ -36,31 +74,34 @@ impl Part {
 pub(super) fn parts(
     grid: &Grid,
     sheets: &[Sheet],
-    lines: Vec<Vec<Cut>>,
+    lines: Vec<Lines>,
     (apart_mm, radius_mm): (f64, f64),
 ) -> Vec<Part> {
     let mut out: Vec<Part> = Vec::new();
     // The last part over each node.
     let mut over: Vec<u32> = vec![Grid::NONE; grid.len()];
     let reach = Disc::new(radius_mm, grid.cell);
-    for (n, (sheet, cuts)) in sheets.iter().zip(lines).enumerate() {
+    for (n, (sheet, lines)) in sheets.iter().zip(lines).enumerate() {
         let (part, count) = sheet.masks.parts(grid, 2.0 * apart_mm);
         let first = out.len();
         out.extend((0..count).map(|_| Part {
             layer: n,
             nodes: Vec::new(),
-            cuts: Vec::new(),
+            lines: Lines { rows: vec![Vec::new(); lines.rows.len()], walls: Vec::new() },
             above: 0,
             below: Vec::new(),
         }));
         for k in (0..grid.len()).filter(|k| part[*k] != Grid::NONE) {
             out[first + part[k] as usize].nodes.push(k as u32);
         }
-        for cut in cuts {
-            // A line may go through several parts: each has its stretches.
-            for (own, cut) in parted(grid, &part, cut) {
-                out[first + own].cuts.push(cut);
+        // A line may go through several parts: each has its stretches.
+        for (way, rows) in lines.rows.into_iter().enumerate() {
+            for (own, cut) in rows.into_iter().flat_map(|cut| parted(grid, &part, cut)) {
+                out[first + own].lines.rows[way].push(cut);
             }
+        }
+        for (own, cut) in lines.walls.into_iter().flat_map(|cut| parted(grid, &part, cut)) {
+            out[first + own].lines.walls.push(cut);
         }
         for p in first..out.len() {
             let mut above: Vec<u32> = Vec::new();
@@ -136,30 +177,67 @@ fn parted(grid: &Grid, part: &[u32], cut: Cut) -> Vec<(usize, Cut)> {
     }
 }
 
-/// Cuts all parts, each after those above it.
-pub(super) fn clear(parts: &mut [Part], sheets: &[Sheet], moves: &mut Moves<'_>, apart_mm: f64) {
+/// Cuts all parts, each after those above it; how many passes rows along each way have, comes back.
+pub(super) fn clear(
+    parts: &[Part],
+    sheets: &[Sheet],
+    moves: &mut Moves<'_>,
+    (apart_mm, pick): (f64, Pick),
+) -> Vec<usize> {
+    let mut passes = vec![0; parts.first().map_or(0, |p| p.lines.rows.len())];
     let mut ready: Vec<Vec<usize>> = vec![(0..parts.len()).filter(|p| parts[*p].above == 0).collect()];
     let mut left: Vec<usize> = parts.iter().map(|p| p.above).collect();
     // What lies below the part that was cut last comes next, the nearest of it first: the list is a stack.
     while let Some(group) = ready.last_mut() {
         let here = moves.here();
-        let away = |p: &usize| here.map_or(0.0, |h| parts[*p].away_mm(h));
+        let away = |p: &usize| here.map_or(0.0, |h| parts[*p].away_mm(pick, h));
         let nearest = (0..group.len()).min_by(|a, b| away(&group[*a]).total_cmp(&away(&group[*b])));
         let Some(p) = nearest.map(|k| group.remove(k)) else {
             ready.pop();
             continue;
         };
-        let cuts = std::mem::take(&mut parts[p].cuts);
-        cut_part(moves, &sheets[parts[p].layer], cuts, apart_mm);
+        let (sheet, lines) = (&sheets[parts[p].layer], &parts[p].lines);
+        let way = match pick {
+            Pick::Given => 0,
+            Pick::Own => quickest(moves, sheet, lines, apart_mm),
+        };
+        let before = moves.passes.len();
+        cut_part(moves, sheet, lines.of(way), apart_mm);
+        passes[way] += moves.passes.len() - before;
         let mut next = Vec::new();
-        for b in std::mem::take(&mut parts[p].below) {
-            left[b] -= 1;
-            if left[b] == 0 {
-                next.push(b);
+        for b in &parts[p].below {
+            left[*b] -= 1;
+            if left[*b] == 0 {
+                next.push(*b);
             }
         }
         ready.push(next);
     }
+    passes
+}
+
+/// The way of rows that takes the least time for what it takes, of those that leave no more too high than the first one does.
+fn quickest(moves: &mut Moves<'_>, sheet: &Sheet, lines: &Lines, apart_mm: f64) -> usize {
+    // By their looks: how long rows are, and how often the tool goes on to the next.
+    let next_mm = NEXT * moves.site.tool.bare.radius_mm;
+    let looks_mm = |way: &usize| lines.rows[*way].iter().map(|c| long(c) + next_mm).sum::<f64>();
+    let mut ways: Vec<usize> = (1..lines.rows.len()).filter(|way| !lines.rows[*way].is_empty()).collect();
+    ways.sort_by(|a, b| looks_mm(a).total_cmp(&looks_mm(b)).then(a.cmp(b)));
+    ways.truncate(TRIED);
+    let mut tried = |way: usize| {
+        (way, moves.tried(sheet.layer.floor, |moves| cut_part(moves, sheet, lines.of(way), apart_mm)))
+    };
+    let given = tried(0);
+    let fits = |t: &Tried| t.cleared >= given.1.cleared && t.taken_mm3 >= ALL * given.1.taken_mm3;
+    let others = ways.into_iter().map(tried).filter(|(_, t)| fits(t));
+    let timed = std::iter::once(given).chain(others).filter(|(_, t)| t.taken_mm3 > 0.0);
+    let best = timed.min_by(|a, b| (a.1.min / a.1.taken_mm3).total_cmp(&(b.1.min / b.1.taken_mm3)));
+    best.map_or(0, |b| b.0)
+}
+
+/// The length of a line, mm.
+fn long(cut: &Cut) -> f64 {
+    cut.places.windows(2).map(|w| apart(w[0], w[1])).sum()
 }
 
 fn cut_part(moves: &mut Moves<'_>, sheet: &Sheet, cuts: Vec<Cut>, apart_mm: f64) {

@@ -21,6 +21,13 @@ pub(super) struct Columns {
     spans: Vec<Vec<[f64; 2]>>,
     /// The upper end of each column; minus infinity where nothing is.
     top: Vec<f64>,
+    /// What columns were before they lost something, since a trial began.
+    before: Option<Vec<(usize, Vec<[f64; 2]>)>>,
+}
+
+/// The upper end of a column.
+fn top_of(spans: &[[f64; 2]]) -> f64 {
+    spans.last().map_or(f64::NEG_INFINITY, |l| l[1])
 }
 
 /// The lower side of a tool as columns meet it: how high it is over the tip at a distance from the axis.
@@ -110,8 +117,29 @@ impl Columns {
                 out
             })
             .collect();
-        let top = spans.iter().map(|s| s.last().map_or(f64::NEG_INFINITY, |l| l[1])).collect();
-        Self { spans, top }
+        let top = spans.iter().map(|s| top_of(s)).collect();
+        Self { spans, top, before: None }
+    }
+
+    /// Begins a trial: all that columns lose from here on comes back with [`Self::restore`].
+    pub fn try_out(&mut self) {
+        self.before = Some(Vec::new());
+    }
+
+    /// Ends a trial, with all columns as they were; each that had lost something is told with its upper end before and after.
+    pub fn restore(&mut self, told: &mut impl FnMut(usize, [f64; 2])) {
+        let mut before = self.before.take().unwrap_or_default();
+        // Of several losses of a column the first one says what it was.
+        before.sort_by_key(|(k, _)| *k);
+        let mut last = None;
+        for (k, spans) in before {
+            if last.replace(k) == Some(k) {
+                continue;
+            }
+            let after = std::mem::replace(&mut self.top[k], top_of(&spans));
+            told(k, [self.top[k], after]);
+            self.spans[k] = spans;
+        }
     }
 
     /// The upper ends of all columns.
@@ -129,6 +157,9 @@ impl Columns {
             return 0.0;
         }
         let spans = &mut self.spans[k];
+        if let Some(before) = &mut self.before {
+            before.push((k, spans.clone()));
+        }
         let mut taken = 0.0;
         while let Some(last) = spans.last_mut() {
             if last[1] <= z {
@@ -142,7 +173,7 @@ impl Columns {
             taken += last[1] - last[0];
             spans.pop();
         }
-        self.top[k] = spans.last().map_or(f64::NEG_INFINITY, |l| l[1]);
+        self.top[k] = top_of(spans);
         taken
     }
 
@@ -254,6 +285,28 @@ mod tests {
             let middle = grid.near([0.0, 0.3]).unwrap();
             assert!((columns.tops()[middle] + depth).abs() < 1e-9);
         }
+    }
+
+    /// After a trial everything is as it was, and what was told of it adds up to what was taken.
+    #[test]
+    fn a_trial_leaves_nothing() {
+        let (_, stock) = stock();
+        let frame = Frame::new(Vec3::z_axis(), &Vec3::x());
+        let grid = Grid::over([[-11.0, -7.0], [11.0, 7.0]], 0.1);
+        let ball = CutterSpec::Ball { diameter_mm: 4.0, length_mm: 20.0 };
+        let tool = Underside::of(&Cutter::try_from(ball).unwrap());
+        let mut columns = Columns::of(&Material::of(&stock, None), &frame, &grid, |_| true);
+        columns.cut(&grid, &tool, [[-14.0, -3.0, -0.5], [14.0, -3.0, -0.5]]);
+        let (spans, top) = (columns.spans.clone(), columns.top.clone());
+        columns.try_out();
+        let mut taken = columns.cut(&grid, &tool, [[-14.0, 0.3, -1.0], [14.0, 0.3, -1.0]]);
+        // Across the first one, deeper, and through to the underside.
+        taken += columns.cut(&grid, &tool, [[1.0, -9.0, -5.0], [1.0, 9.0, -1.0]]);
+        assert!(taken > 0.0 && columns.top != top);
+        let mut told = 0.0;
+        columns.restore(&mut |_, [before, after]| told += before - after.max(-4.0));
+        assert!((told * 0.01 / taken - 1.0).abs() < 1e-9, "{told} {taken}");
+        assert!(columns.spans == spans && columns.top == top && columns.before.is_none());
     }
 
     /// Along a direction aslant a box is as thick as its faces say.

@@ -2,7 +2,7 @@
 
 use super::grid::Disc;
 use super::layer::Sheet;
-use super::moves::Moves;
+use super::moves::{Moves, apart};
 use super::task::Entry;
 use std::f64::consts::TAU;
 
@@ -16,6 +16,10 @@ const LEAST_HELIX: f64 = 0.25;
 const MOST_WIDE: usize = 6;
 /// Air is looked for so far around a place, in radii of the tool.
 const AROUND: f64 = 4.0;
+/// Places in the air that are tried are so far apart, in its radii; ...
+const AIR_APART: f64 = 0.5;
+/// ... and no more than these.
+const MOST_AIR: usize = 24;
 /// The tool comes down where it has been, so far from a start, in its radii; ...
 const BEEN: f64 = 2.5;
 /// ... no more of such places are tried.
@@ -101,7 +105,7 @@ impl Moves<'_> {
         let Some(k) = site.grid.near([start[0], start[1]]) else { return Vec::new() };
         let away = |p: &[f64; 3]| (p[0] - start[0]).hypot(p[1] - start[1]);
         let disc = Disc::new(near_mm, site.grid.cell);
-        let all = site.grid.disc(&disc, k).flatten().filter_map(|m| self.been[m]);
+        let all = site.grid.disc(&disc, k).flatten().filter_map(|m| self.been.of_node(m));
         let mut found: Vec<[f64; 3]> =
             all.map(|p| [p[0], p[1], p[2].max(floor)]).filter(|p| p[2] <= start[2]).collect();
         found.sort_by(|a, b| away(a).total_cmp(&away(b)));
@@ -129,7 +133,22 @@ impl Moves<'_> {
             let p = site.grid.at(m);
             [p[0], p[1], floor]
         };
-        free.into_iter().filter(is_air).map(place).find(|p| self.straight(sheet, *p, start).is_some())
+        // Where one place is shut off those next to it are as a rule.
+        let mut shut: Vec<[f64; 3]> = Vec::with_capacity(MOST_AIR);
+        for p in free.into_iter().filter(is_air).map(place) {
+            let is_near = |q: &[f64; 3]| apart(*q, p) < AIR_APART * site.tool.bare.radius_mm;
+            if shut.iter().any(is_near) {
+                continue;
+            }
+            if self.straight(sheet, p, start).is_some() {
+                return Some(p);
+            }
+            shut.push(p);
+            if shut.len() == MOST_AIR {
+                break;
+            }
+        }
+        None
     }
 
     /// Down a helix near a place and on to it through the layer; false where none fits. The nearest wide place is taken.

@@ -1,8 +1,8 @@
 //! Layers along one axis: what is known of the place, the lines of all layers, and the moves through them.
 
-use super::super::ground::{DropTask, Ground, Lines};
+use super::super::ground::{DropTask, Ground, Lines::Planes};
 use super::super::height::{Drops, Seed};
-use super::clear;
+use super::clear::{self, Lines, Part, Pick};
 use super::layer::{Layer, Masks, Sheet, Walls};
 use super::material::Material;
 use super::moves::{Manner, Moved, Moves};
@@ -12,15 +12,14 @@ use super::site::{Sight, Site};
 use super::task::{Heading, Places, RoughTask, Rows};
 use super::ways;
 use crate::plan::{CcPoint, Linked, Pass, PlanError};
-use nalgebra::Rotation3;
-use osculate_geom::{Surface, Unit3, Vec3};
+use osculate_geom::{Surface, Unit3};
 use osculate_tools::{Cutter, Pose};
 use rayon::prelude::*;
 
 /// Most layers along an axis.
 const MOST_LAYERS: f64 = 10_000.0;
-/// Ways of rows that are tried, evenly over half a turn: along what is given, across, and both diagonals.
-const TURNS: usize = 4;
+/// Ways of rows, evenly over half a turn from what is given.
+const TURNS: usize = 6;
 /// A way of rows that takes less than this share of what the given one takes is none.
 const ALL: f64 = 0.999;
 
@@ -43,8 +42,6 @@ pub(super) struct Along {
     pub heading: Heading,
     pub linked: Linked,
     pub passes: Vec<Pass>,
-    /// Where more is left of what is to go than may stand, mm2 across the axis.
-    high_mm2: f64,
 }
 
 /// Plans layers along an axis, for what is thicker than `thin_mm`; None where nothing is to go.
@@ -54,44 +51,12 @@ pub(super) fn along(
     (axis, places, thin_mm): (Unit3, Option<&Places>, f64),
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Option<Along>, PlanError> {
-    let one = |rows: Vec3, progress: &(dyn Fn(f64) + Sync)| {
-        rowed(known, material, (axis, places, thin_mm), (rows, progress))
-    };
-    let given = known.task.rows.given();
-    if let Rows::Along(_) = known.task.rows {
-        return one(given, progress);
-    }
-    let turn = std::f64::consts::PI / TURNS as f64;
-    let ways = (0..TURNS).map(|k| Rotation3::from_axis_angle(&axis, turn * k as f64) * given);
-    let silent = |_: f64| {};
-    let made: Vec<Option<Along>> = ways
-        .enumerate()
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .map(|(k, rows)| one(rows, if k == 0 { progress } else { &silent }))
-        .collect::<Result<_, _>>()?;
-    // What is quick because it leaves something out is none, and slivers that lie so between other nodes are nothing.
-    let Some(given) = made.first().and_then(Option::as_ref) else { return Ok(None) };
-    let (given_mm3, high_mm2) = (given.heading.volume_mm3, given.high_mm2);
-    let fits = |a: &Along| a.heading.volume_mm3 >= ALL * given_mm3 && a.high_mm2 <= high_mm2;
-    let all = made.into_iter().flatten().filter(fits);
-    let links = known.task.links;
-    let timed = all.map(|a| (links.rates.path_min(&a.linked.path) / a.heading.volume_mm3, a));
-    Ok(timed.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1))
-}
-
-/// Layers along an axis with rows along a way.
-fn rowed(
-    known: &Known<'_>,
-    material: &Material<'_>,
-    (axis, places, thin_mm): (Unit3, Option<&Places>, f64),
-    (rows, progress): (Vec3, &(dyn Fn(f64) + Sync)),
-) -> Result<Option<Along>, PlanError> {
     let (task, s) = (known.task, &known.task.sizes);
-    let sight = Sight::of(&known.points, material, (axis, &rows), (&known.rougher, places, thin_mm));
-    progress(0.1);
+    let given = task.rows.given();
+    let sight = Sight::of(&known.points, material, (axis, &given), (&known.rougher, places, thin_mm));
+    progress(0.2);
     let frame = sight.frame();
-    let drop = DropTask { feed: rows, ..drop_task(known, axis) };
+    let drop = drop_task(known, axis);
     let from = &known.seen;
     let seed = |seed: &Seed| {
         let ([x, y, z], [dx, dy, dz]) = (seed.at, seed.along);
@@ -101,15 +66,19 @@ fn rowed(
     let seeds = known.seeds.iter().map(seed).collect();
     let drops = Drops::new(&known.surfaces, &known.grown, frame, seeds, known.spacing_mm);
     let (places_of, judged) = (Vec::new(), Vec::new());
-    let ground =
-        Ground { task: &drop, lines: Lines::Planes, frame, drops, places: places_of, spacing: 0.0, judged };
+    let ground = Ground { task: &drop, lines: Planes, frame, drops, places: places_of, spacing: 0.0, judged };
     let Some(site) = Site::of(&sight, &ground, &known.rougher, material) else { return Ok(None) };
-    progress(0.3);
+    progress(0.6);
     let Some([top, low]) = site.heights() else { return Ok(None) };
     let floors = heights([top, low], s.stepdown_mm, &drop)?;
     let step = (top - low) / floors.len() as f64;
-    let lines = ways::rows(&site, s.stepover_mm);
-    let found: Vec<(Sheet, _)> = floors
+    let turns: Vec<f64> = match task.rows {
+        Rows::Along(_) => vec![0.0],
+        Rows::Quickest(_) => (0..TURNS).map(|k| std::f64::consts::PI * k as f64 / TURNS as f64).collect(),
+    };
+    let rows: Vec<_> =
+        turns.iter().map(|turn| ways::rows(&site, ways::Way::turned(*turn), s.stepover_mm)).collect();
+    let found: Vec<(Sheet, Lines)> = floors
         .par_iter()
         .map(|floor| {
             let layer = Layer { ceiling: floor + step, floor: *floor };
@@ -117,38 +86,67 @@ fn rowed(
             // Rows go up slopes, and leave none in steps.
             let masks = Masks::of(&site, layer, [thin; 2]);
             let walls = Walls::of(&site, layer, &masks, s.chord_mm);
-            let mut cuts = ways::of_rows(&lines, layer, site.grid.cell);
-            cuts.extend(ways::along_walls(&site, layer, (&masks, &walls), (1.0, [steps; 2])));
-            (Sheet { layer, masks, walls }, cuts)
+            let rows = rows.iter().map(|rows| ways::of_rows(rows, layer, site.grid.cell)).collect();
+            let along = ways::along_walls(&site, layer, (&masks, &walls), (1.0, [steps; 2]));
+            (Sheet { layer, masks, walls }, Lines { rows, walls: along })
         })
         .collect();
-    progress(0.6);
+    progress(0.8);
     let (sheets, lines): (Vec<Sheet>, Vec<_>) = found.into_iter().unzip();
-    let apart_mm = s.stepover_mm;
-    let mut parts = clear::parts(&site.grid, &sheets, lines, (apart_mm, known.rougher.bare.radius_mm));
-    let safe = super::columns::extent(material.bounds(), &frame)[1][2]
-        .max(super::columns::extent(&task.links.obstacles, &frame)[1][2])
+    let parts = clear::parts(&site.grid, &sheets, lines, (s.stepover_mm, known.rougher.bare.radius_mm));
+    let picks: Vec<Pick> =
+        std::iter::once(Pick::Given).chain((turns.len() > 1).then_some(Pick::Own)).collect();
+    let made: Vec<Cleared> =
+        picks.into_par_iter().map(|pick| cleared(known, material, (&site, &sheets, &parts), pick)).collect();
+    progress(1.0);
+    // What is quick because it leaves something out is none, and slivers that lie so between other nodes are nothing.
+    let (given_mm3, high_mm2) = (made[0].moved.taken_mm3, made[0].moved.high_mm2);
+    let fits = |c: &Cleared| c.moved.taken_mm3 >= ALL * given_mm3 && c.moved.high_mm2 <= high_mm2;
+    let rates = &task.links.rates;
+    let timed = made.into_iter().filter(|c| !c.moved.passes.is_empty() && fits(c));
+    let timed = timed.map(|c| (rates.path_min(&c.moved.linked.path) / c.moved.taken_mm3, c));
+    let Some((_, Cleared { moved, most })) = timed.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return Ok(None);
+    };
+    let way = ways::Way::turned(turns[most]).place([1.0, 0.0]);
+    let heading = Heading {
+        axis,
+        rows: Unit3::new_normalize(frame.point([way[0], way[1], 0.0]).coords),
+        layers: floors,
+        volume_mm3: moved.taken_mm3,
+        cutting_length_mm: moved.linked.cutting_length_mm,
+        shut_mm3: moved.shut_mm3,
+    };
+    let passes = moved.passes.into_iter().map(|places| pass(&frame, &axis, &places)).collect();
+    Ok(Some(Along { heading, linked: moved.linked, passes }))
+}
+
+/// All layers, cut.
+struct Cleared {
+    moved: Moved,
+    /// The way of most passes.
+    most: usize,
+}
+
+fn cleared(
+    known: &Known<'_>,
+    material: &Material<'_>,
+    (site, sheets, parts): (&Site<'_>, &[Sheet], &[Part]),
+    pick: Pick,
+) -> Cleared {
+    let (task, s) = (known.task, &known.task.sizes);
+    let (frame, apart_mm) = (&site.ground.frame, s.stepover_mm);
+    let safe = super::columns::extent(material.bounds(), frame)[1][2]
+        .max(super::columns::extent(&task.links.obstacles, frame)[1][2])
         + task.links.clearance_mm;
     let manner =
         Manner { sizes: s, links: task.links, entry: task.entry, plunges: task.plunges, apart_mm, safe };
     let pace = Pace::new(task.cutter, s.stepdown_mm, task.volume_rate_mm3_min);
-    let mut moves = Moves::new(&site, pace, manner);
-    clear::clear(&mut parts, &sheets, &mut moves, apart_mm);
-    progress(1.0);
-    let Moved { linked, passes, taken_mm3, shut_mm3, high_mm2 } = moves.done();
-    if passes.is_empty() {
-        return Ok(None);
-    }
-    let heading = Heading {
-        axis,
-        rows: Unit3::new_normalize(frame.point([1.0, 0.0, 0.0]).coords),
-        layers: floors,
-        volume_mm3: taken_mm3,
-        cutting_length_mm: linked.cutting_length_mm,
-        shut_mm3,
-    };
-    let passes = passes.into_iter().map(|places| pass(&frame, &axis, &places)).collect();
-    Ok(Some(Along { heading, linked, passes, high_mm2 }))
+    let mut moves = Moves::new(site, pace, manner);
+    let passes = clear::clear(parts, sheets, &mut moves, (apart_mm, pick));
+    // Of equal counts the first.
+    let most = (0..passes.len()).rev().max_by_key(|k| passes[*k]).unwrap_or(0);
+    Cleared { moved: moves.done(), most }
 }
 
 /// The dropping of the grown cutter along an axis.

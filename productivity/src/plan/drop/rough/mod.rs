@@ -26,8 +26,10 @@ mod pace;
 mod profile;
 mod relief;
 mod site;
+mod straight;
 mod swing;
 mod task;
+mod trial;
 mod ways;
 mod whole;
 

@@ -5,10 +5,11 @@
 
 use super::columns::Columns;
 use super::grid::Disc;
-use super::layer::{Cut, Layer, Sheet, along_faces};
+use super::layer::{Cut, Layer, Sheet};
 use super::pace::{Fed, Pace, thinned};
 use super::site::Site;
 use super::task::{Entry, Sizes};
+use super::trial::Been;
 use crate::plan::{Linked, Links};
 use osculate_tools::Pose;
 use osculate_tools::cl::Motion;
@@ -46,13 +47,12 @@ pub(super) struct Moves<'a> {
     pub(super) columns: Columns,
     pub(super) pace: Pace,
     pub(super) manner: Manner<'a>,
-    linked: Linked,
-    passes: Vec<Vec<[f64; 3]>>,
-    here: Option<[f64; 3]>,
-    taken_mm3: f64,
-    shut_mm3: f64,
-    /// Next to each node where the tool has been lowest.
-    pub(super) been: Vec<Option<[f64; 3]>>,
+    pub(super) linked: Linked,
+    pub(super) passes: Vec<Vec<[f64; 3]>>,
+    pub(super) here: Option<[f64; 3]>,
+    pub(super) taken_mm3: f64,
+    pub(super) shut_mm3: f64,
+    pub(super) been: Been,
     /// Discs under the tool, the tool as rapids keep off, and the holder.
     pub(super) under: Disc,
     pub(super) wide: Disc,
@@ -111,7 +111,7 @@ impl<'a> Moves<'a> {
             here: None,
             taken_mm3: 0.0,
             shut_mm3: 0.0,
-            been: vec![None; site.grid.len()],
+            been: Been::nowhere(site.grid.len()),
             under: site.disc.clone(),
             wide,
             held,
@@ -175,8 +175,7 @@ impl<'a> Moves<'a> {
                 }
                 self.taken_mm3 += self.columns.cut(&site.grid, &site.tool.bare, [here, next]);
                 if let Some(k) = site.grid.near([next[0], next[1]]) {
-                    let been = &mut self.been[k];
-                    *been = been.filter(|b| b[2] < next[2]).or(Some(next));
+                    self.been.at(k, next);
                 }
                 fed.push((next, feed));
                 here = next;
@@ -211,17 +210,11 @@ impl<'a> Moves<'a> {
         false
     }
 
-    /// Whether the tool may be next to a place on a layer: a line along a wall lies between nodes where it may and such where it may not.
-    fn may_be(&self, sheet: &Sheet, at: [f64; 2]) -> bool {
-        let around = self.site.grid.around(at);
-        around.is_some_and(|(all, _)| all.iter().any(|k| !sheet.masks.height[*k].is_nan()))
-    }
-
     /// Whether the tool may not be at a place now: it would cut deeper than the layer, or its holder would meet what stands.
     fn is_barred(&self, sheet: &Sheet, at: [f64; 3]) -> bool {
         let site = self.site;
         let Some(k) = site.grid.near([at[0], at[1]]) else { return true };
-        if !self.may_be(sheet, [at[0], at[1]]) {
+        if !sheet.lets(site, [at[0], at[1]]) {
             return true;
         }
         let high = sheet.layer.ceiling + ABOVE * (sheet.layer.ceiling - sheet.layer.floor);
@@ -262,35 +255,6 @@ impl<'a> Moves<'a> {
         }
         self.feed(&way, self.manner.links.feed_mm_min, None);
         true
-    }
-
-    /// The straight way between two places on a layer, on the faces where these are higher; None where the tool may not be, and up walls.
-    pub(super) fn straight(&self, sheet: &Sheet, from: [f64; 3], to: [f64; 3]) -> Option<Vec<[f64; 3]>> {
-        let (site, floor) = (self.site, sheet.layer.floor);
-        let long = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let steps = (long / site.grid.cell).ceil().max(1.0) as usize;
-        let mut flat = true;
-        for s in 0..=steps {
-            let p = between(from, to, s as f64 / steps as f64);
-            let (all, _) = site.grid.around([p[0], p[1]])?;
-            flat &= all.iter().all(|k| sheet.masks.flat[*k]);
-            if !self.may_be(sheet, [p[0], p[1]]) {
-                return None;
-            }
-        }
-        if flat {
-            return (!self.dives(sheet, [from, to])).then(|| vec![to]);
-        }
-        let mut way = along_faces(site, floor, &[[from[0], from[1]], [to[0], to[1]]]);
-        let steep = way.windows(2).any(|w| {
-            let across = (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]);
-            (w[1][2] - w[0][2]).abs() > site.grid.cell.max(across)
-        });
-        let high = way.iter().any(|p| p[2] >= sheet.layer.ceiling);
-        way.push(to);
-        let whole: Vec<[f64; 3]> = std::iter::once(from).chain(way.iter().copied()).collect();
-        let dives = whole.windows(2).any(|w| self.dives(sheet, [w[0], w[1]]));
-        (!steep && !high && !dives).then_some(way)
     }
 
     /// The stretches of a line that take something now.

@@ -6,6 +6,7 @@ use super::columns::{Columns, extent};
 use super::grid::{Disc, Grid};
 use super::material::Material;
 use super::relief::{Points, Relief, Rougher};
+use super::straight::Straights;
 use super::task::Places;
 use osculate_geom::Unit3;
 use rayon::prelude::*;
@@ -52,6 +53,7 @@ pub(super) struct Site<'a> {
     pub disc: Disc,
     /// How well the ends of columns are known, mm.
     pub blur_mm: f64,
+    pub straights: Straights,
 }
 
 /// What is to be seen along an axis.
@@ -243,6 +245,7 @@ impl<'a> Site<'a> {
             least,
             disc,
             blur_mm: material.cell_mm(),
+            straights: Straights::default(),
         })
     }
 

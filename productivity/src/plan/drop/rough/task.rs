@@ -50,7 +50,8 @@ pub enum Headings<'a> {
 pub enum Rows {
     /// Along a direction.
     Along(Vec3),
-    /// Along this direction or turned about the axis from it, whichever takes the least time for what it takes.
+    /// Along this direction or turned about the axis from it, in each part of a layer whichever takes the least time
+    /// for what it takes.
     Quickest(Vec3),
 }
 
@@ -137,7 +138,7 @@ impl Sizes {
 pub struct Heading {
     /// The axis, from the tip to the holder.
     pub axis: Unit3,
-    /// The way of its rows, across the axis.
+    /// The way of most of its rows, across the axis.
     pub rows: Unit3,
     /// Heights of the layers along it, from the top, mm.
     pub layers: Vec<f64>,

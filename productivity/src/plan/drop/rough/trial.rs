@@ -1,0 +1,82 @@
+//! Ways through a part of a layer that are tried out: what they take and in what time, with everything as it was before.
+
+use super::moves::Moves;
+
+/// Where the tool has been lowest next to each node.
+pub(super) struct Been {
+    places: Vec<Option<[f64; 3]>>,
+    /// What places were since a trial began.
+    before: Option<Vec<(usize, Option<[f64; 3]>)>>,
+}
+
+impl Been {
+    pub fn nowhere(nodes: usize) -> Self {
+        Self { places: vec![None; nodes], before: None }
+    }
+
+    pub fn of_node(&self, k: usize) -> Option<[f64; 3]> {
+        self.places[k]
+    }
+
+    /// The tool is at a place next to a node.
+    pub fn at(&mut self, k: usize, place: [f64; 3]) {
+        let own = self.places[k];
+        if own.is_some_and(|b| b[2] < place[2]) {
+            return;
+        }
+        if let Some(before) = &mut self.before {
+            before.push((k, own));
+        }
+        self.places[k] = Some(place);
+    }
+
+    fn try_out(&mut self) {
+        self.before = Some(Vec::new());
+    }
+
+    fn restore(&mut self) {
+        for (k, place) in self.before.take().unwrap_or_default().into_iter().rev() {
+            self.places[k] = place;
+        }
+    }
+}
+
+/// What a trial came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tried {
+    pub min: f64,
+    pub taken_mm3: f64,
+    /// Columns that stood higher than they may before it, and do no more.
+    pub cleared: usize,
+}
+
+impl Moves<'_> {
+    /// Tries out moves on a layer down to a floor, and takes them back.
+    pub fn tried(&mut self, floor: f64, moves: impl FnOnce(&mut Self)) -> Tried {
+        let (taken_mm3, shut_mm3, here, passes) =
+            (self.taken_mm3, self.shut_mm3, self.here, self.passes.len());
+        let (count, cutting_mm, air_mm) =
+            (self.linked.path.moves.len(), self.linked.cutting_length_mm, self.linked.air_length_mm);
+        self.columns.try_out();
+        self.been.try_out();
+        moves(self);
+        let rates = &self.manner.links.rates;
+        let mut out = Tried {
+            min: rates.moves_min(&self.linked.path.moves[count.saturating_sub(1)..]),
+            taken_mm3: self.taken_mm3 - taken_mm3,
+            cleared: 0,
+        };
+        let (least, stands_mm) = (&self.site.least, self.manner.sizes.stands_mm);
+        self.columns.restore(&mut |k, [before, after]| {
+            let may = least[k].max(floor) + stands_mm;
+            out.cleared += usize::from(before > may && after <= may);
+        });
+        self.been.restore();
+        self.linked.path.moves.truncate(count);
+        self.linked.pass_of_move.truncate(count);
+        (self.linked.cutting_length_mm, self.linked.air_length_mm) = (cutting_mm, air_mm);
+        self.passes.truncate(passes);
+        (self.taken_mm3, self.shut_mm3, self.here) = (taken_mm3, shut_mm3, here);
+        out
+    }
+}
