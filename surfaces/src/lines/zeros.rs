@@ -165,7 +165,7 @@ struct Root {
 fn search(chart: &Chart, field: Plane, floor: f64, root: Root) -> Findings {
     let mut out = Findings::default();
     let mut queue = VecDeque::from([root.cell]);
-    let mut first = Some(root.first);
+    let (mut first, mut ended) = (Some(root.first), false);
     while let Some(cell) = queue.pop_front() {
         match first.take().unwrap_or_else(|| judge(chart, field, floor, &cell)) {
             Verdict::Empty => {}
@@ -174,7 +174,9 @@ fn search(chart: &Chart, field: Plane, floor: f64, root: Root) -> Findings {
             Verdict::Undefined if cell.depth >= 3 => out.undefined += 1,
             Verdict::Flat => out.open.push(cell),
             Verdict::Open | Verdict::Undefined => {
-                if cell.depth >= DEPTH || queue.len() > root.most_open {
+                if cell.depth >= DEPTH || ended || queue.len() > root.most_open {
+                    // On a face full of zeros for good: else pieces go on to be cut as others are taken from the queue.
+                    ended |= root.most_open < MOST_OPEN;
                     out.open.push(cell);
                     continue;
                 }
