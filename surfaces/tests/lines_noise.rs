@@ -86,7 +86,8 @@ impl ScalarField for Noise {
     }
 }
 
-/// Zeros of the gradient in every cell: 10,000 cells are cut into 20 pieces each, asked at nine places, and not into 120.
+/// Zeros of the gradient in every cell: 10,000 cells are cut into some 20 pieces each, asked at nine places and where Newton's steps lead, which
+/// is 640 places a cell; while pieces went on to be cut as others were taken from the queue it was 2400.
 #[test]
 fn cells_full_of_zeros_are_bounded_together() {
     let sheet = rough(8);
@@ -96,5 +97,5 @@ fn cells_full_of_zeros_are_bounded_together() {
     let found = critical_points(&chart, &noise);
     let asked = noise.0.into_inner();
     assert!(cells >= 10_000 && !found.lines.is_empty(), "{cells}");
-    assert!(asked < 9 * cells * 50, "{asked} places of {cells} cells");
+    assert!(asked < 1000 * cells, "{asked} places of {cells} cells");
 }
