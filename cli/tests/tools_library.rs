@@ -132,6 +132,20 @@ fn a_table_of_linuxcnc_says_what_it_does_not_say() {
     }
 }
 
+/// Lengths that no key of a job allows are told and left out, whoever wrote them, in remarks of ours too.
+#[test]
+fn tools_beyond_what_a_job_allows_are_left_out() {
+    let scratch = Scratch::new();
+    let text = "T1 P1 Z40 D8 ;ball [[tool]] kind = \"ball\" | diameter_mm = 8 | length_mm = 1e308\nT2 P2 D1e9 ;ball nose\n\
+                T3 P3 D6 ;ball nose\n";
+    let library = Library::load(&scratch.write("tool.tbl", text)).unwrap();
+    assert_eq!(library.tools.iter().map(osculate::job::Tool::number).collect::<Vec<_>>(), [3]);
+    let told: Vec<String> = library.diagnostics.iter().map(ToString::to_string).collect();
+    for words in ["line 1: left out", "line 2: left out", "length_mm", "up to 1000000"] {
+        assert!(told.iter().any(|t| t.contains(words)), "{words}: {told:?}");
+    }
+}
+
 #[test]
 fn a_library_of_freecad_finds_its_bits() {
     let scratch = Scratch::new();

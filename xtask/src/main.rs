@@ -1,6 +1,6 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
 //! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask first-hour`, `cargo xtask browser`, `cargo xtask plans`,
-//! `cargo xtask mutate`, `cargo xtask truth` and `cargo xtask sides`.
+//! `cargo xtask mutate`, `cargo xtask fuzz`, `cargo xtask truth` and `cargo xtask sides`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -13,6 +13,7 @@ mod ci;
 mod cmd;
 mod figures;
 mod first_hour;
+mod fuzz;
 mod interop;
 mod measured;
 mod mutate;
@@ -62,6 +63,8 @@ usage: cargo xtask COMMAND
   mutate --data FOLDER [--count N] [--seed S] [--program FILE] [--keep FOLDER]
                 damaged files of every kind that is read, of a reference collection and of the examples, given to the verbs
                 below 20 s and 2 GiB: panics, signals, runs out of bounds and success with nonsense
+  fuzz [--seconds N] [--only TEXT]
+                the targets of fuzz/, built by the nightly compiler, N seconds each (60): panics, inputs beyond 20 s and 2 GiB
   figures       the figures of the gallery: docs/figures and docs/gallery.md
   truth [ARGS]  every STEP and IGES file of a reference collection read and compared with another kernel's answers:
                 --data FOLDER [--only TEXT] [--all] [--json] [--malformed]
@@ -122,6 +125,10 @@ fn main() -> ExitCode {
                     "mutate takes --data FOLDER, --count N, --seed S, --program FILE and --keep FOLDER",
                 );
             }
+        },
+        ["fuzz", rest @ ..] => match fuzz::Options::of(rest) {
+            Some(options) => fuzz::fuzz(&options),
+            None => return wrong_usage("fuzz takes --seconds N and --only TEXT"),
         },
         ["figures"] => figures::run(),
         ["interop"] => interop::occt(&[]),

@@ -6,7 +6,7 @@
 
 use crate::plan::Named;
 use crate::plan::samples::{Wanted, samples};
-use osculate_geom::Point3;
+use osculate_geom::{Box3, Point3};
 use osculate_tools::Cutter;
 use osculate_tools::reach::{ObstacleKind, ObstaclePoint, Obstacles};
 use osculate_tools::removal::{Sample, SamplingError};
@@ -79,10 +79,12 @@ pub(crate) fn sunk(s: &Sample, by_mm: f64) -> ObstaclePoint {
     ObstaclePoint { point, owner: s.face, kind: ObstacleKind::Part }
 }
 
-/// Cells of a grid with a point of what is machined in them or next to them.
+/// Cells of a grid with a point of what is machined in them.
 struct Touched {
     side: f64,
     cells: HashSet<[i64; 3]>,
+    /// Around all of them.
+    within: Box3,
 }
 
 impl Touched {
@@ -92,17 +94,24 @@ impl Touched {
     }
 
     fn new(samples: &[Sample], side: f64) -> Self {
-        let mut out = Self { side, cells: HashSet::new() };
+        let mut out = Self { side, cells: HashSet::new(), within: Box3::empty() };
         for s in samples {
-            let [x, y, z] = out.cell(&s.point);
-            out.cells.extend((0..27).map(|c| [x + c / 9 - 1, y + c / 3 % 3 - 1, z + c % 3 - 1]));
+            let cell = out.cell(&s.point);
+            out.cells.insert(cell);
+            out.within.add(&s.point);
         }
+        out.within = out.within.grown(2.0 * side);
         out
     }
 
-    /// Whether a point is in or next to one of the cells.
+    /// Whether a point is in or next to one of the cells. The cells around are looked up here, not noted there: most points of a part
+    /// are machined and few are asked for.
     fn holds(&self, p: &Point3) -> bool {
-        self.cells.contains(&self.cell(p))
+        if !(0..3).all(|k| (self.within.min[k]..=self.within.max[k]).contains(&p[k])) {
+            return false;
+        }
+        let [x, y, z] = self.cell(p);
+        (0..27).any(|c| self.cells.contains(&[x + c / 9 - 1, y + c / 3 % 3 - 1, z + c % 3 - 1]))
     }
 }
 

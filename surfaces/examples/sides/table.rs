@@ -74,13 +74,16 @@ fn row(part: &Part, reference: Option<f64>) -> String {
         [("rays", by(Settled::Enclosed)), ("volume", by(Settled::Closed)), ("nothing", by(Settled::Open))];
     let settled: Vec<String> = settled.iter().filter(|s| s.1 > 0).map(|(w, n)| format!("{w} {n}")).collect();
     let from = part.bbox().centre();
-    let volume: f64 = faces.iter().zip(&found.of).filter_map(|(f, s)| Some(behind(f, (*s)?, from))).sum();
+    let known: Vec<f64> =
+        faces.iter().zip(&found.of).filter_map(|(f, s)| Some(behind(f, (*s)?, from))).collect();
     let area: f64 = faces.iter().map(Face::area_mm2).sum();
     let leak = leak(&faces, &found.of) / area;
     let [inside, outside, unclear] = parity(&faces, &found.of, part.bbox().diagonal_mm());
-    let reference = reference.map_or_else(|| "-".to_owned(), |v| format!("{v:.6e}"));
+    let shown = |volume: Option<f64>| volume.map_or_else(|| "-".to_owned(), |v| format!("{v:.6e}"));
+    let volume = shown((!known.is_empty()).then(|| known.iter().sum()));
+    let reference = shown(reference);
     format!(
-        "| {} | {said} | {right} | {wrong} | {off} | {open} | {} | {volume:.6e} | {reference} | {leak:.0e} | {inside} | {outside} | {unclear} |",
+        "| {} | {said} | {right} | {wrong} | {off} | {open} | {} | {volume} | {reference} | {leak:.0e} | {inside} | {outside} | {unclear} |",
         faces.len(),
         settled.join(", ")
     )

@@ -116,6 +116,10 @@ const FREE: f64 = 0.9;
 /// The part of the spacing at which a line ends early.
 const CLOSE: f64 = 0.5;
 
+/// So many lines in a row that end before they are a spacing long are the last ones. Faces whose lines mean something have some dozens
+/// of them in all; each costs as much as a line.
+const MOST_STUBS: usize = 500;
+
 /// Lines of `course` spread over the face.
 #[must_use]
 pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Vec<SurfacePolyline> {
@@ -124,7 +128,8 @@ pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Vec<SurfacePolyline>
     let mut lines: Vec<SurfacePolyline> = Vec::new();
     let mut queue: VecDeque<Uv> = how.seeds.iter().copied().collect();
     let mut cells = middles(chart).into_iter();
-    while lines.len() < how.most_lines {
+    let mut stubs = 0;
+    while lines.len() < how.most_lines && stubs < MOST_STUBS {
         let Some(seed) = queue.pop_front().or_else(|| cells.next()) else { break };
         let p = chart.surface().point(seed);
         if !chart.surface().contains(seed) || !crowd.is_free(&p, FREE * d) {
@@ -140,8 +145,11 @@ pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Vec<SurfacePolyline>
         };
         // Stubs say nothing and hide the lines around them.
         if line.points.len() < 2 || line.length_mm() < d {
+            // Where the course has no direction nothing was followed.
+            stubs += usize::from(line.points.len() > 1);
             continue;
         }
+        stubs = 0;
         crowd.add(&line, 0.2 * d);
         queue.extend(beside(chart, &line, d));
         lines.push(line);

@@ -47,6 +47,11 @@ pub(crate) struct Zeros {
 const DEPTH: u32 = 10;
 /// Open pieces of one cell at which halving ends: a line of zeros, not a point.
 const MOST_OPEN: usize = 120;
+/// Open pieces of all cells together. A face full of zeros, whose field is noise, has that many; its cells get fewer pieces each, and
+/// what lies in them is a line of zeros all the same.
+const MOST_OPEN_IN_ALL: usize = 200_000;
+/// Fewest pieces that a cell is cut into before halving ends.
+const FEWEST_OPEN: usize = 4;
 /// Twice the misfit of the samples stands for what lies between them.
 const BETWEEN: f64 = 2.0;
 /// Open pieces that reach over more than this part of a cell are a line.
@@ -76,7 +81,14 @@ pub(crate) fn zeros(chart: &Chart, field: Plane, floor: f64) -> Zeros {
             cells.push(Cell { middle, half: [0.5 * (u[1] - u[0]), 0.5 * (v[1] - v[0])], depth: 0 });
         }
     }
-    let found: Vec<Findings> = cells.par_iter().map(|c| search(chart, field, floor, *c)).collect();
+    let first: Vec<Verdict> = cells.par_iter().map(|c| judge(chart, field, floor, c)).collect();
+    let many = first.iter().filter(|v| matches!(v, Verdict::Open | Verdict::Undefined)).count();
+    let most_open = (MOST_OPEN_IN_ALL / many.max(1)).clamp(FEWEST_OPEN, MOST_OPEN);
+    let found: Vec<Findings> = cells
+        .par_iter()
+        .zip(first)
+        .map(|(c, first)| search(chart, field, floor, Root { cell: *c, first, most_open }))
+        .collect();
     let mut out = Zeros::default();
     let mut simple: Vec<Uv> = Vec::new();
     let mut known = Near::new(chart);
@@ -143,18 +155,28 @@ struct Findings {
     undefined: usize,
 }
 
-fn search(chart: &Chart, field: Plane, floor: f64, whole: Cell) -> Findings {
+/// A cell of the chart with what is found of it as a whole, and the open pieces at which its halving ends.
+struct Root {
+    cell: Cell,
+    first: Verdict,
+    most_open: usize,
+}
+
+fn search(chart: &Chart, field: Plane, floor: f64, root: Root) -> Findings {
     let mut out = Findings::default();
-    let mut queue = VecDeque::from([whole]);
+    let mut queue = VecDeque::from([root.cell]);
+    let (mut first, mut ended) = (Some(root.first), false);
     while let Some(cell) = queue.pop_front() {
-        match judge(chart, field, floor, &cell) {
+        match first.take().unwrap_or_else(|| judge(chart, field, floor, &cell)) {
             Verdict::Empty => {}
             Verdict::Zero(at) => out.zeros.push(at),
             Verdict::Flat if cell.depth == 0 => out.flat = Some(cell.middle),
             Verdict::Undefined if cell.depth >= 3 => out.undefined += 1,
             Verdict::Flat => out.open.push(cell),
             Verdict::Open | Verdict::Undefined => {
-                if cell.depth >= DEPTH || queue.len() > MOST_OPEN {
+                if cell.depth >= DEPTH || ended || queue.len() > root.most_open {
+                    // On a face full of zeros for good: else pieces go on to be cut as others are taken from the queue.
+                    ended |= root.most_open < MOST_OPEN;
                     out.open.push(cell);
                     continue;
                 }

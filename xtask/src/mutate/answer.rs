@@ -9,8 +9,8 @@ const MEASURED: [(&str, f64); 6] =
     [("_mm", 1e15), ("_mm2", 1e22), ("_mm3", 1e30), ("_min", 5.3e6), ("_per_mm", 1e100), ("_mm_min", 1e10)];
 
 /// Those of them that are absent where nothing is known: the ends of a histogram, what nothing bounds, radii of what is flat, marks of tools
-/// whose speed nobody says.
-const OPEN: [&str; 7] = [
+/// whose speed nobody says, what only one way to set the side of a cutter has.
+const OPEN: [&str; 10] = [
     "from_mm",
     "to_mm",
     "hidden_scallop_mm",
@@ -18,6 +18,9 @@ const OPEN: [&str; 7] = [
     "smallest_radius_mm",
     "hollow_radius_mm",
     "tooth_mark_max_mm",
+    "h0_mm",
+    "lower_bound_mm",
+    "lower_bound_refined_mm",
 ];
 
 /// The exit code of a run; 128 and the signal where one ended it.

@@ -13,6 +13,8 @@ pub enum Kind {
     Job,
     /// Jobs of a few mm2, which are.
     SmallJob,
+    /// Jobs for the side of a cutter. Planned by ways of its end, which they do not name, they would take a minute, damaged or whole.
+    SideJob,
     Machine,
     Dialect,
     /// Libraries of tools.
@@ -22,4 +24,4 @@ pub enum Kind {
 }
 
 /// How many kinds there are.
-pub const KINDS: usize = 10;
+pub const KINDS: usize = 11;

@@ -22,6 +22,10 @@ const LIST: &str = "format = 2\n[part]\nbuiltin = { kind = \"plane\", u_range = 
     [[tool]]\nnumber = 4\nkind = \"flat\"\ndiameter_mm = 6\nlength_mm = 30\nteeth = 2\ncutting = { spindle_rpm = 6000, feed_mm_min = 900 }\n\
     [[tool]]\nnumber = 7\nkind = \"ball\"\ndiameter_mm = 6\nlength_mm = 40\nteeth = 2\ncutting = { spindle_rpm = 9000, feed_mm_min = 1500 }\n";
 const ROUGH: &str = "[[operation]]\nname = \"rough\"\nkind = \"rough\"\ntools = [4]\nallowance_mm = 0.4\n";
+/// The side of a cutter on a ruled face.
+const SIDE: &str = "format = 1\n[part]\nbuiltin = { kind = \"d98-liu\" }\n[tool]\nkind = \"cylindrical\"\ndiameter_mm = 20\nlength_mm = 80\n\
+    [tolerance]\nscallop_mm = 0.2\ngouge_mm = 0.2\n[flank]\nat_u = 21.892\nspans = 4\n[cutting]\nspindle_rpm = 3000\nfeed_mm_min = 500\n\
+    [machine]\nname = \"trunnion-ac\"\ndialect = \"sinumerik\"\n[verification]\nmax_samples = 2000\n";
 const FINISH: &str = "[[operation]]\nname = \"finish\"\nkind = \"finish\"\ntools = [7]\nstrategy = { kind = \"isoplanar_3c\" }\n";
 
 /// The job of a part.
@@ -69,6 +73,7 @@ pub fn all(program: &Path, scratch: &Path) -> Result<Vec<(Kind, String, Vec<u8>)
     ];
     out.extend(meshes().map(|(name, bytes)| (Kind::Mesh, name.to_owned(), bytes)));
     out.extend(small_jobs().map(|(name, text)| (Kind::SmallJob, name.to_owned(), text.into_bytes())));
+    out.push((Kind::SideJob, "flank.toml".to_owned(), SIDE.as_bytes().to_vec()));
     for name in ["library.toml", "library.tbl", "library.json", "Library/library.fctl"] {
         let file = scratch.join(name);
         if let Some(folder) = file.parent() {
@@ -112,8 +117,8 @@ fn written(program: &Path, folder: &Path, arguments: &[&str]) -> Result<(), Fail
     command.status().map(|_| ()).map_err(|why| Failure::Start { line, why })
 }
 
-/// Jobs that are planned within a second or two: of every kind of strategy, with a place for `strip`, with the side of a cutter, a list.
-fn small_jobs() -> [(&'static str, String); 7] {
+/// Jobs that are planned within a second or two: of every kind of strategy, with a place for `strip`, a list.
+fn small_jobs() -> [(&'static str, String); 6] {
     let bowl = "builtin = { kind = \"paraboloid\", a_per_mm = 0.005, b_per_mm = -0.003, half_size_mm = 4 }\n";
     let with = |part: &str, more: &str| format!("{}{more}", job(part));
     [
@@ -122,13 +127,6 @@ fn small_jobs() -> [(&'static str, String); 7] {
         ("planes.toml", with(bowl, "[strategy]\nkind = \"isoplanar_3c\"\n")),
         ("regions.toml", with(bowl, "[strategy]\nkind = \"regions\"\nlead_deg = 15\n")),
         ("strip.toml", with(bowl, "[contact]\nuv = [0.5, 0.5]\nlead_deg = 10\n")),
-        (
-            "flank.toml",
-            "format = 1\n[part]\nbuiltin = { kind = \"d98-liu\" }\n[tool]\nkind = \"cylindrical\"\ndiameter_mm = 20\nlength_mm = 80\n\
-             [tolerance]\nscallop_mm = 0.2\ngouge_mm = 0.2\n[flank]\nat_u = 21.892\nspans = 4\n[cutting]\nspindle_rpm = 3000\nfeed_mm_min = 500\n\
-             [machine]\nname = \"trunnion-ac\"\ndialect = \"sinumerik\"\n[verification]\nmax_samples = 2000\n"
-                .to_owned(),
-        ),
         ("list.toml", format!("{LIST}{ROUGH}{FINISH}")),
     ]
 }

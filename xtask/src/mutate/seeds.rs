@@ -98,6 +98,7 @@ const fn lines(kind: Kind) -> (&'static [&'static str], &'static [&'static str])
                 "verify path-of.cl --job FILE",
             ],
         ),
+        Kind::SideJob => (&["check FILE", "flank FILE"], &["strip FILE", "verify path-of.cl --job FILE"]),
         Kind::Machine => (
             &["machines --check FILE", "post path-of.cl --machine FILE --dialect heidenhain --out out.h"],
             &["time program-of.nc --machine FILE", "readback program-of.nc --machine FILE --out back.cl"],
@@ -124,7 +125,7 @@ pub struct Seeds {
 }
 
 /// In which order kinds take turns: parts are of many forms.
-const TURNS: [Kind; 20] = [
+const TURNS: [Kind; 21] = [
     Kind::Part,
     Kind::Program,
     Kind::Part,
@@ -145,6 +146,7 @@ const TURNS: [Kind; 20] = [
     Kind::Mesh,
     Kind::Library,
     Kind::Stock,
+    Kind::SideJob,
 ];
 
 impl Seeds {
@@ -153,14 +155,14 @@ impl Seeds {
         self.kinds.iter().map(Vec::len).sum()
     }
 
-    /// The file whose turn it is, and how often its kind came before.
+    /// The file whose turn it is, and which of the verbs that take turns gets it: another one whenever the file comes again.
     pub fn nth(&self, number: usize) -> (&Seed, usize) {
         let kind = TURNS[number % TURNS.len()];
         let own = &self.kinds[kind as usize];
         let before = TURNS[..number % TURNS.len()].iter().filter(|k| **k == kind).count();
         let each = TURNS.iter().filter(|k| **k == kind).count();
         let turn = number / TURNS.len() * each + before;
-        (&own[turn % own.len()], turn)
+        (&own[turn % own.len()], turn + turn / own.len())
     }
 }
 
@@ -215,6 +217,7 @@ pub fn all(data: &Path, root: &Path, program: &Path, scratch: &Path) -> Result<S
         "paths",
         "jobs",
         "small jobs",
+        "jobs for the side of a cutter",
         "machines",
         "dialects",
         "libraries",

@@ -205,7 +205,8 @@ impl Library {
                 diagnostics.push(Diagnostic::warning(place.clone(), what));
             }
             one.number = Some(number);
-            match Tool::of(&Places::new(path), "tool", (&one, number), &raw::Cutting::default()) {
+            let made = Tool::of(&Places::new(path), "tool", (&one, number), &raw::Cutting::default());
+            match made.and_then(|tool| within_keys(tool, path)) {
                 Ok(tool) => {
                     taken.insert(number);
                     tools.push(tool);
@@ -269,6 +270,12 @@ impl Library {
         let tools = made(&places, &raw.tool)?;
         Ok(Self { format: "osculate", tools, diagnostics: Vec::new() })
     }
+}
+
+/// A tool whose values are within what the keys of a job allow: other programs write what they like.
+fn within_keys(tool: Tool, path: &Path) -> Result<Tool, Failure> {
+    let text = format!("format = 1\n\n{}", toml(&tool, tool.number()));
+    check::places(&text, path, &keys::LIBRARY).map(|_| tool)
 }
 
 /// The tools of tables; each has a number of its own.
