@@ -2,7 +2,7 @@
 
 use super::super::ground::{DropTask, Ground, Lines::Planes};
 use super::super::height::{Drops, Seed};
-use super::clear::{self, Lines, Part, Pick};
+use super::clear::{self, ALL, Lines, Part, Pick};
 use super::layer::{Layer, Masks, Sheet, Walls};
 use super::material::Material;
 use super::moves::{Manner, Moved, Moves};
@@ -20,9 +20,6 @@ use rayon::prelude::*;
 const MOST_LAYERS: f64 = 10_000.0;
 /// Ways of rows, evenly over half a turn from what is given.
 const TURNS: usize = 6;
-/// A way of rows that takes less than this share of what the given one takes is none.
-const ALL: f64 = 0.999;
-
 /// The part with the tool, for any axis.
 pub(super) struct Known<'a> {
     pub task: &'a RoughTask<'a>,

@@ -10,6 +10,7 @@
 //! Where axes are to be found ([`directions`]) the one that takes most comes first, and the next is sought for what is left then.
 
 mod across;
+mod been;
 mod clear;
 mod climb;
 mod columns;
@@ -27,6 +28,7 @@ mod profile;
 mod relief;
 mod site;
 mod straight;
+mod straights;
 mod swing;
 mod task;
 mod trial;

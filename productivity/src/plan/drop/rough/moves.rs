@@ -3,13 +3,13 @@
 //! Stock is kept as the moves before have left it: where it is taken already a line is not run, rapids go as low over it as it is known to
 //! stand, and the feed is that of the section that the tool moves into.
 
+use super::been::Been;
 use super::columns::Columns;
 use super::grid::Disc;
 use super::layer::{Cut, Layer, Sheet};
 use super::pace::{Fed, Pace, thinned};
 use super::site::Site;
 use super::task::{Entry, Sizes};
-use super::trial::Been;
 use crate::plan::{Linked, Links};
 use osculate_tools::Pose;
 use osculate_tools::cl::Motion;

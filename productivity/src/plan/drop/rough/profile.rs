@@ -5,6 +5,10 @@ pub(super) type Place = [f64; 2];
 
 /// Where a line of heights is on a level between two of its places.
 fn crossing(a: Place, b: Place, level: f64) -> Place {
+    // Next to air, where nothing holds the tip, no height says how far it is.
+    if let Some(air) = [a, b].into_iter().find(|p| p[1] == f64::NEG_INFINITY) {
+        return [air[0], level];
+    }
     [a[0] + (b[0] - a[0]) * (level - a[1]) / (b[1] - a[1]), level]
 }
 
@@ -66,5 +70,9 @@ mod tests {
             vec![vec![[1.0, 2.0], [2.0, 0.0], [3.0, 2.0]], vec![[5.0, 2.0], [6.0, 0.0]]]
         );
         assert_eq!(raised(&run[..3], 2.0), vec![[0.0, 4.0], [1.0, 2.0], [3.0, 2.0], [4.0, 4.0]]);
+        // Beside air a line goes as far as air is known.
+        let beside = [[0.0, f64::NEG_INFINITY], [1.0, f64::NEG_INFINITY], [2.0, 5.0]];
+        let part = &below(&beside, 3.0)[0];
+        assert_eq!(raised(part, 1.0), vec![[0.0, 1.0], [1.0, 1.0], [1.0, 3.0]]);
     }
 }

@@ -6,7 +6,7 @@ use super::columns::{Columns, extent};
 use super::grid::{Disc, Grid};
 use super::material::Material;
 use super::relief::{Points, Relief, Rougher};
-use super::straight::Straights;
+use super::straights::Straights;
 use super::task::Places;
 use osculate_geom::Unit3;
 use rayon::prelude::*;

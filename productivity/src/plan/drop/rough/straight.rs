@@ -5,32 +5,9 @@
 use super::layer::{Sheet, along_faces};
 use super::moves::Moves;
 use super::site::Site;
-use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
 
 /// A way that rises more than so many nodes' distances from one node to the next goes up a wall.
 const WALL: f64 = 3.0;
-
-/// A layer's floor, and both ends across the axis.
-type Key = [u64; 5];
-
-/// Ways that were asked for, each without its end; None where the tool may not be, and up walls.
-#[derive(Default)]
-pub(super) struct Straights {
-    known: Mutex<HashMap<Key, Option<Vec<[f64; 3]>>>>,
-}
-
-impl Straights {
-    fn of(&self, key: Key, way: impl FnOnce() -> Option<Vec<[f64; 3]>>) -> Option<Vec<[f64; 3]>> {
-        let lock = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = lock().get(&key).cloned();
-        known.unwrap_or_else(|| {
-            let way = way();
-            lock().insert(key, way.clone());
-            way
-        })
-    }
-}
 
 impl Sheet {
     /// Whether the tool may be next to a place: a line along a wall lies between nodes where it may and such where it may not.
