@@ -216,7 +216,7 @@ pub(super) fn clear(
     passes
 }
 
-/// The way of rows that takes the least time for what it takes, of those that leave no more too high than the first one does.
+/// The way of rows that takes the least time for what it takes, of those that leave nothing high that the first one does not.
 fn quickest(moves: &mut Moves<'_>, sheet: &Sheet, lines: &Lines, apart_mm: f64) -> usize {
     // By their looks: how long rows are, and how often the tool goes on to the next.
     let next_mm = NEXT * moves.site.tool.bare.radius_mm;
@@ -227,11 +227,12 @@ fn quickest(moves: &mut Moves<'_>, sheet: &Sheet, lines: &Lines, apart_mm: f64) 
     let mut tried = |way: usize| {
         (way, moves.tried(sheet.layer.floor, |moves| cut_part(moves, sheet, lines.of(way), apart_mm)))
     };
-    let given = tried(0);
-    let fits = |t: &Tried| t.cleared >= given.1.cleared && t.taken_mm3 >= ALL * given.1.taken_mm3;
-    let others = ways.into_iter().map(tried).filter(|(_, t)| fits(t));
-    let timed = std::iter::once(given).chain(others).filter(|(_, t)| t.taken_mm3 > 0.0);
-    let best = timed.min_by(|a, b| (a.1.min / a.1.taken_mm3).total_cmp(&(b.1.min / b.1.taken_mm3)));
+    let (_, given) = tried(0);
+    let fits = |t: &Tried| t.clears_all_of(&given) && t.taken_mm3 >= ALL * given.taken_mm3;
+    let slow = |t: &Tried| t.min / t.taken_mm3;
+    let others = ways.into_iter().map(tried).filter(|(_, t)| t.taken_mm3 > 0.0 && fits(t));
+    let best =
+        others.filter(|(_, t)| slow(t) < slow(&given)).min_by(|a, b| slow(&a.1).total_cmp(&slow(&b.1)));
     best.map_or(0, |b| b.0)
 }
 

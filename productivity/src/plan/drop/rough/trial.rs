@@ -2,13 +2,23 @@
 
 use super::moves::Moves;
 
+/// Columns are known to their nodes, so that this share of what may stand is looked at.
+const HIGH: f64 = 0.5;
+
 /// What a trial came to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tried {
     pub min: f64,
     pub taken_mm3: f64,
-    /// Columns that stood higher than they may before it, and do no more.
-    pub cleared: usize,
+    /// Columns that stood high before it and do no more, ascending.
+    pub cleared: Vec<usize>,
+}
+
+impl Tried {
+    /// Whether it clears all that another one does.
+    pub fn clears_all_of(&self, other: &Self) -> bool {
+        other.cleared.iter().all(|k| self.cleared.binary_search(k).is_ok())
+    }
 }
 
 impl Moves<'_> {
@@ -25,12 +35,14 @@ impl Moves<'_> {
         let mut out = Tried {
             min: rates.moves_min(&self.linked.path.moves[count.saturating_sub(1)..]),
             taken_mm3: self.taken_mm3 - taken_mm3,
-            cleared: 0,
+            cleared: Vec::new(),
         };
         let (least, stands_mm) = (&self.site.least, self.manner.sizes.stands_mm);
         self.columns.restore(&mut |k, [before, after]| {
-            let may = least[k].max(floor) + stands_mm;
-            out.cleared += usize::from(before > may && after <= may);
+            let may = least[k].max(floor) + HIGH * stands_mm;
+            if before > may && after <= may {
+                out.cleared.push(k);
+            }
         });
         self.been.restore();
         self.linked.path.moves.truncate(count);
