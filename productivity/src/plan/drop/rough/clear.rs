@@ -16,7 +16,7 @@ const NEAR: f64 = 1.6;
 const LOOK: f64 = 1.0;
 
 /// A way of rows that takes less than this share of what the given one takes is none.
-pub(super) const ALL: f64 = 0.99;
+pub(super) const ALL: f64 = 0.999;
 /// Ways of rows that are tried out in a part besides the first one: those that look quickest, ...
 const TRIED: usize = 2;
 /// ... where going on to the next row counts as so much of a way, in radii of the tool.

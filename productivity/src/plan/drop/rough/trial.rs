@@ -2,7 +2,7 @@
 
 use super::moves::Moves;
 
-/// Columns are known to their nodes, so that this share of what may stand is looked at.
+/// Columns are known to their nodes, so that this share of what may stand counts as high, and no more than the material is known to.
 const HIGH: f64 = 0.5;
 
 /// What a trial came to.
@@ -37,9 +37,10 @@ impl Moves<'_> {
             taken_mm3: self.taken_mm3 - taken_mm3,
             cleared: Vec::new(),
         };
-        let (least, stands_mm) = (&self.site.least, self.manner.sizes.stands_mm);
+        let (least, high_mm) =
+            (&self.site.least, (HIGH * self.manner.sizes.stands_mm).min(self.site.blur_mm));
         self.columns.restore(&mut |k, [before, after]| {
-            let may = least[k].max(floor) + HIGH * stands_mm;
+            let may = least[k].max(floor) + high_mm;
             if before > may && after <= may {
                 out.cleared.push(k);
             }
