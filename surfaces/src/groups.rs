@@ -12,6 +12,8 @@ use std::fmt;
 
 /// A face is flat that bends by less than this over its own size, rad.
 const FLAT_RAD: f64 = 1e-3;
+/// A group that turns inwards by less than this over its size, rad, does so by rounding.
+const ROUNDING_RAD: f64 = 1e-6;
 /// Curvatures that differ by no more than this share are constant.
 const CONSTANT: f64 = 0.02;
 /// The other curvature of something round is so many times as small at least.
@@ -178,6 +180,7 @@ fn group(faces: Vec<usize>, sampled: &[Sampled]) -> FaceGroup {
         Look::Fillet if around => Look::Hole,
         look => look,
     };
-    let hollow_mm = if look == Look::Flat { f64::INFINITY } else { -1.0 / least };
-    FaceGroup { look, faces, area_mm2, hollow_mm: hollow_mm.abs(), alike: 1 }
+    let hollow = look != Look::Flat && -least * area_mm2.sqrt() > ROUNDING_RAD;
+    let hollow_mm = if hollow { -1.0 / least } else { f64::INFINITY };
+    FaceGroup { look, faces, area_mm2, hollow_mm, alike: 1 }
 }

@@ -152,7 +152,7 @@ fn asymptotic_lines_of_a_saddle_are_rulings() {
 fn ridges_of_an_ellipsoid_are_its_principal_sections() {
     let e = Ellipsoid::new([3.0, 2.0, 1.0]).unwrap();
     let c = chart(&e);
-    let found = ridges(&c, &umbilics(&c));
+    let found = ridges(&c, &umbilics(&c)).lines;
     let mut lengths = [0.0; 3];
     for r in &found {
         let plane = (0..3)
@@ -186,7 +186,7 @@ fn ridges_of_an_ellipsoid_are_its_principal_sections() {
 fn constant_fields_have_no_lines() {
     let t = Torus::new(5.0, 2.0).unwrap();
     let c = chart(&t);
-    assert!(ridges(&c, &umbilics(&c)).is_empty());
+    assert!(ridges(&c, &umbilics(&c)).lines.is_empty());
     let s = osculate_geom::analytic::Cylinder::new(3.0, osculate_geom::Interval::new(0.0, 5.0)).unwrap();
     let c = chart(&s);
     assert!(contours(&c, &Gauss, &[0.0], None).lines.is_empty());
@@ -398,7 +398,7 @@ fn lines_are_spread_evenly() {
         seeds: Vec::new(),
         most_lines: 500,
     };
-    let lines = cover(&c, Course::Curvature(Family::Most), &how);
+    let lines = cover(&c, Course::Curvature(Family::Most), &how).lines;
     let far = |p: &Point3| {
         let nearest = |l: &osculate_surfaces::lines::SurfacePolyline| {
             l.points

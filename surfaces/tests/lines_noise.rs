@@ -3,7 +3,8 @@
 
 use osculate_geom::{Axis, Jet2, Jet3, Point3, Surface, Taylor, Uv, forward_surface};
 use osculate_surfaces::lines::{
-    Chart, Course, Cover, FieldSample, LineTolerance, ScalarField, TraceStops, cover, critical_points,
+    Chart, Course, Cover, CoverEnd, FieldSample, LineTolerance, ScalarField, TraceStops, cover,
+    critical_points,
 };
 use osculate_surfaces::{Net, NurbsSurface};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -71,7 +72,8 @@ fn stubs_of_lines_are_not_tried_all_over_a_face() {
     sheet.asked.store(0, Ordering::Relaxed);
     let lines = cover(&chart, Course::Asymptotic { left: true }, &how);
     let asked = sheet.asked.load(Ordering::Relaxed);
-    println!("{} lines, {asked} places asked", lines.len());
+    println!("{} lines, {asked} places asked", lines.lines.len());
+    assert_eq!(lines.end, CoverEnd::Stubs, "the end of the search is told");
     assert!(asked < 1_000_000, "{asked}");
 }
 
@@ -98,4 +100,9 @@ fn cells_full_of_zeros_are_bounded_together() {
     let asked = noise.0.into_inner();
     assert!(cells >= 10_000 && !found.lines.is_empty(), "{cells}");
     assert!(asked < 1000 * cells, "{asked} places of {cells} cells");
+    assert!(
+        found.coarse_cells > cells / 2,
+        "{} of {cells} cells are told as searched less finely",
+        found.coarse_cells
+    );
 }

@@ -168,6 +168,9 @@ fn describe(study: &Study, name: &str, files: &[String], args: &LinesArgs) -> St
         count(of(CriticalKind::Saddle), "saddle", "saddles"),
     ));
     out.push_str(&format!("  searched in cells of at most {} mm\n", number(study.resolution_mm, 3)));
+    for note in &study.notes {
+        out.push_str(&format!("  note: {note}\n"));
+    }
     out.push_str(&format!("\n  {}: {}\n\n", args.out.display(), files.join(", ")));
     out
 }

@@ -25,6 +25,8 @@ pub struct Answer {
     ridges: Vec<RidgeLine>,
     parabolic_lines: Vec<Line>,
     asymptotic_lines: Vec<Line>,
+    /// What was not searched or drawn as finely as the rest.
+    notes: Vec<String>,
     /// The best postures of a tool, where one is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub postures: Option<super::postures::Arrays>,
@@ -158,6 +160,7 @@ pub fn answer(study: &Study, face: &str) -> Answer {
             .collect(),
         parabolic_lines: study.parabolic.lines.iter().map(|c| line(&c.line)).collect(),
         asymptotic_lines: study.asymptotic.iter().flatten().map(line).collect(),
+        notes: study.notes.clone(),
         postures: None,
         files: Vec::new(),
     }

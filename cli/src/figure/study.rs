@@ -3,9 +3,9 @@
 use super::levels::nice_levels;
 use osculate_geom::{Axis, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_surfaces::lines::{
-    Chart, ChartError, Contours, Course, Cover, CriticalKind, CriticalPoints, CurvatureDifference, Family,
-    FieldSample, Gauss, Height, LinePoint, LineTolerance, Ridge, ScalarField, SurfacePolyline, TraceStops,
-    Umbilics, contours, cover, critical_points, ridges, umbilics,
+    Chart, ChartError, Contours, Course, Cover, CoverEnd, Covered, CriticalKind, CriticalPoints,
+    CurvatureDifference, Family, FieldSample, Gauss, Height, LinePoint, LineTolerance, Ridge, ScalarField,
+    SurfacePolyline, TraceStops, Umbilics, contours, cover, critical_points, ridges, umbilics,
 };
 use osculate_surfaces::{BezierPatch, Mesh, NurbsSurface, TrimmedSurface, tessellate};
 
@@ -78,6 +78,8 @@ pub struct Study {
     pub resolution_mm: f64,
     /// The tolerances.
     pub tolerance: LineTolerance,
+    /// What was not searched or drawn as finely as the rest, one a line; empty where all was.
+    pub notes: Vec<String>,
     face: TrimmedSurface,
 }
 
@@ -123,9 +125,16 @@ impl Study {
             };
             cover(&chart, course, &how)
         };
-        let curvature = Family::ALL.map(|f| spread(Course::Curvature(f), &at_umbilics, true));
-        let asymptotic =
-            [true, false].map(|left| spread(Course::Asymptotic { left }, &stops(Vec::new()), true));
+        let mut notes = Vec::new();
+        let curvature = Family::ALL.map(|f| {
+            let spread = spread(Course::Curvature(f), &at_umbilics, true);
+            told(spread, "lines of curvature", spacing_mm, &mut notes)
+        });
+        let asymptotic = [true, false].map(|left| {
+            let spread = spread(Course::Asymptotic { left }, &stops(Vec::new()), true);
+            told(spread, "asymptotic lines", spacing_mm, &mut notes)
+        });
+        coarse(umbilics.coarse_cells, "umbilics", &mut notes);
 
         let height = Height { axis: wanted.axis };
         let critical = critical_points(&chart, &height);
@@ -133,6 +142,9 @@ impl Study {
         let lines = contours(&chart, &height, &values, Some(&critical));
         let ends = critical.points.iter().map(|p| LinePoint { at: p.at, point: p.point }).collect();
         let gradients = spread(Course::Gradient(wanted.axis), &stops(ends), false);
+        let gradients = told(gradients, "gradient lines", spacing_mm, &mut notes);
+        coarse(critical.coarse_cells, "extremes of the height", &mut notes);
+        unrefined(lines.coarse_pieces, "contours", &mut notes);
         let heights = Levels { values, contours: lines, critical };
 
         let critical = critical_points(&chart, &CurvatureDifference);
@@ -140,7 +152,15 @@ impl Study {
             levels_of(&chart, &CurvatureDifference, wanted.levels, f64::sqrt, chart.curvature_per_mm());
         let squares: Vec<f64> = values.iter().map(|d| d * d).collect();
         let lines = contours(&chart, &CurvatureDifference, &squares, Some(&critical));
+        coarse(critical.coarse_cells, "extremes of k1 - k2", &mut notes);
+        unrefined(lines.coarse_pieces, "lines of constant k1 - k2", &mut notes);
         let difference = Levels { values, contours: lines, critical };
+        let parabolic = contours(&chart, &Gauss, &[0.0], None);
+        unrefined(parabolic.coarse_pieces, "parabolic lines", &mut notes);
+        let ridges = ridges(&chart, &umbilics);
+        unrefined(ridges.coarse_pieces, "ridges", &mut notes);
+        // Both families of a kind may say the same.
+        notes.dedup();
 
         let mesh = tessellate(face, 2e-3 * size, None);
         Ok(Self {
@@ -152,8 +172,8 @@ impl Study {
             difference,
             heights,
             gradients,
-            ridges: ridges(&chart, &umbilics),
-            parabolic: contours(&chart, &Gauss, &[0.0], None),
+            ridges: ridges.lines,
+            parabolic,
             asymptotic,
             umbilics,
             facing: facing(face),
@@ -162,6 +182,7 @@ impl Study {
             size_mm: size,
             resolution_mm: chart.resolution_mm(),
             tolerance,
+            notes,
             face: face.clone(),
         })
     }
@@ -182,6 +203,43 @@ impl Study {
                 && c.kind != CriticalKind::Degenerate
                 && !self.umbilics.points.iter().any(|u| (u.point - c.point).norm() < near)
         })
+    }
+}
+
+/// The lines of a family; where it came to a bound, a note says so.
+fn told(covered: Covered, what: &str, spacing_mm: f64, notes: &mut Vec<String>) -> Vec<SurfacePolyline> {
+    let count = covered.lines.len();
+    match covered.end {
+        CoverEnd::Full => {}
+        CoverEnd::Most => {
+            notes.push(format!("{what}: no more than {count} are drawn; a wider --spacing-mm shows the whole face"));
+        }
+        CoverEnd::Points => notes.push(format!(
+            "{what}: {count} are drawn; they wind so often that no more were tried, as in noise"
+        )),
+        CoverEnd::Stubs => notes.push(format!(
+            "{what}: {count} are drawn; after hundreds that end within the spacing of {spacing_mm:.3} mm no more were tried: a narrower \
+             --spacing-mm shows them, unless the curvature there is noise"
+        )),
+    }
+    covered.lines
+}
+
+/// A note on cells that were searched less finely.
+fn coarse(cells: usize, what: &str, notes: &mut Vec<String>) {
+    if cells > 0 {
+        notes.push(format!(
+            "{what}: in {cells} cells there is one nearly everywhere, as in noise; they were searched less finely, single ones are not told apart"
+        ));
+    }
+}
+
+/// A note on pieces whose lines may do more than is drawn.
+fn unrefined(pieces: usize, what: &str, notes: &mut Vec<String>) {
+    if pieces > 0 {
+        notes.push(format!(
+            "{what}: in {pieces} pieces of the face they may turn more often than is drawn, as in noise"
+        ));
     }
 }
 

@@ -12,6 +12,8 @@ use std::sync::LazyLock;
 
 const ANY: Range = Range { least: f64::NEG_INFINITY, most: f64::INFINITY, open: [false; 2] };
 const ABOVE: Range = Range { least: 0.0, most: 1e6, open: [true, false] };
+/// Across a cutter: a micrometre is a tenth of the thinnest that is sold.
+const ACROSS: Range = Range { least: 1e-3, most: 1e6, open: [false; 2] };
 const NOT_BELOW: Range = Range { least: 0.0, most: 1e6, open: [false; 2] };
 const FINE: Range = Range { least: 0.0, most: 1e3, open: [true, false] };
 const FAR: Range = Range { least: -1e6, most: 1e6, open: [false; 2] };
@@ -179,7 +181,7 @@ pub static TABLES: &[Table] = &[
     table("part.ruled.c1", true, "the curve at v = 1", CURVE),
     table("tool", false, "the cutter; [[tools]] with the same keys is a list to choose from", &[
         must("kind", Kind::Word(ToolKind::WORDS), "\"ball\"", "kind of cutter"),
-        must("diameter_mm", MM, "10", "outer diameter; of apt, d"),
+        must("diameter_mm", Kind::Number(ACROSS, "mm"), "10", "outer diameter; of apt, d"),
         may("number", Kind::Whole(1, 9999), "1; in [[tools]] its place", "3", "number of the tool in the program"),
         may("corner_radius_mm", MM_OR_ZERO, "by the kind", "5", "radius of the rounded end or corner"),
         may("length_mm", MM, "five diameters", "60", "from the tip to the holder"),

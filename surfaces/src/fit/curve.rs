@@ -149,11 +149,23 @@ pub fn interpolate<const D: usize>(
         all.insert(1, Point::from(values[0]));
         (basis, rows, right(&all))
     } else {
-        let basis = interpolation_basis(degree, &t, closed)?;
-        let rows = data.iter().map(|t| basis.row(*t, 0)).collect();
-        (basis, rows, right(points))
+        return through(points, degree, &t, closed);
     };
     let x = solve(&rows, &rhs)?;
+    Ok(finish(&basis, &x, points, data))
+}
+
+/// The curve of a degree that is at each point at its parameter; a closed row has one parameter more, of its first point again.
+pub(super) fn through<const D: usize>(
+    points: &[Point<f64, D>],
+    degree: usize,
+    parameters: &[f64],
+    closed: bool,
+) -> Result<CurveFit<D>, FitError> {
+    let data = &parameters[..points.len()];
+    let basis = interpolation_basis(degree, parameters, closed)?;
+    let rows: Vec<Row> = data.iter().map(|t| basis.row(*t, 0)).collect();
+    let x = solve(&rows, &right(points))?;
     Ok(finish(&basis, &x, points, data))
 }
 

@@ -1,7 +1,7 @@
 //! Surfaces over sections: curves of points with differing counts, brought to common knots and joined.
 
 use super::curve::{
-    Ends, approximation_basis, check_degree, check_finite, interpolate, interpolation_basis, near, right,
+    approximation_basis, check_degree, check_finite, interpolation_basis, near, right, through,
 };
 use super::params::{Spacing, averaged, mean, parameters};
 use super::solve::{Row, solve};
@@ -10,6 +10,7 @@ use crate::knots::Knots;
 use crate::nurbs::{Net, NurbsCurve3, NurbsSurface};
 use nalgebra::{DMatrix, Vector4};
 use osculate_geom::{Point3, Side, Surface, uv};
+use std::collections::BTreeMap;
 
 /// How a loft is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +22,7 @@ pub struct LoftOptions {
     /// Whether every section is closed; its first point is not repeated.
     pub closed: bool,
     /// How far the points may be from the surface: few common knots by least squares. `None` goes through all
-    /// points, with the knots of all sections.
+    /// points, with the knots of all sections; sections of as many points share theirs.
     pub tolerance_mm: Option<f64>,
 }
 
@@ -52,17 +53,21 @@ pub fn loft(sections: &[Vec<Point3>], options: &LoftOptions) -> Result<SurfaceFi
         check_finite(points)?;
         check_degree(p, points.len(), p + 2)?;
     }
-    let t: Vec<Vec<f64>> = sections
+    let own: Vec<Vec<f64>> = sections
         .iter()
         .map(|points| parameters(points, options.spacing, options.closed))
         .collect::<Result<_, _>>()?;
-    let curves = match options.tolerance_mm {
+    let (t, curves) = match options.tolerance_mm {
         None => {
-            let ends = if options.closed { Ends::Closed } else { Ends::Free };
-            let each = sections.iter().map(|s| Ok(interpolate(s, p, options.spacing, &ends)?.curve));
-            compatible(&each.collect::<Result<Vec<_>, FitError>>()?)?
+            let t = shared(&own);
+            let each = sections.iter().zip(&t).map(|(s, t)| Ok(through(s, p, t, options.closed)?.curve));
+            let curves = compatible(&each.collect::<Result<Vec<_>, FitError>>()?)?;
+            (t, curves)
         }
-        Some(tolerance) => common(sections, &t, options, tolerance)?,
+        Some(tolerance) => {
+            let curves = common(sections, &own, options, tolerance)?;
+            (own, curves)
+        }
     };
     let (surface, v) = across(&curves, q, options.spacing)?;
     let [lo, hi] = curves[0].knots().domain();
@@ -74,6 +79,17 @@ pub fn loft(sections: &[Vec<Point3>], options: &LoftOptions) -> Result<SurfaceFi
     // The longest section's parameters stand for all.
     let longest = t.iter().max_by_key(|t| t.len()).cloned().unwrap_or_default();
     Ok(SurfaceFit { surface, parameters: [longest, v], misfit })
+}
+
+/// Parameters of sections, those of as many points brought to their mean: they then have the same knots, where a point more in one
+/// section would else bring knots of all beside each other, and a surface as uneven as these lie.
+fn shared(own: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut of_count: BTreeMap<usize, Vec<Vec<f64>>> = BTreeMap::new();
+    for t in own {
+        of_count.entry(t.len()).or_default().push(t.clone());
+    }
+    let means: BTreeMap<usize, Vec<f64>> = of_count.into_iter().map(|(n, rows)| (n, mean(&rows))).collect();
+    own.iter().map(|t| means[&t.len()].clone()).collect()
 }
 
 fn check_sections(got: usize, degree: usize) -> Result<(), FitError> {

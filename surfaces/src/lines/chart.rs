@@ -7,6 +7,7 @@
 
 use super::field::Scale;
 use osculate_geom::{Axis, Domain, Point3, Surface, Uv, uv};
+use std::sync::OnceLock;
 
 /// How exact lines are and how finely features are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +82,8 @@ pub struct Chart<'a> {
     lines: [Vec<f64>; 2],
     poles: Vec<Pole>,
     size_mm: f64,
+    /// The largest curvature, once asked for.
+    curvature_per_mm: OnceLock<f64>,
     tolerance: LineTolerance,
 }
 
@@ -142,7 +145,8 @@ impl<'a> Chart<'a> {
             }
         }
         let lines = [Axis::U, Axis::V].map(|axis| cell_borders(surface, &domain, axis, tolerance.cell_mm));
-        Ok(Self { surface, whole: surface.domain(), domain, lines, poles, size_mm, tolerance })
+        let (whole, curvature_per_mm) = (surface.domain(), OnceLock::new());
+        Ok(Self { surface, whole, domain, lines, poles, size_mm, curvature_per_mm, tolerance })
     }
 
     /// The face.
@@ -184,16 +188,18 @@ impl<'a> Chart<'a> {
     /// The largest curvature at the cells' corners, at least that of a sphere of the face's size, 1/mm.
     #[must_use]
     pub fn curvature_per_mm(&self) -> f64 {
-        let mut size = 1.0 / self.size_mm;
-        for u in self.borders(Axis::U) {
-            for v in self.borders(Axis::V) {
-                if let Ok(forms) = self.surface.jet2(uv(*u, *v)).forms() {
-                    let p = forms.principal();
-                    size = size.max(p.k_max.abs()).max(p.k_min.abs());
+        *self.curvature_per_mm.get_or_init(|| {
+            let mut size = 1.0 / self.size_mm;
+            for u in self.borders(Axis::U) {
+                for v in self.borders(Axis::V) {
+                    if let Ok(forms) = self.surface.jet2(uv(*u, *v)).forms() {
+                        let p = forms.principal();
+                        size = size.max(p.k_max.abs()).max(p.k_min.abs());
+                    }
                 }
             }
-        }
-        size
+            size
+        })
     }
 
     /// How large the face and its curvatures are: what rounding of fields over it is measured by.

@@ -37,10 +37,14 @@ pub struct Contours {
     pub lines: Vec<Contour>,
     /// Side of the largest cell, mm, see the module's promise.
     pub resolution_mm: f64,
+    /// Pieces of the triangulation in which a level may do more than is drawn: the field is noise there.
+    pub coarse_pieces: usize,
 }
 
 /// Halvings of one piece between two crossings.
 const HALVINGS: u32 = 10;
+/// Where more than this part of the triangulation is too coarse, the field is noise, and pieces are drawn straight.
+const NOISE: f64 = 0.1;
 /// Newton steps towards a level.
 const NEWTON: usize = 12;
 
@@ -68,7 +72,11 @@ pub fn contours(
         .par_iter()
         .map(|named| Level { chart, field, named: *named, level: named - rounding }.draw(&web))
         .collect();
-    Contours { lines: drawn.into_iter().flatten().collect(), resolution_mm: chart.resolution_mm() }
+    Contours {
+        lines: drawn.into_iter().flatten().collect(),
+        resolution_mm: chart.resolution_mm(),
+        coarse_pieces: web.uncut,
+    }
 }
 
 /// One level of a field.
@@ -88,7 +96,8 @@ impl Level<'_> {
         let mut links = Vec::new();
         for t in &web.triangles {
             let [a, b, c] = t.map(|v| web.samples[v as usize]);
-            if a.is_none() || b.is_none() || c.is_none() {
+            let (Some(a), Some(b), Some(c)) = (a, b, c) else { continue };
+            if web.is_zero(&[a, b, c]) {
                 continue;
             }
             let crossed: Vec<u32> = (0..3)
@@ -115,10 +124,12 @@ impl Level<'_> {
         }
         // A crossing that could not be settled is no crossing.
         links.retain(|(a, b)| places[*a as usize].is_some() && places[*b as usize].is_some());
+        let noise = web.uncut as f64 > NOISE * web.triangles.len() as f64;
+        let halvings = if noise { 0 } else { HALVINGS };
         let mut lines = Vec::new();
         for (chain, closed) in chains(places.len(), &links) {
             let rough: Vec<Uv> = chain.iter().filter_map(|n| places[*n as usize]).collect();
-            lines.push((self.polished(&rough, closed), closed));
+            lines.push((self.polished(&rough, closed, halvings), closed));
         }
         let lines = self.joined_at_poles(lines);
         lines
@@ -192,8 +203,8 @@ impl Level<'_> {
         None
     }
 
-    /// The line through crossings with pieces halved until the chords are within tolerance.
-    fn polished(&self, rough: &[Uv], closed: bool) -> Vec<LinePoint> {
+    /// The line through crossings with pieces halved, so often at most, until the chords are within tolerance.
+    fn polished(&self, rough: &[Uv], closed: bool, halvings: u32) -> Vec<LinePoint> {
         let surface = self.chart.surface();
         let point = |at: Uv| LinePoint { at, point: surface.point(at) };
         let mut out: Vec<LinePoint> = Vec::with_capacity(2 * rough.len());
@@ -201,7 +212,7 @@ impl Level<'_> {
         let sense = |at: Uv| self.field.sample(surface, at).and_then(|s| s.sense);
         out.push(point(rough[0]));
         for k in 0..pieces {
-            let mut goals = vec![(point(rough[(k + 1) % rough.len()]), HALVINGS)];
+            let mut goals = vec![(point(rough[(k + 1) % rough.len()]), halvings)];
             while let Some((goal, left)) = goals.pop() {
                 let from = *out.last().expect("the first point is in");
                 let chord = goal.point - from.point;

@@ -28,6 +28,28 @@ pub struct Cover {
     pub most_lines: usize,
 }
 
+/// Lines spread over a face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Covered {
+    /// The lines.
+    pub lines: Vec<SurfacePolyline>,
+    /// Why no more of them were tried.
+    pub end: CoverEnd,
+}
+
+/// Why no more lines are tried on a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoverEnd {
+    /// No place is left for one.
+    Full,
+    /// There are as many as asked for at most.
+    Most,
+    /// Several hundred in a row were shorter than their distance: the course has no lines that mean anything there.
+    Stubs,
+    /// They have hundreds of thousands of points: the course winds on the scale of noise.
+    Points,
+}
+
 /// Points of lines in boxes of the spacing's size.
 struct Crowd {
     size: f64,
@@ -119,18 +141,29 @@ const CLOSE: f64 = 0.5;
 /// So many lines in a row that end before they are a spacing long are the last ones. Faces whose lines mean something have some dozens
 /// of them in all; each costs as much as a line.
 const MOST_STUBS: usize = 500;
+/// With so many points in all, no further lines are tried. Four hundred lines of smooth faces have some 50,000.
+const MOST_POINTS: usize = 300_000;
 
 /// Lines of `course` spread over the face.
 #[must_use]
-pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Vec<SurfacePolyline> {
+pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Covered {
     let d = how.spacing_mm;
     let mut crowd = Crowd { size: d, boxes: HashMap::new() };
     let mut lines: Vec<SurfacePolyline> = Vec::new();
     let mut queue: VecDeque<Uv> = how.seeds.iter().copied().collect();
     let mut cells = middles(chart).into_iter();
-    let mut stubs = 0;
-    while lines.len() < how.most_lines && stubs < MOST_STUBS {
-        let Some(seed) = queue.pop_front().or_else(|| cells.next()) else { break };
+    let (mut stubs, mut points) = (0, 0);
+    let end = loop {
+        if lines.len() >= how.most_lines {
+            break CoverEnd::Most;
+        }
+        if stubs >= MOST_STUBS {
+            break CoverEnd::Stubs;
+        }
+        if points >= MOST_POINTS {
+            break CoverEnd::Points;
+        }
+        let Some(seed) = queue.pop_front().or_else(|| cells.next()) else { break CoverEnd::Full };
         let p = chart.surface().point(seed);
         if !chart.surface().contains(seed) || !crowd.is_free(&p, FREE * d) {
             continue;
@@ -143,6 +176,7 @@ pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Vec<SurfacePolyline>
         } else {
             trace_while(chart, course, seed, &how.stops, &|_, _| true)
         };
+        points += line.points.len();
         // Stubs say nothing and hide the lines around them.
         if line.points.len() < 2 || line.length_mm() < d {
             // Where the course has no direction nothing was followed.
@@ -153,8 +187,8 @@ pub fn cover(chart: &Chart, course: Course, how: &Cover) -> Vec<SurfacePolyline>
         crowd.add(&line, 0.2 * d);
         queue.extend(beside(chart, &line, d));
         lines.push(line);
-    }
-    lines
+    };
+    Covered { lines, end }
 }
 
 /// Middles of the chart's cells, the middle of the face first.

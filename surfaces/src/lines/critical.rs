@@ -51,6 +51,8 @@ pub struct CriticalPoints {
     /// Whether the sum of the indices agrees with the gradient's turn along the border; `None` where there are lines
     /// or constant regions, or the gradient vanishes on the border.
     pub confirmed: Option<bool>,
+    /// Cells that were searched less finely than others, since critical points are all over the face: the field is noise.
+    pub coarse_cells: usize,
 }
 
 impl CriticalPoints {
@@ -86,7 +88,7 @@ pub fn critical_points(chart: &Chart, field: &dyn ScalarField) -> CriticalPoints
         _ => None,
     };
     points.extend(chart.poles().iter().filter_map(|p| describe_pole(chart, field, p)));
-    CriticalPoints { points, lines: found.lines, flat: found.flat, confirmed }
+    CriticalPoints { points, lines: found.lines, flat: found.flat, confirmed, coarse_cells: found.coarse }
 }
 
 /// Greatest less smallest value at the cells' corners.

@@ -35,6 +35,12 @@ pub trait ScalarField: Sync {
         0.0
     }
 
+    /// Values of a field that is defined up to its sign only which are zero but for rounding: where it has no others there is
+    /// no line, though its sign turns all over.
+    fn zero(&self, _scale: Scale) -> f64 {
+        0.0
+    }
+
     /// Whether the field has its digits at the poles of the parametrisation too: it needs no tangent plane.
     fn holds_at_poles(&self) -> bool {
         false
@@ -107,6 +113,10 @@ impl ScalarField for Extremality {
         let along = rate.forms.rate(&surface.jet2(at), &d);
         let value = rate.extremality(along, k);
         value.is_finite().then(|| FieldSample { value, gradient: None, sense: Some(d.into_inner()) })
+    }
+    fn zero(&self, scale: Scale) -> f64 {
+        // Third derivatives keep ten digits.
+        1e-10 * scale.curvature_per_mm.powi(2)
     }
 }
 

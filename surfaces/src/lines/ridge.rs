@@ -27,15 +27,26 @@ pub struct Ridge {
 /// An end of a ridge is at an umbilic that is nearer than this many cells.
 const AT_UMBILIC: f64 = 1.0;
 
+/// The ridges of a face.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ridges {
+    /// The lines, those of k_1 first.
+    pub lines: Vec<Ridge>,
+    /// Pieces of the face in which there may be more than is found: its curvature is noise there.
+    pub coarse_pieces: usize,
+}
+
 /// The ridges of both families.
 #[must_use]
-pub fn ridges(chart: &Chart, umbilics: &Umbilics) -> Vec<Ridge> {
-    let mut out = Vec::new();
+pub fn ridges(chart: &Chart, umbilics: &Umbilics) -> Ridges {
+    let mut out = Ridges::default();
     for family in Family::ALL {
         if is_constant(chart, family) {
             continue;
         }
-        for contour in contours(chart, &Extremality { family }, &[0.0], None).lines {
+        let found = contours(chart, &Extremality { family }, &[0.0], None);
+        out.coarse_pieces += found.coarse_pieces;
+        for contour in found.lines {
             let mut line = contour.line;
             if line.points.len() < 2 {
                 continue;
@@ -45,7 +56,7 @@ pub fn ridges(chart: &Chart, umbilics: &Umbilics) -> Vec<Ridge> {
             }
             let middle = line.points[line.points.len() / 2].at;
             let Some((greatest, crest)) = judge(chart, family, middle) else { continue };
-            out.push(Ridge { family, greatest, crest, line });
+            out.lines.push(Ridge { family, greatest, crest, line });
         }
     }
     out
@@ -54,10 +65,8 @@ pub fn ridges(chart: &Chart, umbilics: &Umbilics) -> Vec<Ridge> {
 /// Whether the family's curvature is constant along all its own lines but for rounding, as on a torus: then every line
 /// is a ridge and none.
 fn is_constant(chart: &Chart, family: Family) -> bool {
-    /// Third derivatives keep ten digits.
-    const ROUNDING: f64 = 1e-10;
-    let limit = ROUNDING * chart.curvature_per_mm().powi(2);
     let field = Extremality { family };
+    let limit = field.zero(chart.scale());
     let value = |u: &f64, v: &f64| field.sample(chart.surface(), uv(*u, *v)).map_or(0.0, |s| s.value.abs());
     let (us, vs) = (chart.borders(Axis::U), chart.borders(Axis::V));
     us.iter().all(|u| vs.iter().all(|v| value(u, v) <= limit))

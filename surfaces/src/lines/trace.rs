@@ -150,7 +150,7 @@ const STOP: f64 = 1e-4;
 /// errors of the steps add up.
 const CLOSING: f64 = 100.0;
 /// Most steps of one half of a line.
-const MOST_STEPS: usize = 200_000;
+const MOST_STEPS: usize = 20_000;
 
 struct Follower<'a> {
     chart: &'a Chart<'a>,

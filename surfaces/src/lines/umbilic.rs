@@ -75,6 +75,8 @@ pub struct Umbilics {
     pub border_sum_twice: Option<i32>,
     /// Cells in which the surface has no tangent plane.
     pub undefined_cells: usize,
+    /// Cells that were searched less finely than others, since umbilics are all over the face: its curvature is noise.
+    pub coarse_cells: usize,
     /// Side of the largest cell searched, mm: pairs of umbilics nearer than the cells' samples tell may cancel.
     pub resolution_mm: f64,
 }
@@ -140,6 +142,7 @@ pub fn umbilics(chart: &Chart) -> Umbilics {
         index_sum_twice,
         border_sum_twice,
         undefined_cells: found.undefined,
+        coarse_cells: found.coarse,
         resolution_mm: chart.resolution_mm(),
     }
 }

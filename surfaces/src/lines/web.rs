@@ -20,6 +20,10 @@ pub(crate) struct Web {
     pub samples: Vec<Option<FieldSample>>,
     /// Vertices of the triangles; the edge between the first two is cut next.
     pub triangles: Vec<[u32; 3]>,
+    /// Triangles that would have been cut once more, had refinement not come to its bounds.
+    pub uncut: usize,
+    /// Values of a signless field up to this are zero.
+    zero: f64,
 }
 
 /// An extreme value of the field that the triangulation must not miss.
@@ -31,8 +35,8 @@ pub(crate) struct Extreme {
 
 /// Rounds of refinement; each halves the area: sixteen make triangles a 256th of a cell wide.
 const ROUNDS: usize = 16;
-/// Most triangles.
-const MOST_TRIANGLES: usize = 600_000;
+/// So many triangles more than the chart's cells give are the last round of refinement. Noise takes what it may have.
+const MOST_MORE: usize = 80_000;
 
 /// The two ends of an edge in the order in which it is always taken.
 pub(crate) fn edge(a: u32, b: u32) -> (u32, u32) {
@@ -51,14 +55,21 @@ impl Web {
     /// The triangulation for `levels`, which are ascending.
     pub fn new(chart: &Chart, field: &dyn ScalarField, levels: &[f64], extremes: &[Extreme]) -> Self {
         let mut web = Self::grid(chart, field);
+        web.zero = field.zero(chart.scale());
         // Triangles that are new since the last round.
+        let most = web.triangles.len() + MOST_MORE;
         let mut fresh: Vec<bool> = vec![true; web.triangles.len()];
-        for _ in 0..ROUNDS {
+        for round in 0..=ROUNDS {
             let marks: Vec<bool> = (0..web.triangles.len())
                 .into_par_iter()
                 .map(|t| fresh[t] && web.needs_cut(chart, field, levels, extremes, web.triangles[t]))
                 .collect();
-            if !marks.contains(&true) || web.triangles.len() > MOST_TRIANGLES {
+            let marked = marks.iter().filter(|m| **m).count();
+            if marked == 0 {
+                break;
+            }
+            if round == ROUNDS || web.triangles.len() > most {
+                web.uncut = marked;
                 break;
             }
             fresh = web.cut(chart, field, &marks);
@@ -88,7 +99,12 @@ impl Web {
                 }
             }
         }
-        Self { at, samples, triangles }
+        Self { at, samples, triangles, uncut: 0, zero: 0.0 }
+    }
+
+    /// Whether a signless field is zero but for rounding at all corners of a triangle: there is no line in it.
+    pub fn is_zero(&self, corners: &[FieldSample; 3]) -> bool {
+        corners.iter().all(|s| s.sense.is_some() && s.value.abs() <= self.zero)
     }
 
     /// Whether the levels' lines may do in a triangle what its corners do not tell.
@@ -102,6 +118,9 @@ impl Web {
     ) -> bool {
         let [a, b, c] = triangle.map(|v| self.samples[v as usize]);
         let (Some(a), Some(b), Some(c)) = (a, b, c) else { return false };
+        if self.is_zero(&[a, b, c]) {
+            return false;
+        }
         if a.sense.is_some() && same_sense(&a, &b) * same_sense(&b, &c) * same_sense(&c, &a) < 0.0 {
             return true;
         }

@@ -41,6 +41,8 @@ pub(crate) struct Zeros {
     pub flat: Vec<Uv>,
     /// Cells in which the field has no value everywhere.
     pub undefined: usize,
+    /// Cells whose halving ended sooner than elsewhere since the whole face is full of zeros.
+    pub coarse: usize,
 }
 
 /// Cells are halved at most this often: to a thousandth of a cell of the chart.
@@ -49,7 +51,7 @@ const DEPTH: u32 = 10;
 const MOST_OPEN: usize = 120;
 /// Open pieces of all cells together. A face full of zeros, whose field is noise, has that many; its cells get fewer pieces each, and
 /// what lies in them is a line of zeros all the same.
-const MOST_OPEN_IN_ALL: usize = 200_000;
+const MOST_OPEN_IN_ALL: usize = 60_000;
 /// Fewest pieces that a cell is cut into before halving ends.
 const FEWEST_OPEN: usize = 4;
 /// Twice the misfit of the samples stands for what lies between them.
@@ -96,6 +98,7 @@ pub(crate) fn zeros(chart: &Chart, field: Plane, floor: f64) -> Zeros {
     for f in found {
         out.flat.extend(f.flat);
         out.undefined += f.undefined;
+        out.coarse += usize::from(f.coarse);
         for at in f.zeros {
             if !known.reaches(at) {
                 known.add(at, SAME);
@@ -153,6 +156,7 @@ struct Findings {
     flat: Option<Uv>,
     open: Vec<Cell>,
     undefined: usize,
+    coarse: bool,
 }
 
 /// A cell of the chart with what is found of it as a whole, and the open pieces at which its halving ends.
@@ -165,7 +169,7 @@ struct Root {
 fn search(chart: &Chart, field: Plane, floor: f64, root: Root) -> Findings {
     let mut out = Findings::default();
     let mut queue = VecDeque::from([root.cell]);
-    let (mut first, mut ended) = (Some(root.first), false);
+    let mut first = Some(root.first);
     while let Some(cell) = queue.pop_front() {
         match first.take().unwrap_or_else(|| judge(chart, field, floor, &cell)) {
             Verdict::Empty => {}
@@ -174,9 +178,9 @@ fn search(chart: &Chart, field: Plane, floor: f64, root: Root) -> Findings {
             Verdict::Undefined if cell.depth >= 3 => out.undefined += 1,
             Verdict::Flat => out.open.push(cell),
             Verdict::Open | Verdict::Undefined => {
-                if cell.depth >= DEPTH || ended || queue.len() > root.most_open {
+                if cell.depth >= DEPTH || out.coarse || queue.len() > root.most_open {
                     // On a face full of zeros for good: else pieces go on to be cut as others are taken from the queue.
-                    ended |= root.most_open < MOST_OPEN;
+                    out.coarse |= cell.depth < DEPTH && root.most_open < MOST_OPEN;
                     out.open.push(cell);
                     continue;
                 }

@@ -22,6 +22,7 @@ const FLAT: f64 = 1e-9;
 
 /// Fills the face; returns the largest distance that is left, mm.
 pub(super) fn refine(sheet: &mut Sheet<'_>, options: &MeshOptions) -> f64 {
+    sheet.close_rim();
     grid(sheet, options);
     let mut left = 0.0;
     for round in 0..=ROUNDS {

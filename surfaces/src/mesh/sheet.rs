@@ -3,7 +3,7 @@
 use crate::part::Face;
 use crate::topology::Chart;
 use osculate_geom::{Point3, Surface, Uv, uv};
-use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
+use spade::handles::{FixedFaceHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 /// A vertex of the plane.
@@ -35,6 +35,8 @@ pub(super) struct Sheet<'a> {
     pub(super) own: Vec<Point3>,
     pub(super) shared: usize,
     pub(super) scale: [f64; 2],
+    /// The vertices of the boundary, and how many points of its own the face had with them.
+    rim: (Vec<Node>, usize),
 }
 
 impl<'a> Sheet<'a> {
@@ -43,7 +45,7 @@ impl<'a> Sheet<'a> {
         let most = extent[0].max(extent[1]);
         // A direction of no speed is stretched as if it were short, so that its parameters stay apart.
         let scale = [0, 1].map(|k| (extent[k] / most).max(1e-3) / chart.side(k).length());
-        Self { face, chart, plane: Plane::new(), own, shared, scale }
+        Self { face, chart, plane: Plane::new(), own, shared, scale, rim: (Vec::new(), 0) }
     }
 
     /// The place of parameters in the plane.
@@ -60,16 +62,28 @@ impl<'a> Sheet<'a> {
         uv(d.u.lo + p.x / self.scale[0], d.v.lo + p.y / self.scale[1])
     }
 
-    /// Inserts a point of the surface; `None` where its parameters are no numbers.
-    pub(super) fn add(&mut self, at: Uv) -> Option<FixedVertexHandle> {
+    /// The boundary is whole: what is added from now on lies inside.
+    pub(super) fn close_rim(&mut self) {
+        self.rim = (self.plane.vertices().map(|v| *v.data()).collect(), self.own.len());
+    }
+
+    /// Inserts a point of the surface inside the boundary; not where its parameters are no numbers, nor where a vertex is.
+    pub(super) fn add(&mut self, at: Uv) {
         let point = self.face.surface.point(at);
         let node = Node { place: self.place(at), at, point, id: self.shared + self.own.len() };
         let before = self.plane.num_vertices();
-        let handle = self.plane.insert(node).ok()?;
+        let Ok(handle) = self.plane.insert(node) else { return };
         if self.plane.num_vertices() > before {
             self.own.push(point);
+            return;
         }
-        Some(handle)
+        // The vertex there has taken over what is inserted: it gets back what it was.
+        let (rim, own) = &self.rim;
+        let was = rim.get(handle.index()).copied().unwrap_or_else(|| {
+            let k = own + handle.index() - rim.len();
+            Node { point: self.own[k], id: self.shared + k, ..node }
+        });
+        *self.plane.vertex_data_mut(handle) = was;
     }
 
     /// Which inner triangles are inside the face, by index.

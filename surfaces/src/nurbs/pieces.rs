@@ -236,6 +236,40 @@ impl Piece<'_> {
         }
     }
 
+    /// Coefficients of the powers of u and v about a place up to the third order together, numerator relative to the origin and
+    /// weight: `[a][b]` of `u^a v^b`. Horner's rule with three derivatives, on plain numbers.
+    pub(crate) fn powers_at(&self, u: f64, v: f64) -> [[Vector4<f64>; 4]; 4] {
+        let x = self.frames[0].local(Lanes::<1>::splat(u)).0[0];
+        let y = self.frames[1].local(Lanes::<1>::splat(v)).0[0];
+        let mut sums = [[Vector4::zeros(); 4]; 4];
+        for row in self.coefficients.chunks_exact(self.terms[1]).rev() {
+            let mut r = [Vector4::zeros(); 4];
+            for k in row.iter().rev() {
+                for n in (1..4).rev() {
+                    r[n] = r[n] * y + r[n - 1];
+                }
+                r[0] = r[0] * y + Vector4::from(*k);
+            }
+            for b in 0..4 {
+                for a in (1..4 - b).rev() {
+                    sums[a][b] = sums[a][b] * x + sums[a - 1][b];
+                }
+                sums[0][b] = sums[0][b] * x + r[b];
+            }
+        }
+        let [rx, ry] = [self.frames[0].slope(), self.frames[1].slope()];
+        let mut by_u = 1.0;
+        for (a, row) in sums.iter_mut().enumerate() {
+            let mut scale = by_u;
+            for c in &mut row[..4 - a] {
+                *c *= scale;
+                scale *= ry;
+            }
+            by_u *= rx;
+        }
+        sums
+    }
+
     /// Squares below which the first derivatives by u and v are rounding alone.
     #[inline(always)]
     pub(crate) fn silent(&self) -> [f64; 2] {

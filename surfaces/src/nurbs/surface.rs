@@ -9,7 +9,7 @@
 use super::eval::{Evaluator, piece_orders};
 use super::net::Net;
 use super::pieces::{Orders, Pieces};
-use super::taylor::{taylor, third};
+use super::taylor::{taylor, third, third_of_piece};
 use crate::closest::Index;
 use crate::knots::{KnotError, Knots, MAX_DEGREE};
 use crate::quad;
@@ -407,7 +407,10 @@ impl Surface for NurbsSurface {
     fn jet3(&self, uv: Uv) -> Jet3 {
         let at = self.bring(uv);
         let span = self.span(at);
-        let [duuu, duuv, duvv, dvvv] = third(&self.knots, &self.net, at, span);
+        let [duuu, duuv, duvv, dvvv] = match self.evaluator.pieces() {
+            Some(pieces) => third_of_piece(pieces, at, span),
+            None => third(&self.knots, &self.net, at, span),
+        };
         Jet3 { jet2: self.piece_jet(at, span), duuu, duuv, duvv, dvvv }
     }
 

@@ -5,6 +5,7 @@
 
 use super::curve::NurbsCurve3;
 use super::net::Net;
+use super::pieces::Pieces;
 use crate::knots::Knots;
 use nalgebra::Vector4;
 use osculate_geom::{Curve, CurveTaylor, Interval, MAX_ORDER, Point3, Series, Side, Taylor, Uv, Vec3};
@@ -73,23 +74,38 @@ pub(crate) fn third(knots: &[Knots; 2], net: &Net, at: Uv, span: [usize; 2]) -> 
             }
         }
     }
+    thirds(&sums, weights.is_some())
+}
+
+/// [`third`] of a surface with precomputed pieces.
+pub(crate) fn third_of_piece(pieces: &Pieces, at: Uv, span: [usize; 2]) -> [Vec3; 4] {
+    thirds(&pieces.piece(span).powers_at(at.u, at.v), pieces.rational)
+}
+
+/// The third derivatives from the coefficients `[a][b]` of `u^a v^b` of numerator and, where it counts, denominator.
+fn thirds(sums: &[[Vector4<f64>; 4]; 4], rational: bool) -> [Vec3; 4] {
+    if !rational {
+        return [
+            sums[3][0].xyz() * 6.0,
+            sums[2][1].xyz() * 2.0,
+            sums[1][2].xyz() * 2.0,
+            sums[0][3].xyz() * 6.0,
+        ];
+    }
     let mut s = [[Vec3::zeros(); 4]; 4];
     for n in 0..4 {
         for b in 0..=n {
             let a = n - b;
+            // S w = A: what the lower orders leave.
             let mut rest = sums[a][b].xyz();
-            if weights.is_some() {
-                // S w = A: what the lower orders leave.
-                for (i, low) in s[..=a].iter().enumerate() {
-                    for (j, c) in low[..=b].iter().enumerate() {
-                        if i + j < n {
-                            rest -= c * sums[a - i][b - j].w;
-                        }
+            for (i, low) in s[..=a].iter().enumerate() {
+                for (j, c) in low[..=b].iter().enumerate() {
+                    if i + j < n {
+                        rest -= c * sums[a - i][b - j].w;
                     }
                 }
-                rest /= sums[0][0].w;
             }
-            s[a][b] = rest;
+            s[a][b] = rest / sums[0][0].w;
         }
     }
     [s[3][0] * 6.0, s[2][1] * 2.0, s[1][2] * 2.0, s[0][3] * 6.0]
@@ -181,6 +197,13 @@ mod tests {
                 for (a, b) in pairs {
                     // Two ways of summing some sixteen terms of size 1000.
                     assert!((a - b).norm() < 1e-11, "{a} {b}");
+                }
+                // Third orders by pieces and the sum over the poles, which shares nothing with them; by the series, too.
+                let direct = third(s.both_knots(), s.net(), at, s.span(at));
+                for (k, got) in [jet.duuu, jet.duuv, jet.duvv, jet.dvvv].into_iter().enumerate() {
+                    let want = t.derivative(3 - k, k);
+                    assert!((got - want).norm() < 1e-9 * (1.0 + want.norm()), "{got} {want}");
+                    assert!((got - direct[k]).norm() < 1e-9 * (1.0 + want.norm()), "{got} {}", direct[k]);
                 }
                 let h = 1e-4;
                 let (up, um) = (s.jet2(uv(at.u + h, at.v)), s.jet2(uv(at.u - h, at.v)));
