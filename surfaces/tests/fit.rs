@@ -225,6 +225,20 @@ fn sections_of_differing_counts_are_lofted() {
     assert!(matches!(refused, FitError::Tolerance { reached_mm, .. } if reached_mm > 1e-9), "{refused}");
 }
 
+/// A point is missing in one section: the others keep their common knots, and the surface is no finer than two sections.
+#[test]
+fn sections_of_as_many_points_share_their_knots() {
+    let mut sections = rotor37();
+    let points = sections[0].len();
+    sections[1].remove(points / 3);
+    let options =
+        LoftOptions { degree: [3, 3], spacing: Spacing::Centripetal, closed: true, tolerance_mm: None };
+    let made = loft(&sections, &options).unwrap();
+    assert!(made.misfit.max_mm < 1e-9, "{:?}", made.misfit);
+    let poles = made.surface.net().count[0];
+    assert!(poles <= 2 * points + 3, "{poles} poles of sections of {points} points");
+}
+
 #[test]
 fn a_compressor_blade_of_rulings() {
     let text = include_str!("data/blade/nasa_pyturbo_centrif_compressor_mainblade_xyz_pts.csv");

@@ -122,3 +122,36 @@ impl<'a> Sheet<'a> {
         part.into_iter().map(|p| answers.get(p).copied().unwrap_or(false)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &str = r#"{"format": 1, "faces": [{"id": "F1", "kind": "bspline", "oriented": true, "side": "along", "surface": {"nurbs":
+        {"degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]], "poles_mm": [[[0, 0, 0], [0, 9, 0]], [[9, 0, 0], [9, 9, 0]]],
+        "side": "along"}}}]}"#;
+
+    /// What is inserted where a vertex is changes nothing: not a shared vertex, whose neighbour would lose it, and not one inside.
+    #[test]
+    fn a_vertex_keeps_its_number() {
+        let faces = crate::json::read(SQUARE.as_bytes()).expect("a square");
+        let chart = Chart::new(&faces[0]);
+        let mut sheet = Sheet::new(&faces[0], &chart, vec![Point3::origin()], 7);
+        let corners = [(0.0, 0.0, 3), (1.0, 0.0, 4), (0.0, 1.0, 5), (1.0, 1.0, 7)];
+        for (u, v, id) in corners {
+            let at = uv(u, v);
+            let node = Node { place: sheet.place(at), at, point: faces[0].surface.point(at), id };
+            sheet.plane.insert(node).expect("a corner");
+        }
+        sheet.close_rim();
+        for (u, v) in [(0.5, 0.25), (1.0, 0.0), (0.25, 0.5), (0.5, 0.25), (1.0, 1.0), (0.25, 0.5)] {
+            sheet.add(uv(u, v));
+        }
+        let ids: Vec<usize> = sheet.plane.vertices().map(|v| v.data().id).collect();
+        assert_eq!(ids, [3, 4, 5, 7, 8, 9]);
+        assert_eq!(sheet.own.len(), 3);
+        for v in sheet.plane.vertices().skip(4) {
+            assert_eq!(v.data().point, sheet.own[v.data().id - sheet.shared]);
+        }
+    }
+}

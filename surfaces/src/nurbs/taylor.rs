@@ -199,7 +199,7 @@ mod tests {
                     assert!((a - b).norm() < 1e-11, "{a} {b}");
                 }
                 // Third orders by pieces and the sum over the poles, which shares nothing with them; by the series, too.
-                let direct = third(s.both_knots(), s.net(), at, s.span(at));
+                let direct = super::third(s.both_knots(), s.net(), at, s.span(at));
                 for (k, got) in [jet.duuu, jet.duuv, jet.duvv, jet.dvvv].into_iter().enumerate() {
                     let want = t.derivative(3 - k, k);
                     assert!((got - want).norm() < 1e-9 * (1.0 + want.norm()), "{got} {want}");
