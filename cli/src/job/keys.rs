@@ -15,7 +15,8 @@ const ABOVE: Range = Range { least: 0.0, most: 1e6, open: [true, false] };
 /// Across a cutter: a micrometre is a tenth of the thinnest that is sold.
 const ACROSS: Range = Range { least: 1e-3, most: 1e6, open: [false; 2] };
 const NOT_BELOW: Range = Range { least: 0.0, most: 1e6, open: [false; 2] };
-const FINE: Range = Range { least: 0.0, most: 1e3, open: [true, false] };
+/// What a tolerance may be: a nanometre is below what rounding of coordinates leaves.
+const FINE: Range = Range { least: 1e-6, most: 1e3, open: [false; 2] };
 const FAR: Range = Range { least: -1e6, most: 1e6, open: [false; 2] };
 const LEAN: Range = Range { least: -90.0, most: 90.0, open: [true; 2] };
 const TURN: Range = Range { least: -360.0, most: 360.0, open: [false; 2] };
