@@ -20,7 +20,7 @@ pub(crate) struct Web {
     pub samples: Vec<Option<FieldSample>>,
     /// Vertices of the triangles; the edge between the first two is cut next.
     pub triangles: Vec<[u32; 3]>,
-    /// Triangles that would have been cut once more, had refinement not come to its bounds.
+    /// Triangles that would have been cut once more, had there not been so many.
     pub uncut: usize,
     /// Values of a signless field up to this are zero.
     zero: f64,
@@ -59,7 +59,7 @@ impl Web {
         // Triangles that are new since the last round.
         let most = web.triangles.len() + MOST_MORE;
         let mut fresh: Vec<bool> = vec![true; web.triangles.len()];
-        for round in 0..=ROUNDS {
+        for _ in 0..ROUNDS {
             let marks: Vec<bool> = (0..web.triangles.len())
                 .into_par_iter()
                 .map(|t| fresh[t] && web.needs_cut(chart, field, levels, extremes, web.triangles[t]))
@@ -68,7 +68,7 @@ impl Web {
             if marked == 0 {
                 break;
             }
-            if round == ROUNDS || web.triangles.len() > most {
+            if web.triangles.len() > most {
                 web.uncut = marked;
                 break;
             }
