@@ -63,9 +63,9 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
     with("format = 1", "format = 2").refused(&["format = 2", "format = 1"]);
     with("scallop_mm", "scallop_um").refused(&["scallop_um"]);
     with("diameter_mm = 10", "diameter = 10").refused(&["diameter"]);
-    with("scallop_mm = 0.02", "scallop_mm = 0").refused(&["scallop_mm = 0", "positive"]);
-    with("scallop_mm = 0.02", "scallop_mm = -1").refused(&["scallop_mm = -1", "positive"]);
-    with("scallop_mm = 0.02", "scallop_mm = nan").refused(&["scallop_mm = NaN", "positive"]);
+    with("scallop_mm = 0.02", "scallop_mm = 0").refused(&["scallop_mm = 0", "from 0.000001 to 1000"]);
+    with("scallop_mm = 0.02", "scallop_mm = -1").refused(&["scallop_mm = -1", "from 0.000001 to 1000"]);
+    with("scallop_mm = 0.02", "scallop_mm = nan").refused(&["scallop_mm = NaN", "from 0.000001 to 1000"]);
     with("scallop_mm = 0.02", "scallop_mm = \"fine\"").refused(&["scallop_mm"]);
     with("kind = \"ball\"", "kind = \"toroidal\"\ncorner_radius_mm = 6")
         .refused(&["corner_radius_mm = 6", "radius 5"]);
@@ -138,9 +138,9 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("[verification]", "[verify]\na = 1\n[verification]", &["verify"]),
     ("scallop_mm = 0.02", "scallop_um = 20", &["scallop_um", "line 9", "is scallop_mm meant?"]),
     ("scallop_mm = 0.02", "", &["needs scallop_mm"]),
-    ("scallop_mm = 0.02", "scallop_mm = nan", &["scallop_mm = NaN", "positive"]),
-    ("scallop_mm = 0.02", "scallop_mm = inf", &["scallop_mm = inf", "positive"]),
-    ("scallop_mm = 0.02", "scallop_mm = 0", &["scallop_mm = 0", "positive"]),
+    ("scallop_mm = 0.02", "scallop_mm = nan", &["scallop_mm = NaN", "from 0.000001 to 1000"]),
+    ("scallop_mm = 0.02", "scallop_mm = inf", &["scallop_mm = inf", "from 0.000001 to 1000"]),
+    ("scallop_mm = 0.02", "scallop_mm = 0", &["scallop_mm = 0", "from 0.000001 to 1000"]),
     ("scallop_mm = 0.02", "scallop_mm = 0.02\nscallop_mm = 1", &["scallop_mm", "line 10"]),
     ("gouge_mm = 0.005", "gouge_mm = -1", &["gouge_mm = -1", "line 10"]),
     ("gouge_mm = 0.005", "gouge_mm = true", &["gouge_mm = true"]),
