@@ -44,8 +44,7 @@ pub struct LoftOptions {
 /// ```
 ///
 /// # Errors
-/// [`FitError`]. Sections of equal counts with `tolerance_mm: None` are better served by
-/// [`super::interpolate_grid`], which shares one set of knots.
+/// [`FitError`]. Sections that all have as many points are a grid: [`super::interpolate_grid`].
 pub fn loft(sections: &[Vec<Point3>], options: &LoftOptions) -> Result<SurfaceFit, FitError> {
     let [p, q] = options.degree;
     check_sections(sections.len(), q)?;

@@ -141,7 +141,8 @@ const CLOSE: f64 = 0.5;
 /// So many lines in a row that end before they are a spacing long are the last ones. Faces whose lines mean something have some dozens
 /// of them in all; each costs as much as a line.
 const MOST_STUBS: usize = 500;
-/// With so many points in all, no further lines are tried. Four hundred lines of smooth faces have some 50,000.
+/// With so many points in all, no further lines are tried. Lines of curvature of smooth faces have below a hundred each, and a figure
+/// has four hundred at most.
 const MOST_POINTS: usize = 300_000;
 
 /// Lines of `course` spread over the face.

@@ -41,7 +41,7 @@ pub enum LineEnd {
     Singular,
     /// Another line is too near, see [`cover`](super::cover()).
     Crowded,
-    /// The line is longer than was allowed.
+    /// The line is longer, or has more steps, than was allowed.
     TooLong,
 }
 
@@ -149,7 +149,7 @@ const STOP: f64 = 1e-4;
 /// A line that comes back to its start nearer than this many position tolerances, per step taken, is closed: the
 /// errors of the steps add up.
 const CLOSING: f64 = 100.0;
-/// Most steps of one half of a line.
+/// Most steps of one half of a line: smooth ones have some hundred, what winds about noise has all that it may.
 const MOST_STEPS: usize = 20_000;
 
 struct Follower<'a> {

@@ -55,7 +55,6 @@ impl Web {
     /// The triangulation for `levels`, which are ascending.
     pub fn new(chart: &Chart, field: &dyn ScalarField, levels: &[f64], extremes: &[Extreme]) -> Self {
         let mut web = Self::grid(chart, field);
-        web.zero = field.zero(chart.scale());
         // Triangles that are new since the last round.
         let most = web.triangles.len() + MOST_MORE;
         let mut fresh: Vec<bool> = vec![true; web.triangles.len()];
@@ -99,7 +98,7 @@ impl Web {
                 }
             }
         }
-        Self { at, samples, triangles, uncut: 0, zero: 0.0 }
+        Self { at, samples, triangles, uncut: 0, zero: field.zero(chart.scale()) }
     }
 
     /// Whether a signless field is zero but for rounding at all corners of a triangle: there is no line in it.
