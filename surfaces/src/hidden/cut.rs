@@ -78,8 +78,8 @@ pub(super) fn cut(surface: &TrimmedSurface, solid: &Solid<'_>, scale: Scale) -> 
         why: "the lines of intersection do not close on the face",
     };
     let all = pieces(surface, &border, &lines, joins).map_err(loose)?;
-    let beside = Beside { surface, border: &border, solid, tolerance_mm: scale.tolerance_mm() };
-    let kept: Vec<bool> = all.iter().map(|p| beside.bounds(p)).collect();
+    let beside = Beside { surface, border: &border, solid, pieces: &all, tolerance_mm: scale.tolerance_mm() };
+    let kept = even(&all, &(0..all.len()).map(|k| beside.bounds(k)).collect::<Vec<_>>());
     let changed = all.iter().zip(&kept).any(|(p, k)| p.other.is_some() == *k);
     let left = if !changed {
         Left::All
@@ -156,35 +156,72 @@ struct Beside<'a> {
     surface: &'a TrimmedSurface,
     border: &'a Border<'a>,
     solid: &'a Solid<'a>,
+    pieces: &'a [Piece],
     tolerance_mm: f64,
+}
+
+/// What is beside a place of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    /// The face is not there.
+    Off,
+    /// Nothing clear before the face ends.
+    Near,
+    /// Nothing clear before another piece.
+    Blocked,
+    Hidden,
+    Visible,
+}
+
+impl Side {
+    fn clear(self) -> bool {
+        matches!(self, Self::Hidden | Self::Visible)
+    }
+}
+
+/// Whether a piece bounds what is left, by what is beside it.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    kept: bool,
+    /// Whether other pieces stand too near to say it from this one alone.
+    blocked: bool,
 }
 
 impl Beside<'_> {
     /// Whether a piece bounds what is left: a line between a hidden side and one that is not, border beside what is not hidden.
-    fn bounds(&self, piece: &Piece) -> bool {
-        let mut last = None;
+    fn bounds(&self, number: usize) -> Bounds {
+        let piece = &self.pieces[number];
+        let mut last: Option<[Side; 2]> = None;
         for way in ALONG {
-            let Some((at, across)) = self.place(piece, way) else { continue };
-            let sides = [1.0, -1.0].map(|sign| self.side(at, uv(sign * across.u, sign * across.v)));
-            let clear = |s: &Option<Where>| matches!(s, Some(Where::Inside | Where::Outside));
-            let enough =
-                if piece.other.is_some() { sides.iter().all(clear) } else { sides.iter().any(clear) };
-            last = Some(sides);
+            let Some((at, across, segment)) = self.place(piece, way) else { continue };
+            let of = |sign: f64| self.side(at, uv(sign * across.u, sign * across.v), (number, segment));
+            let sides = [of(1.0), of(-1.0)];
+            if last.is_none() || !sides.contains(&Side::Blocked) {
+                last = Some(sides);
+            }
+            let enough = if piece.other.is_some() {
+                sides.iter().all(|s| s.clear())
+            } else {
+                sides.iter().any(|s| s.clear())
+            };
             if enough {
+                last = Some(sides);
                 break;
             }
         }
-        let hidden = |s: &Option<Where>| *s == Some(Where::Inside);
-        match (piece.other, last) {
-            (Some(_), Some([a, b])) => hidden(&a) != hidden(&b),
-            (Some(_), None) => false,
-            (None, Some(sides)) => !sides.iter().any(hidden),
-            (None, None) => true,
+        let Some(sides) = last else { return Bounds { kept: piece.other.is_none(), blocked: false } };
+        let hidden = sides.map(|s| s == Side::Hidden);
+        match piece.other {
+            Some(_) => Bounds { kept: hidden[0] != hidden[1], blocked: sides.contains(&Side::Blocked) },
+            None => Bounds {
+                kept: !hidden.contains(&true),
+                blocked: sides.contains(&Side::Blocked) && !sides.iter().any(|s| s.clear()),
+            },
         }
     }
 
-    /// A place of a piece, and the direction of parameters across it with a length of about one in space.
-    fn place(&self, piece: &Piece, way: f64) -> Option<(Uv, Uv)> {
+    /// A place of a piece, the direction of parameters across it with a length of about one in space, and the segment.
+    fn place(&self, piece: &Piece, way: f64) -> Option<(Uv, Uv, usize)> {
         let p = &piece.points;
         let count = if piece.nodes.is_none() { p.len() } else { p.len() - 1 };
         let lengths: Vec<f64> = (0..count)
@@ -210,25 +247,68 @@ impl Beside<'_> {
         let t = Sheet::new(self.surface).at(at);
         let speed = (t.du * across.u + t.dv * across.v).norm();
         let scaled = uv(across.u / speed, across.v / speed);
-        (scaled.u.is_finite() && scaled.v.is_finite()).then_some((at, scaled))
+        (scaled.u.is_finite() && scaled.v.is_finite()).then_some((at, scaled, k))
     }
 
-    /// What is beside a place; none where the face is not.
-    fn side(&self, at: Uv, across: Uv) -> Option<Where> {
-        let mut said = None;
+    /// What is beside a place on a segment of a piece.
+    fn side(&self, at: Uv, across: Uv, from: (usize, usize)) -> Side {
+        let mut said = Side::Off;
         for step in BESIDE {
             let h = step * self.tolerance_mm;
             let there = uv(at.u + h * across.u, at.v + h * across.v);
             if !self.border.holds(there) {
                 break;
             }
-            said = Some(self.solid.tell(&self.surface.point(there), self.tolerance_mm));
-            if said != Some(Where::Near) {
-                break;
+            if self.crosses(at, there, from) {
+                return Side::Blocked;
             }
+            said = match self.solid.tell(&self.surface.point(there), self.tolerance_mm) {
+                Where::Inside => return Side::Hidden,
+                Where::Outside => return Side::Visible,
+                Where::Near => Side::Near,
+            };
         }
         said
     }
+
+    /// Whether a step from a place on a segment of a piece meets another one.
+    fn crosses(&self, from: Uv, to: Uv, own: (usize, usize)) -> bool {
+        let of = |(number, piece): (usize, &Piece)| {
+            let p = &piece.points;
+            let count = if piece.nodes.is_none() { p.len() } else { p.len() - 1 };
+            (0..count).any(|k| (number, k) != own && meet([from, to], [p[k], p[(k + 1) % p.len()]]))
+        };
+        self.pieces.iter().enumerate().any(of)
+    }
+}
+
+/// Whether two segments meet.
+fn meet([a, b]: [Uv; 2], [c, d]: [Uv; 2]) -> bool {
+    let (s, t, r) = (uv(b.u - a.u, b.v - a.v), uv(d.u - c.u, d.v - c.v), uv(c.u - a.u, c.v - a.v));
+    let det = s.u * t.v - s.v * t.u;
+    let within = |x: f64| (0.0..=1.0).contains(&x);
+    within((r.u * t.v - r.v * t.u) / det) && within((r.u * s.v - r.v * s.u) / det)
+}
+
+/// Which pieces bound what is left. At every node their number is even; that tells of those that stand too near to others.
+fn even(pieces: &[Piece], bounds: &[Bounds]) -> Vec<bool> {
+    let mut kept: Vec<bool> = bounds.iter().map(|b| b.kept).collect();
+    let mut open: Vec<bool> = bounds.iter().map(|b| b.blocked).collect();
+    let nodes = pieces.iter().filter_map(|p| p.nodes).flatten().max().map_or(0, |n| n + 1);
+    let mut at: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+    for (k, piece) in pieces.iter().enumerate() {
+        for node in piece.nodes.iter().flatten() {
+            at[*node].push(k);
+        }
+    }
+    while let Some((of, k)) = at.iter().find_map(|of| {
+        let mut still = of.iter().filter(|k| open[**k]);
+        still.next().filter(|_| still.next().is_none()).map(|k| (of, *k))
+    }) {
+        kept[k] = of.iter().filter(|o| **o != k && kept[**o]).count() % 2 == 1;
+        open[k] = false;
+    }
+    kept
 }
 
 /// The face inside loops that lie flat in its rectangle.

@@ -88,22 +88,33 @@ pub(super) fn pieces(
             ends[*k][*end] = Some(nodes.of(at, joins.border_mm, Some(on)));
         }
     }
-    let mut free: Vec<(usize, usize, usize)> = Vec::new();
+    let mut free: Vec<(usize, usize, Uv)> = Vec::new();
     for (k, end, at) in &open {
         if ends[*k][*end].is_none() {
-            let node = nodes.of(*at, joins.gap_mm, None);
-            ends[*k][*end] = Some(node);
-            free.push((*k, *end, node));
+            ends[*k][*end] = Some(nodes.of(*at, joins.border_mm, None));
+            free.push((*k, *end, *at));
         }
     }
-    // An end that met no other one goes to the border, if that is near enough.
-    for (k, end, node) in &free {
-        let met = ends.iter().flatten().filter(|n| **n == Some(*node)).count();
-        if met == 1 && nodes.border[*node].is_none() {
-            let near = on_border(nodes.at[*node], joins.gap_mm).ok_or(Loose(Some(lines[*k].other)))?;
-            let (at, on) = place(near);
-            ends[*k][*end] = Some(nodes.of(at, joins.border_mm, Some(on)));
-        }
+    // An end that met no other one goes to the nearest that met none either, or to the border, if that is near enough.
+    let lone = |ends: &[[Option<usize>; 2]], node: usize| {
+        ends.iter().flatten().filter(|n| **n == Some(node)).count() == 1
+    };
+    for (k, end, at) in &free {
+        let node = ends[*k][*end];
+        let Some(node) = node.filter(|n| nodes.border[*n].is_none() && lone(&ends, *n)) else { continue };
+        let near = free.iter().filter(|f| (f.0, f.1) != (*k, *end));
+        let near = near.filter_map(|f| Some((nodes.distance_mm(*at, f.2), ends[f.0][f.1]?)));
+        let near =
+            near.filter(|(mm, n)| *mm <= joins.gap_mm && nodes.border[*n].is_none() && lone(&ends, *n));
+        let other = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        ends[*k][*end] = Some(match other {
+            Some((_, other)) => other,
+            None => {
+                let near = on_border(nodes.at[node], joins.gap_mm).ok_or(Loose(Some(lines[*k].other)))?;
+                let (at, on) = place(near);
+                nodes.of(at, joins.border_mm, Some(on))
+            }
+        });
     }
     let mut out = border_pieces(border, &nodes);
     for (line, ends) in lines.iter().zip(ends) {
