@@ -5,6 +5,7 @@ use crate::screen::{output, render};
 use osculate::failure::{Done, Failure, Outcome, read};
 use osculate_surfaces::{Face, MeshOptions, PartMesh, iges, json, mesh_faces, step, stl};
 use serde::Serialize;
+use std::io::{BufWriter, Seek, Write};
 
 #[derive(Serialize)]
 struct Triangles {
@@ -22,9 +23,20 @@ struct Answer {
     out: String,
     format: &'static str,
     faces: usize,
-    bytes: usize,
+    bytes: u64,
     triangles: Option<Triangles>,
 }
+
+/// Endings of files, and what they mean.
+const FORMATS: [(&str, &str); 7] = [
+    ("step", "step"),
+    ("stp", "step"),
+    ("igs", "iges"),
+    ("iges", "iges"),
+    ("json", "json"),
+    ("stl", "stl"),
+    ("obj", "obj"),
+];
 
 /// Chord tolerance as a part of the box's diagonal where none is given.
 const CHORD: f64 = 1e-3;
@@ -36,37 +48,46 @@ pub fn run(args: &ExportArgs, as_json: bool) -> Outcome {
     let name = args.out.file_stem().map_or_else(|| "part".to_owned(), |s| s.to_string_lossy().into_owned());
     let kind = args.out.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let fail = |e: &dyn std::fmt::Display| Failure::file(&args.out, e);
-    let mut triangles = None;
-    let (format, bytes) = match kind.as_str() {
-        "step" | "stp" => {
-            let options = step::StepOptions { name, ..step::StepOptions::default() };
-            ("step", step::write(&faces, &options).map_err(|e| fail(&e))?.into_bytes())
-        }
-        "igs" | "iges" => {
-            let options = iges::IgesOptions { name, ..iges::IgesOptions::default() };
-            ("iges", iges::write(&faces, &options).map_err(|e| fail(&e))?.into_bytes())
-        }
-        "json" => ("json", json::write(&faces).map_err(|e| fail(&e))?.into_bytes()),
-        "stl" | "obj" => {
-            let mesh = meshed(args, &faces)?;
-            triangles = Some(found(&mesh));
-            let ids: Vec<&str> = faces.iter().map(|f| f.id.as_str()).collect();
-            match (kind.as_str(), args.text) {
-                ("obj", _) => ("obj", stl::obj(&mesh, &ids).into_bytes()),
-                (_, true) => ("stl", stl::ascii(&mesh, &name).into_bytes()),
-                (_, false) => ("stl", stl::binary(&mesh)),
+    let Some(format) = FORMATS.iter().find(|f| f.0 == kind).map(|f| f.1) else {
+        let path = args.out.display();
+        return Err(Failure::Usage(format!(
+            "{path}: the ending says what to write: .step, .stp, .igs, .iges, .json, .stl or .obj"
+        )));
+    };
+    let mesh = match format {
+        "stl" | "obj" => Some(meshed(args, &faces)?),
+        _ => None,
+    };
+    let bytes = output::stream(&args.out, |file| {
+        let mut out = BufWriter::new(file);
+        match (format, &mesh) {
+            ("step", _) => {
+                let options = step::StepOptions { name, ..step::StepOptions::default() };
+                step::write_to(&faces, &options, &mut out).map_err(|e| fail(&e))?;
+            }
+            ("iges", _) => {
+                let options = iges::IgesOptions { name, ..iges::IgesOptions::default() };
+                iges::write_to(&faces, &options, &mut out).map_err(|e| fail(&e))?;
+            }
+            (_, None) => {
+                let text = json::write(&faces).map_err(|e| fail(&e))?;
+                out.write_all(text.as_bytes()).map_err(|e| fail(&e))?;
+            }
+            (_, Some(mesh)) => {
+                let ids: Vec<&str> = faces.iter().map(|f| f.id.as_str()).collect();
+                let bytes = match (format, args.text) {
+                    ("obj", _) => stl::obj(mesh, &ids).into_bytes(),
+                    (_, true) => stl::ascii(mesh, &name).into_bytes(),
+                    (_, false) => stl::binary(mesh),
+                };
+                out.write_all(&bytes).map_err(|e| fail(&e))?;
             }
         }
-        _ => {
-            let path = args.out.display();
-            return Err(Failure::Usage(format!(
-                "{path}: the ending says what to write: .step, .stp, .igs, .iges, .json, .stl or .obj"
-            )));
-        }
-    };
-    output::write(&args.out, &bytes)?;
+        out.stream_position().map_err(|e| fail(&e))
+    })?;
+    let triangles = mesh.as_ref().map(found);
     let out = args.out.display().to_string();
-    let answer = Answer { out, format, faces: faces.len(), bytes: bytes.len(), triangles };
+    let answer = Answer { out, format, faces: faces.len(), bytes, triangles };
     if as_json {
         render::json(&answer)?;
         return Ok(Done::Yes);

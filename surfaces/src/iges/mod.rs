@@ -31,7 +31,7 @@ mod pcurves;
 mod tree;
 mod write;
 
-pub use write::{IgesOptions, IgesWriteError, write};
+pub use write::{IgesOptions, IgesWriteError, write, write_to};
 
 use crate::part::Part;
 use cards::{CardFault, Cards};

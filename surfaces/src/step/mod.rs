@@ -24,7 +24,7 @@ mod unused;
 mod walk;
 mod write;
 
-pub use write::{StepOptions, StepWriteError, write};
+pub use write::{StepOptions, StepWriteError, write, write_to};
 
 use crate::part::Part;
 

@@ -31,9 +31,9 @@ pub(crate) struct Way {
     pub(crate) ends: [f64; 2],
 }
 
-/// Chords of the points that a spline is put through, as a part of its length: the spline is then within 1e-10 of its
+/// Chords of the points that a spline is put through, as a part of its length: the spline is then within 1e-8 of its
 /// length from a smooth course.
-const FIT_CHORD: f64 = 1e-5;
+const FIT_CHORD: f64 = 1e-4;
 
 /// Chords that meet at a greater angle than this are a corner, rad.
 const CORNER: f64 = 0.2;

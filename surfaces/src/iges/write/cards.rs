@@ -1,6 +1,7 @@
 //! Cards of 80 columns: directory entries, parameter data, and the global section that says units and accuracy.
 
 use super::options::{IgesOptions, IgesWriteError};
+use std::io::Write;
 
 /// Status of an entity that stands by itself.
 pub(super) const INDEPENDENT: &str = "00000000";
@@ -61,45 +62,46 @@ impl Cards {
         self.entities[entity].label = name.chars().take(8).collect();
     }
 
-    /// The whole file.
-    pub(super) fn file(self, options: &IgesOptions, size_mm: f64) -> Result<String, IgesWriteError> {
-        let mut parameters: Vec<String> = Vec::new();
-        let mut directory: Vec<String> = Vec::new();
-        for (number, e) in self.entities.iter().enumerate() {
-            let first = parameters.len() + 1;
-            let owner = 2 * number + 1;
-            let mut words = vec![e.kind.to_string()];
-            words.extend(e.values.iter().map(word));
-            if !e.text.is_empty() {
-                words.push(e.text.clone());
-            }
-            if let Some(property) = e.name {
-                // No associativities, one property.
-                words.extend(["0".to_owned(), "1".to_owned(), (2 * property + 1).to_string()]);
-            }
-            for line in wrapped(&words, WIDTH) {
-                let sequence = parameters.len() + 1;
-                parameters.push(format!("{line:<64} {owner:>7}P{sequence:>7}\n"));
-            }
-            let count = parameters.len() + 1 - first;
-            let (kind, form, status, label) = (e.kind, e.form, e.status, &e.label);
-            directory.push(format!(
-                "{kind:>8}{first:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{status:>8}D{owner:>7}\n",
-                0, 0, 0, 0, 0, 0
-            ));
-            directory.push(format!(
-                "{kind:>8}{:>8}{:>8}{count:>8}{form:>8}{:>16}{label:>8}{:>8}D{:>7}\n",
-                0,
-                0,
-                "",
-                0,
-                owner + 1
-            ));
-        }
-        let most = parameters.len().max(directory.len());
+    /// Writes the whole file.
+    pub(super) fn file(
+        &self,
+        options: &IgesOptions,
+        size_mm: f64,
+        out: &mut dyn Write,
+    ) -> Result<(), IgesWriteError> {
+        let counts: Vec<usize> = (0..self.entities.len()).map(|k| self.lines(k).len()).collect();
+        let (d, p) = (2 * self.entities.len(), counts.iter().sum::<usize>());
+        let most = d.max(p);
         if most > 9_999_999 {
             return Err(IgesWriteError::TooLong { cards: most });
         }
+        let written = self.sections(options, size_mm, &counts, out);
+        written.map_err(|e| IgesWriteError::Output { why: e.to_string() })
+    }
+
+    /// The parameter data of an entity.
+    fn lines(&self, number: usize) -> Vec<String> {
+        let e = &self.entities[number];
+        let mut words = vec![e.kind.to_string()];
+        words.extend(e.values.iter().map(word));
+        if !e.text.is_empty() {
+            words.push(e.text.clone());
+        }
+        if let Some(property) = e.name {
+            // No associativities, one property.
+            words.extend(["0".to_owned(), "1".to_owned(), (2 * property + 1).to_string()]);
+        }
+        wrapped(&words, WIDTH)
+    }
+
+    /// The sections, with so many cards of parameter data for each entity.
+    fn sections(
+        &self,
+        options: &IgesOptions,
+        size_mm: f64,
+        counts: &[usize],
+        out: &mut dyn Write,
+    ) -> std::io::Result<()> {
         let name = hollerith(&options.name);
         let date =
             hollerith(if options.timestamp.is_empty() { "00000101.000000" } else { &options.timestamp });
@@ -130,16 +132,31 @@ impl Cards {
             "0".into(),
         ];
         let global = wrapped(&global, 72);
-        let mut out = format!("{:<72}S{:>7}\n", "", 1);
+        writeln!(out, "{:<72}S{:>7}", "", 1)?;
         for (k, line) in global.iter().enumerate() {
-            out.push_str(&format!("{line:<72}G{:>7}\n", k + 1));
+            writeln!(out, "{line:<72}G{:>7}", k + 1)?;
         }
-        directory.iter().for_each(|line| out.push_str(line));
-        parameters.iter().for_each(|line| out.push_str(line));
-        let (g, d, p) = (global.len(), directory.len(), parameters.len());
-        let counts = format!("S{:>7}G{g:>7}D{d:>7}P{p:>7}", 1);
-        out.push_str(&format!("{counts:<72}T{:>7}\n", 1));
-        Ok(out)
+        let mut first = 1;
+        for (number, (e, count)) in self.entities.iter().zip(counts).enumerate() {
+            let owner = 2 * number + 1;
+            let Entity { kind, form, status, label, .. } = e;
+            let o = 0;
+            writeln!(out, "{kind:>8}{first:>8}{o:>8}{o:>8}{o:>8}{o:>8}{o:>8}{o:>8}{status:>8}D{owner:>7}")?;
+            let next = owner + 1;
+            writeln!(out, "{kind:>8}{o:>8}{o:>8}{count:>8}{form:>8}{:>16}{label:>8}{o:>8}D{next:>7}", "")?;
+            first += count;
+        }
+        let mut sequence = 0;
+        for number in 0..self.entities.len() {
+            let owner = 2 * number + 1;
+            for line in self.lines(number) {
+                sequence += 1;
+                writeln!(out, "{line:<64} {owner:>7}P{sequence:>7}")?;
+            }
+        }
+        let (g, d) = (global.len(), 2 * self.entities.len());
+        let counts = format!("S{:>7}G{g:>7}D{d:>7}P{sequence:>7}", 1);
+        writeln!(out, "{counts:<72}T{:>7}", 1)
     }
 }
 

@@ -21,11 +21,25 @@ use crate::topology::{
 use cards::{Cards, Value};
 use osculate_geom::{Axis, Side};
 
-/// Writes faces as an IGES file, lengths in millimetres.
+/// Faces as an IGES file, lengths in millimetres.
 ///
 /// # Errors
 /// [`IgesWriteError`].
 pub fn write(faces: &[Face], options: &IgesOptions) -> Result<String, IgesWriteError> {
+    let mut out = Vec::new();
+    write_to(faces, options, &mut out)?;
+    String::from_utf8(out).map_err(|e| IgesWriteError::Output { why: e.to_string() })
+}
+
+/// As [`write()`], card by card. Where it fails the output has a part of the file.
+///
+/// # Errors
+/// [`IgesWriteError`].
+pub fn write_to(
+    faces: &[Face],
+    options: &IgesOptions,
+    to: &mut dyn std::io::Write,
+) -> Result<(), IgesWriteError> {
     if faces.is_empty() {
         return Err(IgesWriteError::NoFaces);
     }
@@ -75,7 +89,7 @@ pub fn write(faces: &[Face], options: &IgesOptions) -> Result<String, IgesWriteE
             out.add(514, if body.closed { 1 } else { 2 }, cards::INDEPENDENT, values);
         }
     }
-    out.file(options, topology.size_mm)
+    out.file(options, topology.size_mm, to)
 }
 
 /// The numbers of the vertex list and the edge list.

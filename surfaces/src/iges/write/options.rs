@@ -39,4 +39,10 @@ pub enum IgesWriteError {
         /// Cards of the longest section.
         cards: usize,
     },
+    /// The output takes no more.
+    #[error("{why}")]
+    Output {
+        /// What the system says.
+        why: String,
+    },
 }

@@ -6,7 +6,7 @@ use crate::topology::{Along, Way};
 use crate::trim::curve::OpenKind;
 
 /// Writes the curve of a way; its number.
-pub(super) fn curve(out: &mut Records, way: &Way) -> usize {
+pub(super) fn curve(out: &mut Records<'_>, way: &Way) -> usize {
     match &way.along {
         Along::Line(l) => {
             let origin = out.point(&l.origin);
@@ -43,7 +43,7 @@ pub(super) fn curve(out: &mut Records, way: &Way) -> usize {
     }
 }
 
-fn spline(out: &mut Records, s: &NurbsCurve3, closed: &str) -> usize {
+fn spline(out: &mut Records<'_>, s: &NurbsCurve3, closed: &str) -> usize {
     let ids: Vec<usize> = s.poles().iter().map(|p| out.point(p)).collect();
     let poles = list(&ids);
     let (times, values) = knots(s.knots().as_slice());

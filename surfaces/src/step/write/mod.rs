@@ -24,16 +24,31 @@ use records::{Records, flag, list, text};
 /// Vertices are at the ends of their edges to at least this part of the part's size.
 const ACCURACY: f64 = 1e-7;
 
-/// Writes faces as a STEP file, lengths in millimetres.
+/// Faces as a STEP file, lengths in millimetres.
 ///
 /// # Errors
 /// [`StepWriteError`].
 pub fn write(faces: &[Face], options: &StepOptions) -> Result<String, StepWriteError> {
+    let mut out = Vec::new();
+    write_to(faces, options, &mut out)?;
+    String::from_utf8(out).map_err(|e| StepWriteError::Output { why: e.to_string() })
+}
+
+/// As [`write()`], record by record: a file is several times as large as what its faces take in memory. Where it fails the output
+/// has a part of the file.
+///
+/// # Errors
+/// [`StepWriteError`].
+pub fn write_to(
+    faces: &[Face],
+    options: &StepOptions,
+    out: &mut dyn std::io::Write,
+) -> Result<(), StepWriteError> {
     if faces.is_empty() {
         return Err(StepWriteError::NoFaces);
     }
     let topology = Topology::new(faces, None);
-    let mut out = Records::new();
+    let mut out = Records::new(out, options);
     let vertices: Vec<usize> = topology
         .vertices
         .iter()
@@ -82,11 +97,11 @@ pub fn write(faces: &[Face], options: &StepOptions) -> Result<String, StepWriteE
     let items = shells::items(&mut out, faces, &topology, &written);
     let accuracy_mm = accuracy(&topology).max(ACCURACY * topology.size_mm);
     shells::product(&mut out, options, &items, accuracy_mm);
-    Ok(out.file(options))
+    out.end()
 }
 
 /// A whole sphere or torus: a loop of one point stands for no boundary.
-fn vertex_loop(out: &mut Records, face: &Face, of: &FaceEdges) -> Result<usize, StepWriteError> {
+fn vertex_loop(out: &mut Records<'_>, face: &Face, of: &FaceEdges) -> Result<usize, StepWriteError> {
     if of.chart.closes == [false, false] {
         return Err(StepWriteError::NoBoundary { face: face.id.clone() });
     }
@@ -96,7 +111,7 @@ fn vertex_loop(out: &mut Records, face: &Face, of: &FaceEdges) -> Result<usize, 
     Ok(out.add(format!("VERTEX_LOOP('',#{vertex})")))
 }
 
-fn edge_loop(out: &mut Records, walk: &[Step], edges: &[usize]) -> usize {
+fn edge_loop(out: &mut Records<'_>, walk: &[Step], edges: &[usize]) -> usize {
     let uses: Vec<usize> = walk
         .iter()
         .map(|s| out.add(format!("ORIENTED_EDGE('',*,*,#{},{})", edges[s.edge], flag(s.forward))))

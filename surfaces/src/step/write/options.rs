@@ -27,4 +27,10 @@ pub enum StepWriteError {
         /// The face's id.
         face: String,
     },
+    /// The output takes no more.
+    #[error("{why}")]
+    Output {
+        /// What the system says.
+        why: String,
+    },
 }

@@ -22,7 +22,7 @@ pub(super) struct Shape<'a> {
 }
 
 /// The curves of all edges, with parameter curves on `surfaces`; their numbers.
-pub(super) fn curves(out: &mut Records, shape: &Shape<'_>, surfaces: &[usize]) -> Vec<usize> {
+pub(super) fn curves(out: &mut Records<'_>, shape: &Shape<'_>, surfaces: &[usize]) -> Vec<usize> {
     let uses = uses(shape);
     let mut space = None;
     let mut numbers = Vec::with_capacity(uses.len());
@@ -93,7 +93,7 @@ fn scaled(c: &NurbsCurve2, [u, v]: [f64; 2]) -> Option<NurbsCurve2> {
     NurbsCurve2::new(c.degree(), c.knots().as_slice().to_vec(), poles, None).ok()
 }
 
-fn pcurve(out: &mut Records, c: &NurbsCurve2, surface: usize, context: usize) -> usize {
+fn pcurve(out: &mut Records<'_>, c: &NurbsCurve2, surface: usize, context: usize) -> usize {
     let ids: Vec<usize> =
         c.poles().iter().map(|p| out.add(format!("CARTESIAN_POINT('',{})", reals(&[p.x, p.y])))).collect();
     let (times, values) = knots(c.knots().as_slice());

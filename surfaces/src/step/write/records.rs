@@ -1,30 +1,45 @@
 //! The records of a Part 21 file being written: numbers, texts, points.
 
-use super::options::StepOptions;
+use super::options::{StepOptions, StepWriteError};
 use osculate_geom::analytic::Placement;
 use osculate_geom::{Point3, Vec3};
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::Write;
 
-/// Records so far, numbered from 1.
-pub(super) struct Records {
-    data: String,
+/// A file of records, numbered from 1, as they come.
+pub(super) struct Records<'a> {
+    out: &'a mut dyn Write,
     last: usize,
+    /// The first failure: nothing is written after it.
+    failed: Option<std::io::Error>,
 }
 
-impl Records {
-    pub(super) const fn new() -> Self {
-        Self { data: String::new(), last: 0 }
+impl<'a> Records<'a> {
+    /// Begins the file.
+    pub(super) fn new(out: &'a mut dyn Write, options: &StepOptions) -> Self {
+        let mut made = Self { out, last: 0, failed: None };
+        made.put(format_args!(
+            "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n\
+             FILE_NAME({},{},(''),(''),'osculate','osculate','');\n\
+             FILE_SCHEMA(('AUTOMOTIVE_DESIGN {{ 1 0 10303 214 1 1 1 1 }}'));\nENDSEC;\nDATA;\n",
+            text(&options.name),
+            text(&options.timestamp),
+        ));
+        made
+    }
+
+    fn put(&mut self, words: std::fmt::Arguments<'_>) {
+        if self.failed.is_none() {
+            self.failed = self.out.write_fmt(words).err();
+        }
     }
 
     /// Adds a record; its number.
     pub(super) fn add(&mut self, record: String) -> usize {
         self.last += 1;
-        self.data.push('#');
-        self.data.push_str(&self.last.to_string());
-        self.data.push('=');
-        self.data.push_str(&record);
-        self.data.push_str(";\n");
-        self.last
+        let number = self.last;
+        self.put(format_args!("#{number}={record};\n"));
+        number
     }
 
     pub(super) fn point(&mut self, p: &Point3) -> usize {
@@ -42,16 +57,13 @@ impl Records {
         self.add(format!("AXIS2_PLACEMENT_3D('',#{origin},#{z},#{x})"))
     }
 
-    /// The whole file.
-    pub(super) fn file(self, options: &StepOptions) -> String {
-        format!(
-            "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n\
-             FILE_NAME({},{},(''),(''),'osculate','osculate','');\n\
-             FILE_SCHEMA(('AUTOMOTIVE_DESIGN {{ 1 0 10303 214 1 1 1 1 }}'));\nENDSEC;\nDATA;\n{}ENDSEC;\nEND-ISO-10303-21;\n",
-            text(&options.name),
-            text(&options.timestamp),
-            self.data
-        )
+    /// Ends the file.
+    pub(super) fn end(mut self) -> Result<(), StepWriteError> {
+        self.put(format_args!("ENDSEC;\nEND-ISO-10303-21;\n"));
+        match self.failed {
+            Some(e) => Err(StepWriteError::Output { why: e.to_string() }),
+            None => Ok(()),
+        }
     }
 }
 

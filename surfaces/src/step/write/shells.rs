@@ -8,7 +8,7 @@ use crate::topology::{Topology, bodies};
 /// The shape items: a solid for faces that close, a shell for the others. Returns their numbers, and whether all are
 /// solids.
 pub(super) fn items(
-    out: &mut Records,
+    out: &mut Records<'_>,
     faces: &[Face],
     topology: &Topology,
     written: &[usize],
@@ -34,7 +34,7 @@ pub(super) fn items(
 
 /// The product structure around the shape items.
 pub(super) fn product(
-    out: &mut Records,
+    out: &mut Records<'_>,
     options: &StepOptions,
     (items, only_solids): &(Vec<usize>, bool),
     accuracy_mm: f64,

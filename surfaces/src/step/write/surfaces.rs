@@ -9,7 +9,7 @@ use osculate_geom::Axis;
 use osculate_geom::analytic::Placement;
 
 /// Writes the carrier of a face, its natural normal along `S_u x S_v`; its number.
-pub(super) fn surface(out: &mut Records, face: &Face) -> usize {
+pub(super) fn surface(out: &mut Records<'_>, face: &Face) -> usize {
     match &face.carrier {
         FaceSurface::Analytic(a) => analytic(out, a),
         FaceSurface::Nurbs(n) => spline(out, n),
@@ -20,7 +20,7 @@ pub(super) fn surface(out: &mut Records, face: &Face) -> usize {
     }
 }
 
-fn analytic(out: &mut Records, a: &Analytic) -> usize {
+fn analytic(out: &mut Records<'_>, a: &Analytic) -> usize {
     let frame = *a.placement();
     match a.shape() {
         Shape::Plane => {
@@ -60,7 +60,7 @@ fn analytic(out: &mut Records, a: &Analytic) -> usize {
     }
 }
 
-fn spline(out: &mut Records, n: &NurbsSurface) -> usize {
+fn spline(out: &mut Records<'_>, n: &NurbsSurface) -> usize {
     let net = n.net();
     let columns = net.count[1];
     let ids: Vec<usize> = net.points.iter().map(|p| out.point(p)).collect();
