@@ -36,12 +36,12 @@ const fn bound(line: &'static str, file: &'static str, times: f64, s_per_mib: f6
 
 #[rustfmt::skip]
 const BOUNDS: [Bound; 21] = [
-    bound("inspect faces.step --json", "faces.step", 7.0, 4.0),
-    bound("probe faces.step --face F1 --at 0.5,0.5", "faces.step", 7.0, 1.0),
-    bound("export faces.step --out out.stl", "faces.step", 7.0, 2.0),
-    bound("export faces.step --out out.igs", "faces.step", 9.0, 2.0),
-    bound("inspect faces.igs --json", "faces.igs", 7.0, 4.0),
-    bound("export faces.igs --out out.step", "faces.igs", 9.0, 2.0),
+    bound("inspect faces.step --json", "faces.step", 6.0, 4.0),
+    bound("probe faces.step --face F1 --at 0.5,0.5", "faces.step", 6.0, 1.0),
+    bound("export faces.step --out out.stl", "faces.step", 6.0, 2.0),
+    bound("export faces.step --out out.igs", "faces.step", 6.0, 2.0),
+    bound("inspect faces.igs --json", "faces.igs", 6.0, 4.0),
+    bound("export faces.igs --out out.step", "faces.igs", 6.0, 2.0),
     bound("inspect faces.json --json", "faces.json", 12.0, 4.0),
     bound("export faces.json --out out2.step", "faces.json", 15.0, 2.0),
     bound("inspect mesh.stl", "mesh.stl", 8.0, 1.0),

@@ -21,7 +21,7 @@ use osculate_geom::solve::symmetric;
 use osculate_geom::{Axis, Domain, Interval, Point3, Surface, Uv, Vec3, uv};
 
 /// Splines keep to the feet within this part of the face's size, mm on the surface.
-const ACCURACY: f64 = 1e-7;
+const ACCURACY: f64 = 1e-8;
 
 /// A point of an edge that is farther than this part of the face's size from the surface has no parameters on it.
 const FAR: f64 = 1e-2;

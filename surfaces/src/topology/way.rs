@@ -35,6 +35,9 @@ pub(crate) struct Way {
 /// length from a smooth course.
 const FIT_CHORD: f64 = 1e-4;
 
+/// Points are left out where the spline keeps to them within this part of its length.
+const FIT: f64 = 1e-7;
+
 /// Chords that meet at a greater angle than this are a corner, rad.
 const CORNER: f64 = 0.2;
 
@@ -122,18 +125,35 @@ fn fitted(course: &Course, length_mm: f64) -> Way {
     let after = |k: usize| if k > 0 && !corner[k] { inner(k) } else { one_sided(k, slope(k), k + 1) };
     let before =
         |k: usize| if k + 1 < n && !corner[k] { inner(k) } else { one_sided(k, slope(k - 1), k - 1) };
+    let piece = |a: usize, b: usize| {
+        let third = (t[b] - t[a]) / 3.0;
+        [points[a], points[a] + after(a) * third, points[b] - before(b) * third, points[b]]
+    };
+    let within = |a: usize, b: usize| {
+        let poles = piece(a, b);
+        (a + 1..b).all(|k| {
+            let on = cubic(&poles, (t[k] - t[a]) / (t[b] - t[a]));
+            !corner[k] && (on - points[k]).norm() <= FIT * length_mm
+        })
+    };
     let mut knots = vec![0.0; 4];
     let mut poles = vec![points[0]];
-    for k in 0..n - 1 {
-        let third = (t[k + 1] - t[k]) / 3.0;
-        poles.push(points[k] + after(k) * third);
-        poles.push(points[k + 1] - before(k + 1) * third);
-        let last = k + 2 == n;
-        if last || corner[k + 1] {
-            poles.push(points[k + 1]);
+    let mut from = 0;
+    while from + 1 < n {
+        let mut to = from + 1;
+        // Twice as far, while the cubic keeps to the points between.
+        while to + 1 < n && within(from, (2 * to - from).min(n - 1)) {
+            to = (2 * to - from).min(n - 1);
         }
-        let times = if last { 4 } else { 2 + usize::from(corner[k + 1]) };
-        knots.extend(std::iter::repeat_n(t[k + 1], times));
+        let [_, b, c, d] = piece(from, to);
+        poles.extend([b, c]);
+        let last = to + 1 == n;
+        if last || corner[to] {
+            poles.push(d);
+        }
+        let times = if last { 4 } else { 2 + usize::from(corner[to]) };
+        knots.extend(std::iter::repeat_n(t[to], times));
+        from = to;
     }
     let straight = || {
         let line = Line::segment(points[0], points[n - 1]);
@@ -144,6 +164,13 @@ fn fitted(course: &Course, length_mm: f64) -> Way {
         // Points so near to each other that their distances vanish in rounding: a line is as good.
         Err(_) => straight(),
     }
+}
+
+/// The point of a cubic with these poles at a part of its way.
+fn cubic(poles: &[Point3; 4], f: f64) -> Point3 {
+    let g = 1.0 - f;
+    let [a, b, c, d] = poles.map(|p| p.coords);
+    Point3::from(a * (g * g * g) + b * (3.0 * f * g * g) + c * (3.0 * f * f * g) + d * (f * f * f))
 }
 
 impl Way {
