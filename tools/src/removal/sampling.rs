@@ -130,9 +130,12 @@ const MIDDLE: f64 = 2.0 / 3.0;
 const LEVEL: f64 = 1e-9;
 /// Attempts to get below the allowed count; each aims at it, and the second nearly always meets it.
 const MAX_ATTEMPTS: u32 = 40;
+/// Cells of a grid at most, but for as many as samples: of a face that fills little of its rectangle most lie outside, and take time.
+const MOST_CELLS: f64 = 1e7;
 
 /// Samples a face at about `spacing_mm`, more densely where it bends, with at most `max_samples` samples:
-/// where that is too few the spacing is increased, and the one used is reported in [`Sampling::density`].
+/// where that is too few, or where the rectangle of a trimmed face would take more than ten million cells, the spacing is increased,
+/// and the one used is reported in [`Sampling::density`].
 ///
 /// # Errors
 /// [`SamplingError`].
@@ -163,15 +166,18 @@ pub fn sample_surface(
         );
     }
     let most = max_samples as f64;
+    let most_cells = MOST_CELLS.max(most);
     let inside = quadrature::share_within_trims(surface);
     let mut spacing = spacing_mm.max((area * inside / most).sqrt());
     for _ in 0..MAX_ATTEMPTS {
         let grid = Grid { surface, domain: surface.domain(), face, spacing };
         let rows = grid.rows();
         // Every row has a cell at least, so that this also bounds the work of counting.
-        let wanted =
-            if rows.count() > 4.0 * most / inside { rows.count() } else { grid.count(&rows) * inside };
-        if wanted <= most {
+        let row_count = rows.count();
+        let cells =
+            if row_count > 4.0 * most_cells.min(most / inside) { row_count } else { grid.count(&rows) };
+        let over = (cells * inside / most).max(cells / most_cells);
+        if over <= 1.0 {
             let sampling = grid.samples(&rows);
             if sampling.samples.is_empty() {
                 return Err(SamplingError::Nothing { face, spacing_mm: spacing });
@@ -181,7 +187,7 @@ pub fn sample_surface(
             }
             spacing *= 1.02 * (sampling.samples.len() as f64 / most).sqrt();
         } else {
-            spacing *= 1.02 * (wanted / most).sqrt();
+            spacing *= 1.02 * over.sqrt();
         }
     }
     Err(SamplingError::Nothing { face, spacing_mm: spacing })

@@ -31,6 +31,16 @@ impl Surface for Disc {
     }
 }
 
+/// A disc of 3 mm2 on a square of a square metre: cells of the square are counted, not only samples of the disc.
+#[test]
+fn little_of_a_large_rectangle() {
+    let disc = Disc { plane: square(1000.0), radius: 1.0 };
+    let got = sample_surface(&disc, 0, 0.001, 1_000_000).unwrap();
+    let spacing = got.density.spacing_mm;
+    assert!(spacing > 0.31 && spacing < 0.35, "{spacing}");
+    assert!((got.area_mm2 - PI).abs() < 0.05 * PI, "{}", got.area_mm2);
+}
+
 #[test]
 fn areas_add_up() {
     let sphere = Sphere::new(10.0).unwrap();
