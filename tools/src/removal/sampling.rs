@@ -132,6 +132,8 @@ const LEVEL: f64 = 1e-9;
 const MAX_ATTEMPTS: u32 = 40;
 /// Cells of a grid at most, but for as many as samples: of a face that fills little of its rectangle most lie outside, and take time.
 const MOST_CELLS: f64 = 1e7;
+/// Rows likewise: each is measured before it has cells. A face has as many with a million samples where it is 10,000 times as long as wide.
+const MOST_ROWS: f64 = 1e5;
 
 /// Samples a face at about `spacing_mm`, more densely where it bends, with at most `max_samples` samples:
 /// where that is too few, or where the rectangle of a trimmed face would take more than ten million cells, the spacing is increased,
@@ -174,9 +176,12 @@ pub fn sample_surface(
         let rows = grid.rows();
         // Every row has a cell at least, so that this also bounds the work of counting.
         let row_count = rows.count();
-        let cells =
-            if row_count > 4.0 * most_cells.min(most / inside) { row_count } else { grid.count(&rows) };
-        let over = (cells * inside / most).max(cells / most_cells);
+        let over = if row_count > MOST_ROWS.min(4.0 * most / inside) {
+            (row_count * inside / most).max(row_count / MOST_ROWS)
+        } else {
+            let cells = grid.count(&rows);
+            (cells * inside / most).max(cells / most_cells)
+        };
         if over <= 1.0 {
             let sampling = grid.samples(&rows);
             if sampling.samples.is_empty() {
