@@ -178,6 +178,12 @@ proptest! {
         // Poles within 15 units: roundings of convex means.
         let near = |q: nalgebra::Point2<f64>| (p - q).norm() <= 1e-13;
         prop_assert!(near(c.insert_knot(cut, c.degree()).unwrap().point(at)));
+        // Many at once as one after the other.
+        let more = [(cut, 1), (at.max(cut), usize::from(at > cut && at < d.hi))];
+        let one_by_one = more.iter().try_fold(c.clone(), |c, (t, times)| c.insert_knot(*t, *times)).unwrap();
+        let at_once = c.insert_knots(&more).unwrap();
+        prop_assert_eq!(at_once.knots(), one_by_one.knots());
+        prop_assert!(near(at_once.point(at)));
         let [low, high] = c.split(cut).unwrap();
         let part = if at < cut { &low } else { &high };
         prop_assert!(near(part.point(at)));

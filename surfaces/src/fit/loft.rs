@@ -239,16 +239,9 @@ pub fn compatible(curves: &[NurbsCurve3]) -> Result<Vec<NurbsCurve3>, FitError> 
         .into_iter()
         .map(|c| {
             let c = c.snapped(&union, slack);
-            let mut finer = c.clone();
-            for (t, times) in &union {
-                let more = times - finer.knots().multiplicity(*t).min(*times);
-                if more > 0 {
-                    finer = finer
-                        .insert_knot(*t, more)
-                        .map_err(|_| FitError::Singular { unknowns: finer.poles().len() })?;
-                }
-            }
-            Ok(finer)
+            let more = |(t, times): &(f64, usize)| (*t, times - c.knots().multiplicity(*t).min(*times));
+            let more: Vec<(f64, usize)> = union.iter().map(more).filter(|m| m.1 > 0).collect();
+            c.insert_knots(&more).map_err(|_| FitError::Singular { unknowns: c.poles().len() })
         })
         .collect()
 }

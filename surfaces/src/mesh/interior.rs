@@ -3,6 +3,7 @@
 use super::options::MeshOptions;
 use super::sheet::{Node, Sheet, Triangle};
 use osculate_geom::{Axis, Point3, Surface, Uv, uv};
+use spade::handles::FixedVertexHandle;
 use spade::{Point2, PositionInTriangulation, Triangulation};
 
 /// Rounds of refinement at most; every round halves what is too long.
@@ -31,8 +32,8 @@ pub(super) fn refine(sheet: &mut Sheet<'_>, options: &MeshOptions) -> f64 {
         if wanted.is_empty() || round == ROUNDS || sheet.plane.num_vertices() + wanted.len() > MOST {
             break;
         }
-        for at in wanted {
-            sheet.add(at);
+        for (at, near) in wanted {
+            sheet.add(at, Some(near));
         }
     }
     left
@@ -111,7 +112,7 @@ fn grid(sheet: &mut Sheet<'_>, options: &MeshOptions) {
         }
     }
     for at in points {
-        sheet.add(at);
+        sheet.add(at, None);
     }
 }
 
@@ -140,8 +141,8 @@ fn clear(sheet: &Sheet<'_>, inside: &[bool], p: Point2<f64>, reach: f64) -> bool
     })
 }
 
-/// Parameters of points to insert, and the largest distance found, mm.
-fn wanted(sheet: &Sheet<'_>, options: &MeshOptions) -> (Vec<Uv>, f64) {
+/// Parameters of points to insert, each with a vertex beside it, and the largest distance found, mm.
+fn wanted(sheet: &Sheet<'_>, options: &MeshOptions) -> (Vec<(Uv, FixedVertexHandle)>, f64) {
     let inside = sheet.inside();
     let mut points = Vec::new();
     let mut worst = 0.0_f64;
@@ -167,7 +168,7 @@ fn wanted(sheet: &Sheet<'_>, options: &MeshOptions) -> (Vec<Uv>, f64) {
             }
         });
         if off > options.chord_mm || long || turned {
-            points.push(at);
+            points.push((at, edge.as_directed().from().fix()));
         }
     }
     if !points.is_empty() {
@@ -189,7 +190,7 @@ fn wanted(sheet: &Sheet<'_>, options: &MeshOptions) -> (Vec<Uv>, f64) {
         let off = (p - a.point).dot(&normal).abs() / area;
         worst = worst.max(off);
         if off > options.chord_mm {
-            points.push(at);
+            points.push((at, face.vertices()[0].fix()));
         }
     }
     (points, worst)

@@ -3,7 +3,7 @@
 use crate::part::Face;
 use crate::topology::Chart;
 use osculate_geom::{Point3, Surface, Uv, uv};
-use spade::handles::{FixedFaceHandle, InnerTag};
+use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 /// A vertex of the plane.
@@ -67,12 +67,17 @@ impl<'a> Sheet<'a> {
         self.rim = (self.plane.vertices().map(|v| *v.data()).collect(), self.own.len());
     }
 
-    /// Inserts a point of the surface inside the boundary; not where its parameters are no numbers, nor where a vertex is.
-    pub(super) fn add(&mut self, at: Uv) {
+    /// Inserts a point of the surface inside the boundary; not where its parameters are no numbers, nor where a vertex is. The place is looked
+    /// for from a vertex near it, if one is known.
+    pub(super) fn add(&mut self, at: Uv, near: Option<FixedVertexHandle>) {
         let point = self.face.surface.point(at);
         let node = Node { place: self.place(at), at, point, id: self.shared + self.own.len() };
         let before = self.plane.num_vertices();
-        let Ok(handle) = self.plane.insert(node) else { return };
+        let inserted = match near {
+            Some(near) => self.plane.insert_with_hint(node, near),
+            None => self.plane.insert(node),
+        };
+        let Ok(handle) = inserted else { return };
         if self.plane.num_vertices() > before {
             self.own.push(point);
             return;
@@ -145,7 +150,7 @@ mod tests {
         }
         sheet.close_rim();
         for (u, v) in [(0.5, 0.25), (1.0, 0.0), (0.25, 0.5), (0.5, 0.25), (1.0, 1.0), (0.25, 0.5)] {
-            sheet.add(uv(u, v));
+            sheet.add(uv(u, v), None);
         }
         let ids: Vec<usize> = sheet.plane.vertices().map(|v| v.data().id).collect();
         assert_eq!(ids, [3, 4, 5, 7, 8, 9]);

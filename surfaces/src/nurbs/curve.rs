@@ -227,6 +227,20 @@ impl<const D: usize> NurbsCurve<D> {
         Ok(self.over(inserted(&self.knots, t, times)))
     }
 
+    /// The same curve with each knot standing so many times more often, ascending.
+    ///
+    /// # Errors
+    /// [`EditError`] as [`Self::insert_knot`].
+    pub fn insert_knots(&self, more: &[(f64, usize)]) -> Result<Self, EditError> {
+        let mut new = self.knots.as_slice().to_vec();
+        for (t, times) in more {
+            check_insertion(&self.knots, *t, *times)?;
+            new.extend(std::iter::repeat_n(*t, *times));
+        }
+        new.sort_by(f64::total_cmp);
+        Ok(self.over(new))
+    }
+
     /// The piece over a parameter interval, with clamped knots.
     ///
     /// # Errors

@@ -14,6 +14,10 @@ const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_
 /// Halvings of a cell at most in each direction.
 const MAX_DEPTH: u32 = 5;
 
+/// Halvings of cells at most in all, or so many for each cell: a surface of noise is not followed further.
+const MOST_HALVED: usize = 100_000;
+const HALVED_EACH: usize = 8;
+
 /// A cell of the rectangle.
 #[derive(Clone, Copy)]
 pub(crate) struct Cell {
@@ -53,7 +57,8 @@ pub(crate) fn integrate(
         .collect();
     let coarse: f64 = cells.iter().map(|c| panel(*c, &density).abs()).sum();
     let allowed = relative * coarse / (cells.len() as f64).sqrt().max(1.0);
-    cells.iter().map(|c| cell(*c, region, &density, allowed, 0)).sum()
+    let mut left = MOST_HALVED.max(HALVED_EACH * cells.len());
+    cells.iter().map(|c| cell(*c, region, &density, allowed, (0, &mut left))).sum()
 }
 
 fn cell(
@@ -61,13 +66,15 @@ fn cell(
     region: Option<&Region>,
     density: &dyn Fn(f64, f64) -> f64,
     allowed: f64,
-    depth: u32,
+    (depth, left): (u32, &mut usize),
 ) -> f64 {
     let whole = panel(c, density);
     let parts = c.quarters().map(|q| panel(q, density));
     let halved: f64 = parts.iter().sum();
-    if (halved - whole).abs() > allowed && depth < MAX_DEPTH {
-        return c.quarters().into_iter().map(|q| cell(q, region, density, 0.5 * allowed, depth + 1)).sum();
+    if (halved - whole).abs() > allowed && depth < MAX_DEPTH && *left > 0 {
+        *left -= 1;
+        let quarters = c.quarters().into_iter();
+        return quarters.map(|q| cell(q, region, density, 0.5 * allowed, (depth + 1, &mut *left))).sum();
     }
     match region {
         None => halved,
