@@ -249,6 +249,62 @@ fn rows_go_another_way_in_each_part() {
     }
 }
 
+/// Rows of a deep pocket end at a rib that leads into it from one wall: from one side of it to the other the tool goes around its end,
+/// not over it. It comes up for
+/// the layer below at most (over the rib it came up 25 times).
+#[test]
+fn the_tool_goes_around_a_rib_in_a_deep_pocket() {
+    const DEEP: f64 = 18.0;
+    let up = [0.0, 0.0, 1.0];
+    let over = |[x, y]: [[f64; 2]; 2], z: f64| {
+        rectangle([x[0], y[0], z], up, [1.0, 0.0, 0.0], [x[1] - x[0], y[1] - y[0]])
+    };
+    // A wall from one place to another, with the pocket on its left.
+    let wall = |[from, to]: [[f64; 2]; 2]| {
+        let way = [to[0] - from[0], to[1] - from[1]];
+        let long = way[0].hypot(way[1]);
+        rectangle([from[0], from[1], -DEEP], [-way[1], way[0], 0.0], [way[0], way[1], 0.0], [long, DEEP])
+    };
+    let corners = [
+        [-20.0, -15.0],
+        [-1.5, -15.0],
+        [-1.5, 5.0],
+        [1.5, 5.0],
+        [1.5, -15.0],
+        [20.0, -15.0],
+        [20.0, 15.0],
+        [-20.0, 15.0],
+    ];
+    let mut faces =
+        vec![over([[-20.0, -1.5], [-15.0, 15.0]], -DEEP), over([[1.5, 20.0], [-15.0, 15.0]], -DEEP)];
+    faces.extend([over([[-1.5, 1.5], [5.0, 15.0]], -DEEP), over([[-1.5, 1.5], [-15.0, 5.0]], 0.0)]);
+    faces.extend((0..corners.len()).map(|k| wall([corners[k], corners[(k + 1) % corners.len()]])));
+    faces.extend([
+        over([[-26.0, 26.0], [15.0, 21.0]], 0.0),
+        over([[-26.0, 26.0], [-21.0, -15.0]], 0.0),
+        over([[-26.0, -20.0], [-15.0, 15.0]], 0.0),
+        over([[20.0, 26.0], [-15.0, 15.0]], 0.0),
+    ]);
+    let block = boxed([-26.0, -21.0, -DEEP - 2.0], [26.0, 21.0, 0.0]);
+    let stock = filled(block);
+    let plan = planned(&faces, block, &stock, How { plunges: true, ..How::upright() }).unwrap();
+    let done = heights_of(block, &plan);
+    assert!(done.rapid_mm < 0.05, "{done:?}");
+    let floor = (40.0 - 2.0 * SIZES.allowance_mm) * (30.0 - 2.0 * SIZES.allowance_mm);
+    let rib = (3.0 + 2.0 * SIZES.allowance_mm) * 20.0;
+    // But for six corners inside, of the tool's radius, and the rib's end, which it goes around.
+    let volume = (floor - rib - 6.0 * (1.0 - PI / 4.0) * RADIUS * RADIUS) * (DEEP - SIZES.allowance_mm);
+    assert!((done.taken_mm3 / volume - 1.0).abs() < 0.02, "{} {volume}", done.taken_mm3);
+    let layers = plan.headings[0].layers.len();
+    let (mut ups, mut is_deep) = (0, false);
+    for m in &plan.linked.path.moves {
+        let was_deep = is_deep;
+        is_deep = if is_deep { m.pose.tip.z < -0.5 } else { m.pose.tip.z < -2.5 };
+        ups += usize::from(was_deep && !is_deep);
+    }
+    assert!(ups <= layers, "{ups} times up for {layers} layers");
+}
+
 /// No more is taken in a minute than the job allows, and without a limit more is.
 #[test]
 fn the_feed_follows_the_volume_rate() {

@@ -1,5 +1,5 @@
-//! The way through the air from where the tool is to where it goes on: over what stands in rapid, or low past it at the feed, whichever
-//! is faster.
+//! The way through the air from where the tool is to where it goes on: over what stands in rapid, low over it at the feed, or around it,
+//! whichever is faster.
 //!
 //! A rapid goes from rest to rest three times, keeps the approach distance off what stands and is fed from there down; a way at the feed
 //! goes as low as nothing is taken, and down to its end at once. So the next line is gone on to past a wall, and what lies far is
@@ -97,8 +97,8 @@ impl Moves<'_> {
         Some(Flight { places: vec![up, over], min })
     }
 
-    /// Comes to a place through the air, down to it where nothing thicker than `thin` stands, else at the feed of plunges. `stands` is how
-    /// low a rapid may go there.
+    /// Comes to a place through the air or around what stands, down to it where nothing thicker than `thin` stands, else at the feed of
+    /// plunges. `stands` is how low a rapid may go there.
     fn come_to(&mut self, at: [f64; 3], stands: f64, thin: f64) {
         let in_air = self.stands_at([at[0], at[1]]) <= at[2] + thin;
         let feed = self.manner.links.feed_mm_min;
@@ -106,8 +106,11 @@ impl Moves<'_> {
         let rapid = self.above(at, stands);
         let last = rapid.places.last().copied().unwrap_or(at);
         let by_rapid = rapid.min + apart(last, at) / down;
-        match self.low_over(at, down).filter(|low| in_air && low.min < by_rapid) {
-            Some(low) => self.feed(&low.places, feed, None),
+        let low = self.low_over(at, down).filter(|low| in_air && low.min < by_rapid);
+        let by_air = low.as_ref().map_or(by_rapid, |low| low.min);
+        let around = if in_air { self.around(at, thin, by_air * feed) } else { None };
+        match around.or(low.map(|low| low.places)) {
+            Some(places) => self.feed(&places, feed, None),
             None => rapid.places.into_iter().for_each(|p| self.rapid(p)),
         }
         self.feed(&[at], down, None);

@@ -10,6 +10,7 @@
 //! Where axes are to be found ([`directions`]) the one that takes most comes first, and the next is sought for what is left then.
 
 mod across;
+mod around;
 mod been;
 mod clear;
 mod climb;
