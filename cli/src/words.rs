@@ -29,6 +29,14 @@ fn escaped(text: &str, which: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
+/// Words as a sentence lists them, the first `most` of them.
+#[must_use]
+pub fn listed<T: AsRef<str>>(all: &[T], most: usize) -> String {
+    let some: Vec<&str> = all.iter().take(most).map(AsRef::as_ref).collect();
+    let more = all.len() - some.len();
+    some.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+}
+
 /// A table with right-aligned columns but the first.
 pub struct Table {
     rows: Vec<Vec<String>>,

@@ -183,16 +183,20 @@ fn told(name: &str, s: &Value, ran: &Measured, same: bool) -> String {
     }
     let standing: Vec<&Value> = s["left_standing"].as_array().into_iter().flatten().collect();
     if !standing.is_empty() {
-        out.push_str("\n| too high on | mm2 | highest mm | why, and what would do |\n|---|---|---|---|\n");
-        for l in standing {
-            let _ = writeln!(
-                out,
-                "| {} | {} | {} | {} |",
-                words(&l["face"]),
-                number(&l["area_mm2"], 2),
-                number(&l["highest_mm"], 3),
-                words(&l["why"])
-            );
+        out.push_str("\n| too high on, each mm2 | highest mm | why, and what would do |\n|---|---|---|\n");
+        let mut whys: Vec<&str> = Vec::new();
+        for why in standing.iter().filter_map(|l| l["why"].as_str()) {
+            if !whys.contains(&why) {
+                whys.push(why);
+            }
+        }
+        for why in whys {
+            let own = || standing.iter().filter(|l| l["why"] == why);
+            let faces: Vec<String> =
+                own().map(|l| format!("{} {}", words(&l["face"]), number(&l["area_mm2"], 1))).collect();
+            let highest = own().filter_map(|l| l["highest_mm"].as_f64()).fold(0.0, f64::max);
+            let more = if own().any(|l| l["or_more"] == true) { " or more" } else { "" };
+            let _ = writeln!(out, "| {} | {highest:.3}{more} | {why} |", faces.join(", "));
         }
     }
     let _ = write!(out, "\n![{name}](figures/part-{name}.svg)\n");

@@ -5,7 +5,7 @@ use crate::screen::render;
 use osculate::Part;
 use osculate::failure::{Done, Outcome, read_text};
 use osculate::job::{Job, Operations};
-use osculate::words::{Table, number};
+use osculate::words::{self, Table, number};
 use osculate::work::reached::{Checked, of_job, of_list};
 use osculate::work::{operations, plan};
 use std::path::Path;
@@ -35,16 +35,15 @@ pub fn run(path: &Path, json: bool) -> Outcome {
 fn describe(c: &Checked) -> String {
     let mut t = Table::left(["operation", "tool", "reaches mm2", "of mm2", "not reached"]);
     for r in &c.reached {
-        let some = r.unreached.iter().take(LISTED).map(|(id, mm2)| format!("{id} {}", number(*mm2, 3)));
-        let more = r.unreached.len().saturating_sub(LISTED);
-        let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let unreached: Vec<String> =
+            r.unreached.iter().map(|(id, mm2)| format!("{id} {}", number(*mm2, 3))).collect();
         let name = if r.operation.is_empty() { "the job".to_owned() } else { r.operation.clone() };
         t.row([
             name,
             r.tool.clone(),
             number(r.reached_mm2, 4),
             number(r.area_mm2, 4),
-            some.collect::<Vec<_>>().join(", ") + &rest,
+            words::listed(&unreached, LISTED),
         ]);
     }
     let mut out = format!("\n  {} faces to machine, {} others\n\n{}\n", c.faces[0], c.faces[1], t.render());

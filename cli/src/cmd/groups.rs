@@ -1,6 +1,6 @@
 //! Groups of faces and how neighbours meet, as `inspect` tells them.
 
-use osculate::words::{Table, number};
+use osculate::words::{self, Table, number};
 use osculate::work::init::{Grouped, name};
 use osculate_geom::Box3;
 use serde::Serialize;
@@ -80,15 +80,13 @@ pub fn describe(groups: &Option<Vec<GroupRow>>, neighbours: &Option<Vec<Neighbou
     let (Some(groups), Some(neighbours)) = (groups, neighbours) else { return String::new() };
     let mut t = Table::left(["group", "looks", "area mm2", "inner radius mm", "alike", "faces"]);
     for g in groups {
-        let more = g.faces.len().saturating_sub(LISTED);
-        let some = g.faces[..g.faces.len() - more].join(", ");
         t.row([
             g.id.clone(),
             g.look.clone(),
             number(g.area_mm2, 5),
             g.hollow_radius_mm.map_or_else(|| "-".to_owned(), |r| number(r, 3)),
             g.alike.to_string(),
-            if more > 0 { format!("{some} and {more} more") } else { some },
+            words::listed(&g.faces, LISTED),
         ]);
     }
     let mut out = format!("{}\n", t.render());

@@ -5,9 +5,9 @@ use crate::screen::progress::SCREEN;
 use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome, read_text};
 use osculate::job::{Job, Operations};
-use osculate::words::{Table, findings, number};
+use osculate::words::{self, Table, findings, number};
 use osculate::work::choice;
-use osculate::work::operations;
+use osculate::work::operations::{self, standing};
 use osculate::work::plan::check;
 use osculate::work::summary::Summary;
 use osculate::{Part, Plan, Verified, plan};
@@ -165,8 +165,9 @@ fn operations_table(s: &Summary) -> String {
     let mut out = format!("{}\n", t.render());
     if !s.left_standing.is_empty() {
         let mut t = Table::left(["too high on", "mm2", "highest mm", "why, and what would do"]);
-        for l in &s.left_standing {
-            t.row([l.face.clone(), number(l.area_mm2, 4), number(l.highest_mm, 3), l.why.clone()]);
+        for a in standing::alike(&s.left_standing) {
+            let faces = words::listed(&a.faces, standing::LISTED);
+            t.row([faces, number(a.area_mm2, 4), a.highest_words(), a.highest.why.clone()]);
         }
         out += &format!("{}\n", t.render());
     }

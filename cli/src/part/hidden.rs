@@ -1,7 +1,7 @@
 //! Faces of a part that lie in the material of its other bodies: neither to be machined nor looked at.
 
 use crate::part::loaded::{InBodies, Loaded, LoadedFace};
-use crate::words::number;
+use crate::words::{self, number};
 use osculate_geom::Diagnostic;
 use osculate_surfaces::hidden::{Hidden, HiddenFace, hidden};
 use osculate_surfaces::{Face, TrimmedSurface};
@@ -44,9 +44,8 @@ fn told(part: &Loaded, found: Hidden) -> Found {
     let faces: Vec<InBodies> = found.faces.iter().map(of).collect();
     let mut diagnostics = Vec::new();
     if !faces.is_empty() {
-        let ids: Vec<&str> = faces.iter().take(LISTED).map(|f| f.id.as_str()).collect();
-        let more = faces.len() - ids.len();
-        let place = ids.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() };
+        let ids: Vec<&str> = faces.iter().map(|f| f.id.as_str()).collect();
+        let place = words::listed(&ids, LISTED);
         let area_mm2: f64 = faces.iter().map(|f| f.hidden_mm2).sum();
         let text = format!(
             "{} mm2 of these faces lie in the material of other bodies: they are neither machined nor counted as uncut",
@@ -75,11 +74,7 @@ fn body(part: &Loaded, faces: &[usize]) -> String {
             [first, .., last] => Some(format!("{} to {}", id(*first), id(*last))),
         })
         .collect();
-    if runs.len() > LISTED {
-        format!("{} and {} more", runs[..LISTED].join(", "), runs.len() - LISTED)
-    } else {
-        runs.join(", ")
-    }
+    words::listed(&runs, LISTED)
 }
 
 /// Leaves of the faces of a part what no other body hides; those that are hidden wholly go.

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::words::MaterialWord;
 use crate::job::{Job, Normals};
 use crate::part::loaded::Loaded;
+use crate::words;
 use osculate_geom::{Diagnostic, Side};
 use osculate_surfaces::sides::{self, Before, Settled, SideGroup, Sides};
 use osculate_surfaces::{Face, TrimmedSurface};
@@ -110,9 +111,8 @@ fn flip(part: &mut Loaded, k: usize) {
 
 /// Ids of faces as a message names them.
 fn listed(part: &Loaded, faces: &[usize]) -> String {
-    let ids: Vec<&str> = faces.iter().take(LISTED).map(|k| part.faces[*k].id.as_str()).collect();
-    let more = faces.len() - ids.len();
-    ids.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+    let ids: Vec<&str> = faces.iter().map(|k| part.faces[*k].id.as_str()).collect();
+    words::listed(&ids, LISTED)
 }
 
 /// A note for each group of which a face was settled, and one for neighbours that do not fit.

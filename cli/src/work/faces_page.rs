@@ -2,7 +2,7 @@
 
 use crate::report::measured::mesh_of;
 use crate::report::{self, Column, Report, Scalar, Table};
-use crate::words::number;
+use crate::words::{self, number};
 use crate::work::init::{Grouped, name};
 
 /// Triangles over all faces, about.
@@ -41,8 +41,6 @@ fn groups(grouped: &Grouped) -> Table {
     let column = |name: &str, unit: &str| Column { name: name.to_owned(), unit: unit.to_owned() };
     let row = |k: usize| {
         let (g, ids) = (&grouped.groups[k], grouped.ids(k));
-        let more = ids.len().saturating_sub(LISTED);
-        let some = ids[..ids.len() - more].join(", ");
         let hollow = if g.hollow_mm.is_finite() { number(g.hollow_mm, 3) } else { "\u{2013}".to_owned() };
         vec![
             name(k),
@@ -50,7 +48,7 @@ fn groups(grouped: &Grouped) -> Table {
             number(g.area_mm2, 5),
             hollow,
             g.alike.to_string(),
-            if more > 0 { format!("{some} and {more} more") } else { some },
+            words::listed(&ids, LISTED),
         ]
     };
     Table {

@@ -2,6 +2,7 @@
 
 use super::asked::{Grouped, name};
 use crate::failure::Failure;
+use crate::words;
 use osculate_surfaces::groups::Look;
 
 /// Ids that a sentence lists at most.
@@ -23,9 +24,7 @@ pub struct Target {
 
 /// Ids as a sentence lists them.
 pub fn listed(ids: &[&str]) -> String {
-    let more = ids.len().saturating_sub(LISTED);
-    let some = ids[..ids.len() - more].join(", ");
-    if more > 0 { format!("{some} and {more} more") } else { some }
+    words::listed(ids, LISTED)
 }
 
 impl Target {

@@ -3,7 +3,7 @@
 use crate::job::{Job, Operations};
 use crate::part::Part;
 use crate::report::{Column, Table};
-use crate::words::number;
+use crate::words::{self, number};
 use crate::work::operations::step::Step;
 use crate::work::verify::Verified;
 use osculate_geom::{Point3, Surface, Unit3};
@@ -14,6 +14,8 @@ use serde::Serialize;
 const UPRIGHT: f64 = 0.02;
 /// A ball is to be smaller than the hollow that it goes into by this much.
 const WITHIN: f64 = 0.9;
+/// Faces that a row names at most.
+pub const LISTED: usize = 12;
 /// Areas below this are told as nothing, mm2.
 const LEAST_MM2: f64 = 1e-6;
 
@@ -24,12 +26,51 @@ pub struct LeftStanding {
     pub face: String,
     /// The area, mm2.
     pub area_mm2: f64,
-    /// The highest, mm; of places that nothing touched what was looked at.
+    /// The highest, mm.
     pub highest_mm: f64,
+    /// Whether it is as high as was looked at, or higher.
+    pub or_more: bool,
     /// Where that is, part coordinates.
     pub at_mm: [f64; 3],
     /// Why, as far as it is seen, and what would do.
     pub why: String,
+}
+
+/// Faces on which too much stands for the same reason.
+pub struct Alike<'a> {
+    /// The faces, that with most first.
+    pub faces: Vec<&'a str>,
+    /// The area on all of them, mm2.
+    pub area_mm2: f64,
+    /// The one with the highest place.
+    pub highest: &'a LeftStanding,
+}
+
+impl Alike<'_> {
+    /// How high it stands, mm, in words.
+    pub fn highest_words(&self) -> String {
+        let or_more = if self.highest.or_more { " or more" } else { "" };
+        number(self.highest.highest_mm, 3) + or_more
+    }
+}
+
+/// What stands by why it does, most of all first.
+pub fn alike(left: &[LeftStanding]) -> Vec<Alike<'_>> {
+    let mut out: Vec<Alike<'_>> = Vec::new();
+    for l in left {
+        match out.iter_mut().find(|a| a.highest.why == l.why) {
+            Some(a) => {
+                a.faces.push(&l.face);
+                a.area_mm2 += l.area_mm2;
+                if l.highest_mm > a.highest.highest_mm {
+                    a.highest = l;
+                }
+            }
+            None => out.push(Alike { faces: vec![&l.face], area_mm2: l.area_mm2, highest: l }),
+        }
+    }
+    out.sort_by(|a, b| b.area_mm2.total_cmp(&a.area_mm2));
+    out
 }
 
 /// What was seen of one face.
@@ -48,7 +89,7 @@ struct Seen {
 /// The faces of a part on which too much stands.
 pub fn left(list: &Operations, part: &Part, steps: &[Step<'_>], whole: &Verified) -> Vec<LeftStanding> {
     let verdict = &whole.verdict;
-    let limit = list.whole().tolerance().scallop_mm;
+    let (limit, looked_mm) = (list.whole().tolerance().scallop_mm, list.whole().layer_mm());
     let smallest = |job: &Job| job.cutter().corner_mm();
     let mut out = Vec::new();
     for (k, face) in part.faces.iter().enumerate() {
@@ -93,6 +134,7 @@ pub fn left(list: &Operations, part: &Part, steps: &[Step<'_>], whole: &Verified
                 face: face.id.clone(),
                 area_mm2: seen.area_mm2,
                 highest_mm: seen.highest.0,
+                or_more: seen.highest.0 >= looked_mm,
                 at_mm: seen.highest.1.into(),
                 why: why(&seen, tool_mm),
             });
@@ -130,21 +172,21 @@ fn why(seen: &Seen, tool_mm: f64) -> String {
 
 /// As reports show it.
 pub fn table(left: &[LeftStanding]) -> Table {
-    let row = |l: &LeftStanding| {
-        let [x, y, z] = l.at_mm.map(|x| number(x, 5));
+    let row = |a: &Alike<'_>| {
+        let [x, y, z] = a.highest.at_mm.map(|x| number(x, 5));
         vec![
-            l.face.clone(),
-            number(l.area_mm2, 4),
-            number(l.highest_mm, 3),
+            words::listed(&a.faces, LISTED),
+            number(a.area_mm2, 4),
+            a.highest_words(),
             format!("{x}, {y}, {z}"),
-            l.why.clone(),
+            a.highest.why.clone(),
         ]
     };
     Table {
         caption: "What stands too high on the finished part".to_owned(),
-        columns: ["face", "area mm2", "highest mm", "where", "why, and what would do"]
+        columns: ["faces", "area mm2", "highest mm", "where", "why, and what would do"]
             .map(|n| Column { name: n.to_owned(), ..Column::default() })
             .to_vec(),
-        rows: left.iter().map(row).collect(),
+        rows: alike(left).iter().map(row).collect(),
     }
 }

@@ -5,8 +5,8 @@
 //! fastest of these that is clear counts (`ways`). Where none is a retract leaves along the tool's own axis until the tip is above the
 //! plane that touches the part's bounding sphere (grown by the clearance) on the side the axis points to; there nothing of the part can
 //! meet the tool, whose body lies beyond the tip. From the pole of that plane the axis swings over the sphere, always pointing outward,
-//! to the pole of the next pass and down again. Moves are rapid where nothing may stand near the tool (`left` knows the raw material),
-//! and fed elsewhere.
+//! to the pole of the next pass and down again. A tool that keeps its axis needs no more than a plane over the box around everything.
+//! Moves are rapid where nothing may stand near the tool (`left` knows the raw material), and fed elsewhere.
 
 mod ends;
 mod improve;
@@ -99,7 +99,9 @@ pub fn link_stretches(passes: &[Pass], skipped: &[Vec<CcPoint>], links: &Links, 
     let mut out = Linked::default();
     let feed = Motion::Feed(links.feed_mm_min);
     if let Some((k, _, [first, _])) = ends.first() {
-        out.go(finder.pole(&first.pose.axis), Motion::Rapid, None);
+        if !links.dropped {
+            out.go(finder.pole(&first.pose.axis), Motion::Rapid, None);
+        }
         out.follow(&finder.approach(first, *k));
     }
     for (i, (k, pass, _)) in ends.iter().enumerate() {
@@ -112,7 +114,9 @@ pub fn link_stretches(passes: &[Pass], skipped: &[Vec<CcPoint>], links: &Links, 
     }
     if let Some((k, _, [_, end])) = ends.last() {
         out.follow(&finder.retract(end, k + 1));
-        out.go(finder.pole(&end.pose.axis), Motion::Rapid, None);
+        if !links.dropped {
+            out.go(finder.pole(&end.pose.axis), Motion::Rapid, None);
+        }
     }
     out
 }

@@ -87,6 +87,42 @@ fn over_plane(apart: f64, radius: f64) -> Vec<Pass> {
     (0..3).map(|k| one((f64::from(k) - 0.5) * apart, k % 2 == 1)).collect()
 }
 
+/// Of a long flat part the sphere around it is far above: a tool that keeps its axis begins and ends over its passes, and goes over a
+/// rib as high as everything between them at most.
+#[test]
+fn a_tool_that_keeps_its_axis_stays_low() {
+    let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 60.0 }).unwrap();
+    let (top, clearance_mm) = (1.5, 5.0);
+    let links = |dropped: bool| Links {
+        obstacles: Box3 { min: Point3::new(-150.0, 0.0, -2.0), max: Point3::new(150.0, 8.0, top) },
+        clearance_mm,
+        approach_mm: 2.0,
+        hop_mm: 0.125,
+        contacts: true,
+        dropped,
+        dip_mm: 0.0,
+        layer_mm: 0.0,
+        rates: Rates::default(),
+        cutter,
+        holder: None,
+        feed_mm_min: 5000.0,
+        plunge_mm_min: 2500.0,
+    };
+    let mut passes = over_plane(40.0, 3.0);
+    for p in &mut passes[2].points {
+        p.point = Point3::new(0.0, p.point.y, top);
+    }
+    let highest = |linked: &Linked| linked.path.moves.iter().map(|m| m.pose.tip.z).fold(0.0, f64::max);
+    let [low, high] = [true, false].map(|dropped| link(&passes, &links(dropped), &Walls::default()));
+    assert_eq!(highest(&low), top + clearance_mm);
+    assert!(highest(&high) > 150.0, "{}", highest(&high));
+    let ends = [&low.path.moves[0], &low.path.moves[low.path.moves.len() - 1]].map(|m| m.pose.tip);
+    let at = [passes[0].points[0].pose.tip, passes[2].points[8].pose.tip];
+    for (end, at) in ends.iter().zip(&at) {
+        assert!((end - at - Vec3::z() * (top + clearance_mm)).norm() < 1e-9, "{end} {at}");
+    }
+}
+
 #[test]
 fn a_hop_rises_by_no_more_than_is_clear() {
     let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 30.0 }).unwrap();

@@ -92,10 +92,19 @@ impl<'a> Finder<'a> {
         Kept::new(self.links.bodies(), ends, self.around, self.links.dip_mm)
     }
 
+    /// How far above the centre the safe plane across an axis is: on the sphere, and where the axis stays as it is over the box alone.
+    fn safe_mm(&self, axis: &Unit3) -> f64 {
+        if !self.links.dropped {
+            return self.radius_mm;
+        }
+        let half = 0.5 * (self.links.obstacles.max - self.links.obstacles.min);
+        half.abs().dot(&axis.abs()) + self.links.clearance_mm
+    }
+
     /// The pose on the axis of `pose` whose tip is on the safe plane, never below `pose` itself.
     fn above(&self, pose: &Pose) -> Pose {
         let height = (pose.tip - self.centre).dot(&pose.axis);
-        pose.retracted((self.radius_mm - height).max(0.0))
+        pose.retracted((self.safe_mm(&pose.axis) - height).max(0.0))
     }
 
     pub fn pole(&self, axis: &Unit3) -> Pose {
@@ -195,6 +204,13 @@ impl<'a> Finder<'a> {
         way
     }
 
+    /// What of a way up from a contact, over and down to another is to be asked of the part: where nothing is in the tool's way straight
+    /// up only what goes over.
+    fn asked<'p>(&self, poses: &'p [Pose]) -> &'p [Pose] {
+        let ups = if self.links.dropped { (poses.len() - 1) / 2 } else { 0 };
+        &poses[ups..poses.len() - ups]
+    }
+
     /// What straight ways along the surface rise by: twice what the tool may graze between the points that the part is known at, where
     /// that is more than ways may go into it.
     fn graze_mm(&self) -> f64 {
@@ -224,7 +240,9 @@ impl<'a> Finder<'a> {
                     };
                     [from.pose, off(from), off(to), to.pose]
                 };
-                let room = |way: &[Pose]| if is_graze { kept.room_along(way) } else { kept.room(way) };
+                let room = |way: &[Pose]| {
+                    if is_graze { kept.room_along(way) } else { kept.room(self.asked(way)) }
+                };
                 let clear = |mm: f64| room(&way(mm)).is_some_and(|r| r >= 1.0);
                 if clear(lift) && (lift >= highest || clear((1.0 - SPARE) * lift)) {
                     let way = way(lift);
@@ -274,7 +292,7 @@ impl<'a> Finder<'a> {
         while height < most {
             let [high_a, high_b] = [a.retracted(height), b.retracted(height)];
             let poses = [from.pose, a, high_a, high_b, b, to.pose];
-            if kept.room(&poses).is_some_and(|room| room >= 1.0) {
+            if kept.room(self.asked(&poses)).is_some_and(|room| room >= 1.0) {
                 let way = self.through(&poses, k);
                 let is_rapid = way.legs.iter().any(|leg| leg.motion == Motion::Rapid && leg.pose == high_b);
                 if best.as_ref().is_none_or(|b| way.min < b.min) {
