@@ -5,6 +5,7 @@
 //! Axes are taken from an even set, some nine degrees apart, and from the part's own six.
 
 use crate::axis::{Around, Surroundings};
+use crate::plan::Named;
 use crate::plan::samples::{Wanted, samples};
 use osculate_geom::{Unit3, Vec3, quadrature};
 use osculate_tools::Holder;
@@ -25,6 +26,15 @@ const AS_GOOD: f64 = 0.97;
 /// An axis is taken that reaches this share of the faces, which none before it reached.
 const WORTH: f64 = 2e-3;
 
+/// Where it is looked.
+#[derive(Clone, Copy)]
+pub enum At<'a> {
+    /// About so many places all over the faces to machine.
+    About(usize),
+    /// These places, whose faces are told by their place among the faces to machine.
+    Places(&'a [Sample]),
+}
+
 /// What is asked.
 #[derive(Clone, Copy)]
 pub struct Asked<'a> {
@@ -32,8 +42,8 @@ pub struct Asked<'a> {
     pub around: Around<'a>,
     /// What holds the tool.
     pub holder: Option<&'a Holder>,
-    /// About how many places are asked for.
-    pub places: usize,
+    /// Where it is looked.
+    pub at: At<'a>,
     /// Least and greatest angle between axis and normal, rad.
     pub lean_rad: [f64; 2],
     /// The only axis that is asked for, where it is given.
@@ -88,12 +98,14 @@ impl Access {
     pub fn of(asked: &Asked<'_>) -> Result<Self, AccessError> {
         let face = |(face, why)| AccessError::Face { face, why };
         let surroundings = Surroundings::of(&asked.around).map_err(face)?;
-        let faces: Vec<_> = asked.around.faces.iter().collect();
-        let most = asked.places as f64;
-        let wanted = Wanted { spacing_mm: spacing_mm(asked, most), most, fewest: FEWEST };
-        let found = samples(&faces, wanted).map_err(face)?;
-        let areas_mm2 = found.iter().map(|f| f.samples.iter().map(|s| s.area_mm2).sum()).collect();
-        let places: Vec<Sample> = found.into_iter().flat_map(|f| f.samples).collect();
+        let places = match asked.at {
+            At::About(count) => places(asked.around.faces, count)?,
+            At::Places(all) => all.to_vec(),
+        };
+        let mut areas_mm2 = vec![0.0; asked.around.faces.len()];
+        for s in &places {
+            areas_mm2[s.face as usize] += s.area_mm2;
+        }
         let own = Directions::row(asked.axis.map_or_else(own_axes, |axis| vec![axis]))?;
         let even = if asked.axis.is_some() { None } else { Some(Directions::icosphere(LEVEL)?) };
         let tool = Tool::new(*asked.around.cutter, asked.holder);
@@ -134,11 +146,11 @@ impl Access {
         self.areas_mm2.iter().sum()
     }
 
-    /// Area of each face that none of the allowed axes reaches, mm2.
-    #[must_use]
-    pub fn without_mm2(&self, allowed: &dyn Fn(&Unit3) -> bool) -> Vec<f64> {
+    /// The places, and whether any of the allowed axes reaches each.
+    pub fn reached(&self, allowed: &dyn Fn(&Unit3) -> bool) -> impl Iterator<Item = (&Sample, bool)> {
         let allowed: Vec<bool> = self.axes.iter().map(allowed).collect();
-        self.of_faces(|k| !(0..allowed.len()).any(|a| allowed[a] && self.bits[k].contains(a)))
+        let any = move |bits: &Bits| (0..allowed.len()).any(|a| allowed[a] && bits.contains(a));
+        self.places.iter().zip(&self.bits).map(move |(place, bits)| (place, any(bits)))
     }
 
     fn of_faces(&self, holds: impl Fn(usize) -> bool) -> Vec<f64> {
@@ -218,8 +230,15 @@ fn own_axes() -> Vec<Unit3> {
     each.map(Unit3::new_unchecked).to_vec()
 }
 
-/// The distance of about so many places.
-fn spacing_mm(asked: &Asked<'_>, most: f64) -> f64 {
-    let areas = asked.around.faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value);
-    (areas.sum::<f64>() / most).sqrt()
+/// About so many places all over faces, and some on each of them.
+///
+/// # Errors
+/// [`AccessError::Face`].
+pub fn places(faces: &[Named<'_>], count: usize) -> Result<Vec<Sample>, AccessError> {
+    let most = count as f64;
+    let areas = faces.iter().map(|f| quadrature::area(f.surface, 1e-2).value);
+    let wanted = Wanted { spacing_mm: (areas.sum::<f64>() / most).sqrt(), most, fewest: FEWEST };
+    let found = samples(&faces.iter().collect::<Vec<_>>(), wanted);
+    let found = found.map_err(|(face, why)| AccessError::Face { face, why })?;
+    Ok(found.into_iter().flat_map(|f| f.samples).collect())
 }

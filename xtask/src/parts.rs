@@ -33,8 +33,8 @@ impl<'a> Options<'a> {
 }
 
 const HEAD: &str = "# Whole parts from the block to finished\n\nMade by `cargo xtask parts`, of which `--only TEXT` makes some: examples that are lists of operations, each by `osculate plan JOB --out DIR`, and \
-its programs judged again by `osculate verify`, which must say the same. *Uncut* is what an operation leaves higher than the finished part may have on the faces that it is for; \
-*stood* how high material stood on them before it. Minutes are those of the machine, wall and CPU seconds those of the program, on two cores.\n";
+its programs judged again by `osculate verify`, which must say the same. *Uncut* is where an operation leaves more than five scallops on the faces that it is for; of the finished part, where the job \
+accepts an area, all above the scallop counts, with what is around it. *Stood* is how high material stood on them before it. Minutes are those of the machine, wall and CPU seconds those of the program, on two cores.\n";
 
 /// Plans and verifies every whole part whose name has the text in it, and writes the page.
 ///

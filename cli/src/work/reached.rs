@@ -10,14 +10,17 @@ use crate::work::operations;
 use crate::work::setup;
 use osculate_geom::{Surface, Unit3};
 use osculate_postproc::Orienting;
-use osculate_productivity::access::{Access, Asked};
+use osculate_productivity::access::{self, Access, Asked, At};
 use osculate_productivity::axis::{Around, Left};
 use osculate_productivity::plan::{Named, Tolerance};
+use osculate_tools::removal::Sample;
 use serde::Serialize;
+use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// About so many places of the faces of an operation are asked for.
+/// About so many places of the faces of a job are asked for, and of those of a list of operations.
 pub const PLACES: usize = 500;
+const PLACES_OF_A_LIST: usize = 1500;
 /// Axes stay so far off the tangent planes, rad.
 const UPRIGHT_RAD: f64 = 0.035;
 /// A flat end leans so much at least where it may lean, rad.
@@ -45,7 +48,7 @@ pub struct Checked {
     pub faces: [usize; 2],
     /// Each operation but roughings, with each of its tools.
     pub reached: Vec<Reached>,
-    /// Area that the operations together cannot reach, at least, mm2.
+    /// Area that no operation reaches, mm2.
     pub unreached_mm2: f64,
     /// What the job accepts as unreached, mm2.
     pub accepted_mm2: f64,
@@ -73,8 +76,8 @@ fn named(faces: &[LoadedFace]) -> Vec<Named<'_>> {
     faces.iter().map(|f| Named { face: &f.id, surface: &*f.surface as &dyn Surface }).collect()
 }
 
-/// What the tool in hand of a job reaches of the faces of a part as the job sees it.
-fn of_tool(operation: &str, job: &Job, part: &Part) -> Result<Reached, Failure> {
+/// What the tool in hand of a job reaches of the faces of a part as the job sees it, and whether it reaches each of the places.
+fn of_tool(operation: &str, job: &Job, part: &Part, at: At<'_>) -> Result<(Reached, Vec<bool>), Failure> {
     let cutter = job.cutter();
     let gouge_mm = coarse_mm(job.tolerance());
     let (own, check) = (named(&part.faces), named(&part.check));
@@ -83,7 +86,7 @@ fn of_tool(operation: &str, job: &Job, part: &Part) -> Result<Reached, Failure> 
     let asked = Asked {
         around: Around { faces: &own, check: &check, cutter: &cutter, gouge_mm, left: Left::default() },
         holder: job.holder(),
-        places: PLACES,
+        at,
         lean_rad: [least, FRAC_PI_2 - UPRIGHT_RAD],
         axis: kept,
     };
@@ -91,17 +94,24 @@ fn of_tool(operation: &str, job: &Job, part: &Part) -> Result<Reached, Failure> 
     let (stands, _) = setup::of(job, part, None);
     let joints = Orienting::new(&job.control().machine, &stands.part_zero.rotation);
     // A kept axis is reached by the turn of the part that is found for it.
-    let left = access.without_mm2(&|a: &Unit3| kept.is_some() || joints.reaches(a));
+    let reaches = |a: &Unit3| kept.is_some() || joints.reaches(a);
+    let mut left = vec![0.0; part.faces.len()];
+    let mut each = Vec::new();
+    for (place, reached) in access.reached(&reaches) {
+        left[place.face as usize] += if reached { 0.0 } else { place.area_mm2 };
+        each.push(reached);
+    }
     let unreached: Vec<(String, f64)> =
         part.faces.iter().zip(&left).filter(|(_, l)| **l > 0.0).map(|(f, l)| (f.id.clone(), *l)).collect();
     let area_mm2 = access.area_mm2();
-    Ok(Reached {
+    let reached = Reached {
         operation: operation.to_owned(),
         tool: format!("T{} {}", job.tool().number(), job.tool().words()),
         area_mm2,
         reached_mm2: area_mm2 - left.iter().sum::<f64>(),
         unreached,
-    })
+    };
+    Ok((reached, each))
 }
 
 /// What matters and is not said by a job.
@@ -132,26 +142,14 @@ fn unset(job: &Job) -> Vec<String> {
     out
 }
 
-/// The area of the faces of a part that operations cannot reach whatever they share, mm2: each may reach another piece of a face, so that
-/// what they reach is added up.
-fn out_of_reach_mm2(part: &Part, all: &[(Vec<String>, &Reached)]) -> f64 {
-    let left = |f: &LoadedFace| {
-        let area_mm2 = crate::part::area(f);
-        let own = all.iter().filter(|(ids, _)| ids.contains(&f.id));
-        let left = |r: &Reached| r.unreached.iter().find(|u| u.0 == f.id).map_or(0.0, |u| u.1);
-        (area_mm2 - own.map(|(_, r)| area_mm2 - left(r)).sum::<f64>()).max(0.0)
-    };
-    part.faces.iter().map(left).sum()
-}
-
 /// Looks what the tools of a job of one operation reach.
 ///
 /// # Errors
 /// Where the part cannot be read or sampled.
 pub fn of_job(job: &Job, part: &Part) -> Result<Checked, Failure> {
     part.part.to_plan(job.path())?;
-    let reached: Vec<Reached> =
-        job.each_tool().iter().map(|one| of_tool("", one, part)).collect::<Result<_, _>>()?;
+    let of_one = |one: &Job| of_tool("", one, part, At::About(PLACES)).map(|(reached, _)| reached);
+    let reached: Vec<Reached> = job.each_tool().iter().map(of_one).collect::<Result<_, _>>()?;
     let best = reached.iter().map(|r| r.area_mm2 - r.reached_mm2).fold(f64::INFINITY, f64::min);
     Ok(checked(job, part, reached, best))
 }
@@ -162,20 +160,32 @@ pub fn of_job(job: &Job, part: &Part) -> Result<Checked, Failure> {
 /// As [`of_job`].
 pub fn of_list(list: &Operations, part: &Part) -> Result<Checked, Failure> {
     part.part.to_plan(list.path())?;
+    let places = access::places(&named(&part.faces), PLACES_OF_A_LIST);
+    let places = places.map_err(|e| Failure::file(list.path(), e))?;
+    // Which of them no operation reaches so far.
+    let mut open = vec![true; places.len()];
     let mut reached = Vec::new();
-    let mut faces: Vec<Vec<String>> = Vec::new();
     for operation in list.all().iter().filter(|o| o.kind != OperationWord::Rough) {
         let job = operation.judged()?;
         let own = operations::seen(operation, &job, part)?;
+        let number: HashMap<&str, u32> = own.faces.iter().map(|f| f.id.as_str()).zip(0..).collect();
+        let of_place = |(k, s): (usize, &Sample)| {
+            let face = *number.get(part.faces[s.face as usize].id.as_str())?;
+            Some((k, Sample { face, ..*s }))
+        };
+        let (at, asked): (Vec<usize>, Vec<Sample>) = places.iter().enumerate().filter_map(of_place).unzip();
         for one in job.each_tool() {
-            reached.push(of_tool(&operation.name, &one, &own)?);
-            faces.push(own.faces.iter().map(|f| f.id.clone()).collect());
+            let (found, each) = of_tool(&operation.name, &one, &own, At::Places(&asked))?;
+            at.iter().zip(each).filter(|(_, reached)| *reached).for_each(|(k, _)| open[*k] = false);
+            reached.push(found);
         }
     }
-    let all: Vec<(Vec<String>, &Reached)> = faces.into_iter().zip(&reached).collect();
-    let unreached = if all.is_empty() { 0.0 } else { out_of_reach_mm2(part, &all) };
-    drop(all);
-    Ok(checked(list.whole(), part, reached, unreached))
+    let left = if reached.is_empty() { 0.0 } else { left_mm2(&places, &open) };
+    Ok(checked(list.whole(), part, reached, left))
+}
+
+fn left_mm2(places: &[Sample], open: &[bool]) -> f64 {
+    places.iter().zip(open).filter(|(_, open)| **open).map(|(s, _)| s.area_mm2).sum()
 }
 
 fn checked(job: &Job, part: &Part, reached: Vec<Reached>, unreached_mm2: f64) -> Checked {

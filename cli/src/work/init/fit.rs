@@ -10,7 +10,7 @@ use crate::work::reached::{PLACES, coarse_mm};
 use nalgebra::UnitQuaternion;
 use osculate_geom::{Surface, Unit3};
 use osculate_postproc::Orienting;
-use osculate_productivity::access::{Access, Asked, From};
+use osculate_productivity::access::{Access, Asked, At, From};
 use osculate_productivity::axis::{Around, Left};
 use osculate_productivity::plan::{Named, Tolerance};
 use std::f64::consts::FRAC_PI_2;
@@ -191,7 +191,7 @@ pub fn fit(grouped: &Grouped, target: &Target, wanted: &Wanted<'_>) -> Result<Re
         let asked = Asked {
             around,
             holder: tool.holder(),
-            places: PLACES,
+            at: At::About(PLACES),
             lean_rad: [0.0, FRAC_PI_2 - UPRIGHT_RAD],
             axis: None,
         };

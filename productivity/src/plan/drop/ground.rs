@@ -1,10 +1,11 @@
 //! What is known before passes of a tool that keeps its axis are laid out: seeds of drops, places, what each wants.
 
 use super::frame::Frame;
-use super::height::{Drops, Rest, Seed};
+use super::height::{Drops, Rest};
+use super::seeds::seeds;
 use super::wants::{Lost, Want, want};
 use crate::plan::{MAX_PASSES, Named, Pass, Passes, PlanError, Tolerance};
-use osculate_geom::{Axis, Diagnostic, Surface, Unit3, Uv, Vec3, quadrature};
+use osculate_geom::{Diagnostic, Surface, Unit3, Vec3, quadrature};
 use osculate_tools::Cutter;
 use osculate_tools::removal::{self, Sample, sample_surface};
 use rayon::prelude::*;
@@ -28,18 +29,10 @@ pub struct DropTask<'a> {
     pub progress: &'a (dyn Fn(f64) + Sync),
 }
 
-/// Seeds of drops stand this part of the tool's radius apart.
-const SEEDS: f64 = 0.1;
-/// Most seeds over all faces.
-const MOST_SEEDS: f64 = 1e6;
 /// Most places, over all faces.
 const MOST_PLACES: f64 = 3e5;
 /// A face may have this many of either, however small it is.
 const FEWEST: usize = 200;
-/// Chords between seeds on a rim may be off one of the tool's radius by this part of the chord tolerance.
-const RIM_SAGITTA: f64 = 0.1;
-/// Lines along each parameter on whose ends the rim of a face is seeded: fewest and most.
-const RIM_LINES: [f64; 2] = [20.0, 2000.0];
 /// The share of the tolerance that passes are laid out for: the rest is for what the leading order neglects.
 pub(super) const DESIGN: f64 = 0.94;
 /// Shares of the area below which a loss is not worth a word.
@@ -185,7 +178,7 @@ pub(super) fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'stati
 }
 
 /// Samples of one face `spacing_mm` apart: of a count over all faces its share by area.
-fn sampled(
+pub(super) fn sampled(
     (task, surfaces, areas): (&DropTask<'_>, &[&dyn Surface], &[f64]),
     k: usize,
     spacing_mm: f64,
@@ -201,37 +194,6 @@ fn sampled(
 /// Areas that only share out counts: coarse values will do.
 pub(super) fn areas(surfaces: &[&dyn Surface]) -> Vec<f64> {
     surfaces.par_iter().map(|s| quadrature::area(*s, 1e-2).value).collect()
-}
-
-/// Seeds of drops, their distance, mm, and the least and greatest of their positions.
-pub(super) type Seeds = (Vec<Seed>, f64, [[f64; 2]; 2]);
-
-/// Seeds on all faces and their rims.
-pub(super) fn seeds(
-    task: &DropTask<'_>,
-    (surfaces, areas): (&[&dyn Surface], &[f64]),
-    frame: &Frame,
-) -> Result<Seeds, PlanError> {
-    let radius = task.cutter.radius_mm();
-    let all: f64 = areas.iter().sum();
-    let (mut seeds, mut spacing): (Vec<Seed>, f64) = (Vec::new(), 0.0);
-    // Between seeds on an edge the tool sinks by the sagitta of its radius; in a bore hardly wider than it is it is kept off by that.
-    let along_rim = (SEEDS * radius).min((8.0 * radius * RIM_SAGITTA * task.tolerance.chord_mm).sqrt());
-    for (k, surface) in surfaces.iter().enumerate() {
-        let sampling = sampled((task, surfaces, areas), k, SEEDS * radius, [MOST_SEEDS, all])?;
-        spacing = spacing.max(sampling.density.spacing_mm);
-        seeds.extend(sampling.samples.iter().map(|s| Seed {
-            at: frame.of(&s.point),
-            uv: s.uv,
-            face: s.face,
-            along: [0.0; 3],
-        }));
-        rim(*surface, k as u32, (frame, along_rim), &mut seeds);
-    }
-    let by =
-        |f: fn(f64, f64) -> f64, start: f64| [0, 1].map(|k| seeds.iter().map(|s| s.at[k]).fold(start, f));
-    let extent = [by(f64::min, f64::INFINITY), by(f64::max, f64::NEG_INFINITY)];
-    Ok((seeds, spacing, extent))
 }
 
 /// Samples the faces: seeds for drops on all of them, places on those to be machined.
@@ -259,50 +221,6 @@ pub(super) fn ground<'a>(
     let (places, spacing) = over(places, MOST_PLACES)?;
     let (judged, _) = over(judged, lines.most_judged())?;
     Ok(Ground { task, lines, frame, drops, places, spacing, judged })
-}
-
-/// Seeds on the rim of a face, at the ends of its stretches of inside on lines `spacing_mm` apart.
-fn rim(surface: &dyn Surface, face: u32, (frame, spacing_mm): (&Frame, f64), seeds: &mut Vec<Seed>) {
-    let domain = surface.domain();
-    let see = |at: Uv| Seed { at: frame.of(&surface.point(at)), uv: at, face, along: [0.0; 3] };
-    for axis in [Axis::U, Axis::V] {
-        let i = domain.get(axis.other());
-        let way = |f: f64, g: f64| surface.point(Uv::from_axis(axis, domain.get(axis).at(g), i.at(f)));
-        let across = [0.0, 0.5, 1.0]
-            .map(|g| {
-                (0..16)
-                    .map(|k| (way((f64::from(k) + 1.0) / 16.0, g) - way(f64::from(k) / 16.0, g)).norm())
-                    .sum()
-            })
-            .into_iter()
-            .fold(0.0, f64::max);
-        let lines = (across / spacing_mm).ceil().clamp(RIM_LINES[0], RIM_LINES[1]) as usize;
-        let mut found: Vec<Vec<Seed>> = (0..=lines)
-            .into_par_iter()
-            .map(|k| {
-                let fixed = i.at(k as f64 / lines as f64);
-                let ends = |s: &osculate_geom::Interval| [s.lo, s.hi];
-                let spans = surface.spans(axis, fixed);
-                spans.iter().flat_map(ends).map(|t| see(Uv::from_axis(axis, t, fixed))).collect()
-            })
-            .collect();
-        // Where neighbouring lines have as many ends, those are joined: a rim is seeded without gaps.
-        for k in 0..lines {
-            let (before, after) = found.split_at_mut(k + 1);
-            let (here, next) = (&mut before[k], &after[0]);
-            if here.len() == next.len() {
-                for (a, b) in here.iter_mut().zip(next) {
-                    let way = [0, 1, 2].map(|i| b.at[i] - a.at[i]);
-                    // Ends that lie further apart belong to different rims.
-                    if way.iter().map(|d| d * d).sum::<f64>() <= (4.0 * spacing_mm).powi(2) {
-                        a.along = way;
-                    }
-                }
-            }
-        }
-        seeds.extend(found.into_iter().flatten());
-    }
-    seeds.extend(surface.turns().into_iter().map(see));
 }
 
 /// What every sample wants, and the areas that want nothing possible.

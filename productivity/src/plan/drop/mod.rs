@@ -17,6 +17,7 @@ mod planes;
 mod rims;
 mod rough;
 mod rounds;
+mod seeds;
 mod trace;
 mod wants;
 mod waterline;

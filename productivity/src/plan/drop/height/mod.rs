@@ -7,7 +7,7 @@
 
 use super::circle::{Circle, highest};
 use super::frame::Frame;
-use osculate_geom::{Point3, Surface, Unit3, Uv, uv};
+use osculate_geom::{Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::{Cutter, Line, Pose};
 use std::ops::Range;
 
@@ -49,6 +49,14 @@ impl Seed {
         let t = ((c[0] - self.at[0]) * d[0] + (c[1] - self.at[1]) * d[1]) / long;
         let t = t.clamp(0.0, 1.0);
         [0, 1, 2].map(|k| self.at[k] + t * d[k])
+    }
+
+    /// The place of a rim's piece that is nearest to a point.
+    pub(super) fn nearest_of(&self, p: [f64; 3]) -> [f64; 3] {
+        let (from, d) = (Vec3::from(self.at), Vec3::from(self.along));
+        let long = d.norm_squared();
+        let t = if long > 0.0 { (d.dot(&(Vec3::from(p) - from)) / long).clamp(0.0, 1.0) } else { 0.0 };
+        (from + d * t).into()
     }
 
     fn is_rim(&self) -> bool {
@@ -102,7 +110,7 @@ fn lower_side(cutter: &Cutter, dx: f64, dy: f64) -> Option<(f64, [f64; 2])> {
         let slope = x / (y * rho);
         return (y > 0.0).then(|| (x * x / (corner + y), [slope * dx, slope * dy]));
     }
-    let axis = osculate_geom::Vec3::z_axis();
+    let axis = Vec3::z_axis();
     let pose = Pose { tip: Point3::origin(), axis };
     let entry = cutter.entry(&pose, &Line { origin: Point3::new(dx, dy, 0.0), direction: axis })?;
     let normal = cutter.normal_at(&pose, &Point3::new(dx, dy, entry.at_mm), entry.part);
@@ -347,7 +355,7 @@ impl<'a> Drops<'a> {
         let jet = surface.jet2(at);
         let [x, y, z] = self.frame.of(&jet.point);
         let (g, slope) = lower_side(self.cutter, x - c[0], y - c[1])?;
-        let along = |d: &osculate_geom::Vec3| {
+        let along = |d: &Vec3| {
             let [dx, dy, dz] = self.frame.along(d);
             dz - slope[0] * dx - slope[1] * dy
         };

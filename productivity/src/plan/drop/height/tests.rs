@@ -1,10 +1,11 @@
 //! Drops of a ball beside round edges and in a bore, in closed form.
 
 use super::*;
-use crate::plan::drop::ground::{DropTask, areas, seeds};
+use crate::plan::drop::ground::{DropTask, areas};
+use crate::plan::drop::seeds::seeds;
 use crate::plan::{Named, Tolerance};
 use osculate_geom::analytic::{Cylinder, Placed, Placement};
-use osculate_geom::{Domain, Interval, Patch, Side, Vec3};
+use osculate_geom::{Curve, CurveTaylor, Domain, Extruded, Interval, Patch, Side, Vec3};
 use osculate_tools::CutterSpec;
 use std::f64::consts::PI;
 
@@ -66,6 +67,48 @@ fn a_ball_goes_into_a_bore() {
             let (s, c) = (f64::from(k) * 0.0628).sin_cos();
             let out = BORE_MM - BALL_MM - 0.25 * TOLERANCE.chord_mm;
             assert!(!drops.is_above([out * c, out * s], -10.0 - BALL_MM), "{k}");
+        }
+    });
+}
+
+/// y = sqrt(TIP_MM^2 + x^2): two sides that meet in a tip of that radius.
+struct Narrow;
+
+const TIP_MM: f64 = 0.03;
+
+impl Narrow {
+    fn y(x: f64) -> f64 {
+        TIP_MM.hypot(x)
+    }
+}
+
+impl Curve for Narrow {
+    fn domain(&self) -> Interval {
+        Interval::new(-10.0, 10.0)
+    }
+    fn taylor(&self, t: f64, order: usize) -> CurveTaylor {
+        let (y, square) = (Self::y(t), TIP_MM * TIP_MM);
+        let all = [y, t / y, square / y.powi(3), -3.0 * square * t / y.powi(5)];
+        let x = [t, 1.0, 0.0, 0.0];
+        CurveTaylor::from_derivatives(t, order.min(3), |k| Vec3::new(x[k], all[k], 0.0))
+    }
+}
+
+/// The rim of a wall whose narrow tip lies between lines that are as far apart as a ball asks for.
+#[test]
+fn a_ball_rests_on_the_tip_of_a_narrow_rim() {
+    const BALL_MM: f64 = 3.0;
+    let wall = Extruded::new(Narrow, Vec3::z(), Interval::new(-10.0, 0.0)).unwrap();
+    with_drops(&[&wall], BALL_MM, |drops| {
+        for (x, y) in [(0.0, -1.0), (0.011, -0.5), (0.3, -1.0), (-0.023, -2.5), (0.0, -2.9)] {
+            let away = |t: f64| (t - x).hypot(Narrow::y(t) - y);
+            let nearest = (-20_000..20_000).map(|k| away(f64::from(k) * 1e-5)).fold(f64::INFINITY, f64::min);
+            let want = (BALL_MM * BALL_MM - nearest * nearest).sqrt() - BALL_MM;
+            let got = drops.rest([x, y]).unwrap().tip;
+            // The rim is known by chords a tenth of the chord tolerance off it, and the ball rises and falls with the slope of its side.
+            let slope = nearest / (want + BALL_MM);
+            let off = 0.1 * TOLERANCE.chord_mm * slope;
+            assert!(got <= want + 1e-6 && got >= want - off - 1e-6, "{x} {y}: {got} {want}");
         }
     });
 }
