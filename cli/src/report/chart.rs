@@ -281,7 +281,9 @@ pub fn stages(stages: &[Stage]) -> Option<String> {
     let known: Vec<&Stage> = stages.iter().filter(|s| s.wall_s.is_finite() && s.wall_s >= 0.0).collect();
     let longest = known.iter().map(|s| s.wall_s).fold(0.0, f64::max);
     known.first()?;
-    let (row, left) = (24.0, 110.0);
+    // Room for the longest name, some seven units a letter.
+    let letters = known.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
+    let (row, left) = (24.0, (16.0 + 7.0 * letters as f64).clamp(110.0, 0.4 * WIDTH));
     let height = row * known.len() as f64 + 4.0;
     let mut out = format!(
         "<svg class=\"chart\" viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"Wall time of each stage\">"

@@ -12,9 +12,10 @@
 //! cutter that would do.
 
 use super::course::Course;
-use super::ground::{DropTask, Ground, Lines, asked, design_mm, ground, hide, nothing, told, too_many};
+use super::ground::{Ground, Lines, asked, design_mm, ground, hide, nothing, told, too_many};
 use super::laid::Laid;
 use super::rounds::{Round, in_rounds};
+use super::task::DropTask;
 use super::trace;
 use super::wants::{LEVEL, Lost, Want};
 use crate::plan::{MAX_PASSES, Pass, Passes, PlanError};

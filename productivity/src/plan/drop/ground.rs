@@ -2,37 +2,16 @@
 
 use super::frame::Frame;
 use super::height::{Drops, Rest};
-use super::seeds::seeds;
+use super::seeds::{areas, sampled, seeds};
+use super::task::DropTask;
 use super::wants::{Lost, Want, want};
-use crate::plan::{MAX_PASSES, Named, Pass, Passes, PlanError, Tolerance};
-use osculate_geom::{Diagnostic, Surface, Unit3, Vec3, quadrature};
-use osculate_tools::Cutter;
-use osculate_tools::removal::{self, Sample, sample_surface};
+use crate::plan::{MAX_PASSES, Pass, Passes, PlanError, Tolerance};
+use osculate_geom::{Diagnostic, Surface, Unit3};
+use osculate_tools::removal::Sample;
 use rayon::prelude::*;
-
-/// What to plan with a fixed tool axis.
-#[derive(Clone, Copy)]
-pub struct DropTask<'a> {
-    /// Faces to machine.
-    pub faces: &'a [Named<'a>],
-    /// Faces that the tool must not cut.
-    pub check: &'a [Named<'a>],
-    /// The cutter.
-    pub cutter: &'a Cutter,
-    /// The tool axis, from the tip to the holder.
-    pub axis: Unit3,
-    /// The way of the passes, brought into the plane across the axis.
-    pub feed: Vec3,
-    /// What must hold.
-    pub tolerance: Tolerance,
-    /// Told how far the work is, 0 to 1.
-    pub progress: &'a (dyn Fn(f64) + Sync),
-}
 
 /// Most places, over all faces.
 const MOST_PLACES: f64 = 3e5;
-/// A face may have this many of either, however small it is.
-const FEWEST: usize = 200;
 /// The share of the tolerance that passes are laid out for: the rest is for what the leading order neglects.
 pub(super) const DESIGN: f64 = 0.94;
 /// Shares of the area below which a loss is not worth a word.
@@ -175,25 +154,6 @@ pub(super) fn told(ground: &Ground<'_>, passes: Vec<Pass>, lost: &[(f64, &'stati
         }
     }
     out
-}
-
-/// Samples of one face `spacing_mm` apart: of a count over all faces its share by area.
-pub(super) fn sampled(
-    (task, surfaces, areas): (&DropTask<'_>, &[&dyn Surface], &[f64]),
-    k: usize,
-    spacing_mm: f64,
-    [most, over]: [f64; 2],
-) -> Result<removal::Sampling, PlanError> {
-    let name = task.faces.iter().chain(task.check).nth(k).map_or("", |n| n.face);
-    let share = ((most * areas[k] / over) as usize).max(FEWEST);
-    // Face numbers are positions in the list, far below the limit of u32.
-    sample_surface(surfaces[k], k as u32, spacing_mm, share)
-        .map_err(|e| PlanError::Nothing { face: name.to_owned(), why: e.to_string() })
-}
-
-/// Areas that only share out counts: coarse values will do.
-pub(super) fn areas(surfaces: &[&dyn Surface]) -> Vec<f64> {
-    surfaces.par_iter().map(|s| quadrature::area(*s, 1e-2).value).collect()
 }
 
 /// Samples the faces: seeds for drops on all of them, places on those to be machined.

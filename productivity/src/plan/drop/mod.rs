@@ -18,12 +18,13 @@ mod rims;
 mod rough;
 mod rounds;
 mod seeds;
+mod task;
 mod trace;
 mod wants;
 mod waterline;
 
 pub use gradient::gradient_3c;
-pub use ground::DropTask;
 pub use planes::drop_cutter;
 pub use rough::{Entry, Heading, Headings, Places, RoughTask, Roughing, Rows, Search, Sizes, rough};
+pub use task::DropTask;
 pub use waterline::waterline_3c;

@@ -1,7 +1,8 @@
 //! Passes in parallel planes.
 
-use super::ground::{DropTask, Lines, asked, ground, hide, nothing, told, too_many};
+use super::ground::{Lines, asked, ground, hide, nothing, told, too_many};
 use super::rounds::{Round, in_rounds};
+use super::task::DropTask;
 use super::trace;
 use super::wants::Want;
 use crate::plan::{MAX_PASSES, Passes, PlanError, check_tolerance};

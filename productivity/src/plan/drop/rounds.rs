@@ -140,8 +140,9 @@ fn measure(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::drop::ground::{DropTask, Lines, asked, ground};
+    use crate::plan::drop::ground::{Lines, asked, ground};
     use crate::plan::drop::planes::{levels, shares};
+    use crate::plan::drop::task::DropTask;
     use crate::plan::{Named, Tolerance};
     use osculate_geom::analytic::Plane;
     use osculate_geom::{Domain, Interval, Surface, Vec3};

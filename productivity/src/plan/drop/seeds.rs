@@ -1,14 +1,17 @@
 //! Seeds of drops: places all over the faces and along their rims, from which it is found where a tool rests.
 
 use super::frame::Frame;
-use super::ground::{DropTask, sampled};
 use super::height::Seed;
+use super::task::DropTask;
 use crate::plan::PlanError;
-use osculate_geom::{Axis, Surface, Uv, Vec3};
+use osculate_geom::{Axis, Surface, Uv, Vec3, quadrature};
+use osculate_tools::removal::{self, sample_surface};
 use rayon::prelude::*;
 
 /// Seeds of drops stand this part of the tool's radius apart.
 const SEEDS: f64 = 0.1;
+/// A face may have this many seeds or places, however small it is.
+const FEWEST: usize = 200;
 /// Most seeds over all faces.
 const MOST_SEEDS: f64 = 1e6;
 /// Chords between seeds on a rim may be off one of the tool's radius by this part of the chord tolerance.
@@ -17,6 +20,25 @@ const RIM_SAGITTA: f64 = 0.1;
 const RIM_LINES: [f64; 2] = [20.0, 2000.0];
 /// Halvings of the way from one of these lines to the next where the rim bends.
 const RIM_HALVINGS: u32 = 8;
+
+/// Samples of one face `spacing_mm` apart: of a count over all faces its share by area.
+pub(super) fn sampled(
+    (task, surfaces, areas): (&DropTask<'_>, &[&dyn Surface], &[f64]),
+    k: usize,
+    spacing_mm: f64,
+    [most, over]: [f64; 2],
+) -> Result<removal::Sampling, PlanError> {
+    let name = task.faces.iter().chain(task.check).nth(k).map_or("", |n| n.face);
+    let share = ((most * areas[k] / over) as usize).max(FEWEST);
+    // Face numbers are positions in the list, far below the limit of u32.
+    sample_surface(surfaces[k], k as u32, spacing_mm, share)
+        .map_err(|e| PlanError::Nothing { face: name.to_owned(), why: e.to_string() })
+}
+
+/// Areas that only share out counts: coarse values will do.
+pub(super) fn areas(surfaces: &[&dyn Surface]) -> Vec<f64> {
+    surfaces.par_iter().map(|s| quadrature::area(*s, 1e-2).value).collect()
+}
 
 /// Seeds of drops, their distance, mm, and the least and greatest of their positions.
 pub(super) type Seeds = (Vec<Seed>, f64, [[f64; 2]; 2]);

@@ -5,10 +5,11 @@
 //! heights jump, they are the rim all the same. Heights are the fewest that leave no steep place out of reach; of a rim only the
 //! stretches remain that some place wants. What the passes leave is measured with the swept cutter, as for planes.
 
-use super::ground::{DropTask, Ground, Lines, asked, ground, hide, nothing, told, too_many};
+use super::ground::{Ground, Lines, asked, ground, hide, nothing, told, too_many};
 use super::planes::levels;
 use super::rims::{Rim, Rims};
 use super::rounds::{Round, in_rounds};
+use super::task::DropTask;
 use super::wants::Want;
 use crate::plan::{CcPoint, MAX_PASSES, Pass, Passes, PlanError, check_tolerance};
 use osculate_geom::{Point3, Surface, Unit3};

@@ -1,8 +1,8 @@
 //! Drops of a ball beside round edges and in a bore, in closed form.
 
 use super::*;
-use crate::plan::drop::ground::{DropTask, areas};
-use crate::plan::drop::seeds::seeds;
+use crate::plan::drop::seeds::{areas, seeds};
+use crate::plan::drop::task::DropTask;
 use crate::plan::{Named, Tolerance};
 use osculate_geom::analytic::{Cylinder, Placed, Placement};
 use osculate_geom::{Curve, CurveTaylor, Domain, Extruded, Interval, Patch, Side, Vec3};

@@ -1,7 +1,8 @@
 //! Layers along one axis: what is known of the place, the lines of all layers, and the moves through them.
 
-use super::super::ground::{DropTask, Ground, Lines::Planes};
+use super::super::ground::{Ground, Lines::Planes};
 use super::super::height::{Drops, Seed};
+use super::super::task::DropTask;
 use super::clear::{self, ALL, Lines, Part, Pick};
 use super::layer::{Layer, Masks, Sheet, Walls};
 use super::material::Material;

@@ -1,9 +1,9 @@
 //! A roughing from the first axis to the last, in all places that are alike.
 
 use super::super::frame::Frame;
-use super::super::ground::{areas, nothing};
+use super::super::ground::nothing;
 use super::super::height::Seed;
-use super::super::seeds::seeds;
+use super::super::seeds::{areas, seeds};
 use super::columns::Underside;
 use super::directions::Views;
 use super::heading::{Along, Known, along, drop_task};
