@@ -16,7 +16,7 @@ use crate::axis::{Left, sunk};
 use osculate_geom::Surface;
 use osculate_tools::reach::Obstacles;
 use osculate_tools::removal::{self, JobError, Limits, Sample, SamplingError, Swept, beside_edges};
-use osculate_tools::{Cutter, Holder, Pose};
+use osculate_tools::{Cutter, Holder};
 use rayon::prelude::*;
 
 /// Most samples that the tool is held against, over all faces, and fewest of one face.
@@ -61,8 +61,8 @@ pub struct Guard<'a> {
     pub holder: Option<&'a Holder>,
     /// What must hold: the cutter may go as deep into faces to machine as its gouges say.
     pub tolerance: Tolerance,
-    /// What cutter and holder keep from check faces, and the holder from faces to machine. Zero: nothing, and they may go in by the
-    /// gouge tolerance as verification accepts it.
+    /// What cutter and holder keep from check faces, and the holder from faces to machine. Zero: the cutter may go in by the gouge tolerance
+    /// as verification accepts it, and the holder keeps off as far as samples may hide something.
     pub keep_off_mm: f64,
     /// Raw material that is left, which the holder must not meet.
     pub left: Left<'a>,
@@ -154,9 +154,10 @@ struct Watch<'a> {
     /// Samples are sunk by so much more, and a tool keeps that from them: one that lies along a face may be as deep as it may, one that
     /// comes at it from beside, over an edge, keeps off, mm.
     aside_mm: f64,
-    /// Distance that is kept from faces to machine by the holder and from check faces by all, mm; None where they may go in as far as
-    /// is accepted.
+    /// Distance that is kept from check faces by the cutter, mm; None where it may go in as far as is accepted.
     keep_mm: Option<f64>,
+    /// Distance that the holder keeps from all faces, mm.
+    holder_mm: f64,
 }
 
 impl<'a> Watch<'a> {
@@ -170,7 +171,8 @@ impl<'a> Watch<'a> {
         let spacing_mm = (8.0 * guard.cutter.radius_mm() * HIDDEN * gouge_mm).sqrt();
         let (faces, apart) = sampled(guard.faces, [spacing_mm, MOST])?;
         let (check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
-        let keep_mm = (keep > 0.0).then(|| keep + ADDED * apart.max(check_apart));
+        let holder_mm = keep + ADDED * apart.max(check_apart);
+        let keep_mm = (keep > 0.0).then_some(holder_mm);
         let aside_mm = (ASIDE * gouge_mm).min(guard.tolerance.chord_mm);
         let deep_mm = |gouge_mm: f64| [ACCEPTED, RELEASE].map(|share| share * gouge_mm + aside_mm);
         let (own_mm, others_mm) = (deep_mm(gouge_mm), deep_mm(BESIDE * gouge_mm));
@@ -188,28 +190,24 @@ impl<'a> Watch<'a> {
         let faces = Points::new(&faces, of_faces, own_mm);
         let check = Points::new(&check, of_check, others_mm);
         let left = Obstacles::new(guard.left.obstacles()).unwrap_or_default();
-        Ok(Self { guard, faces, check, left, apart_mm: APART * check_apart, aside_mm, keep_mm })
+        Ok(Self { guard, faces, check, left, apart_mm: APART * check_apart, aside_mm, keep_mm, holder_mm })
     }
 
     /// Whether the tool is where it must not be.
     fn is_in(&self, at: &CcPoint, depth: Depth) -> bool {
         let Guard { cutter, holder, .. } = self.guard;
         let (pose, end_mm) = (&at.pose, END * cutter.radius_mm());
-        let meets = |points: &Points, body: &Cutter, pose: &Pose| match self.keep_mm {
-            Some(keep) => points.at.is_within(body, pose, keep),
-            None => points.sunk[depth as usize].is_within(body, pose, self.aside_mm),
-        };
-        let beside = |body: &Cutter, pose: &Pose| {
-            meets(&self.check, body, pose)
-                || self.check.at.is_within_beyond((body, pose), self.apart_mm, (&at.point, end_mm))
-        };
-        self.faces.sunk[depth as usize].is_within(cutter, pose, self.aside_mm)
-            || beside(cutter, pose)
+        let is_sunk = |points: &Points| points.sunk[depth as usize].is_within(cutter, pose, self.aside_mm);
+        is_sunk(&self.faces)
+            || self
+                .keep_mm
+                .map_or_else(|| is_sunk(&self.check), |mm| self.check.at.is_within(cutter, pose, mm))
+            || self.check.at.is_within_beyond((cutter, pose), self.apart_mm, (&at.point, end_mm))
             || holder.is_some_and(|h| {
                 let mut sections = h.posed(cutter, pose);
                 sections.any(|(body, at)| {
-                    meets(&self.faces, body, &at)
-                        || beside(body, &at)
+                    let faces = [&self.faces, &self.check];
+                    faces.iter().any(|f| f.at.is_within(body, &at, self.holder_mm))
                         || self.left.is_within(body, &at, self.guard.left.keep_mm())
                 })
             })

@@ -128,7 +128,9 @@ pub fn job(wanted: &Wanted<'_>, (grouped, word): (&Grouped, Normals), target: &T
         let _ = write!(
             out,
             "# From this axis the tool reaches {} % of the faces. It keeps it, so that any 3+2-axis control runs the passes.\n[[operation]]\nname = \"axis {}\"\nkind = \"finish\"\ntools = [1]\nfaces = {}\n\
-             # Half of the tolerance: the rest is for marks of teeth, rounding and steep places.\nscallop_mm = {}\nstrategy = {{ kind = \"isoplanar_3c\", axis = {} }}\n\n",
+             # Half of the tolerance: the rest is for marks of teeth, rounding and steep places.\nscallop_mm = {}\n\
+             # Where the tool or its holder would go into the part nothing is cut.\n\
+             strategy = {{ kind = \"isoplanar_3c\", axis = {}, gouges = \"leave_out\" }}\n\n",
             number(share.min(100.0), 3),
             k + 1,
             quoted(&ids),

@@ -171,7 +171,7 @@ fn follow(ground: &Ground<'_>, laid: &Laid<'_>, start: [f64; 2], first: [f64; 2]
         };
         let long = (next[0] - c[0]).hypot(next[1] - c[1]);
         for w in laid.open(c, next) {
-            needed = f64::max(needed, s + w.along * long + w.want.half + PAST * radius);
+            needed = f64::max(needed, s + w.along * long + w.want.widest() + PAST * radius);
         }
         (c, dir, s) = (next, turned, s + long);
         nodes.push((c, s));

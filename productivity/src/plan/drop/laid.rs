@@ -30,7 +30,7 @@ pub(super) struct Beside<'a> {
 
 /// How far a course may be off a place.
 fn reach(w: &Want) -> f64 {
-    (w.reach - BETWEEN * w.half).max(0.5 * w.reach)
+    (w.reach - BETWEEN * w.widest()).max(0.5 * w.reach)
 }
 
 impl<'a> Laid<'a> {

@@ -18,6 +18,7 @@ mod rims;
 mod rough;
 mod rounds;
 mod seeds;
+mod silhouettes;
 mod task;
 mod trace;
 mod wants;

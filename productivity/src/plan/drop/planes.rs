@@ -57,7 +57,7 @@ pub(super) fn shares(levels: &[f64], wants: &[Want]) -> Vec<f64> {
 pub(super) fn levels(wants: &mut [Want]) -> Vec<f64> {
     wants.sort_by(|a, b| a.at[1].total_cmp(&b.at[1]));
     let least = wants.iter().map(|w| w.reach).fold(f64::INFINITY, f64::min);
-    let widest = wants.iter().map(|w| w.half).fold(0.0, f64::max);
+    let widest = wants.iter().map(|w| w.half[1]).fold(0.0, f64::max);
     let mut out: Vec<f64> = Vec::new();
     let mut last = f64::NEG_INFINITY;
     loop {
@@ -67,8 +67,8 @@ pub(super) fn levels(wants: &mut [Want]) -> Vec<f64> {
             if w.at[1] - widest + least > next {
                 break;
             }
-            if w.at[1] + w.half > last + w.reach {
-                next = next.min((w.at[1] - w.half).max(last + w.reach) + w.reach);
+            if w.at[1] + w.half[1] > last + w.reach {
+                next = next.min((w.at[1] - w.half[1]).max(last + w.reach) + w.reach);
             }
         }
         // Every step goes forward by twice the least reach or ends; the count is checked by the caller.

@@ -47,7 +47,7 @@ impl Rims {
     /// Why a grid would be too large.
     pub(super) fn around(ground: &Ground<'_>, wants: &[Want]) -> Result<Self, String> {
         let cell = CELL * ground.task.cutter.radius_mm();
-        let pad = |w: &Want| w.reach + 2.0 * w.half + 2.0 * cell;
+        let pad = |w: &Want| w.reach + 2.0 * w.widest() + 2.0 * cell;
         let by = |k: usize, sign: f64| {
             wants.iter().map(|w| sign * w.at[k] + pad(w)).fold(f64::NEG_INFINITY, f64::max) * sign
         };

@@ -1,7 +1,8 @@
 //! Seeds of drops: places all over the faces and along their rims, from which it is found where a tool rests.
 
 use super::frame::Frame;
-use super::height::Seed;
+use super::height::{Seed, way};
+use super::silhouettes::{Spacing, silhouettes};
 use super::task::DropTask;
 use crate::plan::PlanError;
 use osculate_geom::{Axis, Surface, Uv, Vec3, quadrature};
@@ -16,6 +17,8 @@ const FEWEST: usize = 200;
 const MOST_SEEDS: f64 = 1e6;
 /// Chords between seeds on a rim may be off one of the tool's radius by this part of the chord tolerance.
 const RIM_SAGITTA: f64 = 0.1;
+/// Seeds along silhouettes are no closer than this many chord tolerances.
+const NARROWEST: f64 = 4.0;
 /// Lines along each parameter on whose ends the rim of a face is seeded: fewest and most.
 const RIM_LINES: [f64; 2] = [20.0, 2000.0];
 /// Halvings of the way from one of these lines to the next where the rim bends.
@@ -64,6 +67,13 @@ pub(super) fn seeds(
             along: [0.0; 3],
         }));
         let apart = Apart { along_mm: along_rim, off_mm: RIM_SAGITTA * task.tolerance.chord_mm };
+        let spacing = Spacing {
+            over_mm: sampling.density.spacing_mm,
+            along_mm: along_rim,
+            off_mm: apart.off_mm,
+            least_mm: NARROWEST * task.tolerance.chord_mm,
+        };
+        seeds.extend(silhouettes((*surface, k as u32), frame, spacing));
         rim(*surface, k as u32, (frame, apart), &mut seeds);
     }
     let by =
@@ -103,10 +113,6 @@ impl Ends {
                 (Vec3::from(m.at) - near).norm() > apart.off_mm && is_one(a, b, apart)
             })
     }
-}
-
-fn way(a: &Seed, b: &Seed) -> [f64; 3] {
-    [0, 1, 2].map(|i| b.at[i] - a.at[i])
 }
 
 fn is_one(a: &Seed, b: &Seed, apart: Apart) -> bool {

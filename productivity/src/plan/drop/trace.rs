@@ -20,7 +20,7 @@ const SHORTEST: f64 = 1e-3;
 /// The passes on all levels, to and fro.
 pub(super) fn passes(ground: &Ground<'_>, wants: &[Want], levels: &[f64]) -> Vec<Pass> {
     // Wants are in the order of their levels.
-    let longest = wants.iter().map(|w| w.reach + w.half).fold(0.0, f64::max);
+    let longest = wants.iter().map(|w| w.reach + w.half[1]).fold(0.0, f64::max);
     let built: Vec<Vec<Pass>> = levels
         .par_iter()
         .map(|level| {
@@ -47,10 +47,10 @@ pub(super) fn passes(ground: &Ground<'_>, wants: &[Want], levels: &[f64]) -> Vec
 fn level_passes(ground: &Ground<'_>, wants: &[Want], level: f64) -> Vec<Pass> {
     let stretches: Vec<[f64; 2]> = wants
         .iter()
-        .filter(|w| (w.at[1] - level).abs() <= w.reach + w.half)
+        .filter(|w| (w.at[1] - level).abs() <= w.reach + w.half[1])
         .map(|w| {
             // Half the way to the next place, and as far as the tool reaches beside its contact.
-            let pad = w.half + w.reach;
+            let pad = w.half[0] + w.reach;
             [w.at[0] - pad, w.at[0] + pad]
         })
         .collect();
@@ -82,7 +82,7 @@ fn looks(course: &Course, step: f64) -> Vec<f64> {
     out
 }
 
-/// The passes along a course: the tool dropped onto the faces, parted where nothing is below it.
+/// The passes along a course: the tool dropped onto the faces, parted where nothing is below it and where it would rest on the inner side of one.
 pub(super) fn along(ground: &Ground<'_>, course: &Course) -> Vec<Pass> {
     let at = |x: f64| ground.drops.rest(course.at(x)).map(|rest| Stop { x, rest });
     let mut runs: Vec<Vec<Stop>> = vec![Vec::new()];
@@ -108,9 +108,11 @@ pub(super) fn along(ground: &Ground<'_>, course: &Course) -> Vec<Pass> {
         }
         last = x;
     }
-    runs.into_iter()
+    let is_behind = |s: &Stop| ground.drops.is_behind(&s.rest, course.at(s.x));
+    runs.iter()
+        .flat_map(|r| r.split(is_behind))
         .filter(|r| r.len() >= 2)
-        .map(|r| pass(ground, &thin(ground, course, &r), course))
+        .map(|r| pass(ground, &thin(ground, course, r), course))
         .collect()
 }
 

@@ -29,14 +29,21 @@ pub(super) struct Want {
     pub tip: f64,
     /// Passes within this distance of its level leave no more than the design height, mm.
     pub reach: f64,
-    /// How far the positions of the places that it stands for lie from its own across the feed, mm.
-    pub half: f64,
+    /// How far the positions of the places that it stands for lie from its own, along and across the feed, mm.
+    pub half: [f64; 2],
     /// The area that it stands for, mm2.
     pub area: f64,
     /// The face's outer normal there.
     pub normal: Unit3,
     /// Its parameters.
     pub uv: Uv,
+}
+
+impl Want {
+    /// How far the positions of the places that it stands for lie from its own in any direction, mm.
+    pub(super) fn widest(&self) -> f64 {
+        self.half[0].max(self.half[1])
+    }
 }
 
 /// Why a sample cannot be cut.
@@ -83,11 +90,11 @@ pub(super) fn want(
     let rise = height_mm.min(arc.radius_mm);
     let most = arc.centre_rho_mm.max(0.0) + (rise * (2.0 * arc.radius_mm - rise)).max(0.0).sqrt();
     let wanted =
-        Want { at: [x, y], tip, reach: most, half: 0.0, area: s.area_mm2, normal: s.normal, uv: s.uv };
+        Want { at: [x, y], tip, reach: most, half: [0.0; 2], area: s.area_mm2, normal: s.normal, uv: s.uv };
     if arc.centre_rho_mm > 0.0 && 2.0 * arc.centre_rho_mm * sine <= LEVEL * height_mm {
         // Level ground under a flat bottom: its middle comes down there, and its rim covers all around.
         let tip = z - (arc.centre_z_mm - arc.radius_mm);
-        return Ok(Want { tip, half: 0.5 * spacing_mm, ..wanted });
+        return Ok(Want { tip, half: [0.5 * spacing_mm; 2], ..wanted });
     }
     let forms = surface.jet2(s.uv).forms().map_err(|_| Lost::NoTangent)?;
     // In the tangent frame (down the slope, across it) the tool's curvatures are those of meridian and parallel.
@@ -142,8 +149,17 @@ pub(super) fn want(
     let form = m[0] * feed[0] * feed[0] + 2.0 * m[1] * feed[0] * feed[1] + m[2] * feed[1] * feed[1];
     let across = (m[0] * m[2] - m[1] * m[1]) / form.max(f64::MIN_POSITIVE);
     let reach = if across > 0.0 { cosine * (2.0 * height_mm / across).sqrt() } else { most };
-    // Where the part is convex, positions stand further apart than the places that they belong to.
-    let half = 0.5 * spacing_mm * (1.0 + cutter.radius_mm() * forms.principal().k_max.max(0.0));
+    // A step d over the part takes the tool along by (1 + R W) d: further where the part is convex, and only in the direction in which it
+    // bends.
+    let taken = |x: f64, y: f64| {
+        let [x, y] = [
+            x + cutter.radius_mm() * (w[(0, 0)] * x + w[(0, 1)] * y),
+            y + cutter.radius_mm() * (w[(0, 1)] * x + w[(1, 1)] * y),
+        ];
+        0.5 * spacing_mm * x.hypot(y).max(1.0)
+    };
+    let frames = forms.frame.map(|e| frame.along(&e));
+    let half = [0, 1].map(|k| taken(frames[0][k], frames[1][k]));
     Ok(Want { at, tip, reach: reach.min(most.max(height_mm)), half, ..wanted })
 }
 

@@ -85,7 +85,7 @@ struct Near<'a> {
 impl<'a> Near<'a> {
     /// Those that a pass at a height serves.
     fn of(wants: &'a [Want], z: f64, least: f64) -> Self {
-        let served: Vec<&Want> = wants.iter().filter(|w| (w.tip - z).abs() <= w.reach + w.half).collect();
+        let served: Vec<&Want> = wants.iter().filter(|w| (w.tip - z).abs() <= w.reach + w.widest()).collect();
         let cell = served.iter().map(|w| Self::pad(w)).fold(least, f64::max);
         let mut bins: HashMap<[i64; 2], Vec<&Want>> = HashMap::new();
         for w in served {
@@ -96,7 +96,7 @@ impl<'a> Near<'a> {
 
     /// How far from a want's own position a pass may be that serves it: as steep as 45 degrees, it shifts by what it rises.
     fn pad(w: &Want) -> f64 {
-        w.reach + 2.0 * w.half
+        w.reach + 2.0 * w.widest()
     }
 
     fn bin(cell: f64, at: [f64; 2]) -> [i64; 2] {

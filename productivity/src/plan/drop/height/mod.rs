@@ -24,8 +24,12 @@ const CLIMBS: usize = 4;
 const NEAR: f64 = 1.5;
 /// Steps of one climb.
 const STEPS: usize = 16;
+/// A tool is on the inner side of a face where the cosine between their outer normals is above this.
+const BEHIND: f64 = 0.1;
 /// Entries of the table of the cutter's lower side.
 const TABLE: usize = 512;
+/// From this entry on the side rises too steeply for a table, which is off there by 6e-5 radii of a ball.
+const STEEP: usize = TABLE * 15 / 16;
 
 /// A place of a face that the tool may rest on.
 #[derive(Clone, Copy)]
@@ -62,6 +66,11 @@ impl Seed {
     fn is_rim(&self) -> bool {
         self.along != [0.0; 3]
     }
+}
+
+/// The way from one seed to another.
+pub(super) fn way(a: &Seed, b: &Seed) -> [f64; 3] {
+    [0, 1, 2].map(|i| b.at[i] - a.at[i])
 }
 
 /// Where the tool rests.
@@ -208,7 +217,7 @@ impl<'a> Drops<'a> {
         (k(x - radius) as usize).min(self.n[side])..(last as usize + 1).min(self.n[side])
     }
 
-    /// Height that a seed holds the tip at, by the table.
+    /// Height that a seed holds the tip at, by the table where that is near enough.
     fn held(&self, s: &Seed, c: [f64; 2]) -> f64 {
         let radius = self.cutter.radius_mm();
         let at = s.nearest(c);
@@ -218,9 +227,12 @@ impl<'a> Drops<'a> {
             return f64::NEG_INFINITY;
         }
         let k = q as usize;
+        if k >= STEEP {
+            return lower_side(self.cutter, dx, dy).map_or(f64::NEG_INFINITY, |(g, _)| at[2] - g);
+        }
         let f = q - k as f64;
         let (a, b) = (self.lower[k], self.lower[k + 1]);
-        at[2] - if b.is_finite() { a + (b - a) * f } else { a }
+        at[2] - (a + (b - a) * f)
     }
 
     /// Height that a piece of a rim holds the tip at. Pieces beside each other differ by less than the table knows of a side that is as
@@ -430,6 +442,17 @@ impl<'a> Drops<'a> {
             return Some(rest(tip, on));
         }
         Some(rest(f, at))
+    }
+
+    /// Whether the tool over `c` rests on the inner side of a face: on a sheet that hangs over, whose material is where the tool would be.
+    pub(super) fn is_behind(&self, r: &Rest, c: [f64; 2]) -> bool {
+        let [x, y, _] = self.frame.of(&r.point);
+        let Some(((_, [sx, sy]), n)) = lower_side(self.cutter, x - c[0], y - c[1]).zip(self.normal(r)) else {
+            return false;
+        };
+        let n = self.frame.along(&n);
+        // Of a contact the normals of tool and face are opposite; on a rim they may be at right angles.
+        (n[0] * sx + n[1] * sy - n[2]) / (1.0 + sx * sx + sy * sy).sqrt() > BEHIND
     }
 
     /// Normal of a face at a resting place, if it has one.

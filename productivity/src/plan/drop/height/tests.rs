@@ -112,3 +112,51 @@ fn a_ball_rests_on_the_tip_of_a_narrow_rim() {
         }
     });
 }
+
+/// A rod stands out furthest between the lines on which it is seeded, and a ball beside it comes down on that.
+#[test]
+fn a_ball_rests_beside_a_rod_until_it_clears_it() {
+    const BALL_MM: f64 = 3.0;
+    const ROD_MM: f64 = 0.33;
+    let surface = Cylinder::new(ROD_MM, Interval::new(-10.0, 10.0)).unwrap();
+    let rod = Placed { surface, placement: Placement::new(Point3::origin(), Vec3::x_axis(), None) };
+    with_drops(&[&rod], BALL_MM, |drops| {
+        let reach = BALL_MM + ROD_MM;
+        for k in 1..400 {
+            // Closer and closer to where it passes it by.
+            let d = reach - 10.0_f64.powf(-6.0 * f64::from(k) / 400.0);
+            for side in [-1.0, 1.0] {
+                let c = [0.137, side * d];
+                let tip = (reach * reach - d * d).sqrt() - BALL_MM;
+                // The rod's side is known to a tenth of the chord tolerance, and the ball falls with the slope of what it touches.
+                let off = 0.1 * TOLERANCE.chord_mm * d / (tip + BALL_MM);
+                if let Some(rest) = drops.rest(c) {
+                    let low = if d + 0.1 * TOLERANCE.chord_mm < reach { tip - off } else { -2.0 * BALL_MM };
+                    assert!(rest.tip <= tip + 1e-8 && rest.tip >= low - 1e-8, "{d}: {} {tip}", rest.tip);
+                } else {
+                    assert!(d + 0.1 * TOLERANCE.chord_mm >= reach, "{d}: nothing holds it");
+                }
+                assert!(!drops.is_above(c, tip + 1e-4 * BALL_MM), "{d}: held higher than it can be");
+            }
+        }
+    });
+}
+
+/// The same beside a small globe, whose silhouette bends.
+#[test]
+fn a_ball_rests_beside_a_globe() {
+    const BALL_MM: f64 = 3.0;
+    const GLOBE_MM: f64 = 0.33;
+    let globe = osculate_geom::analytic::Sphere::new(GLOBE_MM).unwrap();
+    with_drops(&[&globe], BALL_MM, |drops| {
+        let reach = BALL_MM + GLOBE_MM;
+        for k in 0..200 {
+            let (s, c) = (f64::from(k) * 0.0314).sin_cos();
+            let d = reach - 0.25 * TOLERANCE.chord_mm;
+            let tip = (reach * reach - d * d).sqrt() - BALL_MM;
+            let rest = drops.rest([d * c, d * s]).unwrap();
+            let off = 0.1 * TOLERANCE.chord_mm * d / (tip + BALL_MM);
+            assert!((rest.tip - tip).abs() < off + 1e-8, "{k}: {} {tip}", rest.tip);
+        }
+    });
+}
