@@ -5,7 +5,7 @@
 mod dropped;
 
 use dropped::{TOLERANCE, dropped, holds, left};
-use osculate_geom::analytic::{Paraboloid, Placed, Placement, Plane, Sphere};
+use osculate_geom::analytic::{Cylinder, Paraboloid, Placed, Placement, Plane, Sphere};
 use osculate_geom::{Domain, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{Passes, PlanError, drop_cutter};
 use osculate_tools::{Cutter, CutterSpec};
@@ -58,6 +58,22 @@ fn domes_are_cut_by_both_and_a_dish_by_the_ball() {
         passes.diagnostics
     );
     assert!(left(&[&dish], &toroid(), &passes)[0] >= -TOLERANCE.gouge_mm);
+}
+
+/// Along a thin edge places for which a pass stands lie far apart across it, but not along it.
+#[test]
+fn passes_along_a_thin_edge_end_with_it() {
+    let surface = Cylinder::new(0.3, Interval::new(0.0, 20.0)).unwrap();
+    let rod =
+        Placed { surface, placement: Placement::new(Point3::origin(), Vec3::x_axis(), Some(Vec3::y())) };
+    let passes = plan(&[&rod], &[], &ball()).unwrap();
+    // A strip on a plane is as wide as this.
+    let strip = 2.0 * (2.0 * 4.0 * TOLERANCE.scallop_mm).sqrt();
+    for p in passes.passes.iter().flat_map(|p| &p.points) {
+        let x = p.pose.tip.x;
+        assert!(x >= -strip && x <= 20.0 + strip, "{x}");
+    }
+    assert!(passes.passes.len() > 4);
 }
 
 /// Two planes that rise to both sides of a valley that the feed crosses.

@@ -82,7 +82,7 @@ fn looks(course: &Course, step: f64) -> Vec<f64> {
     out
 }
 
-/// The passes along a course: the tool dropped onto the faces, parted where nothing is below it and where it would rest on the inner side of one.
+/// The passes along a course: the tool dropped onto the faces, parted where nothing is below it.
 pub(super) fn along(ground: &Ground<'_>, course: &Course) -> Vec<Pass> {
     let at = |x: f64| ground.drops.rest(course.at(x)).map(|rest| Stop { x, rest });
     let mut runs: Vec<Vec<Stop>> = vec![Vec::new()];
@@ -108,11 +108,9 @@ pub(super) fn along(ground: &Ground<'_>, course: &Course) -> Vec<Pass> {
         }
         last = x;
     }
-    let is_behind = |s: &Stop| ground.drops.is_behind(&s.rest, course.at(s.x));
-    runs.iter()
-        .flat_map(|r| r.split(is_behind))
+    runs.into_iter()
         .filter(|r| r.len() >= 2)
-        .map(|r| pass(ground, &thin(ground, course, r), course))
+        .map(|r| pass(ground, &thin(ground, course, &r), course))
         .collect()
 }
 

@@ -24,8 +24,6 @@ const CLIMBS: usize = 4;
 const NEAR: f64 = 1.5;
 /// Steps of one climb.
 const STEPS: usize = 16;
-/// A tool is on the inner side of a face where the cosine between their outer normals is above this.
-const BEHIND: f64 = 0.1;
 /// Entries of the table of the cutter's lower side.
 const TABLE: usize = 512;
 /// From this entry on the side rises too steeply for a table, which is off there by 6e-5 radii of a ball.
@@ -442,17 +440,6 @@ impl<'a> Drops<'a> {
             return Some(rest(tip, on));
         }
         Some(rest(f, at))
-    }
-
-    /// Whether the tool over `c` rests on the inner side of a face: on a sheet that hangs over, whose material is where the tool would be.
-    pub(super) fn is_behind(&self, r: &Rest, c: [f64; 2]) -> bool {
-        let [x, y, _] = self.frame.of(&r.point);
-        let Some(((_, [sx, sy]), n)) = lower_side(self.cutter, x - c[0], y - c[1]).zip(self.normal(r)) else {
-            return false;
-        };
-        let n = self.frame.along(&n);
-        // Of a contact the normals of tool and face are opposite; on a rim they may be at right angles.
-        (n[0] * sx + n[1] * sy - n[2]) / (1.0 + sx * sx + sy * sy).sqrt() > BEHIND
     }
 
     /// Normal of a face at a resting place, if it has one.
