@@ -121,6 +121,7 @@ pub(super) fn silhouettes(
     chains.into_iter().flatten().collect()
 }
 
+/// The four cells that a cell is halved into along both parameters.
 fn quarters([a, b, c, d]: &Cell, see: &impl Fn(Uv) -> Node) -> [Cell; 4] {
     let middle = |p: &Node, q: &Node| see(uv(0.5 * (p.uv.u + q.uv.u), 0.5 * (p.uv.v + q.uv.v)));
     let [ab, ac, ad, bd, cd] = [middle(a, b), middle(a, c), middle(a, d), middle(b, d), middle(c, d)];

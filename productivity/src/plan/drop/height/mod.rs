@@ -26,7 +26,7 @@ const NEAR: f64 = 1.5;
 const STEPS: usize = 16;
 /// Entries of the table of the cutter's lower side.
 const TABLE: usize = 512;
-/// From this entry on the side rises too steeply for a table, which is off there by 6e-5 radii of a ball.
+/// From this entry on the side rises too steeply for a table, which is off by 1.2e-5 radii of a ball there.
 const STEEP: usize = TABLE * 15 / 16;
 
 /// A place of a face that the tool may rest on.
