@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::height::{Seed, way};
-use super::silhouettes::{Spacing, silhouettes};
+use super::silhouettes::{Spacing, long_mm, silhouettes};
 use super::task::DropTask;
 use crate::plan::PlanError;
 use osculate_geom::{Axis, Surface, Uv, Vec3, quadrature};
@@ -126,15 +126,7 @@ fn rim(surface: &dyn Surface, face: u32, (frame, apart): (&Frame, Apart), seeds:
     let see = |at: Uv| Seed { at: frame.of(&surface.point(at)), uv: at, face, along: [0.0; 3] };
     for axis in [Axis::U, Axis::V] {
         let i = domain.get(axis.other());
-        let way_of = |f: f64, g: f64| surface.point(Uv::from_axis(axis, domain.get(axis).at(g), i.at(f)));
-        let across = [0.0, 0.5, 1.0]
-            .map(|g| {
-                (0..16)
-                    .map(|k| (way_of((f64::from(k) + 1.0) / 16.0, g) - way_of(f64::from(k) / 16.0, g)).norm())
-                    .sum()
-            })
-            .into_iter()
-            .fold(0.0, f64::max);
+        let across = long_mm(surface, axis.other());
         let lines = (across / apart.along_mm).ceil().clamp(RIM_LINES[0], RIM_LINES[1]) as usize;
         let on = |share: f64| {
             let fixed = i.at(share);

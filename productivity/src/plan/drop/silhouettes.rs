@@ -3,7 +3,7 @@
 
 use super::frame::Frame;
 use super::height::{Seed, way};
-use osculate_geom::{Surface, Uv, Vec3, uv};
+use osculate_geom::{Axis, Surface, Uv, Vec3, uv};
 use rayon::prelude::*;
 
 /// Cells of the first lattice are this many distances of seeds wide: the two sides of a thin edge differ however wide they are.
@@ -59,6 +59,19 @@ fn sizes(cell: &Cell) -> [f64; 2] {
     [apart(0, 3).max(apart(1, 2)), turn]
 }
 
+/// The longest of three lines across a face along a parameter, mm, by chords.
+pub(super) fn long_mm(surface: &dyn Surface, axis: Axis) -> f64 {
+    let domain = surface.domain();
+    let place = |f: f64, g: f64| {
+        surface.point(Uv::from_axis(axis, domain.get(axis).at(f), domain.get(axis.other()).at(g)))
+    };
+    let chord = |k: u32, g: f64| {
+        let [a, b] = [k, k + 1].map(|k| place(f64::from(k) / 16.0, g));
+        (b - a).norm()
+    };
+    [0.0, 0.5, 1.0].map(|g| (0..16).map(|k| chord(k, g)).sum()).into_iter().fold(0.0, f64::max)
+}
+
 /// Chains of seeds along the silhouettes of a face.
 pub(super) fn silhouettes(
     (surface, face): (&dyn Surface, u32),
@@ -73,15 +86,10 @@ pub(super) fn silhouettes(
         Node { uv: at, at: frame.of(&jet.point), normal, up }
     };
     let place = |u: f64, v: f64| uv(domain.u.at(u), domain.v.at(v));
-    let long = |of: &dyn Fn(f64, f64) -> Uv| {
-        let chord = |k: u32, g: f64| {
-            let [a, b] = [k, k + 1].map(|k| surface.point(of(f64::from(k) / 16.0, g)));
-            (b - a).norm()
-        };
-        [0.0, 0.5, 1.0].map(|g| (0..16).map(|k| chord(k, g)).sum()).into_iter().fold(0.0, f64::max)
+    let count = |axis: Axis| {
+        (long_mm(surface, axis) / (WIDE * spacing.over_mm)).ceil().clamp(1.0, MOST_LATTICE) as usize
     };
-    let count = |long: f64| (long / (WIDE * spacing.over_mm)).ceil().clamp(1.0, MOST_LATTICE) as usize;
-    let n = [count(long(&|f, g| place(f, g))), count(long(&|f, g| place(g, f)))];
+    let n = [Axis::U, Axis::V].map(count);
     let rows: Vec<Vec<Node>> = (0..=n[1])
         .into_par_iter()
         .map(|j| (0..=n[0]).map(|i| see(place(i as f64 / n[0] as f64, j as f64 / n[1] as f64))).collect())
