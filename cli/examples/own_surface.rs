@@ -54,7 +54,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tool =
         GoalTool { cutter: &ball, flutes: &ball, shank: None, holder: None, teeth: None, spindle_rpm: None };
     let goal = Goal {
-        machined: vec![GoalFace { name: "wave", surface: &Wave, outlines: Vec::new(), part_of_it: None }],
+        machined: vec![GoalFace {
+            name: "wave",
+            surface: &Wave,
+            outlines: Vec::new(),
+            part_of_it: None,
+            open_rims: &[],
+        }],
         checked: Vec::new(),
         unseen: Vec::new(),
         fixtures: Vec::new(),

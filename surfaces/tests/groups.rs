@@ -6,9 +6,10 @@ mod part21;
 #[allow(dead_code)]
 mod solids;
 
+use osculate_geom::Surface;
 use osculate_surfaces::Face;
 use osculate_surfaces::groups::{Look, groups};
-use osculate_surfaces::sides::{Meeting, meetings};
+use osculate_surfaces::sides::{Meeting, OpenRim, meetings, open_rims};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 
@@ -70,4 +71,46 @@ fn the_blades_of_a_propeller_are_alike() {
         assert_eq!((of(id).look, of(id).alike), (Look::Formed, 2), "{id}");
     }
     assert_eq!((of("F20").look, of("F8").look), (Look::Hole, Look::Round));
+}
+
+/// Length of polylines on their faces, by the faces' numbers.
+fn lengths(faces: &[Face], rims: &[OpenRim]) -> Vec<f64> {
+    let mut out = vec![0.0; faces.len()];
+    for rim in rims {
+        let points: Vec<_> = rim.points.iter().map(|at| faces[rim.face].surface.point(*at)).collect();
+        out[rim.face] += points.windows(2).map(|w| (w[1] - w[0]).norm()).sum::<f64>();
+    }
+    out
+}
+
+/// A closed body has no open rim. Without its lid the tube's upper one is open, without its bottom both are; standing on a disc that goes
+/// on under it the lower one is not, and the disc's own is.
+#[test]
+fn rims_are_open_where_no_face_goes_on_or_stands() {
+    for body in [solids::cylinder(), solids::block_with_bore(), solids::sphere(), solids::torus()] {
+        assert_eq!(open_rims(&all(&body), None), []);
+    }
+    let round = 3.0 * TAU;
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-3 * round;
+    let tube = solids::cylinder();
+    for (faces, open) in [(&tube[..1], 2.0), (&tube[..2], 1.0)] {
+        let found = lengths(faces, &open_rims(&all(faces), None));
+        assert!(near(found[0], open * round) && found[1..].iter().all(|l| *l == 0.0), "{found:?}");
+    }
+    let rings = [
+        part21::circle(300, [0.0; 3], 3.0, true),
+        part21::circle(320, [0.0, 0.0, 5.0], 3.0, false),
+        part21::circle(340, [0.0; 3], 6.0, true),
+    ];
+    let stands = solids::faces(&format!(
+        "#120=CYLINDRICAL_SURFACE('',#7,3.);{}#203=FACE_BOUND('',#309,.T.);#204=FACE_BOUND('',#329,.T.);\
+         #402=ADVANCED_FACE('',(#203,#204),#120,.T.);{}",
+        rings.concat(),
+        solids::level(500, 0.0, true, &[349])
+    ));
+    let found = lengths(&stands, &open_rims(&all(&stands), None));
+    assert!(near(found[0], round) && near(found[1], 2.0 * round), "{found:?}");
+    let upper = open_rims(&all(&stands), None);
+    let on_tube = upper.iter().filter(|r| r.face == 0).flat_map(|r| &r.points);
+    assert!(on_tube.map(|at| stands[0].surface.point(*at)).all(|p| (p.z - 5.0).abs() < 1e-9));
 }

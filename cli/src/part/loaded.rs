@@ -88,6 +88,14 @@ impl LoadedFace {
 }
 
 impl Loaded {
+    /// The faces that come from a file, with the sides that they have now.
+    pub fn shapes(&self) -> Vec<Face> {
+        let shape = |f: &LoadedFace| {
+            f.source.as_deref().map(|source| Face { surface: f.surface.clone(), ..source.clone() })
+        };
+        self.faces.iter().filter_map(shape).collect()
+    }
+
     /// The only face, or the one with this id.
     pub fn one(&self, id: Option<&str>) -> Result<&LoadedFace, Failure> {
         match (id, self.faces.as_slice()) {

@@ -14,15 +14,17 @@ use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
 use crate::words::number;
-use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3};
+use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3, Uv};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
 use osculate_surfaces::facets::mesh_format;
+use osculate_surfaces::sides::open_rims;
 use osculate_surfaces::structure::Structure;
 use osculate_tools::removal::Unseen;
 use rayon::prelude::*;
 use sides::Told;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -195,6 +197,8 @@ pub struct Part {
     pub unseen: Vec<Unseen>,
     /// Ids of faces of which nothing says on which side the material is.
     pub open: Vec<String>,
+    /// Of faces by their ids the open rims, once they are asked for.
+    pub rims: OnceLock<BTreeMap<String, Vec<Vec<Uv>>>>,
     /// What links keep off, once it is asked for.
     pub walls: OnceLock<Arc<Walls>>,
     /// Raw material that operations before have left, where that is known.
@@ -204,6 +208,23 @@ pub struct Part {
 }
 
 impl Part {
+    /// The pieces of a face's rim where no other face of the part goes on, in its parameters. Of faces that come from no file none is
+    /// known.
+    pub fn open_rims(&self, id: &str) -> &[Vec<Uv>] {
+        let rims = self.rims.get_or_init(|| {
+            let shapes = self.part.shapes();
+            if shapes.len() < self.part.faces.len() {
+                return BTreeMap::new();
+            }
+            let mut out: BTreeMap<String, Vec<Vec<Uv>>> = BTreeMap::new();
+            for rim in open_rims(&shapes.iter().collect::<Vec<_>>(), self.part.uncertainty_mm) {
+                out.entry(self.part.faces[rim.face].id.clone()).or_default().push(rim.points);
+            }
+            out
+        });
+        rims.get(id).map_or(&[], Vec::as_slice)
+    }
+
     /// Raw material that is left; none where it is not known.
     pub fn left(&self) -> Left<'_> {
         self.left.as_ref().map_or_else(Left::default, |l| Left { points: &l.points, apart_mm: l.cell_mm })
@@ -328,7 +349,8 @@ fn sorted(job: &Job, part: Loaded, chosen: Vec<String>, open: Vec<String>) -> Re
         unseen.push(Unseen::NoSide(no_side));
         check.retain(|f| !open.contains(&f.id));
     }
-    Ok(Part { part, faces, check, unseen, open, walls: OnceLock::new(), left: None, import_s: 0.0 })
+    let (rims, walls) = (OnceLock::new(), OnceLock::new());
+    Ok(Part { part, faces, check, unseen, open, rims, walls, left: None, import_s: 0.0 })
 }
 
 /// A face that two keys of a job name for different things.
@@ -392,7 +414,7 @@ pub fn bounds(face: &LoadedFace) -> Box3 {
 }
 
 /// Points with normals on a grid over a face's parameters, those inside its trims.
-pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(osculate_geom::Uv, Point3, Unit3)> {
+pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(Uv, Point3, Unit3)> {
     let d = surface.domain();
     let mut out = Vec::new();
     for i in 0..=n {

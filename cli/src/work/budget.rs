@@ -74,6 +74,13 @@ pub fn upright(job: &Job, faces: &Part) -> Tolerance {
     kept_back(job, faces, 1.0, words_mm(job) + blend_mm(job))
 }
 
+/// The tolerance that passes are held against where the tool may go in: verdicts add what words and blended corners may.
+pub fn left_in(job: &Job) -> Tolerance {
+    let given = job.tolerance();
+    let by_mm = (words_mm(job) + blend_mm(job)).min(MOST * given.gouge_mm);
+    Tolerance { gouge_mm: given.gouge_mm - by_mm, ..given }
+}
+
 /// The highest mark that teeth leave on the faces at the feed of a job, mm: to leading order, with what exact ones are higher; zero where it is not
 /// known.
 ///

@@ -108,6 +108,7 @@ impl<'a> Aim<'a> {
                 Vec::new()
             },
             part_of_it: f.part_of_it.clone(),
+            open_rims: self.faces.open_rims(&f.id),
         };
         let machined: Vec<GoalFace<'_>> =
             self.faces.faces.iter().enumerate().map(|(k, f)| face(k, f)).collect();

@@ -5,6 +5,7 @@ use crate::job::{Gouges, Job};
 use crate::part::Part;
 use crate::report::{Column, Table};
 use crate::words::number;
+use crate::work::budget;
 use crate::work::drop::names;
 use crate::work::extras::{Extras, FaceLeftOut};
 use crate::work::passes;
@@ -24,7 +25,7 @@ pub fn of(job: &Job, faces: &Part, passes: &Passes) -> Result<LeftOut, Failure> 
         check: &names(&faces.check),
         cutter: &job.cutter(),
         holder,
-        tolerance: job.tolerance(),
+        tolerance: budget::left_in(job),
         keep_off_mm: job.strategy().keep_off_mm,
         left: faces.left(),
     };

@@ -97,25 +97,44 @@ impl<'a> Grid<'a> {
 
     /// The nearest pieces of the faces that share the edge with a piece of a rim, one of each face.
     fn others(&self, of: &Bit, slack_mm: [f64; 2]) -> Vec<&'a Bit> {
-        let home = self.cell(&of.points[1]);
         // The nearest piece of each face near by.
         let mut near: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
-        for k in 0..27 {
-            let at = [home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1];
-            for other in self.cells.get(&at).map_or(&[][..], Vec::as_slice) {
-                let b = &self.bits[*other];
-                if b.face == of.face || of.along.dot(&b.along).abs() < PARALLEL {
-                    continue;
-                }
-                let d = b.distance_mm(&of.points[1]);
-                if d <= slack_mm[1] && near.get(&b.face).is_none_or(|n| (d, *other) < *n) {
-                    near.insert(b.face, (d, *other));
-                }
+        for other in self.around(&of.points[1]) {
+            let b = &self.bits[other];
+            if b.face == of.face || of.along.dot(&b.along).abs() < PARALLEL {
+                continue;
+            }
+            let d = b.distance_mm(&of.points[1]);
+            if d <= slack_mm[1] && near.get(&b.face).is_none_or(|n| (d, other) < *n) {
+                near.insert(b.face, (d, other));
             }
         }
         let least = near.values().map(|n| n.0).fold(f64::INFINITY, f64::min);
         let limit = slack_mm[0].max(NEXT * least);
         near.into_values().filter(|n| n.0 <= limit).map(|n| &self.bits[n.1]).collect()
+    }
+
+    /// Whether the rim of any face runs along a piece within the second slack: another one's, or its own the other way, as where a face
+    /// closes upon itself.
+    pub(super) fn is_met(&self, of: &Bit, slack_mm: [f64; 2]) -> bool {
+        if !self.others(of, slack_mm).is_empty() {
+            return true;
+        }
+        self.around(&of.points[1]).any(|k| {
+            let b = &self.bits[k];
+            b.face == of.face
+                && of.along.dot(&b.along) < -PARALLEL
+                && b.distance_mm(&of.points[1]) <= slack_mm[1]
+        })
+    }
+
+    /// The pieces in the cells around a place.
+    fn around(&self, p: &Point3) -> impl Iterator<Item = usize> {
+        let home = self.cell(p);
+        (0..27).flat_map(move |k| {
+            let at = [home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1];
+            self.cells.get(&at).map_or(&[][..], Vec::as_slice).iter().copied()
+        })
     }
 
     /// The nearest piece of the face that shares the edge with a piece of a rim. None where there is no such face, or more than one.

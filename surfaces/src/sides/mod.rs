@@ -10,12 +10,14 @@
 mod groups;
 mod link;
 mod meeting;
+mod open;
 mod rim;
 mod shell;
 mod tree;
 
 pub(crate) use link::Met;
 pub use meeting::{Meeting, meetings};
+pub use open::{OpenRim, open_rims};
 pub(crate) use shell::volume_sign;
 pub(crate) use tree::Tree;
 mod vote;
@@ -193,10 +195,16 @@ pub(crate) type Hanging = (Vec<groups::Joined>, Vec<Met>, Vec<SideConflict>);
 
 /// The rims of all faces in short pieces, and the slacks within which two of them are one edge: always, and where nothing is nearer.
 fn rims(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> (Vec<rim::Bit>, [f64; 2]) {
-    let bits: Vec<Vec<rim::Bit>> =
+    let (traced, slack_mm) = traced_rims(faces, size_mm, uncertainty_mm);
+    (traced.into_iter().map(|t| t.0).collect(), slack_mm)
+}
+
+/// As [`rims`], with the polylines of the pieces.
+fn traced_rims(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> (Vec<rim::Traced>, [f64; 2]) {
+    let bits: Vec<Vec<rim::Traced>> =
         faces.par_iter().enumerate().map(|(k, f)| rim::rim(k, f, STEP * size_mm)).collect();
     let join_mm = uncertainty_mm.filter(|u| u.is_finite()).unwrap_or(0.0).max(JOIN * size_mm);
-    (bits.concat(), [join_mm, join_mm.max(GAP * size_mm)])
+    (bits.into_iter().flatten().collect(), [join_mm, join_mm.max(GAP * size_mm)])
 }
 
 /// The groups of faces that hang together.

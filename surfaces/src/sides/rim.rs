@@ -4,6 +4,9 @@ use crate::part::Face;
 use crate::topology::{Chart, LocalEdge, local_edges};
 use osculate_geom::{Point3, Side, Surface, Uv, Vec3, uv};
 
+/// A piece with its polyline in the face's parameters.
+pub(super) type Traced = (Bit, Vec<Uv>);
+
 /// A short piece of a face's rim. Walked along, it has the face on its left, seen against the face's normal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bit {
@@ -29,7 +32,7 @@ const BESIDE: [f64; 4] = [0.01, 0.04, 0.15, 0.5];
 
 /// The pieces of a face's rim, each about `step_mm` long. Where the face lies on both sides (seams and slits), or where it has no
 /// normal, there is none.
-pub(super) fn rim(number: usize, face: &Face, step_mm: f64) -> Vec<Bit> {
+pub(super) fn rim(number: usize, face: &Face, step_mm: f64) -> Vec<Traced> {
     let chart = Chart::new(face);
     let mut out = Vec::new();
     for edge in local_edges(face, &chart) {
@@ -43,7 +46,7 @@ pub(super) fn rim(number: usize, face: &Face, step_mm: f64) -> Vec<Bit> {
 }
 
 /// The pieces of one edge.
-fn bits(number: usize, face: &Face, chart: &Chart, edge: &LocalEdge, count: usize) -> Vec<Bit> {
+fn bits(number: usize, face: &Face, chart: &Chart, edge: &LocalEdge, count: usize) -> Vec<Traced> {
     let home = |at: Uv| {
         let shift = chart.shift(at);
         uv(at.u - shift.u, at.v - shift.v)
@@ -67,6 +70,11 @@ fn bits(number: usize, face: &Face, chart: &Chart, edge: &LocalEdge, count: usiz
         uv(a.u + t * (b.u - a.u), a.v + t * (b.v - a.v))
     };
     let place = |k: usize| at(k as f64 / (2 * count) as f64);
+    let points_between = |k: usize| {
+        let [from, to] = [k, k + 1].map(|k| k as f64 / count as f64 * whole);
+        let between = reach.iter().zip(&edge.points).filter(move |(r, _)| from < **r && **r < to);
+        between.map(|(_, p)| *p)
+    };
     (0..count)
         .filter_map(|k| {
             let middle = place(2 * k + 1);
@@ -95,7 +103,10 @@ fn bits(number: usize, face: &Face, chart: &Chart, edge: &LocalEdge, count: usiz
                 _ => None,
             })?;
             let along = chord * (sense * jet.side.sign() / length_mm);
-            Some(Bit { face: number, points, along, normal, length_mm })
+            let shift = chart.shift(middle);
+            let traced = std::iter::once(place(2 * k)).chain(points_between(k)).chain([place(2 * k + 2)]);
+            let traced = traced.map(|p| uv(p.u - shift.u, p.v - shift.v)).collect();
+            Some((Bit { face: number, points, along, normal, length_mm }, traced))
         })
         .collect()
 }

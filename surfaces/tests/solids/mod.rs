@@ -13,7 +13,7 @@ pub fn faces(data: &str) -> Vec<Face> {
 }
 
 /// A plane at a height, facing up or down, inside the loops.
-fn level(n: u64, z: f64, up: bool, loops: &[u64]) -> String {
+pub fn level(n: u64, z: f64, up: bool, loops: &[u64]) -> String {
     let bounds: Vec<String> = (0..loops.len()).map(|k| format!("#{}", n + 10 + k as u64)).collect();
     let records: String = loops
         .iter()

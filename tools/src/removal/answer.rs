@@ -157,6 +157,17 @@ impl Trial<'_> {
             }
         }
         row("other faces", others);
+        let open = goal.machined.iter().chain(&goal.checked).filter(|f| !f.open_rims.is_empty());
+        let open: Vec<String> = open.map(|f| f.name.to_owned()).collect();
+        if !open.is_empty() {
+            row(
+                "open rims",
+                format!(
+                    "nothing is known beneath {} where no other face goes on: depth counts up to a wall along the normals there",
+                    listed(&open)
+                ),
+            );
+        }
         for unseen in &goal.unseen {
             if let Unseen::Mesh(words) = unseen {
                 row("mesh", words.clone());
@@ -175,10 +186,16 @@ impl Trial<'_> {
             row("roughing", format!("faces are judged {allowance} mm outside, by what stands above that"));
         }
         if goal.limits.unreached_mm2 > 0.0 {
-            let text = format!(
+            let mut text = format!(
                 "{:.3} mm2, of which {} mm2 are accepted",
                 f.tally.uncut_area_mm2, goal.limits.unreached_mm2
             );
+            if f.open_area_mm2 > 0.0 {
+                text += &format!(
+                    "; {:.3} mm2 of it are cut, but more than the scallop may hide there between samples",
+                    f.open_area_mm2
+                );
+            }
             row("not reached", text);
         }
         row(

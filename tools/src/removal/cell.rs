@@ -9,7 +9,7 @@ use super::sampling::Patch;
 use super::target::Target;
 use super::tree::{Ways, Which};
 use crate::cutter::Line;
-use osculate_geom::{Point3, Surface, Unit3, uv};
+use osculate_geom::{Point3, Surface, Unit3};
 
 /// Motions around a cell that are tried.
 const MOST_MOTIONS: usize = 8;
@@ -130,12 +130,11 @@ pub(super) struct Level {
 impl Level {
     /// Nothing tried yet; none where the patch has no tangent plane in its middle.
     pub fn new(cell: &Cell<'_>, patch: &Patch) -> Option<Self> {
-        let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
         let jet = cell.surface.jet2(patch.middle());
-        let points = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)].map(|c| cell.surface.point(c));
+        let points = patch.corners().map(|c| cell.surface.point(c));
         let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
         let normal = jet.normal().ok()?;
-        let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
+        let bend = patch.bend(cell.surface, &normal, radius);
         // Nothing stands higher than the stock, and what does stand higher than this gets the allowance of first order.
         let most = (MOST_SEEN * cell.world.seen).min(cell.world.job.stock_mm);
         let wide = stretched(points, jet.point, most * bend);
@@ -145,7 +144,7 @@ impl Level {
             middle: jet.point,
             normal,
             wide,
-            slack: 0.5 * patch.concave_per_mm * radius_wide * radius_wide,
+            slack: 0.5 * patch.hollow(bend, radius_wide) * radius_wide,
             most,
             first: 1.0 / (1.0 - bend.min(0.5)),
             second: 1.0 / (1.0 - (3.0 * bend * bend).min(0.5)),

@@ -22,6 +22,8 @@ pub(super) struct Closing {
     /// Nothing was looked at closer.
     pub coarse: bool,
     pub refined: Refined,
+    /// Of the area that is not reached that where something too high may hide, mm2.
+    pub open_mm2: f64,
     pub stock: Option<StockFound>,
     pub notes: Vec<String>,
 }
@@ -45,7 +47,7 @@ pub(super) fn looked_at(
         trial.give_up(&mut look, &mut marks, spacing)?;
     }
     let crest_median_mm = trial.crests(&look.measured)?;
-    let closing = Closing { coarse, refined: unbounded(), stock, notes };
+    let closing = Closing { coarse, refined: unbounded(), open_mm2: 0.0, stock, notes };
     Ok(concluded(trial, look, (&marks, crest_median_mm), closing))
 }
 
@@ -54,7 +56,7 @@ pub(super) fn concluded(
     trial: &Trial<'_>,
     look: Look,
     (marks, crest_median_mm): (&Marks, f64),
-    Closing { coarse, refined, stock, mut notes }: Closing,
+    Closing { coarse, refined, open_mm2, stock, mut notes }: Closing,
 ) -> Verdict {
     let goal = trial.goal;
     let Look { measured, tally, density, lost, .. } = look;
@@ -73,6 +75,7 @@ pub(super) fn concluded(
         spacing_mm: density.spacing_mm,
         hidden: Hidden { scallop_mm: (refined.hidden.scallop_mm - height_max_mm).max(0.0), ..refined.hidden },
         smallest_radius_mm: (bend > 0.0).then(|| 1.0 / bend),
+        open_area_mm2: open_mm2,
         crest_median_mm,
         mark_max_mm: marks.known.then(|| marks.most_mm()),
         height_max_mm,

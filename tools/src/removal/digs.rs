@@ -19,7 +19,7 @@ use super::sampling::Patch;
 use super::target::Target;
 use super::tree::{Ways, Which};
 use crate::cutter::Cutter;
-use osculate_geom::{Surface, uv};
+use osculate_geom::Surface;
 use rayon::prelude::*;
 
 /// How often a cell is halved in both directions.
@@ -125,7 +125,13 @@ impl<'a> Digs<'a> {
         let cell = |k: usize| {
             let patch = patches[k]?;
             let back = self.back(surfaces, k, &patch);
-            let level_mm = level_mm(bodies, &patch, back.radius) - cuts[k].standoff_mm;
+            // At an open rim a gouge ends before its bottom is level.
+            let at_rim = self.edges.is_some_and(|edges| edges.is_at_rim(&self.job.samples[k].point));
+            let level_mm = if at_rim {
+                f64::INFINITY
+            } else {
+                level_mm(bodies, &patch, back.radius) - cuts[k].standoff_mm
+            };
             Some(Cell { sample: k, patch, back, level_mm })
         };
         let cells: Vec<Vec<Cell>> = groups
@@ -199,8 +205,7 @@ impl<'a> Digs<'a> {
         let Some(edges) = self.edges else { return false };
         let face = self.job.samples[sample].face;
         let surface = surfaces[face as usize];
-        let [[u0, u1], [v0, v1]] = [part.u, part.v];
-        [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1), part.middle()].into_iter().all(|at| {
+        part.corners().into_iter().chain([part.middle()]).all(|at| {
             let jet = surface.jet2(at);
             jet.normal().is_ok_and(|normal| edges.is_beside((&jet.point, &normal), face, self.depth_mm))
         })
@@ -231,13 +236,12 @@ impl<'a> Digs<'a> {
     fn back(&self, surfaces: &[&dyn Surface], k: usize, patch: &Patch) -> Back {
         let sample = &self.job.samples[k];
         let surface = surfaces[sample.face as usize];
-        let [[u0, u1], [v0, v1]] = [patch.u, patch.v];
         let jet = surface.jet2(patch.middle());
         // Without a tangent plane in the middle that of the sample stands for it: what counts is a box, whichever way it lies.
         let normal = jet.normal().unwrap_or(sample.normal);
-        let points = [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)].map(|c| surface.point(c));
+        let points = patch.corners().map(|c| surface.point(c));
         let radius = points.iter().map(|p| (p - jet.point).norm()).fold(0.0, f64::max);
-        let bend = patch.concave_per_mm.max(patch.convex_per_mm) * radius;
+        let bend = patch.bend(surface, &normal, radius);
         let set = normal.into_inner() * self.depth_mm;
         let all = points.into_iter().chain([jet.point]).map(move |p| p - set);
         // The face leaves the plane of the middle by half the bend of the radius, and so do places set back along normals that

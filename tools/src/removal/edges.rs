@@ -4,9 +4,13 @@
 //! of a face this is read off by how far the tool goes beneath a sample, but for samples beside an outer edge: there the points
 //! beneath lie next to the other face as well. A tool that goes a thousandth too deep over a face takes nearly a tenth of a
 //! millimetre from the rim of the wall below it, as measured along the wall's normal, and no point of that is deeper than the
-//! thousandth. So such places are measured by the distance from the other face too. At inner and at smooth edges nothing changes.
+//! thousandth. So such places are measured by the distance from the other face too. At inner and at smooth edges nothing changes. A sharp
+//! ridge within one face is such an edge as well, and so is what is thinner than the tool went deep.
 //!
-//! Over t beneath a sample the depth is that of `min(t, d(t))`, d the distance from the other faces. Distances are to points that were
+//! At an open rim of a face, where no other goes on, nothing says what lies beneath. There the material is taken to end along the normals,
+//! and that wall counts as another face for the places of its own.
+//!
+//! Over t beneath a sample the depth is that of `min(t, d(t))`, d the distance from all faces. Distances are to points that were
 //! found on these: none is too small. Between two places that were looked at each of the two points found there is as near as it is,
 //! whatever the faces do between them: of the way from one place to the other the first point serves up to where both are as far, the
 //! second from there, and a distance from a point is greatest at the ends of a way. So bounds rest on points of faces alone, and on
@@ -15,12 +19,13 @@
 
 use super::foot::{Foot, Place, most_mm, nearest};
 use super::job::{Cut, Sample};
+use super::rim::OpenRim;
 use osculate_geom::{Point3, Surface, Unit3, Uv};
 use rayon::prelude::*;
-use std::collections::{HashMap, VecDeque};
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::OnceLock;
 
-/// What lies beneath is nearer to another face than this share of the depth that is asked for; at an inner edge it is as far.
+/// What lies beneath is nearer to another place than this share of the depth that is asked for; at an inner edge it is as far.
 const NEARER: f64 = 0.999;
 /// Steps towards the nearest point of another face.
 const STEPS: usize = 8;
@@ -32,6 +37,12 @@ const LOOKS: usize = 32_768;
 const AROUND: usize = 128;
 /// Steps towards the nearest point from one between two nearest points.
 const STEPS_BETWEEN: usize = 3;
+/// Pieces of open rims that are looked at for a place: at a corner two of them are near.
+const MOST_RIMS: usize = 4;
+/// Boxes in which cells at open rims are found, of those in which faces are: twice as wide as samples are apart.
+const NARROW: f64 = 0.25;
+/// Points on a chord of an open rim at most: chords of more are no part's.
+const MOST_PARTS: f64 = 1e4;
 /// What is said to be deep may be this share of the limit less.
 const CLOSE: f64 = 0.02;
 /// Depths below this share of the limit are left as they seem, and others need not be told apart from it where they are below.
@@ -39,7 +50,7 @@ const DEEP: f64 = 0.25;
 /// Samples that are measured anew at most: beyond it a program is far off wherever it goes.
 const MOST: usize = 50_000;
 
-/// Which samples lie beside a sharp outer edge: what lies so far beneath them, along their normals, is nearer to another of the faces,
+/// Which samples lie beside a sharp outer edge: what lies so far beneath them, along their normals, is nearer to another place of the faces,
 /// so that a tool there takes nothing that deep, whatever its depth along the normal. Samples name their faces by number, and are no
 /// farther apart than `apart_mm`.
 #[must_use]
@@ -49,68 +60,143 @@ pub fn beside_edges(
     apart_mm: f64,
     depth_mm: impl Fn(&Sample) -> f64 + Sync,
 ) -> Vec<bool> {
-    let edges = Edges::new(surfaces, samples, apart_mm);
+    let edges = Edges::new(surfaces, &[], samples, apart_mm);
     samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
 }
 
 /// Of each box of space the samples in it: face and place on it.
 type Hints = HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>;
 
+/// Open rims, found by place.
+#[derive(Default)]
+struct RimHints {
+    /// Of each box of space the pieces in it, each with a point on it.
+    points: HashMap<[i64; 3], Vec<(u32, Point3)>>,
+    /// Boxes a quarter as wide, with a piece in them or next to them.
+    near: HashSet<[i64; 3]>,
+}
+
+/// What is beside a place of a face: a face, or the wall on a piece of its own open rim.
+enum Beside<'a> {
+    Face(&'a dyn Surface),
+    Rim(&'a OpenRim<'a>),
+}
+
+impl Beside<'_> {
+    fn contains(&self, at: Uv) -> bool {
+        match self {
+            Self::Face(surface) => surface.contains(at),
+            Self::Rim(rim) => rim.contains(at),
+        }
+    }
+
+    fn point(&self, at: Uv) -> Point3 {
+        match self {
+            Self::Face(surface) => surface.point(at),
+            Self::Rim(rim) => rim.point(at),
+        }
+    }
+
+    /// The nearest place that is found in so many steps from one.
+    fn nearest(&self, from: Uv, q: &Point3, steps: usize) -> (f64, Uv) {
+        match self {
+            Self::Face(surface) => nearest(*surface, from, q, steps),
+            Self::Rim(rim) => rim.nearest(q),
+        }
+    }
+}
+
 /// All faces of a goal, found by place.
 pub(super) struct Edges<'a> {
     surfaces: &'a [&'a dyn Surface],
+    rims: &'a [OpenRim<'a>],
     samples: &'a [Sample],
     side_mm: f64,
     /// Made when they are first asked for: where nothing is deep, nobody asks.
-    hints: OnceLock<Hints>,
+    hints: OnceLock<(Hints, RimHints)>,
+}
+
+/// The box of space around a point.
+fn key(p: &Point3, side_mm: f64) -> [i64; 3] {
+    // Casting takes what is too far for a whole number to the last one.
+    [p.x, p.y, p.z].map(|x| (x / side_mm).floor() as i64)
+}
+
+/// That box and those around it.
+fn around(p: &Point3, side_mm: f64) -> impl Iterator<Item = [i64; 3]> + use<> {
+    let [x, y, z] = key(p, side_mm);
+    (0..27).map(move |k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1])
 }
 
 impl<'a> Edges<'a> {
     /// Faces by number, with samples that are no farther apart than this.
-    pub const fn new(surfaces: &'a [&'a dyn Surface], samples: &'a [Sample], apart_mm: f64) -> Self {
-        Self { surfaces, samples, side_mm: 2.0 * apart_mm, hints: OnceLock::new() }
+    pub const fn new(
+        surfaces: &'a [&'a dyn Surface],
+        rims: &'a [OpenRim<'a>],
+        samples: &'a [Sample],
+        apart_mm: f64,
+    ) -> Self {
+        Self { surfaces, rims, samples, side_mm: 2.0 * apart_mm, hints: OnceLock::new() }
     }
 
-    fn hints(&self) -> &Hints {
+    fn hints(&self) -> &(Hints, RimHints) {
         self.hints.get_or_init(|| {
             let mut out = Hints::new();
             // Places on fixtures are on no face.
             for s in self.samples.iter().filter(|s| (s.face as usize) < self.surfaces.len()) {
-                out.entry(self.key(&s.point)).or_default().push((s.face, s.uv, s.point));
+                out.entry(key(&s.point, self.side_mm)).or_default().push((s.face, s.uv, s.point));
             }
-            out
+            (out, self.rim_hints())
         })
     }
 
-    fn key(&self, p: &Point3) -> [i64; 3] {
-        // Casting takes what is too far for a whole number to the last one.
-        [p.x, p.y, p.z].map(|x| (x / self.side_mm).floor() as i64)
+    /// Points of open rims, closer together than the narrower boxes are wide.
+    fn rim_hints(&self) -> RimHints {
+        let mut out = RimHints::default();
+        let narrow_mm = NARROW * self.side_mm;
+        for (rim, k) in self.rims.iter().zip(0..) {
+            for chord in 0..rim.chords() {
+                let point = |t: f64| rim.point(Uv { u: chord as f64 + t, v: 0.0 });
+                let parts =
+                    (2.0 * (point(1.0) - point(0.0)).norm() / narrow_mm).ceil().clamp(1.0, MOST_PARTS);
+                for j in 0..=parts as u32 {
+                    let p = point(f64::from(j) / parts);
+                    out.points.entry(key(&p, self.side_mm)).or_default().push((k, p));
+                    out.near.extend(around(&p, narrow_mm));
+                }
+            }
+        }
+        out
     }
 
-    /// Whether the point so far beneath a place of a face lies nearer than that to another face.
+    /// Whether an open rim is about as near to a point as samples are to each other.
+    pub fn is_at_rim(&self, p: &Point3) -> bool {
+        !self.rims.is_empty() && self.hints().1.near.contains(&key(p, NARROW * self.side_mm))
+    }
+
+    /// What a number stands for: faces first, then pieces of open rims.
+    fn beside(&self, number: u32) -> Beside<'a> {
+        let k = number as usize;
+        match self.surfaces.get(k) {
+            Some(surface) => Beside::Face(*surface),
+            None => Beside::Rim(&self.rims[k - self.surfaces.len()]),
+        }
+    }
+
+    /// Whether the point so far beneath a place of a face lies nearer than that to another place, of this face or another.
     pub fn is_beside(&self, (place, normal): (&Point3, &Unit3), face: u32, depth_mm: f64) -> bool {
         let beneath = place - normal.into_inner() * depth_mm;
-        self.distance_mm(&beneath, face, NEARER * depth_mm) < NEARER * depth_mm
+        self.foot(&beneath, (place, face), NEARER * depth_mm).mm < NEARER * depth_mm
     }
 
-    /// The distance of a point from faces other than one of them, as far as it is found; looking ends where it is below `enough_mm`.
-    fn distance_mm(&self, q: &Point3, face: u32, enough_mm: f64) -> f64 {
-        self.foot(q, face, enough_mm).mm
-    }
-
-    /// The nearest place of faces other than one of them, in the same way.
-    fn foot(&self, q: &Point3, face: u32, enough_mm: f64) -> Foot {
-        let [x, y, z] = self.key(q);
-        let hints = self.hints();
-        // Of each face around, the nearest sample.
+    /// The place nearest to a point beneath a place of a face, as far as it is found, of all faces and of walls on open rims of this one;
+    /// looking ends where it is below `enough_mm`.
+    fn foot(&self, q: &Point3, (place, face): (&Point3, u32), enough_mm: f64) -> Foot {
+        let (hints, rims) = self.hints();
+        // Of each face around, its own among them, the nearest sample.
         let mut near: Vec<(f64, u32, Uv)> = Vec::new();
-        for key in
-            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])))
-        {
+        for key in around(q, self.side_mm) {
             for (other, at, point) in hints.get(&key).into_iter().flatten() {
-                if *other == face {
-                    continue;
-                }
                 let away = (point - q).norm();
                 match near.iter_mut().find(|n| n.1 == *other) {
                     Some(n) if away < n.0 => *n = (away, *other, *at),
@@ -130,7 +216,32 @@ impl<'a> Edges<'a> {
                 }
             }
             if least.mm < enough_mm {
-                break;
+                return least;
+            }
+        }
+        if rims.points.is_empty() {
+            return least;
+        }
+        // Of the face's own open rims those pieces that are nearest to the place itself.
+        let mut near: Vec<(f64, u32)> = Vec::new();
+        for key in around(place, self.side_mm) {
+            for (rim, point) in rims.points.get(&key).into_iter().flatten() {
+                if self.rims[*rim as usize].face != face {
+                    continue;
+                }
+                let away = (point - place).norm();
+                match near.iter_mut().find(|n| n.1 == *rim) {
+                    Some(n) => n.0 = n.0.min(away),
+                    None => near.push((away, *rim)),
+                }
+            }
+        }
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, k) in near.into_iter().take(MOST_RIMS) {
+            let rim = &self.rims[k as usize];
+            let (mm, at) = rim.nearest(q);
+            if mm < least.mm {
+                least = Foot { mm, on: Some((self.surfaces.len() as u32 + k, at, rim.point(at))) };
             }
         }
         least
@@ -143,7 +254,7 @@ impl<'a> Edges<'a> {
         if face != other {
             return None;
         }
-        let surface = self.surfaces[face as usize];
+        let surface = self.beside(face);
         let at = Uv { u: 0.5 * (from.u + to.u), v: 0.5 * (from.v + to.v) };
         if surface.contains(at) {
             let point = surface.point(at);
@@ -152,7 +263,7 @@ impl<'a> Edges<'a> {
                 return Some((Foot { mm, on: Some((face, at, point)) }, false));
             }
         }
-        let (mm, at) = nearest(surface, at, q, STEPS_BETWEEN);
+        let (mm, at) = surface.nearest(at, q, STEPS_BETWEEN);
         mm.is_finite().then(|| (Foot { mm, on: Some((face, at, surface.point(at))) }, true))
     }
 
@@ -160,7 +271,7 @@ impl<'a> Edges<'a> {
     /// share of the limit at most, or no more than `enough_mm`, as long as looks suffice.
     fn depth_mm(&self, s: &Sample, along_mm: f64, (limit_mm, enough_mm): (f64, f64)) -> f64 {
         let beneath = |t: f64| s.point - s.normal.into_inner() * t;
-        let look = |t: f64| (t, self.foot(&beneath(t), s.face, 0.0));
+        let look = |t: f64| (t, self.foot(&beneath(t), (&s.point, s.face), 0.0));
         let places: Vec<Place> =
             (0..=BENEATH).map(|k| look(along_mm * f64::from(k) / f64::from(BENEATH))).collect();
         let piece = |a: Place, b: Place| (most_mm(s, [&a, &b]), a, b);
@@ -246,7 +357,7 @@ mod tests {
                     samples.push(s);
                 }
             }
-            let edges = Edges::new(&surfaces, &samples, 1.0);
+            let edges = Edges::new(&surfaces, &[], &samples, 1.0);
             let found = edges.depth_mm(&own, along, (limit, 0.0));
             let beneath = |t: f64| t.min((e * sin - t * cos).abs());
             let want = (0..=20_000).map(|k| beneath(along * f64::from(k) / 2e4)).fold(0.0, f64::max);
@@ -289,7 +400,7 @@ mod tests {
             }
             let s =
                 Sample { point: rim, normal, face: 0, uv: uv(0.0, 0.0), area_mm2: 0.01, check_only: false };
-            let found = Edges::new(&surfaces, &samples, 1.5).depth_mm(&s, 4.0, (0.01, 0.0));
+            let found = Edges::new(&surfaces, &[], &samples, 1.5).depth_mm(&s, 4.0, (0.01, 0.0));
             assert!(found <= CLOSE * 0.01, "{found}");
         }
     }
@@ -344,7 +455,7 @@ mod tests {
             area_mm2: 0.01,
             check_only: false,
         };
-        let edges = Edges::new(&surfaces, &samples, 0.25);
+        let edges = Edges::new(&surfaces, &[], &samples, 0.25);
         let found = [0.0, DEEP * limit].map(|enough| edges.depth_mm(&s, ALONG, (limit, enough)));
         let deep = |k: u32| {
             let t = ALONG * f64::from(k) / f64::from(places);

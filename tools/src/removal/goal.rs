@@ -22,6 +22,9 @@ pub struct GoalFace<'a> {
     pub outlines: Vec<&'a [Uv]>,
     /// What of it is looked at, where that is not all of it.
     pub part_of_it: Option<String>,
+    /// Polylines of its rim where no other face goes on, in pieces: nothing says what lies beneath, and depth counts up to the rim as if a
+    /// wall stood there along the normals. Everywhere else depth is that along the normals and from all other faces.
+    pub open_rims: &'a [Vec<Uv>],
 }
 
 /// Why faces of the part are not looked at.

@@ -151,6 +151,22 @@ pub(super) fn doubts(
     Ok(Doubts { height_mm, depth_mm, places })
 }
 
+/// Of samples those in whose cells something higher than [`Wanted::enough_mm`] may hide.
+pub(super) fn doubtful(
+    surfaces: &[&dyn Surface],
+    (job, ways): (&Job<'_>, &Ways),
+    (patches, cuts): (&[Option<Patch>], &[Cut]),
+    wanted: Wanted,
+) -> Result<Vec<usize>, JobError> {
+    let world = World::new((job, ways), None, cuts, wanted.uncut_mm);
+    let cells = world.cells(surfaces, (patches, cuts), wanted)?;
+    let is_high = |c: &&Bounded<'_>| {
+        c.height_mm > wanted.enough_mm
+            && c.cell.bound(wanted.enough_mm, DIVISIONS, &mut Vec::new()) > wanted.enough_mm
+    };
+    Ok(cells.par_iter().filter(is_high).map(|c| c.sample).collect())
+}
+
 /// A cell that is not divided, with its bounds.
 struct Bounded<'a> {
     cell: Cell<'a>,

@@ -64,6 +64,7 @@ mod material;
 mod piece;
 mod prove;
 mod refine;
+mod rim;
 mod sampling;
 mod steps;
 pub mod stock;

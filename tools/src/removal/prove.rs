@@ -121,6 +121,15 @@ pub fn prove_in_steps(
         refined = trial.refine(&mut look, &mut marks)?;
         added += refined.added;
     }
+    // What is left open counts into an area that is accepted.
+    let mut open_mm2 = 0.0;
+    if bounds && goal.limits.unreached_mm2 > 0.0 && !look.is_settled() && trial.holds(&look) {
+        open_mm2 = trial.give_up_open(&mut look, &mut marks)?;
+        if open_mm2 > 0.0 {
+            refined = trial.refine(&mut look, &mut marks)?;
+            added += refined.added;
+        }
+    }
     refined.added = added;
     within(3, 1.0);
     let stock = match material {
@@ -129,6 +138,11 @@ pub fn prove_in_steps(
         None => trial.carve((&[], trial.limits.collision_mm), &|f| within(4, f))?.map(|m| m.whole),
     };
     progress(1.0);
-    let whole = concluded(&trial, look, (&marks, crest_median_mm), Closing { coarse, refined, stock, notes });
+    let whole = concluded(
+        &trial,
+        look,
+        (&marks, crest_median_mm),
+        Closing { coarse, refined, open_mm2, stock, notes },
+    );
     Ok(Proved { whole, steps: judged.into_iter().flatten().collect() })
 }

@@ -13,7 +13,7 @@
 use super::density::Density;
 use super::grid::{Cell, Table, normal, weight};
 use super::job::Sample;
-use osculate_geom::{Axis, Box3, Domain, Interval, Surface, Uv, quadrature, uv};
+use osculate_geom::{Axis, Box3, Domain, Interval, Surface, Unit3, Uv, quadrature, uv};
 use rayon::prelude::*;
 
 /// The samples of a face.
@@ -44,7 +44,38 @@ pub struct Patch {
     pub convex_per_mm: f64,
 }
 
+/// Two normals differ by no more than this.
+const MOST_BEND: f64 = 2.0;
+/// Where curvature in one place says that normals turn by more than this over a patch, rad, that at its corners is looked at.
+const MUCH: f64 = 0.5;
+/// Normals turn by this many times what corners show at most: where they turn a lot they do so in a part of the patch, as at a ridge.
+const SHOWN: f64 = 2.0;
+
 impl Patch {
+    /// How much normals turn over the patch at most, rad, from one in its middle that is no farther than `radius` from any place of it.
+    pub(super) fn bend(&self, surface: &dyn Surface, middle: &Unit3, radius: f64) -> f64 {
+        let bend = self.concave_per_mm.max(self.convex_per_mm) * radius;
+        if bend <= MUCH {
+            return bend;
+        }
+        let turn = |at: Uv| {
+            surface.jet2(at).normal().map_or(MOST_BEND, |n| (n.into_inner() - middle.into_inner()).norm())
+        };
+        let shown = self.corners().into_iter().map(turn).fold(0.0, f64::max);
+        bend.min((SHOWN * shown).clamp(MUCH, MOST_BEND))
+    }
+
+    /// How much of that makes it hollow over so far, rad.
+    pub(super) const fn hollow(&self, bend: f64, radius: f64) -> f64 {
+        (self.concave_per_mm * radius).min(bend.max(MUCH))
+    }
+
+    /// Its corners, one after the other.
+    pub(super) const fn corners(&self) -> [Uv; 4] {
+        let [[u0, u1], [v0, v1]] = [self.u, self.v];
+        [uv(u0, v0), uv(u1, v0), uv(u1, v1), uv(u0, v1)]
+    }
+
     pub(super) fn middle(&self) -> Uv {
         uv(0.5 * (self.u[0] + self.u[1]), 0.5 * (self.v[0] + self.v[1]))
     }

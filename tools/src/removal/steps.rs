@@ -85,7 +85,8 @@ impl GoalStep<'_> {
         let look = trial.seen(own, cuts)?;
         let marks = trial.marks(&look.measured, MARKED)?;
         let stock = stock.map(|found| found.deeper_than(trial.limits.collision_mm));
-        let closing = Closing { coarse: false, refined: unbounded(), stock, notes: Vec::new() };
+        let closing =
+            Closing { coarse: false, refined: unbounded(), open_mm2: 0.0, stock, notes: Vec::new() };
         let crest_median_mm = trial.crests(&look.measured)?;
         Ok(concluded(&trial, look, (&marks, crest_median_mm), closing))
     }

@@ -6,9 +6,10 @@ use super::cut::{Cutting, cut};
 use super::density::{Density, Hidden};
 use super::edges::Edges;
 use super::goal::{Goal, GoalFace, GoalFixture, GoalTool, Program};
-use super::hidden::Wanted;
+use super::hidden::{Wanted, doubtful};
 use super::job::{Change, Cut, Job, JobError, Sample};
 use super::refine::{Measured, Refined, refine_beside};
+use super::rim::OpenRim;
 use super::sampling::{Patch, Sampling, SamplingError, sample_surface};
 use super::stock::BlankError;
 use super::tally::{Limits, Tally, TallyError, tally};
@@ -129,6 +130,7 @@ pub(super) struct Trial<'a> {
     /// Faces by number: to machine first, then those that are checked.
     pub faces: Vec<&'a GoalFace<'a>>,
     pub surfaces: Vec<&'a dyn Surface>,
+    rims: Vec<OpenRim<'a>>,
     pub limits: Limits,
     /// Width of a strip that a ball of the smallest cutter's radius leaves on a plane, mm.
     pub strip_mm: f64,
@@ -169,10 +171,14 @@ impl<'a> Trial<'a> {
     pub fn new(goal: &'a Goal<'a>, program: Program<'a>, changes: &'a [Change<'a>]) -> Self {
         let faces: Vec<&GoalFace<'_>> = goal.machined.iter().chain(&goal.checked).collect();
         let surfaces = faces.iter().map(|f| f.surface).collect();
+        let rims = faces.iter().zip(0..).flat_map(|(f, k)| {
+            f.open_rims.iter().filter_map(move |points| OpenRim::new(k, f.surface, points))
+        });
+        let rims = rims.collect();
         let limits = Limits::new(goal.limits.scallop_mm, goal.limits.gouge_mm);
         let smallest = goal.tools.iter().map(|t| t.cutter.radius_mm()).fold(f64::INFINITY, f64::min);
         let strip_mm = 2.0 * (2.0 * goal.limits.scallop_mm * smallest).sqrt();
-        Self { goal, program, faces, surfaces, limits, strip_mm, changes }
+        Self { goal, program, faces, surfaces, rims, limits, strip_mm, changes }
     }
 
     pub fn is_machined(&self, face: usize) -> bool {
@@ -222,7 +228,8 @@ impl<'a> Trial<'a> {
 
     /// Samples an even distance apart.
     fn sampled(&self, spacing: f64) -> Result<Sampled, ProveError> {
-        let max = self.goal.looks.max_samples;
+        // Faces that bend a lot have more of them than their area says; those between them need room.
+        let max = (MOST_EVEN * self.goal.looks.max_samples as f64) as usize;
         let (mut samples, mut patches, mut lost) = (Vec::new(), Vec::new(), Vec::new());
         let mut density: Option<Density> = None;
         for (k, face) in self.faces.iter().enumerate() {
@@ -309,7 +316,7 @@ impl<'a> Trial<'a> {
 
     /// The faces with their outer edges, found by samples so far apart.
     fn edges<'s>(&'s self, samples: &'s [Sample], spacing: f64) -> Edges<'s> {
-        Edges::new(&self.surfaces, samples, CHECK_COARSER * spacing)
+        Edges::new(&self.surfaces, &self.rims, samples, CHECK_COARSER * spacing)
     }
 
     /// What motions take from a fixture while it is there.
@@ -333,11 +340,16 @@ impl<'a> Trial<'a> {
         Ok(cut(&work, &|_| {})?.into_iter().map(|c| c.later(shift)).collect())
     }
 
+    /// What a sample may stand above the face with its mark, so that corners which the control blends are not too high.
+    fn highest_mm(&self) -> f64 {
+        less(self.limits.scallop_mm, self.goal.control.blend_mm)
+    }
+
     /// Whether a sample stands too high with its mark where the goal accepts an area that does.
     pub fn is_to_give_up(&self, look: &Look, marks: &Marks) -> bool {
         let Measured { samples, cuts, .. } = &look.measured;
         let high = |((s, c), mark): ((&Sample, &Cut), &f64)| {
-            !s.check_only && c.by.is_some() && c.standoff_mm + mark > self.limits.scallop_mm
+            !s.check_only && c.by.is_some() && c.standoff_mm + mark > self.highest_mm()
         };
         self.goal.limits.unreached_mm2 > 0.0 && samples.iter().zip(cuts).zip(&marks.each).any(high)
     }
@@ -346,10 +358,49 @@ impl<'a> Trial<'a> {
     pub fn give_up(&self, look: &mut Look, marks: &mut Marks, spacing: f64) -> Result<(), ProveError> {
         if self.goal.limits.unreached_mm2 > 0.0 {
             let Measured { samples, cuts, .. } = &mut look.measured;
-            give_up(samples, (cuts, &mut marks.each), self.limits.scallop_mm, spacing);
+            give_up(samples, (cuts, &mut marks.each), self.highest_mm(), spacing);
             look.tally = self.tally(samples, cuts, &look.density)?;
         }
         Ok(())
+    }
+
+    /// Where the goal accepts an area that is not reached: takes the cells in which something too high may hide as never touched, where
+    /// the area accepted suffices for all of them. Their area comes back, mm2; zero where nothing changed.
+    pub fn give_up_open(&self, look: &mut Look, marks: &mut Marks) -> Result<f64, ProveError> {
+        let room_mm2 = self.goal.limits.unreached_mm2 - look.tally.uncut_area_mm2;
+        let Measured { samples, patches, cuts } = &mut look.measured;
+        let ways = Ways::of_job(&self.job_without())?;
+        let mut open = Vec::new();
+        for [low, most_mark] in ranges(&marks.lots()) {
+            let of_lot = |k: &usize| low < marks.each[*k] && marks.each[*k] <= most_mark;
+            let is_settled = |k: usize| look.settled.each.get(k).is_some_and(|is| *is);
+            let own: Vec<usize> = (0..samples.len()).filter(|k| !is_settled(*k) && of_lot(k)).collect();
+            let of = |k: &usize| (samples[*k], (patches[*k], cuts[*k]));
+            let (samples, (patches, cuts)): (Vec<_>, (Vec<_>, Vec<_>)) = own.iter().map(of).unzip();
+            let job = Job { samples: &samples, ..self.job_without() };
+            let found = doubtful(&self.surfaces, (&job, &ways), (&patches, &cuts), self.wanted(most_mark))?;
+            open.extend(found.into_iter().map(|j| own[j]));
+        }
+        let area_mm2: f64 = open.iter().map(|k| samples[*k].area_mm2).sum();
+        if open.is_empty() || area_mm2 > room_mm2 {
+            return Ok(0.0);
+        }
+        for k in open {
+            cuts[k].by = None;
+            marks.each[k] = 0.0;
+        }
+        look.tally = self.tally(samples, cuts, &look.density)?;
+        Ok(area_mm2)
+    }
+
+    /// What is asked of bounds where marks are no higher than this.
+    fn wanted(&self, most_mark: f64) -> Wanted {
+        let blend_mm = self.goal.control.blend_mm;
+        Wanted {
+            uncut_mm: self.limits.uncut_mm,
+            enough_mm: less(self.limits.scallop_mm, most_mark + blend_mm),
+            gouge_mm: less(self.limits.gouge_mm, blend_mm),
+        }
     }
 
     pub fn tally(&self, samples: &[Sample], cuts: &[Cut], density: &Density) -> Result<Tally, ProveError> {
@@ -404,8 +455,6 @@ impl<'a> Trial<'a> {
     pub fn refine(&self, look: &mut Look, marks: &mut Marks) -> Result<Refined, ProveError> {
         let even = look.measured.samples.len();
         let holds = self.holds(look);
-        let blend_mm = self.goal.control.blend_mm;
-        let less = |limit: f64, by: f64| if by < limit { limit - by } else { limit };
         // Between samples of a path that fails already nothing is left to be found out.
         let max = self.goal.looks.max_samples;
         let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
@@ -430,9 +479,8 @@ impl<'a> Trial<'a> {
         let mut refined = Refined { added: 0, left_out: 0, ..unbounded() };
         // Nothing in any lot stands above this with its mark, or lies below that.
         let (mut highest, mut deepest) = (settled.height_mm, settled.depth_mm);
-        for (k, most_mark) in lots.iter().enumerate() {
-            let low = if k == 0 { f64::NEG_INFINITY } else { lots[k - 1] };
-            let of_lot = |m: &f64| *m > low && *m <= *most_mark;
+        for [low, most_mark] in ranges(&lots) {
+            let of_lot = |m: &f64| *m > low && *m <= most_mark;
             let mut lot = Measured::default();
             for k in (0..samples.len()).filter(|k| !settled.each[*k] && of_lot(&marks.each[*k])) {
                 keep(k, &mut lot);
@@ -441,11 +489,7 @@ impl<'a> Trial<'a> {
             if evenly == 0 {
                 continue;
             }
-            let wanted = Wanted {
-                uncut_mm: self.limits.uncut_mm,
-                enough_mm: less(self.limits.scallop_mm, most_mark + blend_mm),
-                gouge_mm: less(self.limits.gouge_mm, blend_mm),
-            };
+            let wanted = self.wanted(most_mark);
             let room = most.saturating_sub(refined.added);
             let (found, mut of_each) =
                 refine_beside((&self.surfaces, Some(&edges)), &self.job(&[]), &mut lot, wanted, room)?;
@@ -483,6 +527,17 @@ impl<'a> Trial<'a> {
             Hidden { scallop_mm: highest, gouge_mm: (deepest - look.tally.gouge_max_mm).max(0.0) };
         Ok(refined)
     }
+}
+
+/// Ranges of marks, each above its first and up to its second, by the second ones.
+fn ranges(lots: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+    let lows = std::iter::once(f64::NEG_INFINITY).chain(lots.iter().copied());
+    lows.zip(lots).map(|(low, most)| [low, *most])
+}
+
+/// A limit less what is added to what is measured; all of it where nothing would be left.
+fn less(limit_mm: f64, by_mm: f64) -> f64 {
+    if by_mm < limit_mm { limit_mm - by_mm } else { limit_mm }
 }
 
 /// Samples of a face; of one that is narrower than they are apart, closer ones.

@@ -73,6 +73,9 @@ pub struct Figures {
     pub spacing_mm: f64,
     /// What may hide between samples, mm.
     pub hidden: Hidden,
+    /// Of the uncut area that of places between samples where something higher than the scallop may hide, which counts into it where it is
+    /// accepted, mm2.
+    pub open_area_mm2: f64,
     /// The smallest radius of curvature at a sample, mm; None where everything is flat.
     pub smallest_radius_mm: Option<f64>,
     /// Median height of the crests between passes, mm.

@@ -2,7 +2,7 @@
 
 use crate::common::ball;
 use osculate_geom::analytic::{Placed, Placement, Plane};
-use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Vec3};
+use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::removal::{
     Answer, Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Looks, Program, Swept, Verdict,
     prove,
@@ -42,11 +42,28 @@ fn motions(z: f64, off_mm: f64) -> Vec<Swept> {
 
 fn judged(cutter: &Cutter, motions: &[Swept]) -> Verdict {
     let (top, side) = (plane(), wall());
-    let face =
-        |name: &'static str, surface| GoalFace { name, surface, outlines: Vec::new(), part_of_it: None };
-    let goal = Goal {
-        machined: vec![face("F1", &top as &dyn Surface)],
-        checked: vec![face("F2", &side as &dyn Surface)],
+    let faces = [face("F1", &top, &[]), face("F2", &side, &[])];
+    judged_on(faces, (cutter, motions))
+}
+
+fn face<'a>(name: &'a str, surface: &'a dyn Surface, open_rims: &'a [Vec<Uv>]) -> GoalFace<'a> {
+    GoalFace { name, surface, outlines: Vec::new(), part_of_it: None, open_rims }
+}
+
+/// The first face is machined, others are checked.
+fn judged_on<'a>(
+    faces: impl IntoIterator<Item = GoalFace<'a>>,
+    (cutter, motions): (&Cutter, &[Swept]),
+) -> Verdict {
+    let mut faces = faces.into_iter();
+    let goal = goal_of(cutter, faces.next().into_iter().collect(), faces.collect());
+    prove(&goal, Program { motions, times_min: &[], changes: &[] }, &|_| ()).expect("faces and motions")
+}
+
+fn goal_of<'a>(cutter: &'a Cutter, machined: Vec<GoalFace<'a>>, checked: Vec<GoalFace<'a>>) -> Goal<'a> {
+    Goal {
+        machined,
+        checked,
         unseen: Vec::new(),
         fixtures: Vec::new(),
         tools: vec![GoalTool {
@@ -62,8 +79,7 @@ fn judged(cutter: &Cutter, motions: &[Swept]) -> Verdict {
         looks: Looks { spacing_mm: Some(0.1), max_samples: 1_000_000, between: true },
         roughing_mm: None,
         control: GoalControl::default(),
-    };
-    prove(&goal, Program { motions, times_min: &[], changes: &[] }, &|_| ()).expect("two faces")
+    }
 }
 
 #[test]
@@ -100,4 +116,58 @@ fn what_goes_into_the_wall_is_found_beside_the_edge_too() {
     assert_eq!(v.answer(), Answer::NotHeld, "{v}");
     let found = v.figures().tally.gouge_max_mm;
     assert!((found - 0.02).abs() < 1e-6, "{found}");
+}
+
+/// The plane alone, as a sheet whose rims are all open: what goes down beside it takes as much as it comes in beside the rim, however
+/// deep it goes.
+#[test]
+fn beneath_an_open_rim_depth_counts_up_to_the_rim() {
+    let cutter = ball(6.0);
+    let sheet = plane();
+    let corners = [uv(0.0, 0.0), uv(6.0, 0.0), uv(6.0, 6.0), uv(0.0, 6.0)];
+    let rims: Vec<Vec<Uv>> = (0..4).map(|k| vec![corners[k], corners[(k + 1) % 4]]).collect();
+    let of = |inside_mm: f64, rims: &[Vec<Uv>]| {
+        let v = judged_on([face("F1", &sheet, rims)], (&cutter, &motions(0.0, -inside_mm)));
+        (v.answer(), v.figures().tally.gouge_max_mm)
+    };
+    for inside in [0.002, 0.006] {
+        let (answer, found) = of(inside, &rims);
+        assert_eq!(answer, Answer::Held, "{inside}: {found}");
+        assert!(found < inside + 0.25 * GOUGE_MM + 1e-9, "{inside}: {found}");
+        // With nothing said of the rim the sheet goes on downwards.
+        let (answer, found) = of(inside, &[]);
+        assert!(answer == Answer::NotHeld && found > 1.0, "{inside}: {found}");
+    }
+    let (answer, found) = of(0.05, &rims);
+    assert_eq!(answer, Answer::NotHeld);
+    // What is deeper than the limit from the rim too is told as it is along the normal.
+    assert!(found > 0.02, "{found}");
+    // What is too deep in the middle of the sheet is so with open rims as well.
+    let v = judged_on([face("F1", &sheet, &rims)], (&cutter, &motions(-0.02, 0.5)));
+    assert!(v.answer() == Answer::NotHeld && (v.figures().tally.gouge_max_mm - 0.02).abs() < 1e-6, "{v}");
+}
+
+/// Where an area is accepted, what bounds leave open counts into it; where none is, nothing is shown.
+#[test]
+fn what_may_hide_counts_into_an_area_that_is_accepted() {
+    let cutter = ball(6.0);
+    // Cusps of the passes, 0.3 mm apart, are 0.00375 mm high; so few samples may be added that bounds stay above the limit.
+    let sheet = plane();
+    let all = motions(0.0, 0.5);
+    let of = |unreached_mm2: f64| {
+        let mut goal = goal_of(&cutter, vec![face("F1", &sheet, &[])], Vec::new());
+        goal.limits = GoalLimits { scallop_mm: 0.00376, unreached_mm2, ..goal.limits };
+        goal.looks = Looks { spacing_mm: Some(0.1), max_samples: 4600, between: true };
+        prove(&goal, Program { motions: &all, times_min: &[], changes: &[] }, &|_| ()).expect("a face")
+    };
+    let open = of(0.0);
+    assert_eq!(open.answer(), Answer::NotShown, "{open}");
+    let counted = of(36.0);
+    assert_eq!(counted.answer(), Answer::Held, "{counted}");
+    let (area, uncut) = (counted.figures().open_area_mm2, counted.figures().tally.uncut_area_mm2);
+    assert!(area > 0.0 && area <= uncut + 1e-9 && uncut <= 36.0, "{area} {uncut}");
+    assert!(counted.scope().iter().any(|row| row.covers.contains("may hide")), "{counted}");
+    // An area that does not suffice changes nothing.
+    let few = of(0.1 * area);
+    assert!(few.answer() == Answer::NotShown && few.figures().open_area_mm2 == 0.0, "{few}");
 }

@@ -95,7 +95,13 @@ fn judged(asked: Asked) -> Result<Verdict, ProveError> {
     let (face, cutter) = (plane(), ball());
     let surface: &dyn Surface = &face;
     let goal = Goal {
-        machined: vec![GoalFace { name: "F1", surface, outlines: Vec::new(), part_of_it: None }],
+        machined: vec![GoalFace {
+            name: "F1",
+            surface,
+            outlines: Vec::new(),
+            part_of_it: None,
+            open_rims: &[],
+        }],
         checked: Vec::new(),
         unseen: asked.unseen,
         fixtures: Vec::new(),

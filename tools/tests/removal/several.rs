@@ -188,7 +188,13 @@ impl Plate {
             spindle_rpm: Some(rpm),
         };
         let goal = Goal {
-            machined: vec![GoalFace { name: "F1", surface: &face, outlines: Vec::new(), part_of_it: None }],
+            machined: vec![GoalFace {
+                name: "F1",
+                surface: &face,
+                outlines: Vec::new(),
+                part_of_it: None,
+                open_rims: &[],
+            }],
             checked: Vec::new(),
             unseen: Vec::new(),
             fixtures: Vec::new(),

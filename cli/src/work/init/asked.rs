@@ -2,9 +2,8 @@
 
 use crate::job::Normals;
 use crate::job::library::Library;
-use crate::part::{self, Loaded, LoadedFace};
+use crate::part::{self, Loaded};
 use osculate_postproc::Machine;
-use osculate_surfaces::Face;
 use osculate_surfaces::groups::{FaceGroup, groups};
 use osculate_surfaces::sides::{Meeting, meetings};
 use std::path::{Path, PathBuf};
@@ -37,22 +36,14 @@ pub struct Grouped {
     pub groups: Vec<FaceGroup>,
 }
 
-/// The faces of a part with the sides that they have now.
-fn shapes(part: &Loaded) -> Vec<Face> {
-    let shape = |f: &LoadedFace| {
-        f.source.as_deref().map(|source| Face { surface: f.surface.clone(), ..source.clone() })
-    };
-    part.faces.iter().filter_map(shape).collect()
-}
-
 impl Grouped {
     /// Settles the sides of a part's faces and groups them. The word is what is said of normals.
     #[must_use]
     pub fn of(mut part: Loaded, normals: Normals) -> Self {
         let all: Vec<String> = part.faces.iter().map(|f| f.id.clone()).collect();
         let open = part::settle(&mut part, (normals, &[]), &all);
-        let shapes = shapes(&part);
-        let shapes: Vec<&Face> = shapes.iter().collect();
+        let shapes = part.shapes();
+        let shapes: Vec<_> = shapes.iter().collect();
         let meetings = meetings(&shapes, part.uncertainty_mm);
         let groups = if shapes.len() == part.faces.len() { groups(&shapes, &meetings) } else { Vec::new() };
         Self { part, open, meetings, groups }

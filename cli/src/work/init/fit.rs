@@ -43,7 +43,7 @@ const NEARLY_ALL: f64 = 0.02;
 /// Faces of which more is left than this share are refused.
 const TOO_MUCH: f64 = 0.3;
 /// What is accepted as not reached is the estimate times this: strips fade out beside it.
-const SKIRT: f64 = 1.4;
+const SKIRT: f64 = 1.6;
 /// A way for the part to stand is as good as the first one where it reaches this much of it.
 const AS_GOOD: f64 = 0.995;
 

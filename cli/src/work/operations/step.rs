@@ -210,6 +210,7 @@ fn alone(part: &Part, k: usize) -> Part {
         check,
         unseen: part.unseen.clone(),
         open: part.open.clone(),
+        rims: part.rims.clone(),
         walls: OnceLock::new(),
         left: part.left.clone(),
         import_s: 0.0,

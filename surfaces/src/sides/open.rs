@@ -1,0 +1,48 @@
+//! Open rims: where a face ends and no other one of the part goes on or stands.
+
+use super::link::Grid;
+use super::rim::{Bit, Traced};
+use crate::closest::FaceSearch;
+use crate::part::Face;
+use osculate_geom::{Box3, Uv};
+use rayon::prelude::*;
+use std::sync::OnceLock;
+
+/// A piece of a face's open rim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenRim {
+    /// The face's number.
+    pub face: usize,
+    /// The piece as a polyline in the face's parameters.
+    pub points: Vec<Uv>,
+}
+
+/// The pieces of the rims of faces along which no other face lies, by the numbers of the faces: neither one that shares the edge nor one
+/// that the rim stands on. A face that closes upon itself has none there. `uncertainty_mm` is what the file says of its own exactness.
+///
+/// # Example
+/// Of a body nothing is open; of a sheet all that is not closed.
+#[must_use]
+pub fn open_rims(faces: &[&Face], uncertainty_mm: Option<f64>) -> Vec<OpenRim> {
+    let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
+    let size_mm = boxes.iter().fold(Box3::empty(), |b, f| b.union(f)).diagonal_mm();
+    if !(size_mm.is_finite() && size_mm > 0.0) {
+        return Vec::new();
+    }
+    let (traced, slack_mm) = super::traced_rims(faces, size_mm, uncertainty_mm);
+    let bits: Vec<Bit> = traced.iter().map(|t| t.0).collect();
+    let grid = Grid::new(&bits, slack_mm);
+    let searches: Vec<OnceLock<FaceSearch<'_>>> = faces.iter().map(|_| OnceLock::new()).collect();
+    let stands = |b: &Bit| {
+        let middle = &b.points[1];
+        let is_in = |b: Box3| (0..3).all(|i| b.min[i] <= middle[i] && middle[i] <= b.max[i]);
+        let near = (0..faces.len()).filter(|k| *k != b.face && is_in(boxes[*k].grown(slack_mm[1])));
+        let mut near = near.map(|k| searches[k].get_or_init(|| FaceSearch::new(&faces[k].surface, None)));
+        // What cannot be searched may be there.
+        near.any(|s| s.closest(middle, None).map_or(true, |foot| foot.distance_mm <= slack_mm[1]))
+    };
+    let is_open = |t: &Traced| !grid.is_met(&t.0, slack_mm) && !stands(&t.0);
+    let open: Vec<bool> = traced.par_iter().with_min_len(64).map(is_open).collect();
+    let kept = traced.into_iter().zip(open).filter(|(_, open)| *open);
+    kept.map(|((bit, points), _)| OpenRim { face: bit.face, points }).collect()
+}
