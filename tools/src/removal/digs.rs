@@ -13,7 +13,7 @@
 use super::body::Body;
 use super::cluster::{Cluster, clusters};
 use super::edges::Edges;
-use super::job::{Cut, Job, JobError};
+use super::job::{Cut, Job, JobError, Sample};
 use super::piece::{Approach, Passes, Piece};
 use super::sampling::Patch;
 use super::target::Target;
@@ -125,8 +125,10 @@ impl<'a> Digs<'a> {
         let cell = |k: usize| {
             let patch = patches[k]?;
             let back = self.back(surfaces, k, &patch);
-            // At an open rim a gouge ends before its bottom is level.
-            let at_rim = self.edges.is_some_and(|edges| edges.is_at_rim(&self.job.samples[k].point));
+            // At an open rim a gouge ends before its bottom is level, as far in as depth is asked for.
+            let Sample { point, face, .. } = &self.job.samples[k];
+            let within_mm = back.radius + self.depth_mm;
+            let at_rim = self.edges.is_some_and(|edges| edges.is_at_rim(point, *face, within_mm));
             let level_mm = if at_rim {
                 f64::INFINITY
             } else {
@@ -200,14 +202,17 @@ impl<'a> Digs<'a> {
         cells.iter().map(depth).collect()
     }
 
-    /// Whether what is so deep beneath a part of a cell lies next to another face.
+    /// Whether what is so deep beneath a part of a cell lies next to another place of the faces: beyond the centre of a ridge's curvature it
+    /// does.
     fn is_beside(&self, surfaces: &[&dyn Surface], sample: usize, part: &Patch) -> bool {
         let Some(edges) = self.edges else { return false };
         let face = self.job.samples[sample].face;
         let surface = surfaces[face as usize];
         part.corners().into_iter().chain([part.middle()]).all(|at| {
-            let jet = surface.jet2(at);
-            jet.normal().is_ok_and(|normal| edges.is_beside((&jet.point, &normal), face, self.depth_mm))
+            surface.jet2(at).forms().is_ok_and(|forms| {
+                forms.principal().k_max * self.depth_mm > 1.0
+                    || edges.is_beside((&surface.point(at), &forms.normal), face, self.depth_mm)
+            })
         })
     }
 

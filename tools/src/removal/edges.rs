@@ -169,9 +169,32 @@ impl<'a> Edges<'a> {
         out
     }
 
-    /// Whether an open rim is about as near to a point as samples are to each other.
-    pub fn is_at_rim(&self, p: &Point3) -> bool {
-        !self.rims.is_empty() && self.hints().1.near.contains(&key(p, NARROW * self.side_mm))
+    /// Whether an open rim of a face is this near to a place of it, where that is about as far as samples are from each other.
+    pub fn is_at_rim(&self, place: &Point3, face: u32, within_mm: f64) -> bool {
+        if self.rims.is_empty() || !self.hints().1.near.contains(&key(place, NARROW * self.side_mm)) {
+            return false;
+        }
+        self.rims_near(place, face).into_iter().any(|k| self.rims[k as usize].nearest(place).0 <= within_mm)
+    }
+
+    /// The open rims of a face that are nearest to a place of it, the nearest first.
+    fn rims_near(&self, place: &Point3, face: u32) -> Vec<u32> {
+        let rims = &self.hints().1.points;
+        let mut near: Vec<(f64, u32)> = Vec::new();
+        for key in around(place, self.side_mm) {
+            for (rim, point) in rims.get(&key).into_iter().flatten() {
+                if self.rims[*rim as usize].face != face {
+                    continue;
+                }
+                let away = (point - place).norm();
+                match near.iter_mut().find(|n| n.1 == *rim) {
+                    Some(n) => n.0 = n.0.min(away),
+                    None => near.push((away, *rim)),
+                }
+            }
+        }
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        near.into_iter().take(MOST_RIMS).map(|n| n.1).collect()
     }
 
     /// What a number stands for: faces first, then pieces of open rims.
@@ -192,7 +215,7 @@ impl<'a> Edges<'a> {
     /// The place nearest to a point beneath a place of a face, as far as it is found, of all faces and of walls on open rims of this one;
     /// looking ends where it is below `enough_mm`.
     fn foot(&self, q: &Point3, (place, face): (&Point3, u32), enough_mm: f64) -> Foot {
-        let (hints, rims) = self.hints();
+        let hints = &self.hints().0;
         // Of each face around, its own among them, the nearest sample.
         let mut near: Vec<(f64, u32, Uv)> = Vec::new();
         for key in around(q, self.side_mm) {
@@ -219,25 +242,10 @@ impl<'a> Edges<'a> {
                 return least;
             }
         }
-        if rims.points.is_empty() {
+        if self.rims.is_empty() {
             return least;
         }
-        // Of the face's own open rims those pieces that are nearest to the place itself.
-        let mut near: Vec<(f64, u32)> = Vec::new();
-        for key in around(place, self.side_mm) {
-            for (rim, point) in rims.points.get(&key).into_iter().flatten() {
-                if self.rims[*rim as usize].face != face {
-                    continue;
-                }
-                let away = (point - place).norm();
-                match near.iter_mut().find(|n| n.1 == *rim) {
-                    Some(n) => n.0 = n.0.min(away),
-                    None => near.push((away, *rim)),
-                }
-            }
-        }
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, k) in near.into_iter().take(MOST_RIMS) {
+        for k in self.rims_near(place, face) {
             let rim = &self.rims[k as usize];
             let (mm, at) = rim.nearest(q);
             if mm < least.mm {
