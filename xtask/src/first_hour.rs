@@ -1,5 +1,5 @@
 //! `cargo xtask first-hour`: docs/first-hour.md, ten real parts as a new user has them: `init`, `check` and `plan` of the job as it is written,
-//! no key changed, with what each took and said.
+//! no key changed, with what each took and said, and a picture of what the job leaves of each.
 //!
 //! Results stay below `target/first-hour`.
 
@@ -75,7 +75,7 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let mut page = HEAD.to_owned();
     let mut reasons = String::new();
     for (what, file) in PARTS {
-        let name = Path::new(file).file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let name = name_of(file);
         let (row, reason) = if name.contains(options.only) {
             let found = one((what, &name), &program, options, &root)?;
             println!("{}{}", found.0, found.1);
@@ -93,7 +93,24 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     if !reasons.is_empty() {
         let _ = write!(page, "\nWhat stands in the way, in the words of the program:\n\n{reasons}");
     }
+    page.push_str("\nWhat each program leaves, as `picture.svg` of the plan shows it:\n");
+    for (what, file) in PARTS {
+        let name = name_of(file);
+        if root.join("docs").join(picture(&name)).is_file() {
+            let _ = write!(page, "\n{what}, `{name}`:\n\n![{what}]({})\n", picture(&name));
+        }
+    }
     write(&to, &page)
+}
+
+/// The name of a part's file.
+fn name_of(file: &str) -> String {
+    Path::new(file).file_stem().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+}
+
+/// Where the picture of a part is, from the page.
+fn picture(name: &str) -> String {
+    format!("figures/first-hour-{name}.svg")
 }
 
 /// One verb of the program: what it took, and what it wrote.
@@ -183,6 +200,8 @@ fn one(
         let why = if plan.took.code.is_none() { not_ended("plan") } else { because("plan", &told(&plan)) };
         return Ok((format!("{begin} no plan | - | - | - |\n"), why));
     };
+    let (from, to) = (folder.join("plan/picture.svg"), root.join("docs").join(picture(name)));
+    std::fs::copy(from, &to).map_err(|why| Failure::Write { path: to, why })?;
     let number = |v: &Value| v.as_f64().map_or_else(|| "-".to_owned(), |x| format!("{x:.1}"));
     let answer = s["verdict"]["answer"].as_str().unwrap_or("?").replace('_', " ");
     let row = format!(

@@ -17,7 +17,7 @@ const ALLOWANCE_MM: f64 = 0.3;
 /// A roughing tool is no wider than the finishing one by this.
 const FLAT: f64 = 2.0;
 /// Samples of a verification: a first look is to end in minutes.
-const SAMPLES: usize = 1_000_000;
+const SAMPLES: usize = 600_000;
 
 /// A direction as TOML: whole numbers where it is one of the part's axes, and digits enough for an axis at the end of a joint's range.
 fn direction(d: &Unit3) -> String {
