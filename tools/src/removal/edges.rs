@@ -17,12 +17,12 @@
 //! nothing about how faces bend. They come near where places are as close together as the depth that is enough: along a wall of 4 mm
 //! that is two thousand of them, most of which cost one point of the face between two that are known.
 
-use super::foot::{Foot, Place, most_mm, nearest};
+use super::foot::{Beside, Foot, Place, most_mm, nearest};
 use super::job::{Cut, Sample};
-use super::rim::OpenRim;
+use super::rim::{OpenRim, Rims, around, key};
 use osculate_geom::{Point3, Surface, Unit3, Uv};
 use rayon::prelude::*;
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{HashMap, VecDeque};
 use std::sync::OnceLock;
 
 /// What lies beneath is nearer to another place than this share of the depth that is asked for; at an inner edge it is as far.
@@ -37,12 +37,6 @@ const LOOKS: usize = 32_768;
 const AROUND: usize = 128;
 /// Steps towards the nearest point from one between two nearest points.
 const STEPS_BETWEEN: usize = 3;
-/// Pieces of open rims that are looked at for a place: at a corner two of them are near.
-const MOST_RIMS: usize = 4;
-/// Boxes in which cells at open rims are found, of those in which faces are: twice as wide as samples are apart.
-const NARROW: f64 = 0.25;
-/// Points on a chord of an open rim at most: chords of more are no part's.
-const MOST_PARTS: f64 = 1e4;
 /// What is said to be deep may be this share of the limit less.
 const CLOSE: f64 = 0.02;
 /// Depths below this share of the limit are left as they seem, and others need not be told apart from it where they are below.
@@ -67,45 +61,6 @@ pub fn beside_edges(
 /// Of each box of space the samples in it: face and place on it.
 type Hints = HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>;
 
-/// Open rims, found by place.
-#[derive(Default)]
-struct RimHints {
-    /// Of each box of space the pieces in it, each with a point on it.
-    points: HashMap<[i64; 3], Vec<(u32, Point3)>>,
-    /// Boxes a quarter as wide, with a piece in them or next to them.
-    near: HashSet<[i64; 3]>,
-}
-
-/// What is beside a place of a face: a face, or the wall on a piece of its own open rim.
-enum Beside<'a> {
-    Face(&'a dyn Surface),
-    Rim(&'a OpenRim<'a>),
-}
-
-impl Beside<'_> {
-    fn contains(&self, at: Uv) -> bool {
-        match self {
-            Self::Face(surface) => surface.contains(at),
-            Self::Rim(rim) => rim.contains(at),
-        }
-    }
-
-    fn point(&self, at: Uv) -> Point3 {
-        match self {
-            Self::Face(surface) => surface.point(at),
-            Self::Rim(rim) => rim.point(at),
-        }
-    }
-
-    /// The nearest place that is found in so many steps from one.
-    fn nearest(&self, from: Uv, q: &Point3, steps: usize) -> (f64, Uv) {
-        match self {
-            Self::Face(surface) => nearest(*surface, from, q, steps),
-            Self::Rim(rim) => rim.nearest(q),
-        }
-    }
-}
-
 /// All faces of a goal, found by place.
 pub(super) struct Edges<'a> {
     surfaces: &'a [&'a dyn Surface],
@@ -113,19 +68,7 @@ pub(super) struct Edges<'a> {
     samples: &'a [Sample],
     side_mm: f64,
     /// Made when they are first asked for: where nothing is deep, nobody asks.
-    hints: OnceLock<(Hints, RimHints)>,
-}
-
-/// The box of space around a point.
-fn key(p: &Point3, side_mm: f64) -> [i64; 3] {
-    // Casting takes what is too far for a whole number to the last one.
-    [p.x, p.y, p.z].map(|x| (x / side_mm).floor() as i64)
-}
-
-/// That box and those around it.
-fn around(p: &Point3, side_mm: f64) -> impl Iterator<Item = [i64; 3]> + use<> {
-    let [x, y, z] = key(p, side_mm);
-    (0..27).map(move |k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1])
+    hints: OnceLock<(Hints, Rims)>,
 }
 
 impl<'a> Edges<'a> {
@@ -139,62 +82,20 @@ impl<'a> Edges<'a> {
         Self { surfaces, rims, samples, side_mm: 2.0 * apart_mm, hints: OnceLock::new() }
     }
 
-    fn hints(&self) -> &(Hints, RimHints) {
+    fn hints(&self) -> &(Hints, Rims) {
         self.hints.get_or_init(|| {
             let mut out = Hints::new();
             // Places on fixtures are on no face.
             for s in self.samples.iter().filter(|s| (s.face as usize) < self.surfaces.len()) {
                 out.entry(key(&s.point, self.side_mm)).or_default().push((s.face, s.uv, s.point));
             }
-            (out, self.rim_hints())
+            (out, Rims::new(self.rims, self.side_mm))
         })
-    }
-
-    /// Points of open rims, closer together than the narrower boxes are wide.
-    fn rim_hints(&self) -> RimHints {
-        let mut out = RimHints::default();
-        let narrow_mm = NARROW * self.side_mm;
-        for (rim, k) in self.rims.iter().zip(0..) {
-            for chord in 0..rim.chords() {
-                let point = |t: f64| rim.point(Uv { u: chord as f64 + t, v: 0.0 });
-                let parts =
-                    (2.0 * (point(1.0) - point(0.0)).norm() / narrow_mm).ceil().clamp(1.0, MOST_PARTS);
-                for j in 0..=parts as u32 {
-                    let p = point(f64::from(j) / parts);
-                    out.points.entry(key(&p, self.side_mm)).or_default().push((k, p));
-                    out.near.extend(around(&p, narrow_mm));
-                }
-            }
-        }
-        out
     }
 
     /// Whether an open rim of a face is this near to a place of it, where that is about as far as samples are from each other.
     pub fn is_at_rim(&self, place: &Point3, face: u32, within_mm: f64) -> bool {
-        if self.rims.is_empty() || !self.hints().1.near.contains(&key(place, NARROW * self.side_mm)) {
-            return false;
-        }
-        self.rims_near(place, face).into_iter().any(|k| self.rims[k as usize].nearest(place).0 <= within_mm)
-    }
-
-    /// The open rims of a face that are nearest to a place of it, the nearest first.
-    fn rims_near(&self, place: &Point3, face: u32) -> Vec<u32> {
-        let rims = &self.hints().1.points;
-        let mut near: Vec<(f64, u32)> = Vec::new();
-        for key in around(place, self.side_mm) {
-            for (rim, point) in rims.get(&key).into_iter().flatten() {
-                if self.rims[*rim as usize].face != face {
-                    continue;
-                }
-                let away = (point - place).norm();
-                match near.iter_mut().find(|n| n.1 == *rim) {
-                    Some(n) => n.0 = n.0.min(away),
-                    None => near.push((away, *rim)),
-                }
-            }
-        }
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        near.into_iter().take(MOST_RIMS).map(|n| n.1).collect()
+        !self.rims.is_empty() && self.hints().1.is_within(self.rims, (place, face), within_mm)
     }
 
     /// What a number stands for: faces first, then pieces of open rims.
@@ -245,7 +146,7 @@ impl<'a> Edges<'a> {
         if self.rims.is_empty() {
             return least;
         }
-        for k in self.rims_near(place, face) {
+        for k in self.hints().1.near(self.rims, (place, face)) {
             let rim = &self.rims[k as usize];
             let (mm, at) = rim.nearest(q);
             if mm < least.mm {

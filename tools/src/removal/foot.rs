@@ -1,6 +1,7 @@
 //! Points found on faces near places beneath a sample, and what they bound between two such places.
 
 use super::job::Sample;
+use super::rim::OpenRim;
 use osculate_geom::{Point3, Surface, Uv};
 
 /// The nearest point of other faces that was found: how far it is, its face and where it is.
@@ -55,4 +56,34 @@ pub(super) fn nearest(surface: &dyn Surface, from: Uv, q: &Point3, steps: usize)
         at = next;
     }
     (if surface.contains(at) { (surface.point(at) - q).norm() } else { f64::INFINITY }, at)
+}
+
+/// What is beside a place of a face: a face, or the wall on a piece of its own open rim.
+pub(super) enum Beside<'a> {
+    Face(&'a dyn Surface),
+    Rim(&'a OpenRim<'a>),
+}
+
+impl Beside<'_> {
+    pub fn contains(&self, at: Uv) -> bool {
+        match self {
+            Self::Face(surface) => surface.contains(at),
+            Self::Rim(rim) => rim.contains(at),
+        }
+    }
+
+    pub fn point(&self, at: Uv) -> Point3 {
+        match self {
+            Self::Face(surface) => surface.point(at),
+            Self::Rim(rim) => rim.point(at),
+        }
+    }
+
+    /// The nearest place that is found in so many steps from one.
+    pub fn nearest(&self, from: Uv, q: &Point3, steps: usize) -> (f64, Uv) {
+        match self {
+            Self::Face(surface) => nearest(*surface, from, q, steps),
+            Self::Rim(rim) => rim.nearest(q),
+        }
+    }
 }

@@ -2,9 +2,17 @@
 //! the face's normals, as if a wall stood on the rim.
 
 use osculate_geom::{Point3, Surface, Uv, uv};
+use std::collections::{HashMap, HashSet};
 
 /// Steps towards the nearest place of a wall along one chord of the rim.
 const STEPS: usize = 4;
+
+/// Pieces of open rims that are looked at for a place: at a corner two of them are near.
+const MOST_RIMS: usize = 4;
+/// Boxes in which cells at open rims are found, of those in which rims are: twice as wide as samples are apart.
+const NARROW: f64 = 0.25;
+/// Points on a chord of an open rim at most: chords of more are no part's.
+const MOST_PARTS: f64 = 1e4;
 
 /// A piece of a rim: on a face a polyline in its parameters.
 pub(super) struct OpenRim<'a> {
@@ -73,4 +81,74 @@ impl<'a> OpenRim<'a> {
         }
         best
     }
+}
+
+/// Where open rims are, by their numbers.
+pub(super) struct Rims {
+    side_mm: f64,
+    /// Of each box of space the pieces in it, each with a point on it.
+    points: HashMap<[i64; 3], Vec<(u32, Point3)>>,
+    /// Boxes a quarter as wide, with a piece in them or next to them.
+    beside: HashSet<[i64; 3]>,
+}
+
+impl Rims {
+    /// In boxes so wide, by points closer together than the narrower boxes are wide.
+    pub fn new(rims: &[OpenRim<'_>], side_mm: f64) -> Self {
+        let mut out = Self { side_mm, points: HashMap::new(), beside: HashSet::new() };
+        let narrow_mm = NARROW * side_mm;
+        for (rim, k) in rims.iter().zip(0..) {
+            for chord in 0..rim.chords() {
+                let point = |t: f64| rim.point(uv(chord as f64 + t, 0.0));
+                let parts =
+                    (2.0 * (point(1.0) - point(0.0)).norm() / narrow_mm).ceil().clamp(1.0, MOST_PARTS);
+                for j in 0..=parts as u32 {
+                    let p = point(f64::from(j) / parts);
+                    out.points.entry(key(&p, side_mm)).or_default().push((k, p));
+                    out.beside.extend(around(&p, narrow_mm));
+                }
+            }
+        }
+        out
+    }
+
+    /// Whether a rim of a face is this near to a place of it, where that is about as far as the narrower boxes are wide.
+    pub fn is_within(&self, rims: &[OpenRim<'_>], (place, face): (&Point3, u32), within_mm: f64) -> bool {
+        self.beside.contains(&key(place, NARROW * self.side_mm))
+            && self
+                .near(rims, (place, face))
+                .into_iter()
+                .any(|k| rims[k as usize].nearest(place).0 <= within_mm)
+    }
+
+    /// The rims of a face that are nearest to a place of it, the nearest first.
+    pub fn near(&self, rims: &[OpenRim<'_>], (place, face): (&Point3, u32)) -> Vec<u32> {
+        let mut near: Vec<(f64, u32)> = Vec::new();
+        for key in around(place, self.side_mm) {
+            for (rim, point) in self.points.get(&key).into_iter().flatten() {
+                if rims[*rim as usize].face != face {
+                    continue;
+                }
+                let away = (point - place).norm();
+                match near.iter_mut().find(|n| n.1 == *rim) {
+                    Some(n) => n.0 = n.0.min(away),
+                    None => near.push((away, *rim)),
+                }
+            }
+        }
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        near.into_iter().take(MOST_RIMS).map(|n| n.1).collect()
+    }
+}
+
+/// The box of space around a point.
+pub(super) fn key(p: &Point3, side_mm: f64) -> [i64; 3] {
+    // Casting takes what is too far for a whole number to the last one.
+    [p.x, p.y, p.z].map(|x| (x / side_mm).floor() as i64)
+}
+
+/// That box and those around it.
+pub(super) fn around(p: &Point3, side_mm: f64) -> impl Iterator<Item = [i64; 3]> + use<> {
+    let [x, y, z] = key(p, side_mm);
+    (0..27).map(move |k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1])
 }

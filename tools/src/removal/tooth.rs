@@ -189,15 +189,16 @@ pub(super) struct Marks {
 const LOTS: [f64; 2] = [0.9, 0.99];
 
 impl Marks {
-    /// The highest mark of each lot, ascending and all different.
-    pub fn lots(&self) -> Vec<f64> {
+    /// The marks of each lot, above the first and up to the second of two, ascending.
+    pub fn lots(&self) -> Vec<[f64; 2]> {
         let mut sorted = self.each.clone();
         sorted.sort_unstable_by(f64::total_cmp);
         let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
         let mut lots: Vec<f64> = LOTS.iter().filter_map(|share| at(*share)).collect();
         lots.push(self.most_mm());
         lots.dedup();
-        lots
+        let lows = std::iter::once(f64::NEG_INFINITY).chain(lots.iter().copied());
+        lows.zip(&lots).map(|(low, most)| [low, *most]).collect()
     }
 
     /// The highest, mm.

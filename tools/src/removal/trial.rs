@@ -6,7 +6,7 @@ use super::cut::{Cutting, cut};
 use super::density::{Density, Hidden};
 use super::edges::Edges;
 use super::goal::{Goal, GoalFace, GoalFixture, GoalTool, Program};
-use super::hidden::{Wanted, doubtful};
+use super::hidden::Wanted;
 use super::job::{Change, Cut, Job, JobError, Sample};
 use super::refine::{Measured, Refined, refine_beside};
 use super::rim::OpenRim;
@@ -15,7 +15,6 @@ use super::stock::BlankError;
 use super::tally::{Limits, Tally, TallyError, tally};
 use super::tooth::{Edge, Marks, Teeth};
 use super::tree::Ways;
-use super::unreached::give_up;
 use osculate_geom::Surface;
 
 /// Samples across a strip that a ball of the cutter's radius leaves on a plane.
@@ -109,7 +108,7 @@ pub(super) struct Look {
 #[derive(Default)]
 pub(super) struct Settled {
     /// Whether nothing in the cell of each sample exceeds the limits; none where nothing was bounded.
-    each: Vec<bool>,
+    pub each: Vec<bool>,
     /// What nothing in these cells stands above with its mark, mm.
     height_mm: f64,
     /// What no gouge in these cells is deeper than, mm.
@@ -341,60 +340,12 @@ impl<'a> Trial<'a> {
     }
 
     /// What a sample may stand above the face with its mark, so that corners which the control blends are not too high.
-    fn highest_mm(&self) -> f64 {
+    pub fn highest_mm(&self) -> f64 {
         less(self.limits.scallop_mm, self.goal.control.blend_mm)
     }
 
-    /// Whether a sample stands too high with its mark where the goal accepts an area that does.
-    pub fn is_to_give_up(&self, look: &Look, marks: &Marks) -> bool {
-        let Measured { samples, cuts, .. } = &look.measured;
-        let high = |((s, c), mark): ((&Sample, &Cut), &f64)| {
-            !s.check_only && c.by.is_some() && c.standoff_mm + mark > self.highest_mm()
-        };
-        self.goal.limits.unreached_mm2 > 0.0 && samples.iter().zip(cuts).zip(&marks.each).any(high)
-    }
-
-    /// Where the goal accepts an area that is not reached: takes what stands too high, and what is around it, as never touched.
-    pub fn give_up(&self, look: &mut Look, marks: &mut Marks, spacing: f64) -> Result<(), ProveError> {
-        if self.goal.limits.unreached_mm2 > 0.0 {
-            let Measured { samples, cuts, .. } = &mut look.measured;
-            give_up(samples, (cuts, &mut marks.each), self.highest_mm(), spacing);
-            look.tally = self.tally(samples, cuts, &look.density)?;
-        }
-        Ok(())
-    }
-
-    /// Where the goal accepts an area that is not reached: takes the cells in which something too high may hide as never touched, where
-    /// the area accepted suffices for all of them. Their area comes back, mm2; zero where nothing changed.
-    pub fn give_up_open(&self, look: &mut Look, marks: &mut Marks) -> Result<f64, ProveError> {
-        let room_mm2 = self.goal.limits.unreached_mm2 - look.tally.uncut_area_mm2;
-        let Measured { samples, patches, cuts } = &mut look.measured;
-        let ways = Ways::of_job(&self.job_without())?;
-        let mut open = Vec::new();
-        for [low, most_mark] in ranges(&marks.lots()) {
-            let of_lot = |k: &usize| low < marks.each[*k] && marks.each[*k] <= most_mark;
-            let is_settled = |k: usize| look.settled.each.get(k).is_some_and(|is| *is);
-            let own: Vec<usize> = (0..samples.len()).filter(|k| !is_settled(*k) && of_lot(k)).collect();
-            let of = |k: &usize| (samples[*k], (patches[*k], cuts[*k]));
-            let (samples, (patches, cuts)): (Vec<_>, (Vec<_>, Vec<_>)) = own.iter().map(of).unzip();
-            let job = Job { samples: &samples, ..self.job_without() };
-            let found = doubtful(&self.surfaces, (&job, &ways), (&patches, &cuts), self.wanted(most_mark))?;
-            open.extend(found.into_iter().map(|j| own[j]));
-        }
-        let area_mm2: f64 = open.iter().map(|k| samples[*k].area_mm2).sum();
-        if open.is_empty() || area_mm2 > room_mm2 {
-            return Ok(0.0);
-        }
-        for k in open {
-            cuts[k].by = None;
-            marks.each[k] = 0.0;
-        }
-        look.tally = self.tally(samples, cuts, &look.density)?;
-        Ok(area_mm2)
-    }
-
     /// What is asked of bounds where marks are no higher than this.
-    fn wanted(&self, most_mark: f64) -> Wanted {
+    pub fn wanted(&self, most_mark: f64) -> Wanted {
         let blend_mm = self.goal.control.blend_mm;
         Wanted {
             uncut_mm: self.limits.uncut_mm,
@@ -479,7 +430,7 @@ impl<'a> Trial<'a> {
         let mut refined = Refined { added: 0, left_out: 0, ..unbounded() };
         // Nothing in any lot stands above this with its mark, or lies below that.
         let (mut highest, mut deepest) = (settled.height_mm, settled.depth_mm);
-        for [low, most_mark] in ranges(&lots) {
+        for [low, most_mark] in lots {
             let of_lot = |m: &f64| *m > low && *m <= most_mark;
             let mut lot = Measured::default();
             for k in (0..samples.len()).filter(|k| !settled.each[*k] && of_lot(&marks.each[*k])) {
@@ -527,12 +478,6 @@ impl<'a> Trial<'a> {
             Hidden { scallop_mm: highest, gouge_mm: (deepest - look.tally.gouge_max_mm).max(0.0) };
         Ok(refined)
     }
-}
-
-/// Ranges of marks, each above its first and up to its second, by the second ones.
-fn ranges(lots: &[f64]) -> impl Iterator<Item = [f64; 2]> {
-    let lows = std::iter::once(f64::NEG_INFINITY).chain(lots.iter().copied());
-    lows.zip(lots).map(|(low, most)| [low, *most])
 }
 
 /// A limit less what is added to what is measured; all of it where nothing would be left.

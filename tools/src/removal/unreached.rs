@@ -3,9 +3,14 @@
 //! Beside what a tool cannot reach, such as a sharp inner edge, its strips fade out: what stands grows from nothing to all of it.
 //! Where a goal accepts an area all that stands higher than the scallop, with the mark that a tooth may leave there, counts into it, with
 //! the samples around: between a sample that is low enough and one that is not nothing can be shown. These samples are taken as never
-//! touched; all others are judged as ever.
+//! touched; all others are judged as ever. So are places between samples in which something too high may hide, where samples ran out.
 
-use super::job::{Cut, Sample};
+use super::hidden::doubtful;
+use super::job::{Cut, Job, Sample};
+use super::refine::Measured;
+use super::tooth::Marks;
+use super::tree::Ways;
+use super::trial::{Look, ProveError, Trial};
 use osculate_geom::Point3;
 use std::collections::HashMap;
 
@@ -78,6 +83,56 @@ pub(super) fn give_up(
             cut.by = None;
             *mark = 0.0;
         }
+    }
+}
+
+impl Trial<'_> {
+    /// Whether a sample stands too high with its mark where the goal accepts an area that does.
+    pub fn is_to_give_up(&self, look: &Look, marks: &Marks) -> bool {
+        let Measured { samples, cuts, .. } = &look.measured;
+        let high = |((s, c), mark): ((&Sample, &Cut), &f64)| {
+            !s.check_only && c.by.is_some() && c.standoff_mm + mark > self.highest_mm()
+        };
+        self.goal.limits.unreached_mm2 > 0.0 && samples.iter().zip(cuts).zip(&marks.each).any(high)
+    }
+
+    /// Where the goal accepts an area that is not reached: takes what stands too high, and what is around it, as never touched.
+    pub fn give_up(&self, look: &mut Look, marks: &mut Marks, spacing: f64) -> Result<(), ProveError> {
+        if self.goal.limits.unreached_mm2 > 0.0 {
+            let Measured { samples, cuts, .. } = &mut look.measured;
+            give_up(samples, (cuts, &mut marks.each), self.highest_mm(), spacing);
+            look.tally = self.tally(samples, cuts, &look.density)?;
+        }
+        Ok(())
+    }
+
+    /// Where the goal accepts an area that is not reached: takes the cells in which something too high may hide as never touched, where
+    /// the area accepted suffices for all of them. Their area comes back, mm2; zero where nothing changed.
+    pub fn give_up_open(&self, look: &mut Look, marks: &mut Marks) -> Result<f64, ProveError> {
+        let room_mm2 = self.goal.limits.unreached_mm2 - look.tally.uncut_area_mm2;
+        let Measured { samples, patches, cuts } = &mut look.measured;
+        let ways = Ways::of_job(&self.job_without())?;
+        let mut open = Vec::new();
+        for [low, most_mark] in marks.lots() {
+            let of_lot = |k: &usize| low < marks.each[*k] && marks.each[*k] <= most_mark;
+            let is_settled = |k: usize| look.settled.each.get(k).is_some_and(|is| *is);
+            let own: Vec<usize> = (0..samples.len()).filter(|k| !is_settled(*k) && of_lot(k)).collect();
+            let of = |k: &usize| (samples[*k], (patches[*k], cuts[*k]));
+            let (samples, (patches, cuts)): (Vec<_>, (Vec<_>, Vec<_>)) = own.iter().map(of).unzip();
+            let job = Job { samples: &samples, ..self.job_without() };
+            let found = doubtful(&self.surfaces, (&job, &ways), (&patches, &cuts), self.wanted(most_mark))?;
+            open.extend(found.into_iter().map(|j| own[j]));
+        }
+        let area_mm2: f64 = open.iter().map(|k| samples[*k].area_mm2).sum();
+        if open.is_empty() || area_mm2 > room_mm2 {
+            return Ok(0.0);
+        }
+        for k in open {
+            cuts[k].by = None;
+            marks.each[k] = 0.0;
+        }
+        look.tally = self.tally(samples, cuts, &look.density)?;
+        Ok(area_mm2)
     }
 }
 

@@ -84,7 +84,7 @@ fn goal_of<'a>(cutter: &'a Cutter, machined: Vec<GoalFace<'a>>, checked: Vec<Goa
 
 #[test]
 fn the_wall_lies_where_it_should() {
-    let jet = wall().jet2(osculate_geom::uv(1.0, 2.0));
+    let jet = wall().jet2(uv(1.0, 2.0));
     assert!((jet.point.x - 6.0).abs() < 1e-12 && jet.point.z <= 0.0, "{}", jet.point);
     assert!(jet.normal().is_ok_and(|n: Unit3| n.dot(&Vec3::x()) > 0.999));
 }
