@@ -18,10 +18,8 @@ pub struct OpenRim {
 }
 
 /// The pieces of the rims of faces along which no other face lies, by the numbers of the faces: neither one that shares the edge nor one
-/// that the rim stands on. A face that closes upon itself has none there. `uncertainty_mm` is what the file says of its own exactness.
-///
-/// # Example
-/// Of a body nothing is open; of a sheet all that is not closed.
+/// that the rim stands on. A face that closes upon itself has none there, so that of a closed body nothing is open. `uncertainty_mm` is what
+/// the file says of its own exactness.
 #[must_use]
 pub fn open_rims(faces: &[&Face], uncertainty_mm: Option<f64>) -> Vec<OpenRim> {
     let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
