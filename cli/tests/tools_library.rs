@@ -156,15 +156,18 @@ fn a_library_of_freecad_finds_its_bits() {
         json!({"version": 2, "name": shape, "shape": format!("{shape}.fcstd"), "parameter": parameter, "attribute": {}}).to_string()
     };
     let ball =
-        json!({"Diameter": "0.2500 in", "Length": "50.0000 mm", "CuttingEdgeHeight": "2 cm", "Flutes": "2"});
+        json!({"Diameter": "0.2500 in", "Length": "50,0000 mm", "CuttingEdgeHeight": "2 cm", "Flutes": "2"});
     scratch.write("Bit/ball.fctb", &bit("ballend", ball));
     scratch.write(
         "Bit/nose.fctb",
         &bit("bullnose", json!({"Diameter": 6, "FlatRadius": "2 mm", "Length": "40 mm"})),
     );
     scratch.write("Bit/v.fctb", &bit("v-bit", json!({"Diameter": "6 mm"})));
+    // With a comma and a dot nobody knows which is which.
+    scratch.write("Bit/both.fctb", &bit("ballend", json!({"Diameter": "1.234,5 mm", "Length": "50 mm"})));
     let list = json!({"version": 1, "tools": [
         {"nr": 7, "path": "ball.fctb"}, {"nr": 8, "path": "nose.fctb"}, {"nr": 9, "path": "v.fctb"}, {"nr": 10, "path": "gone.fctb"},
+        {"nr": 11, "path": "both.fctb"},
     ]});
     let library = Library::load(&scratch.write("Library/shop.fctl", &list.to_string())).unwrap();
     assert_eq!(
@@ -175,7 +178,12 @@ fn a_library_of_freecad_finds_its_bits() {
         ]
     );
     let told: Vec<String> = library.diagnostics.iter().map(ToString::to_string).collect();
-    for words in ["v-bit is no cutter", "gone.fctb: left out", "not what stands out of the holder"] {
+    for words in [
+        "v-bit is no cutter",
+        "gone.fctb: left out",
+        "both.fctb: left out",
+        "not what stands out of the holder",
+    ] {
         assert!(told.iter().any(|t| t.contains(words)), "{words}: {told:?}");
     }
 }
@@ -191,4 +199,15 @@ fn the_verb_writes_the_tools_of_the_program_and_reads_them_again() {
     assert_eq!(again["format"], "Fusion");
     osculate(&["tools", out.to_str().unwrap(), "--out", out.to_str().unwrap()])
         .refused(&["mine.json", "what is read here"]);
+}
+
+/// Of Fusion every tool has its own unit; where one has none that is told.
+#[test]
+fn a_tool_of_fusion_without_a_unit_is_told() {
+    let scratch = Scratch::new();
+    let tool = json!({"type": "flat end mill", "description": "a", "geometry": {"DC": 6, "LB": 30}});
+    let library = json!({"data": [tool], "version": 1}).to_string();
+    let found = Library::load(&scratch.write("a.json", &library)).unwrap();
+    assert_eq!(found.tools.len(), 1);
+    assert!(found.diagnostics.iter().any(|d| d.to_string().contains("no unit")), "{:?}", found.diagnostics);
 }

@@ -94,16 +94,17 @@ fn one(text: &str, number: Option<u32>) -> Result<(raw::Tool, Option<String>), S
     Ok((tool, told))
 }
 
-/// A length with its unit, mm; `None` where there is none.
+/// A length with its unit, mm; `None` where there is none. FreeCAD writes numbers as the user's language does, with a comma as well.
 fn mm(value: &Value) -> Result<Option<f64>, String> {
     if let Some(bare) = value.as_f64() {
         return Ok(Some(bare));
     }
     let Some(text) = value.as_str() else { return Ok(None) };
     let text = text.trim();
-    let split = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(text.len());
+    let split = text.find(|c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c))).unwrap_or(text.len());
     let (number, unit) = (text[..split].trim(), text[split..].trim());
-    let number: f64 = number.parse().map_err(|_| format!("{text:?} is no length"))?;
+    // With both of them nobody knows which is the decimal point: that is no number.
+    let number: f64 = number.replace(',', ".").parse().map_err(|_| format!("{text:?} is no length"))?;
     let unit_mm = match unit {
         "" | "mm" => 1.0,
         "cm" => 10.0,

@@ -27,7 +27,13 @@ pub(super) fn read(text: &str) -> Result<Found, String> {
         let said = entry["description"].as_str().unwrap_or_default().trim();
         let place = format!("tool {place} of data ({})", if said.is_empty() { kind } else { said });
         match one(entry, kind, said) {
-            Ok(tool) => found.tools.push((place, tool)),
+            Ok(tool) => {
+                if entry["unit"].is_null() {
+                    let text = "it has no unit: millimeters are taken";
+                    found.diagnostics.push(Diagnostic::warning(place.clone(), text));
+                }
+                found.tools.push((place, tool));
+            }
             Err(why) => found.diagnostics.push(Diagnostic::warning(place, format!("left out: {why}"))),
         }
     }
