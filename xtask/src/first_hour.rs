@@ -1,4 +1,4 @@
-//! `cargo xtask first-hour`: docs/first-hour.md, ten real parts as a new user has them: `init`, `check` and `plan` of the job as it is written,
+//! `cargo xtask first-hour`: docs/first-hour.md, eleven real parts as a new user has them: `init`, `check` and `plan` of the job as it is written,
 //! no key changed, with what each took and said, and a picture of what the job leaves of each.
 //!
 //! Results stay below `target/first-hour`.
@@ -41,8 +41,9 @@ impl<'a> Options<'a> {
 }
 
 /// The parts: what they are, and where they lie in the collection.
-const PARTS: [(&str, &str); 10] = [
+const PARTS: [(&str, &str); 11] = [
     ("turbine stator blade", "files/iges/nasa_eee_hpt_stator2.igs"),
+    ("turbine rotor blade", "files/iges/nasa_eee_hpt_rotor2.igs"),
     ("blade, one large surface", "files/iges/clarkyeah_blade.igs"),
     ("side of a propeller's blade", "files/iges/bladex_lower.iges"),
     ("propeller", "files/step/autogiro_propeller.step"),
@@ -54,7 +55,7 @@ const PARTS: [(&str, &str); 10] = [
     ("cube with a round edge", "files/iges/igesio_rounded_cube.igs"),
 ];
 
-const HEAD: &str = "# The first hour: ten real parts, from the file to a verdict\n\n\
+const HEAD: &str = "# The first hour: eleven real parts, from the file to a verdict\n\n\
 Made by `cargo xtask first-hour --data FOLDER`, of which `--only TEXT` makes some. FOLDER is the reference collection of real files of other \
 people. Of each part, with no key written or changed by hand:\n\n\
 ```sh\nosculate init PART --out DIR\nosculate check DIR/job.toml\nosculate plan DIR/job.toml --out DIR/plan\n```\n\n\
