@@ -56,7 +56,7 @@ usage: cargo xtask COMMAND
   parts [--only TEXT] [--program FILE]
                 docs/parts.md: the examples that are whole parts, from the block to finished, planned and verified
   first-hour --data FOLDER [--only TEXT] [--program FILE] [--limit S]
-                docs/first-hour.md: ten real parts of a reference collection by init, check and plan, no key changed
+                docs/first-hour.md: eleven real parts of a reference collection by init, check and plan, no key changed
   browser [--only TEXT] [--program FILE] [--report FILE] [--bless]
                 reports of three parts in a real browser (Debian: apt-get install chromium): what they show and do, pictures
                 below target/browser, held against xtask/browser/golden.json; --report looks at another one
