@@ -6,7 +6,6 @@
 use super::link::{Grid, agree};
 use super::rim::Bit;
 use crate::part::Face;
-use osculate_geom::Box3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -40,11 +39,7 @@ fn bend_rad(of: &Bit, other: &Bit, same: bool) -> f64 {
 /// the faces are taken as they are: what bends outwards on one side bends inwards on the other.
 #[must_use]
 pub fn meetings(faces: &[&Face], uncertainty_mm: Option<f64>) -> Vec<Meeting> {
-    let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
-    let size_mm = boxes.iter().fold(Box3::empty(), |b, f| b.union(f)).diagonal_mm();
-    if !(size_mm.is_finite() && size_mm > 0.0) {
-        return Vec::new();
-    }
+    let Some((_, size_mm)) = super::sized(faces) else { return Vec::new() };
     let (bits, slack_mm) = super::rims(faces, size_mm, uncertainty_mm);
     let grid = Grid::new(&bits, slack_mm);
     let met = |b: &Bit| {

@@ -137,11 +137,9 @@ pub fn settle(faces: &[&Face], before: &Before<'_>) -> Sides {
 /// The sides of faces that are one part by themselves; a solid encloses material, however its faces meet.
 fn alone(faces: &[&Face], known: &[Option<Side>], uncertainty_mm: Option<f64>, is_solid: bool) -> Sides {
     let told = |f: usize| known.get(f).copied().flatten();
-    let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
-    let size_mm = boxes.iter().fold(Box3::empty(), |b, f| b.union(f)).diagonal_mm();
-    if !(size_mm.is_finite() && size_mm > 0.0) {
+    let Some((_, size_mm)) = sized(faces) else {
         return Sides { of: (0..faces.len()).map(told).collect(), ..Sides::default() };
-    }
+    };
     let (joined, rims, conflicts) = hanging(faces, size_mm, uncertainty_mm);
     let meshes: Vec<Mesh> = faces.par_iter().map(|f| tessellate(&f.surface, CHORD * size_mm, None)).collect();
     let at = |m: &Mesh, k: u32| Point3::from(m.positions[k as usize]);
@@ -192,6 +190,13 @@ fn among_others(rim: &Met) -> bool {
 
 /// Groups, the rim of each face, and neighbours that do not fit.
 pub(crate) type Hanging = (Vec<groups::Joined>, Vec<Met>, Vec<SideConflict>);
+
+/// The boxes around faces and the size of all together, mm; none where that is not finite or nothing.
+fn sized(faces: &[&Face]) -> Option<(Vec<Box3>, f64)> {
+    let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
+    let size_mm = boxes.iter().fold(Box3::empty(), |b, f| b.union(f)).diagonal_mm();
+    (size_mm.is_finite() && size_mm > 0.0).then_some((boxes, size_mm))
+}
 
 /// The rims of all faces in short pieces, and the slacks within which two of them are one edge: always, and where nothing is nearer.
 fn rims(faces: &[&Face], size_mm: f64, uncertainty_mm: Option<f64>) -> (Vec<rim::Bit>, [f64; 2]) {

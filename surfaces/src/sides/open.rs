@@ -8,6 +8,9 @@ use osculate_geom::{Box3, Uv};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
+/// What boxes around faces may be short by, of their size.
+const LOOSE: f64 = 0.02;
+
 /// A piece of a face's open rim.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenRim {
@@ -22,11 +25,9 @@ pub struct OpenRim {
 /// the file says of its own exactness.
 #[must_use]
 pub fn open_rims(faces: &[&Face], uncertainty_mm: Option<f64>) -> Vec<OpenRim> {
-    let boxes: Vec<Box3> = faces.par_iter().map(|f| f.surface.bbox(1)).collect();
-    let size_mm = boxes.iter().fold(Box3::empty(), |b, f| b.union(f)).diagonal_mm();
-    if !(size_mm.is_finite() && size_mm > 0.0) {
-        return Vec::new();
-    }
+    let Some((boxes, size_mm)) = super::sized(faces) else { return Vec::new() };
+    // Boxes are as near as samples on faces tell: a rim that stands on a face must not be missed.
+    let boxes: Vec<Box3> = boxes.iter().map(|b| b.grown(LOOSE * b.diagonal_mm())).collect();
     let (traced, slack_mm) = super::traced_rims(faces, size_mm, uncertainty_mm);
     let bits: Vec<Bit> = traced.iter().map(|t| t.0).collect();
     let grid = Grid::new(&bits, slack_mm);
