@@ -1,6 +1,8 @@
 // The parts of three.js that cli/assets/viewer.js uses; everything else is left out of the bundle.
 export {
   AmbientLight,
+  Box3,
+  BoxGeometry,
   BufferAttribute,
   BufferGeometry,
   Color,
@@ -11,6 +13,7 @@ export {
   LatheGeometry,
   LineBasicMaterial,
   LineSegments,
+  Matrix4,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,

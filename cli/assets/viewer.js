@@ -129,8 +129,13 @@
 
     const lo = new THREE.Vector3(...head.lo);
     const hi = lo.clone().add(new THREE.Vector3(...head.step).multiplyScalar(65535));
-    const centre = lo.clone().add(hi).multiplyScalar(0.5);
     const radius = Math.max(0.5 * hi.distanceTo(lo), 1e-3);
+
+    // All that is in the part's frame. With the machine shown its bed stands still and this moves; else it stands still itself.
+    const world = new THREE.Group();
+    world.matrixAutoUpdate = false;
+    scene.add(world);
+    const inWorld = (point) => point.clone().applyMatrix4(world.matrix);
 
     const ambient = new THREE.AmbientLight(0xffffff, 1);
     const lamp = new THREE.DirectionalLight(0xffffff, 1);
@@ -199,7 +204,7 @@
         borders.add(new THREE.LineSegments(edges, borderMaterial));
       }
     }
-    scene.add(part);
+    world.add(part);
 
     const textures = new Map();
     let shownScale = null;
@@ -243,7 +248,7 @@
     // orthographic view that moves nothing sideways.
     const lift = 0.006 * radius;
     const overlay = new THREE.Group();
-    scene.add(overlay);
+    world.add(overlay);
     overlay.add(borders);
 
     const path = head.path;
@@ -320,7 +325,7 @@
       links.add(object);
     }
     links.visible = false;
-    scene.add(links);
+    world.add(links);
 
     // ---- tool -----------------------------------------------------------------------------------------------------
 
@@ -359,18 +364,123 @@
         }
       }
     }));
-    scene.add(tool);
+    world.add(tool);
     seeThrough(false);
 
     const perPose = head.poses.numbers;
     const poses = new Float32Array(block, head.poses.at, perPose * head.poses.count);
     const slider = $("pose");
+
+    // ---- machine --------------------------------------------------------------------------------------------------
+
+    // Frame k is what the first k joints make of the table's, as in the machine file, slides at the spindle nose; the bed is behind the
+    // joints of the table.
+    const machine = head.machine;
+    const placesOfPart = (machine?.setups ?? []).map((columns) => new THREE.Matrix4().fromArray(columns));
+    const bed = machine ? machine.joints.filter((joint) => joint.table).length : 0;
+    const bodies = new THREE.Group();
+    bodies.visible = false;
+    world.add(bodies);
+    const bodyMaterials = [["#8d99a6", 0.85], ["#7f97b5", 0.4]].map(([color, opacity]) =>
+      new THREE.MeshLambertMaterial({ color, opacity, transparent: true, side: THREE.DoubleSide, depthWrite: opacity > 0.5 })
+    );
+
+    function shapeOf(piece) {
+      if (piece.corners) {
+        const [a, b] = piece.corners.map((corner) => new THREE.Vector3(...corner));
+        const size = b.clone().sub(a);
+        return new THREE.BoxGeometry(size.x, size.y, size.z).translate(...a.add(b).multiplyScalar(0.5).toArray());
+      }
+      if (piece.ends) {
+        const [a, b] = piece.ends.map((end) => new THREE.Vector3(...end));
+        const [low, high] = piece.radii;
+        const long = a.distanceTo(b);
+        const outline = [[0, 0], [low, 0], [low, 0], [high, long], [high, long], [0, long]];
+        const geometry = new THREE.LatheGeometry(outline.map(([r, z]) => new THREE.Vector2(r, z)), 64);
+        const turn = new THREE.Mesh();
+        turn.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), b.sub(a).normalize());
+        turn.position.copy(a);
+        turn.updateMatrix();
+        return geometry.applyMatrix4(turn.matrix);
+      }
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(block, piece.at, 9 * piece.count), 3));
+      geometry.computeVertexNormals();
+      return geometry;
+    }
+
+    for (const body of machine?.bodies ?? []) {
+      const whole = new THREE.Group();
+      whole.matrixAutoUpdate = false;
+      whole.userData = { frame: body.frame };
+      for (const piece of body.pieces) whole.add(new THREE.Mesh(shapeOf(piece), bodyMaterials[Number(body.head)]));
+      bodies.add(whole);
+    }
+
+    // Where the joints stand at a pose; null where that is not known.
+    function jointsAt(index) {
+      if (!machine) return null;
+      const from = perPose * index + perPose - machine.joints.length;
+      const joints = poses.subarray(from, from + machine.joints.length);
+      return joints.every(Number.isFinite) ? joints : null;
+    }
+
+    function turnsOf(joints) {
+      const turns = machine.joints.map((joint, k) =>
+        joint.turns ? `${joint.letter} ${fixed((joints[k] * 180) / Math.PI, 2)}\u00b0` : "");
+      return turns.filter(Boolean).join(" ");
+    }
+
+    function frames(joints) {
+      const out = [new THREE.Matrix4()];
+      machine.joints.forEach((joint, k) => {
+        const along = new THREE.Vector3(...joint.direction);
+        const step = new THREE.Matrix4();
+        if (joint.turns) {
+          step.makeRotationAxis(along, joints[k]);
+          const point = new THREE.Vector3(...joint.point);
+          step.setPosition(point.clone().sub(point.clone().applyMatrix4(step)));
+        } else {
+          step.setPosition(along.multiplyScalar(joints[k]));
+        }
+        out.push(out[k].clone().multiply(step));
+      });
+      return out;
+    }
+
+    // Puts the bodies where the joints have them; what a length of the tool above the tip is off the spindle's nose stands in the page
+    // for those who check it.
+    function stand(index, joints) {
+      if (!joints || bodies.children.length === 0) return;
+      const all = frames(joints);
+      const place = placesOfPart[poses[perPose * index + 10]];
+      const back = place.clone().invert();
+      for (const body of bodies.children) body.matrix.multiplyMatrices(back, all[body.userData.frame]);
+      if (bodies.visible) world.matrix.copy(all[bed]).invert().multiply(place);
+      else world.matrix.identity();
+      world.updateMatrixWorld(true);
+      const nose = new THREE.Vector3().applyMatrix4(all[all.length - 1]).applyMatrix4(back);
+      const top = new THREE.Vector3(0, toolLengths[poses[perPose * index + 8]], 0).applyQuaternion(tool.quaternion).add(tool.position);
+      box.dataset.nose = String(nose.distanceTo(top));
+    }
+    const toolLengths = head.tools.map(({ pieces }) => Math.max(...pieces.flatMap((p) => p.outline.map(([, z]) => z)), 0));
+
+    function showMachine(on) {
+      bodies.visible = on;
+      showPose(Number(slider.value));
+      resize();
+      fit(directions.iso);
+    }
+
+    // ---- place of the tool ----------------------------------------------------------------------------------------
+
     const upright = new THREE.Vector3(0, 1, 0);
     let passNow = -1;
 
     function showPose(index) {
       if (head.poses.count === 0) return;
       const [x, y, z, i, j, k, time, pass, which, line] = poses.subarray(perPose * index, perPose * (index + 1));
+      const joints = jointsAt(index);
       inHand.forEach((one, number) => { one.visible = number === which; });
       tool.position.set(x, y, z);
       const axis = new THREE.Vector3(i, j, k).normalize();
@@ -379,13 +489,14 @@
       const tilt = (Math.acos(Math.min(Math.max(axis.z, -1), 1)) * 180) / Math.PI;
       const words = [
         `tip ${fixed(x, 2)}, ${fixed(y, 2)}, ${fixed(z, 2)} mm`,
-        `axis ${fixed(tilt, 1)}\u00b0 from z`,
+        joints ? turnsOf(joints) : `axis ${fixed(tilt, 1)}\u00b0 from z`,
       ];
       if (pass >= 0) words.unshift(`pass ${pass + 1} of ${path.counts.length}`);
       if (head.tools.length > 1) words.unshift(head.tools[which].label);
       if (line > 0) words.unshift(`line ${line}`);
       if (Number.isFinite(time)) words.unshift(`${fixed(time, 2)} min`);
-      $("pose-words").textContent = words.join("  \u00b7  ");
+      $("pose-words").textContent = words.filter(Boolean).join("  \u00b7  ");
+      stand(index, joints);
       limitPath();
       redraw();
     }
@@ -442,7 +553,7 @@
     );
     markerRim.renderOrder = 9;
     marker.visible = markerRim.visible = false;
-    scene.add(markerRim, marker);
+    world.add(markerRim, marker);
 
     function verdictWords(deviation, checked) {
       const { scallop, gouge } = head.limits;
@@ -491,7 +602,8 @@
       head.scalars.forEach((scale, i) => {
         rows.push(["", `${scale.name} ${fixed(value(scalars[i]), 5)} ${scale.unit}`]);
       });
-      rows.push(["faint", `${id}  x ${fixed(hit.point.x, 2)}  y ${fixed(hit.point.y, 2)}  z ${fixed(hit.point.z, 2)} mm`]);
+      const at = world.worldToLocal(hit.point.clone());
+      rows.push(["faint", `${id}  x ${fixed(at.x, 2)}  y ${fixed(at.y, 2)}  z ${fixed(at.z, 2)} mm`]);
       tip.replaceChildren(...rows.map(([cls, text]) => {
         const row = document.createElement("div");
         row.className = cls;
@@ -505,7 +617,7 @@
       const flip = left + tip.offsetWidth + 24 > frame.width;
       tip.style.left = `${flip ? Math.max(left - tip.offsetWidth - 14, 4) : left + 16}px`;
       tip.style.top = `${Math.min(top + 14, frame.height - tip.offsetHeight - 6)}px`;
-      mark(hit.point);
+      mark(at);
       needle(shownScale === head.deviation ? d : shownScale ? value(scalars[head.scalars.indexOf(shownScale)]) : NaN);
     }
     function hideTip() {
@@ -564,16 +676,30 @@
 
     // The direction is from the part to the viewer; from above a trace of -y keeps x to the right.
     const directions = {
-      iso: opening(),
+      iso: head.opening,
       top: [0, -1e-5, 1],
       front: [0, -1, 0],
       right: [1, 0, 0],
     };
 
-    function corners() {
+    function cornersOf({ min, max }) {
       const out = [];
-      for (const x of [lo.x, hi.x]) for (const y of [lo.y, hi.y]) for (const z of [lo.z, hi.z]) out.push(new THREE.Vector3(x, y, z));
+      for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) for (const z of [min.z, max.z]) out.push(new THREE.Vector3(x, y, z));
       return out;
+    }
+
+    // What the view has room for: the part, and the machine where it is shown.
+    function shown() {
+      const all = new THREE.Box3();
+      for (const corner of cornersOf({ min: lo, max: hi })) all.expandByPoint(inWorld(corner));
+      if (bodies.visible) all.expandByObject(bodies);
+      return all;
+    }
+    let span = null;
+    function measure() {
+      const all = shown();
+      const centre = all.min.clone().add(all.max).multiplyScalar(0.5);
+      span = { all, centre, radius: Math.max(0.5 * all.max.distanceTo(all.min), 1e-3) };
     }
 
     let fitted = false;
@@ -582,11 +708,11 @@
       fitted = true;
       makeRoom();
       const from = (direction ? new THREE.Vector3(...direction) : camera.position.clone().sub(controls.target)).normalize();
-      controls.target.copy(centre);
-      camera.position.copy(centre).addScaledVector(from, 20 * radius);
-      camera.lookAt(centre);
+      controls.target.copy(span.centre);
+      camera.position.copy(span.centre).addScaledVector(from, 20 * span.radius);
+      camera.lookAt(span.centre);
       camera.updateMatrixWorld();
-      const inView = corners().map((c) => c.applyMatrix4(camera.matrixWorldInverse));
+      const inView = cornersOf(span.all).map((c) => c.applyMatrix4(camera.matrixWorldInverse));
       const across = Math.max(...inView.map((c) => Math.abs(c.x)), 1e-6);
       const upward = Math.max(...inView.map((c) => Math.abs(c.y)), 1e-6);
       // The legends at the right take room from the picture.
@@ -629,8 +755,9 @@
 
     // From where a place on the surface is seen best: not through the part, and past the tool where that can be; as near
     // to the side that is looked from now as possible.
-    function outlook(point) {
-      const normal = normalAt(point);
+    function outlook(place) {
+      const normal = normalAt(place).transformDirection(world.matrix);
+      const point = inWorld(place);
       const now = camera.position.clone().sub(controls.target).normalize();
       const side = new THREE.Vector3().crossVectors(normal, Math.abs(normal.z) < 0.9 ? camera.up : new THREE.Vector3(1, 0, 0)).normalize();
       const other = new THREE.Vector3().crossVectors(normal, side);
@@ -655,7 +782,7 @@
     // Shows a place with the tool as it made it.
     function goTo(at, pose) {
       fitted = false;
-      const target = new THREE.Vector3(...at);
+      const place = new THREE.Vector3(...at);
       let reach = 0.1 * radius;
       if (pose !== null && head.poses.count > 0) {
         play(false);
@@ -666,56 +793,15 @@
         const widest = Math.max(...(head.tools[which]?.pieces[0]?.outline ?? []).map(([r]) => r), 0);
         reach = Math.max(reach, 5 * widest);
       }
-      const from = outlook(target);
+      const from = outlook(place);
+      const target = inWorld(place);
       controls.target.copy(target);
-      camera.position.copy(target).addScaledVector(from, 20 * radius);
+      camera.position.copy(target).addScaledVector(from, 20 * span.radius);
       camera.lookAt(target);
       camera.zoom = camera.top / Math.min(reach, 0.5 * radius);
       camera.updateProjectionMatrix();
       controls.update();
-      mark(target);
-    }
-
-    // The side from which most of what is machined is seen, and not behind other faces; the usual one where that is nearly
-    // as good. Each side is drawn small, what is machined white and the rest black, and white is counted.
-    function opening() {
-      const SMALL = 72;
-      const ways = [];
-      for (const up of [0.56, -0.56]) {
-        for (let k = 0; k < 8; k++) {
-          const turn = -0.9 + (Math.PI * k) / 4;
-          ways.push([Math.cos(turn) * 0.83, Math.sin(turn) * 0.83, up]);
-        }
-      }
-      const white = new THREE.MeshBasicMaterial({ color: "#ffffff" });
-      const black = new THREE.MeshBasicMaterial({ color: "#000000", side: THREE.DoubleSide });
-      const behind = new THREE.MeshBasicMaterial({ color: "#000000", side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
-      const small = new THREE.Scene();
-      small.background = new THREE.Color("#000000");
-      for (const mesh of part.children) {
-        // Of what is machined only the outer side counts; its other side hides what is behind it.
-        small.add(new THREE.Mesh(mesh.geometry, mesh.userData.checked ? black : behind));
-        if (!mesh.userData.checked) small.add(new THREE.Mesh(mesh.geometry, white));
-      }
-      renderer.setPixelRatio(1);
-      renderer.setSize(SMALL, SMALL, false);
-      const eye = new THREE.OrthographicCamera(-radius, radius, radius, -radius, 0.01 * radius, 40 * radius);
-      eye.up.set(0, 0, 1);
-      const gl = renderer.getContext();
-      const pixels = new Uint8Array(4 * SMALL * SMALL);
-      const seen = ways.map((way) => {
-        eye.position.copy(centre).addScaledVector(new THREE.Vector3(...way).normalize(), 20 * radius);
-        eye.lookAt(centre);
-        renderer.render(small, eye);
-        gl.readPixels(0, 0, SMALL, SMALL, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-        let count = 0;
-        for (let i = 0; i < pixels.length; i += 4) count += pixels[i] > 127;
-        return count;
-      });
-      renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
-      for (const material of [white, black, behind]) material.dispose();
-      const best = seen.indexOf(Math.max(...seen));
-      return seen[best] > 1.15 * seen[0] ? ways[best] : ways[0];
+      mark(place);
     }
 
     function resize() {
@@ -723,12 +809,13 @@
       const height = Math.max(box.clientHeight, 1);
       renderer.setSize(width, height, false);
       const aspect = width / height;
-      camera.top = radius;
-      camera.bottom = -radius;
-      camera.right = radius * aspect;
+      measure();
+      camera.top = span.radius;
+      camera.bottom = -span.radius;
+      camera.right = span.radius * aspect;
       camera.left = -camera.right;
-      camera.near = 0.01 * radius;
-      camera.far = 40 * radius;
+      camera.near = 0.01 * span.radius;
+      camera.far = 40 * span.radius;
       makeRoom();
       camera.updateProjectionMatrix();
       for (const material of [lineMaterial, ...linkMaterials]) if (material) material.resolution.set(width, height);
@@ -769,7 +856,7 @@
     function draw() {
       wanted = false;
       const toward = camera.position.clone().sub(controls.target).normalize();
-      overlay.position.copy(toward).multiplyScalar(lift);
+      overlay.position.copy(toward).transformDirection(world.matrix.clone().invert()).multiplyScalar(lift);
       const up = new THREE.Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
       const right = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion);
       lamp.position.copy(controls.target).addScaledVector(toward, 10).addScaledVector(up, 4).addScaledVector(right, -3);
@@ -796,6 +883,7 @@
     for (const input of document.querySelectorAll("[name=path]")) input.addEventListener("change", () => colourPath(input.value));
     $("show-links").addEventListener("change", (e) => { links.visible = e.target.checked; redraw(); });
     $("show-tool").addEventListener("change", (e) => { tool.visible = e.target.checked; redraw(); });
+    $("show-machine").addEventListener("change", (e) => showMachine(e.target.checked));
     $("show-borders").addEventListener("change", (e) => { borders.visible = e.target.checked; redraw(); });
     $("so-far").addEventListener("change", () => { limitPath(); redraw(); });
     slider.addEventListener("input", () => { play(false); seeThrough(false); showPose(Number(slider.value)); });

@@ -4,7 +4,9 @@
 //! part's outward normal: **positive is material left (scallop), negative is material missing (gouge)**. NaN means
 //! 'not known' wherever a field is a float, and is shown as such; it never counts as zero.
 
+use super::machine::Machine;
 use osculate_geom::Diagnostic;
+use osculate_postproc::machine::MAX_JOINTS;
 
 /// Everything on the page.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +31,8 @@ pub struct Report {
     pub links: Vec<Link>,
     /// The tools, where there are some to show, in the order in which they are in hand.
     pub tools: Vec<Tool>,
+    /// The machine, where one is known.
+    pub machine: Option<Machine>,
     /// Where the tool goes, in order; thinned by the caller to what an animation needs (6000 poses are plenty).
     pub poses: Vec<ToolPose>,
     /// How the deviation is spread.
@@ -221,6 +225,10 @@ pub struct ToolPose {
     pub tool: u32,
     /// Line of the program that ends here; 0 where not known.
     pub line: u32,
+    /// Which of the setups of [`Report::machine`] the part sits in.
+    pub setup: u32,
+    /// Where the joints of [`Report::machine`] stand, mm and rad, slides at the spindle nose; NaN where not known.
+    pub at_nose: [f32; MAX_JOINTS],
 }
 
 /// How the deviation is spread: bin `i` reaches from `edges_mm[i]` to `edges_mm[i + 1]`.

@@ -2,6 +2,7 @@
 
 use crate::job::Job;
 use crate::part::{Part, area};
+use crate::report::machine::Machine;
 use crate::report::measured::{Measured, mesh_of};
 use crate::report::sheet;
 use crate::report::{
@@ -15,6 +16,8 @@ use crate::work::nc::Motions;
 use crate::work::summary::Summary;
 use crate::work::verify::Verified;
 use osculate_geom::{Diagnostic, Point3, Unit3};
+use osculate_postproc::machine::MAX_JOINTS;
+use osculate_postproc::{Machine as Chain, Setup};
 use osculate_productivity::plan::{Linked, Passes};
 use osculate_tools::cl::Motion;
 use osculate_tools::removal::{Answer, Swept};
@@ -47,6 +50,10 @@ pub struct Story<'a> {
     pub diagnostics: &'a [Diagnostic],
     /// The program read back.
     pub time_by_move: &'a Motions,
+    /// The machine that the program runs on.
+    pub chain: &'a Chain,
+    /// Where the part sits, each with the first of those motions that is made so.
+    pub setups: Vec<(usize, Setup)>,
     /// The tools in hand, each with the first of those motions that it makes.
     pub hands: Vec<(usize, Tool)>,
     /// What this report shows beside what every report shows.
@@ -70,7 +77,7 @@ pub fn pages(story: &Story<'_>, progress: &dyn Fn(f64)) -> Pages {
     let html = report::html(&report);
     let svg = report::svg(&report, &View { tool_at: Some(0.5), ..View::default() });
     let view = View {
-        direction: report::Direction { azimuth_deg: -52.0, elevation_deg: 58.0 },
+        direction: Some(report::Direction { azimuth_deg: -52.0, elevation_deg: 58.0 }),
         part: report::PartColours::Plain,
         path: report::PathColours::StripWidth,
         tool_at: None,
@@ -112,6 +119,7 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         path_points: PathPoints::Contact,
         links: links(story.linked),
         tools: story.hands.iter().map(|h| h.1.clone()).collect(),
+        machine: (!story.time_by_move.at_nose.is_empty()).then(|| machine(story)),
         poses: poses(story, &kept),
         histogram: Histogram {
             edges_mm: histogram_edges(story),
@@ -296,6 +304,21 @@ fn kept_poses(story: &Story<'_>) -> Vec<usize> {
     kept
 }
 
+/// The machine as the view shows it.
+fn machine(story: &Story<'_>) -> Machine {
+    let place = |setup: &Setup| {
+        let mut columns = [0.0; 16];
+        columns.copy_from_slice(setup.part_zero.to_homogeneous().as_slice());
+        columns
+    };
+    Machine::new(story.chain, story.setups.iter().map(|s| place(&s.1)).collect())
+}
+
+/// The last of those that begin at a motion or before it.
+fn begun<T>(all: &[(usize, T)], motion: usize) -> u32 {
+    all.partition_point(|one| one.0 <= motion).saturating_sub(1) as u32
+}
+
 /// Poses of the program as read back, with their time; the pass is found by the CL path's own poses only where the
 /// motion is at feed.
 fn poses(story: &Story<'_>, kept: &[usize]) -> Vec<ToolPose> {
@@ -308,8 +331,15 @@ fn poses(story: &Story<'_>, kept: &[usize]) -> Vec<ToolPose> {
                 axis: [m.to.axis.x as f32, m.to.axis.y as f32, m.to.axis.z as f32],
                 time_min: read.times_min[k] as f32,
                 pass: None,
-                tool: story.hands.partition_point(|h| h.0 <= k).saturating_sub(1) as u32,
+                tool: begun(&story.hands, k),
                 line: m.block,
+                setup: begun(&story.setups, k),
+                at_nose: read
+                    .at_nose
+                    .get(k)
+                    .copied()
+                    .flatten()
+                    .map_or([f32::NAN; MAX_JOINTS], |joints| joints.map(|j| j as f32)),
             }
         })
         .collect()

@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 
 /// More path points than this are thinned: beyond it lines differ by less than a pixel and the file only grows.
 const PATH_POINTS: usize = 120_000;
-/// Numbers of a pose: tip, axis, time, pass, tool, line of the program.
-const POSE_NUMBERS: usize = 10;
+/// Numbers of a pose: tip, axis, time, pass, tool, line of the program, setup; then where the joints stand.
+const POSE_NUMBERS: usize = 11;
 
 /// The block and its head.
 pub struct Packed {
@@ -164,21 +164,29 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
             report.links.len()
         ));
     }
+    let joints = report.machine.as_ref().map_or(0, |m| m.joints.len());
+    let numbers = POSE_NUMBERS + joints;
     let poses: Vec<f32> = report
         .poses
         .iter()
         .filter(|p| finite(&p.tip_mm) && finite(&p.axis))
         .flat_map(|p| {
             let ([x, y, z], [i, j, k]) = (p.tip_mm, p.axis);
-            [x, y, z, i, j, k, p.time_min, p.pass.map_or(-1.0, |n| n as f32), p.tool as f32, p.line as f32]
+            let pass = p.pass.map_or(-1.0, |n| n as f32);
+            let own = [x, y, z, i, j, k, p.time_min, pass, p.tool as f32, p.line as f32, p.setup as f32];
+            own.into_iter().chain(p.at_nose.into_iter().take(joints))
         })
         .collect();
-    let pose_count = poses.len() / POSE_NUMBERS;
+    let pose_count = poses.len() / numbers;
     if pose_count < report.poses.len() {
         let hidden = report.poses.len() - pose_count;
         notes.push(format!("{hidden} tool poses are not finite and not shown."));
     }
     let poses_at = out.floats(poses.into_iter());
+    let machine = report.machine.as_ref().map(|m| m.head(|values| out.floats(values.into_iter())));
+    for name in report.machine.iter().flat_map(|m| &m.boxed) {
+        notes.push(format!("Of {name}, a body of the machine, its box is drawn: it has too many triangles."));
+    }
     let head = json!({
         "lo": steps.lo,
         "step": steps.step,
@@ -186,7 +194,8 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
         "faces": heads,
         "path": path,
         "links": links,
-        "poses": {"at": poses_at, "count": pose_count, "numbers": POSE_NUMBERS},
+        "poses": {"at": poses_at, "count": pose_count, "numbers": numbers},
+        "machine": machine,
     });
     Packed { bytes: out.bytes, head, notes }
 }

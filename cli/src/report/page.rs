@@ -7,6 +7,7 @@ use super::chart;
 use super::data::{Outcome, Report, Table, Tool, Verdict};
 use super::legend::{Limits, Scale, UNKNOWN};
 use super::mesh::{Clean, clean};
+use super::opening::opening;
 use super::pack::pack;
 use super::text::{base64, count, escape, figure, fixed, script_json, short};
 use super::tool_body::{Piece, outlines};
@@ -38,6 +39,8 @@ pub fn html(report: &Report) -> String {
     let scales = Scales::new(report, &faces, limits);
     let packed = pack(report, &faces);
     let mut head = packed.head;
+    let opening = opening(report, &faces);
+    head["opening"] = json!(opening.toward());
     head["limits"] = json!({"scallop": limits.scallop_mm, "gouge": limits.gouge_mm});
     head["unknown"] = json!(UNKNOWN);
     head["measured"] = json!(!report.faces_only);
@@ -74,7 +77,7 @@ pub fn html(report: &Report) -> String {
         report.tables.iter().partition(|t| t.columns.len() <= NARROW_COLUMNS);
     let solo = if beside.is_empty() && report.verdict.worst.is_empty() { " solo" } else { "" };
     let _ = writeln!(out, "<main class=\"main{solo}\">");
-    viewer(&mut out, report, &faces, &scales);
+    viewer(&mut out, report, &faces, (&scales, opening));
     if solo.is_empty() {
         out.push_str("<aside class=\"card\"><div>");
         beside.iter().for_each(|t| table(&mut out, t));

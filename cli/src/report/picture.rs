@@ -14,12 +14,13 @@ use self::paint::{Facet, nearness, paint, shaded};
 use super::data::Report;
 use super::legend::{Limits, Scale, nice_step};
 use super::mesh::{Clean, clean};
+use super::opening::opening;
 use super::pack::{Bounds, finite};
 use super::project::{Camera, DepthMap, Frame, unit};
 use super::simplify::simplify;
 use super::text::{coordinate, escape, figure};
 use std::fmt::Write;
-pub use view::{PartColours, PathColours, View};
+pub use view::{PartColours, PathColours, USUAL, View};
 
 /// Facets of the part in the picture at most: 20 bytes each where neighbours have one colour, 45 where none do.
 const FACETS: usize = 14_000;
@@ -58,7 +59,8 @@ pub fn svg_of(report: &Report, faces: &[Clean], view: &View) -> String {
         width: f64::from(width) - 2.0 * margin - LEGEND * legends.len() as f64,
         height: f64::from(height) - 48.0 - 40.0,
     };
-    let camera = Camera::fit(view.direction, frame, seen_points(report, faces, view));
+    let direction = view.direction.unwrap_or_else(|| opening(report, faces));
+    let camera = Camera::fit(direction, frame, seen_points(report, faces, view));
 
     let (columns, rows) = (width as usize, height as usize);
     let mut depth = DepthMap::new(columns, rows);

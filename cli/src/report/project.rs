@@ -12,6 +12,15 @@ pub struct Direction {
     pub elevation_deg: f64,
 }
 
+impl Direction {
+    /// The unit vector towards the viewer.
+    pub fn toward(&self) -> [f64; 3] {
+        let (sin_a, cos_a) = self.azimuth_deg.to_radians().sin_cos();
+        let (sin_e, cos_e) = self.elevation_deg.to_radians().sin_cos();
+        [cos_e * cos_a, cos_e * sin_a, sin_e]
+    }
+}
+
 /// A rectangle of the picture, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -57,7 +66,7 @@ impl Camera {
         let mut camera = Self {
             right: [-sin_a, cos_a, 0.0],
             up: [-sin_e * cos_a, -sin_e * sin_a, cos_e],
-            toward: [cos_e * cos_a, cos_e * sin_a, sin_e],
+            toward: direction.toward(),
             scale: 1.0,
             offset: [0.0; 2],
         };

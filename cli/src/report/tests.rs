@@ -41,6 +41,8 @@ fn sheet(n: u32) -> Report {
         pass: Some(k),
         tool: 0,
         line: 10 * k,
+        setup: 0,
+        at_nose: [0.1 * k as f32; 5],
     };
     Report {
         title: "Sheet".into(),

@@ -6,6 +6,7 @@ use super::data::{PathPoints, Report, Scalar};
 use super::legend::{Limits, Scale};
 use super::mesh::Clean;
 use super::picture::{View, svg_of};
+use super::project::Direction;
 use super::text::escape;
 use std::fmt::Write;
 
@@ -40,8 +41,8 @@ impl Scales {
     }
 }
 
-/// Writes the section.
-pub fn viewer(out: &mut String, report: &Report, faces: &[Clean], scales: &Scales) {
+/// Writes the section; the still picture is seen from where the view opens.
+pub fn viewer(out: &mut String, report: &Report, faces: &[Clean], (scales, opening): (&Scales, Direction)) {
     let mut part = vec![("deviation".to_owned(), "Deviation".to_owned()), ("plain".into(), "Plain".into())];
     if report.faces_only {
         part.remove(0);
@@ -72,9 +73,11 @@ pub fn viewer(out: &mut String, report: &Report, faces: &[Clean], scales: &Scale
         segment(out, ["path", "Path", which], &path[..1], "off");
     }
     let has_tool = !report.tools.is_empty() && !report.poses.is_empty();
+    let has_bodies = report.machine.as_ref().is_some_and(|m| !m.bodies.is_empty());
     let checks = [
         ("show-links", "Links", false, !report.links.is_empty()),
         ("show-tool", "Tool", has_tool, has_tool),
+        ("show-machine", "Machine", false, has_bodies && !report.poses.is_empty()),
         ("show-borders", "Borders", true, !faces.is_empty()),
         ("so-far", "Path so far", false, !report.poses.is_empty()),
     ];
@@ -87,7 +90,7 @@ pub fn viewer(out: &mut String, report: &Report, faces: &[Clean], scales: &Scale
         );
     }
     out.push_str("</div><div id=\"canvas-box\"><div id=\"still\">");
-    out.push_str(&svg_of(report, faces, &View::default()));
+    out.push_str(&svg_of(report, faces, &View { direction: Some(opening), ..View::default() }));
     out.push_str(
         "<p id=\"still-words\">Still picture. The view that turns needs a browser with scripts and WebGL.</p></div>\
          <svg id=\"triad\" class=\"needs-live\" viewBox=\"-38 -38 76 76\" aria-hidden=\"true\">",

@@ -8,6 +8,7 @@ use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
 use osculate_postproc::cldata::{self, ClWriteOptions};
 use osculate_postproc::conduct::{Conduct, Expected, ExpectedTool, Grade};
+use osculate_postproc::machine::JointValues;
 use osculate_postproc::motion::JointDemand;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::WorkOffset;
@@ -97,6 +98,8 @@ pub struct Motions {
     pub motions: Vec<Swept>,
     /// Time at the end of each piece, min.
     pub times_min: Vec<f64>,
+    /// Where the joints stand at the end of each piece, as [`ReadMove::at_nose`](readback::ReadMove::at_nose); empty where no machine is known.
+    pub at_nose: Vec<Option<JointValues>>,
     /// Total time, min.
     pub time_min: f64,
     /// Time of feed moves, min.
@@ -246,6 +249,7 @@ pub fn read_back_tools(
     let mut out = Motions {
         motions: Vec::with_capacity(read.moves.len()),
         times_min: Vec::with_capacity(read.moves.len()),
+        at_nose: Vec::with_capacity(read.moves.len()),
         time_min: read.time_min(),
         cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),
         joints: Some(read.joint_demand(&control.machine, job.feed_mm_min())),
@@ -280,6 +284,7 @@ pub fn read_back_tools(
             block: u32::try_from(w[1].line).unwrap_or(u32::MAX),
         });
         out.times_min.push(clock);
+        out.at_nose.push(w[1].at_nose);
     }
     Ok(out)
 }

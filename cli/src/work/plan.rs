@@ -232,6 +232,8 @@ impl Proved<'_> {
             summary: &summary,
             diagnostics: &diagnostics,
             time_by_move: &read,
+            chain: &control.machine,
+            setups: vec![(0, setup)],
             hands: vec![(0, fill::tool(job))],
             extras: &planned.extras,
         };

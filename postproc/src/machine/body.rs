@@ -28,7 +28,7 @@ pub struct Body {
     /// Whether it is on the side of the tool: the head is, table and bed are not.
     pub of_head: bool,
     /// The frame in which it stands still: so many joints lie between it and the part.
-    pub(crate) frame: usize,
+    pub frame: usize,
     /// What it is, in its frame.
     pub shape: Arc<Crowd>,
 }

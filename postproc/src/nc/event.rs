@@ -31,6 +31,17 @@ impl Frame<'_> {
     }
 }
 
+impl Frame<'_> {
+    /// Where the joints themselves stand, slides at the spindle nose.
+    pub fn at_nose(&self, known: &Known) -> Option<JointValues> {
+        let mut joints = known.joints(self.machine, self.setup)?;
+        for (value, joint) in joints.iter_mut().zip(self.machine.joints()) {
+            *value = joint.at_nose(*value, self.setup.gauge_length_mm);
+        }
+        Some(joints)
+    }
+}
+
 /// F of a move as the control has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FeedNow {

@@ -149,11 +149,8 @@ struct Stand {
 
 impl Stand {
     fn at(frame: Frame<'_>, known: &Known) -> Option<Self> {
-        let mut joints = known.joints(frame.machine, frame.setup)?;
+        let joints = frame.at_nose(known)?;
         let gauge_mm = frame.setup.gauge_length_mm;
-        for (value, joint) in joints.iter_mut().zip(frame.machine.joints()) {
-            *value = joint.at_nose(*value, gauge_mm);
-        }
         Some(Self { frames: frames(frame.machine.joints(), &joints), gauge_mm })
     }
 

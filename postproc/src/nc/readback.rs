@@ -56,6 +56,9 @@ pub struct ReadMove {
     pub tool: Option<u32>,
     /// To a place of the machine's own frame: G53, SUPA, M91, G28.
     pub own_frame: bool,
+    /// Where the joints themselves stand at its end, in the order of the machine's joints, mm and rad, slides at the spindle nose; none where
+    /// no joints lead there.
+    pub at_nose: Option<JointValues>,
 }
 
 /// One block of the text.
@@ -303,6 +306,7 @@ impl Sink for Collect {
                     time_min: 0.0,
                     tool,
                     own_frame: false,
+                    at_nose: frame.at_nose(&known),
                 });
                 let (time_min, tip_length_mm, own_frame) = (0.0, 0.0, false);
                 let first =
@@ -344,7 +348,8 @@ impl Collect {
         for (t, pose) in poses {
             let Moved { line, tool, own_frame, .. } = *m;
             let time_min = time_min * (t - t0);
-            self.out.moves.push(ReadMove { pose, motion, line, time_min, tool, own_frame });
+            let at_nose = frame.at_nose(&m.way.at(t));
+            self.out.moves.push(ReadMove { pose, motion, line, time_min, tool, own_frame, at_nose });
             t0 = t;
         }
         self.out.blocks.push(ReadBlock {

@@ -12,6 +12,8 @@ const MOST_BYTES: u64 = 3_000_000;
 const FIRST_VIEW_MS: f64 = 2_000.0;
 /// Colours of a view that shows something: one of the background alone has three.
 const COLOURS: u64 = 40;
+/// Bodies of the machine stand where joints have them as exactly as single precision is, mm.
+const NOSE_MM: f64 = 0.01;
 /// What moves changes the mean colours of a view by this at least, of 255.
 const MOVED: f64 = 0.15;
 
@@ -56,6 +58,7 @@ pub fn check(
     visit.tables()?;
     visit.view()?;
     visit.tool()?;
+    visit.machine()?;
     visit.worst()?;
     visit.dark()?;
     visit.phone()?;
@@ -148,6 +151,28 @@ impl Visit<'_> {
             "the slider moves no tool in the view".to_owned()
         });
         Ok(())
+    }
+
+    /// A machine that has bodies is shown with them, the spindle's nose where the tool ends, and the slider moves them.
+    fn machine(&mut self) -> Result<(), Failure> {
+        let there = "!document.getElementById('show-machine').closest('label').hidden";
+        if self.chrome.value(there)? != true {
+            return Ok(());
+        }
+        let part = self.chrome.look(Some(VIEW))?;
+        self.chrome.click("#show-machine")?;
+        let shown = self.picture("machine")?;
+        self.must(part.differs_by(&shown.fields) > MOVED, || "no machine is shown".to_owned());
+        self.chrome.value("document.getElementById('pose').focus()")?;
+        for _ in 0..3 {
+            let off = self.chrome.number("Number(document.querySelector('#canvas-box').dataset.nose)")?;
+            self.must(off < NOSE_MM, || format!("the spindle's nose is {off} mm off the end of the tool"));
+            self.chrome.key("PageUp", 33, 2)?;
+        }
+        let moved = self.chrome.look(Some(VIEW))?;
+        self.must(shown.differs_by(&moved.fields) > MOVED, || "the slider moves no machine".to_owned());
+        self.chrome.key("PageDown", 34, 6)?;
+        self.chrome.click("#show-machine")
     }
 
     /// A click on the worst place sets tool, slider and line there, and turns the part so that it is seen.

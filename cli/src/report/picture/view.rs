@@ -24,11 +24,14 @@ pub enum PathColours {
     StripWidth,
 }
 
+/// From where parts are looked at usually: a little to the right of the front, from above.
+pub const USUAL: Direction = Direction { azimuth_deg: -52.0, elevation_deg: 34.0 };
+
 /// How to look at the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// From where.
-    pub direction: Direction,
+    /// From where; `None`: the side from which most of what is machined is seen.
+    pub direction: Option<Direction>,
     /// Width of the picture, px.
     pub width_px: u32,
     /// Height of the picture, px.
@@ -46,7 +49,7 @@ pub struct View {
 impl Default for View {
     fn default() -> Self {
         Self {
-            direction: Direction { azimuth_deg: -52.0, elevation_deg: 34.0 },
+            direction: None,
             width_px: 960,
             height_px: 600,
             part: PartColours::Deviation,

@@ -11,6 +11,7 @@ use crate::work::verify::{self, Reading, Verified};
 use crate::work::{bodies, posted_setup, reading, stock};
 use osculate_geom::Diagnostic;
 use osculate_postproc::Setup;
+use osculate_postproc::machine::JointValues;
 use osculate_tools::removal::{GoalControl, GoalFixture, GoalStep, Program, Remark, Swept, prove_in_steps};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -36,6 +37,8 @@ pub struct Course {
     pub motions: Vec<Swept>,
     /// Time at the end of each, min; the changes from setup to setup take none.
     pub times_min: Vec<f64>,
+    /// Where the joints stand at the end of each, as in [`Motions`](nc::Motions::at_nose).
+    pub at_nose: Vec<Option<JointValues>>,
     /// Where the tools after the first take over.
     changes: Vec<usize>,
     /// The whole job with each tool in hand, in the order in which they are called.
@@ -137,6 +140,7 @@ impl Course {
                 out.sections.push(Section { name, tool: *tool, motions: begin + from..begin + to });
             }
             out.motions.extend(read.motions);
+            out.at_nose.extend(read.at_nose);
             out.times_min.extend(read.times_min.iter().map(|t| t + clock));
             out.setups.push(begin..out.motions.len());
             out.setup_min.push(read.time_min);

@@ -103,6 +103,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let extras = Extras { tables, ..Extras::default() };
     summary.operations = operations;
     summary.wall_s = wall_s;
+    let clamped = course.setups.iter().zip(&programs).map(|(range, p)| (range.start, p.setup)).collect();
     let read = motions(course);
     let title = passes::title(job);
     let story = fill::Story {
@@ -115,6 +116,8 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         summary: &summary,
         diagnostics: &diagnostics,
         time_by_move: &read,
+        chain: &job.control().machine,
+        setups: clamped,
         hands,
         extras: &extras,
     };
@@ -227,7 +230,8 @@ fn merged(steps: &[Step<'_>]) -> Planned<'static> {
 /// The motions as reports take them.
 fn motions(course: Course) -> Motions {
     let time_min = course.setup_min.iter().sum();
-    Motions { motions: course.motions, times_min: course.times_min, time_min, ..Motions::default() }
+    let Course { motions, times_min, at_nose, .. } = course;
+    Motions { motions, times_min, at_nose, time_min, ..Motions::default() }
 }
 
 /// The operations with the figures that one compares.
