@@ -26,6 +26,15 @@
     block = await new Response(packed.stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer();
   }
 
+  // The bytes of so many records, of which all first bytes stand first, then all second ones and so on.
+  function records(at, count, size) {
+    const from = new Uint8Array(block, at, count * size);
+    const out = new Uint8Array(count * size);
+    for (let k = 0, i = 0; k < size; k++) for (let r = 0; r < count; r++) out[r * size + k] = from[i++];
+    return out.buffer;
+  }
+  const floats = (at, count, stride) => new Float32Array(records(at, count, 4 * stride));
+
   // Values that stand there as differences from the one `stride` before.
   function summed(list, stride) {
     for (let i = stride; i < list.length; i++) list[i] += list[i - stride];
@@ -33,7 +42,7 @@
   }
 
   function points(at, count) {
-    const steps = summed(new Uint16Array(block, at, 3 * count), 3);
+    const steps = summed(new Uint16Array(records(at, count, 6)), 3);
     const out = new Float32Array(3 * count);
     for (let i = 0; i < out.length; i++) out[i] = head.lo[i % 3] + head.step[i % 3] * steps[i];
     return out;
@@ -41,11 +50,11 @@
 
   // Unfolds the octahedron.
   function normals(at, count) {
-    const steps = summed(new Int16Array(block, at, 2 * count), 2);
+    const steps = summed(new Int16Array(records(at, count, 4)), 2);
     const out = new Float32Array(3 * count);
     for (let i = 0; i < count; i++) {
-      let x = steps[2 * i] / 32767;
-      let y = steps[2 * i + 1] / 32767;
+      let x = steps[2 * i] / 4095;
+      let y = steps[2 * i + 1] / 4095;
       const z = 1 - Math.abs(x) - Math.abs(y);
       const fold = Math.max(-z, 0);
       x += x < 0 ? fold : -fold;
@@ -187,14 +196,15 @@
       geometry.setAttribute("position", position);
       geometry.setAttribute("normal", new THREE.BufferAttribute(normals(face.normal, face.vertices), 3));
       geometry.setAttribute("quantity", new THREE.BufferAttribute(new Float32Array(2 * face.vertices), 2));
-      const Index = face.wide ? Uint32Array : Uint16Array;
-      geometry.setIndex(new THREE.BufferAttribute(summed(new Index(block, face.index, 3 * face.triangles), 1), 1));
+      const corners = 3 * face.triangles;
+      const steps = face.wide ? new Uint32Array(block, face.index, corners) : new Uint16Array(records(face.index, corners, 2));
+      geometry.setIndex(new THREE.BufferAttribute(summed(steps, 1), 1));
       const mesh = new THREE.Mesh(geometry, partMaterial);
       mesh.userData = {
         id: face.id,
         checked: face.checked,
-        deviation: new Float32Array(block, face.deviation, face.vertices),
-        scalars: face.scalars.map((at) => new Float32Array(block, at, face.vertices)),
+        deviation: floats(face.deviation, face.vertices, 1),
+        scalars: face.scalars.map((at) => floats(at, face.vertices, 1)),
       };
       part.add(mesh);
       if (face.borders > 0) {
@@ -258,7 +268,7 @@
     let widthColours = null;
     if (path.points > 1) {
       const at = points(path.position, path.points);
-      const widths = new Float32Array(block, path.width, path.points);
+      const widths = floats(path.width, path.points, 1);
       const segments = path.counts.reduce((sum, n) => sum + Math.max(n - 1, 0), 0);
       const ends = new Float32Array(6 * segments);
       widthColours = new Float32Array(6 * segments);
@@ -313,7 +323,7 @@
     for (const rapid of [false, true]) {
       const ends = [];
       for (const link of head.links.filter((l) => l.rapid === rapid)) {
-        const p = new Float32Array(block, link.at, 3 * link.count);
+        const p = floats(link.at, link.count, 3);
         for (let i = 0; i + 1 < link.count; i++) ends.push(...p.subarray(3 * i, 3 * i + 6));
       }
       if (ends.length === 0) continue;
@@ -368,7 +378,7 @@
     seeThrough(false);
 
     const perPose = head.poses.numbers;
-    const poses = new Float32Array(block, head.poses.at, perPose * head.poses.count);
+    const poses = floats(head.poses.at, head.poses.count, perPose);
     const slider = $("pose");
 
     // ---- machine --------------------------------------------------------------------------------------------------
@@ -404,7 +414,7 @@
         return geometry.applyMatrix4(turn.matrix);
       }
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(block, piece.at, 9 * piece.count), 3));
+      geometry.setAttribute("position", new THREE.BufferAttribute(floats(piece.at, piece.count, 9), 3));
       geometry.computeVertexNormals();
       return geometry;
     }

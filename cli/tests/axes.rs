@@ -1,7 +1,7 @@
 //! The tool's axis as a field: machines of three and four axes, the sense of passes, and keys that do not go together.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Run, Scratch, osculate};
 use serde_json::Value;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Wrong usage and impossible jobs: what is said, the exit code, and that nothing half-written stays behind.
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use osculate::job::Job;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Bodies of the machine in a job: the head against the part and the table, the tool against the table, and machine files that say it wrongly.
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 
 const MACHINE: &str = r#"format = 1

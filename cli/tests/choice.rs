@@ -1,7 +1,7 @@
 //! `auto` and `compare`: what is chosen holds, by a distance check that shares no code with the program, and losers say why.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use serde_json::Value;
 

@@ -1,6 +1,6 @@
 //! The golden programs of `docs/dialects.md`, and dialect files from a job to its verdict.
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 
 const PAGE: &str = include_str!("../../docs/dialects.md");

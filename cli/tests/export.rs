@@ -1,7 +1,7 @@
 //! `export` as a user runs it: files that read back, messages that say what is wrong.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 
 const HULL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/wigley-hull/hull.step");

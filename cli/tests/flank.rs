@@ -1,7 +1,7 @@
 //! `flank`: the table of methods against D98's values, the program against the envelope, and jobs that cannot be.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 use serde_json::Value;
 

@@ -1,6 +1,6 @@
 //! What is said of bad input, word for word: what is wrong, where it stands, what would do, and what is near to it. Nothing is left behind.
 
-mod common;
+use crate::common;
 use common::{Scratch, job};
 use std::process::Command;
 

@@ -3,7 +3,7 @@
 
 #[path = "../../surfaces/tests/bodies/mod.rs"]
 mod bodies;
-mod common;
+use crate::common;
 
 use bodies::{ball, block, frame};
 use common::{Scratch, job, osculate};

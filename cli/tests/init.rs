@@ -1,7 +1,7 @@
 //! A first job from a part alone, and what is said of jobs before they are planned.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
 //! `inspect` and `probe` on the example parts and on built-in surfaces, against independent figures.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 use serde_json::Value;
 

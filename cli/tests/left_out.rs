@@ -1,6 +1,6 @@
 //! `plan` with places left out at which the tool would go into the part.
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
 //! The library as another program uses it: what it hands on, and what it refuses.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::Scratch;
 use osculate::{Answer, Job, Part};

@@ -1,6 +1,6 @@
 //! The main job on a small built-in part: files, figures, and the verdict from the NC text.
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
 //! Every verb that judges a program gives the same verdict on it: `plan`'s own, and `verify`'s of the program that it wrote.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Parts that are meshes: held against paths of any origin, as text and binary, in other units, moved, and where they are refused.
 
-mod common;
+use crate::common;
 use common::{Run, Scratch, osculate};
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! Lists of operations: several tools and setups, raw material handed on, one program a setup, and what cannot be meant.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Run, Scratch, osculate};
 use serde_json::Value;
 

@@ -3,7 +3,7 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use std::fs::OpenOptions;
 use std::os::unix::fs::{FileTypeExt, symlink};

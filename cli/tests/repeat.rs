@@ -1,7 +1,7 @@
 //! Operations that are planned in one place and repeated in others by turning: what comes of them, and what cannot be repeated.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Run, Scratch, osculate};
 use serde_json::{Value, json};
 

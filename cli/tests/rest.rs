@@ -4,7 +4,7 @@
 //! that touches both planes leaves more the larger it is: its centre and that of the fillet are on the same line out of the corner.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 use serde_json::{Value, json};
 use std::f64::consts::PI;

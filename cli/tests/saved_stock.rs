@@ -1,7 +1,7 @@
 //! Raw material that one job has left and another goes on with: the same as in one list, with fixtures of its own, and what is refused.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Run, Scratch, osculate};
 use serde_json::{Value, json};
 

@@ -1,7 +1,7 @@
 //! `verify --second-opinion`: frozen poses beside the verification, where they agree, where they do not, and where there are none.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use osculate::work::opinion::ask;
 use osculate::{Answer, Job, Part};

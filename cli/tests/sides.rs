@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job};
 use osculate::{Failure, Job, Part};
 use osculate_geom::{Surface, uv};

@@ -2,7 +2,7 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 use std::fmt::Write as _;
 use std::path::Path;

@@ -2,7 +2,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};

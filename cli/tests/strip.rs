@@ -1,6 +1,6 @@
 //! `strip --json` against independently computed exact widths on tori.
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 use serde_json::Value;
 

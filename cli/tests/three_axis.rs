@@ -1,7 +1,7 @@
 //! Gradient lines and roughing from job file to verified program.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 
 const ONE: &str = "[tool]\nkind = \"ball\"\ndiameter_mm = 10\nlength_mm = 50\n";

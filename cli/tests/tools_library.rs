@@ -1,7 +1,7 @@
 //! Libraries of tools of other systems: read, written, read again. The texts here have the form of what LinuxCNC, FreeCAD and Fusion write.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{Scratch, osculate};
 use osculate::job::library::{Library, Unit};

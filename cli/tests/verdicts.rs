@@ -2,7 +2,7 @@
 //! the real face behind a ruled one, tooth marks, the state of the control.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 use common::{Run, Scratch, job, osculate};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! `verify` reads where the part sits out of the head of a program of its own, in the comments of every dialect.
 
-mod common;
+use crate::common;
 use common::{Scratch, job, osculate};
 use serde_json::Value;
 use std::fmt::Write as _;

@@ -1,6 +1,6 @@
 //! `verify` with raw material, fixtures, a picture of the cut surface, and paths that do not belong to the job.
 
-mod common;
+use crate::common;
 use common::{Scratch, osculate};
 use std::fmt::Write as _;
 

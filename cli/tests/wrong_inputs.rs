@@ -2,7 +2,7 @@
 //! `wrong/golden.json`. After a change of words: `OSCULATE_BLESS=1 cargo test -p osculate --test wrong_inputs`, and read what changed.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use common::{Scratch, job, osculate};
 use serde_json::{Map, Value, json};

@@ -1,6 +1,6 @@
 //! Real paths there and back: CL, NC, CL for every dialect, machine and feed mode that go together.
 
-mod common;
+use crate::common;
 
 use common::{angle, blade};
 use osculate_geom::Vec3;

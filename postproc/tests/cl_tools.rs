@@ -1,7 +1,7 @@
 //! CL texts of several tools, with what other systems write in them: every tool makes its moves, with its own speed, and what a program
 //! cannot say is named by its line.
 
-mod common;
+use crate::common;
 
 use common::cl_text::{self, posted};
 use osculate_geom::{Point3, Severity, Vec3};

@@ -1,6 +1,6 @@
 //! APT text: what this library writes comes back, and what other systems write is read or named.
 
-mod common;
+use crate::common;
 
 use common::{angle, pose, wave};
 use osculate_geom::Severity;

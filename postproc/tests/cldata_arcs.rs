@@ -1,6 +1,6 @@
 //! Arcs, cycles and streams of CL data.
 
-mod common;
+use crate::common;
 
 use std::io;
 

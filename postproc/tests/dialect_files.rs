@@ -1,6 +1,6 @@
 //! Dialects made of a file alone: what they write, that it comes back, and what is no dialect file.
 
-mod common;
+use crate::common;
 
 use common::{path, pose};
 use osculate_geom::Vec3;

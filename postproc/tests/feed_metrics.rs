@@ -2,7 +2,7 @@
 //!
 //! The model here is its own: it takes the words of the text and the table of who reads F over what, and nothing of the reader.
 
-mod common;
+use crate::common;
 
 use osculate_geom::Vec3;
 use osculate_postproc::readback::{ReadOptions, read};

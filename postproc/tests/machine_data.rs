@@ -1,6 +1,6 @@
 //! What a program takes from the machine's description beside its kinematics: where Z is out of the way, and which axis turns without end.
 
-mod common;
+use crate::common;
 
 use common::{path, pose};
 use osculate_postproc::readback::{ReadOptions, read};

@@ -1,6 +1,6 @@
 //! Where the tool points, in other words than joints: directions and tilted planes, written and read back.
 
-mod common;
+use crate::common;
 
 use common::{angle, path, pose, wave};
 use osculate_geom::{Point3, Vec3};

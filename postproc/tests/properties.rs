@@ -1,6 +1,6 @@
 //! Laws for random machines: durations under the control's own reading of F, and text that is no program.
 
-mod common;
+use crate::common;
 
 use osculate_geom::{Unit3, Vec3};
 use osculate_postproc::machine::spec::{

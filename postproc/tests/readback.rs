@@ -1,6 +1,6 @@
 //! NC text that this library did not write, and what a control makes of it.
 
-mod common;
+use crate::common;
 
 use common::pose;
 use osculate_geom::{Severity, Vec3};

@@ -1,6 +1,6 @@
 //! CL path to NC text and back: the same way of the tool, the same durations, in every dialect and feed mode.
 
-mod common;
+use crate::common;
 
 use common::{angle, distance_mm, wave};
 use osculate_geom::Vec3;

@@ -1,6 +1,6 @@
 //! Programs of several tools: what each tool does comes back from the text with its own length and speed, and a wrong tool is found.
 
-mod common;
+use crate::common;
 
 use common::{path, pose};
 use osculate_geom::Vec3;

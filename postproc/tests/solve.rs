@@ -1,6 +1,6 @@
 //! Branches, turns, poles, limits and rewinds over whole paths.
 
-mod common;
+use crate::common;
 
 use common::{angle, path, pose, wave};
 use osculate_geom::Vec3;

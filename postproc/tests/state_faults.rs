@@ -1,7 +1,7 @@
 //! Programs that move as they should in a state of the control that the job does not mean, and programs that are only
 //! written otherwise.
 
-mod common;
+use crate::common;
 
 use common::{path, pose};
 use osculate_geom::Vec3;

@@ -1,7 +1,7 @@
 //! Programs that are written otherwise and do the same: the same moves in the same time, and the same findings but for
 //! their lines.
 
-mod common;
+use crate::common;
 
 use common::{path, pose};
 use osculate_geom::Vec3;

@@ -1,7 +1,7 @@
 //! Posting piece by piece: the same program as in one text, whole or reported as cut off, and right across the borders
 //! of the pieces in which a long path is solved.
 
-mod common;
+use crate::common;
 
 use std::io;
 

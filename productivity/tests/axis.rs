@@ -2,9 +2,7 @@
 //! say no axis reaches.
 #![allow(clippy::unwrap_used)]
 
-#[allow(dead_code)]
-#[path = "common/cutting.rs"]
-mod cutting;
+use crate::cutting;
 
 use cutting::{motions, verdict};
 use osculate_geom::analytic::{Line, Paraboloid};

@@ -6,9 +6,7 @@
 //! the tip goes straight and the axis is the normalised chord, as controls and the removal model have it.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/cutting.rs"]
-#[allow(dead_code)]
-mod cutting;
+use crate::cutting;
 
 use osculate_geom::analytic::{Paraboloid, Sphere, Torus};
 use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};

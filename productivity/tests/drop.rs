@@ -1,8 +1,7 @@
 //! Dropped cutters in parallel planes: what is left is measured with the swept cutter, spacing against closed forms.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/dropped.rs"]
-mod dropped;
+use crate::dropped;
 
 use dropped::{TOLERANCE, dropped, holds, left};
 use osculate_geom::analytic::{Cylinder, Paraboloid, Placed, Placement, Plane, Sphere};

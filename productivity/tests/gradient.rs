@@ -1,8 +1,7 @@
 //! Gradient lines on three axes: what they leave and name, measured with the swept cutter; strips against M86's formula.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/dropped.rs"]
-mod dropped;
+use crate::dropped;
 
 use dropped::{TOLERANCE, dropped, holds, left};
 use osculate_geom::analytic::{Cone, Cylinder, Paraboloid, Placed, Placement, Plane, Sphere};

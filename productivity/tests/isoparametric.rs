@@ -1,8 +1,7 @@
 //! What isoparametric plans leave on a part, judged by closed forms rather than by the planner's own reach.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/joined.rs"]
-mod joined;
+use crate::joined;
 
 use joined::joined;
 use osculate_geom::analytic::{Paraboloid, Plane, Torus};

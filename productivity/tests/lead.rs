@@ -1,9 +1,7 @@
 //! Lead that changes from place to place: what it leaves, how fast it changes and that no lead held all over is shorter.
 #![allow(clippy::unwrap_used)]
 
-#[allow(dead_code)]
-#[path = "common/cutting.rs"]
-mod cutting;
+use crate::cutting;
 
 use cutting::{motions, verdict};
 use osculate_geom::line::{IsoLine, SurfaceLine};

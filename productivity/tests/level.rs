@@ -1,8 +1,7 @@
 //! Passes along level lines of a field: what they leave on analytic faces, by material removal, and spacings in closed form.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/cutting.rs"]
-mod cutting;
+use crate::cutting;
 
 use cutting::{cusps, motions, verdict};
 use nalgebra::Vector2;

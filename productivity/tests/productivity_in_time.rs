@@ -1,10 +1,8 @@
 //! Productivity integrated over time on real faces: roughing against material removal, finishing against the area.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-#[path = "common/rows.rs"]
-mod rows;
-#[path = "common/slot.rs"]
-mod slot;
+use crate::rows;
+use crate::slot;
 
 use osculate_surfaces::{Part, read};
 use osculate_tools::{Cutter, CutterSpec, Lean};

@@ -1,9 +1,7 @@
 //! Passes in regions: on a cone along its rulings, where the far end needs several times the passes of the near one.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/cutting.rs"]
-#[allow(dead_code)]
-mod cutting;
+use crate::cutting;
 
 use cutting::{motions, verdict};
 use osculate_geom::analytic::Cone;

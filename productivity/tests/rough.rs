@@ -2,8 +2,7 @@
 //! straight down, that what is cleared is not cut again, and that a leaning axis clears what an upright one cannot.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/heights.rs"]
-mod heights;
+use crate::heights;
 
 use heights::{Done, Heights};
 use osculate_geom::analytic::{Placed, Placement, Plane};

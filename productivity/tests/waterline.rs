@@ -1,8 +1,7 @@
 //! Waterlines around steep faces: what is left is measured with the swept cutter, heights and lengths against closed forms.
 #![allow(clippy::unwrap_used)]
 
-#[path = "common/dropped.rs"]
-mod dropped;
+use crate::dropped;
 
 use dropped::{TOLERANCE, dropped, holds, left};
 use osculate_geom::analytic::{Cone, Cylinder, Placed, Placement, Plane, Sphere};

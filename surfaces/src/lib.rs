@@ -24,6 +24,7 @@
 
 pub mod facets;
 pub mod fit;
+pub mod folds;
 pub mod gallery;
 pub mod groups;
 pub mod hidden;

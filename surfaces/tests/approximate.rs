@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
+use crate::common;
 
 use osculate_geom::analytic::Torus;
 use osculate_geom::offset::Offset;

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
+use crate::common;
 
 use common::{any_surface, cylinder, moved, reference, sphere, torus};
 use osculate_geom::analytic::{Plane, Torus};

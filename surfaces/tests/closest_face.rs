@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
+use crate::common;
 
 use common::{graph, reference};
 use osculate_geom::{Point3, Side, Surface, Uv, uv};

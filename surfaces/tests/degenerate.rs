@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
+use crate::common;
 
 use common::{moved, sphere, torus};
 use osculate_geom::limit::{self, LimitError, Tolerance};

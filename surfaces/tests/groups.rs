@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod part21;
-#[allow(dead_code)]
-mod solids;
+use crate::part21;
+use crate::solids;
 
 use osculate_geom::Surface;
 use osculate_surfaces::Face;

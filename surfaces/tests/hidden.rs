@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod bodies;
+use crate::bodies;
 
 use bodies::{ball, block, frame, post, splined, within};
 use osculate_geom::analytic::Placement;

@@ -4,7 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod part21;
+use crate::part21;
 
 use osculate_surfaces::{Part, read, step};
 use part21::{SQUARE, file, flat_patch, numbered, polygon};

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod punched;
+use crate::punched;
 
 use osculate_geom::{Point3, Surface, uv};
 use osculate_surfaces::FaceKind;

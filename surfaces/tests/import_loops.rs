@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod part21;
+use crate::part21;
 
 use osculate_surfaces::{Face, FaceKind, step};
 use part21::{AREA, file, numbered, triple};

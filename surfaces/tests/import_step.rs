@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod part21;
+use crate::part21;
 
 use osculate_geom::{Axis, Side, Surface, uv};
 use osculate_surfaces::step::{self, StepError};

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
+use crate::common;
 
 use common::{moved, reference, sphere, torus};
 use osculate_geom::analytic::{Conic, ConicKind, Placed, Placement};

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
-mod common;
+use crate::common;
 
 use common::bezier_graph;
 use osculate_geom::analytic::{Ellipsoid, Paraboloid, Placed, Placement, Sphere, Torus};

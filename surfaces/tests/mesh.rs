@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod part21;
-#[allow(dead_code)]
-mod solids;
+use crate::solids;
 
 use osculate_geom::{Axis, Point3, Surface, uv};
 use osculate_surfaces::{MeshError, MeshOptions, PartMesh, mesh_faces};

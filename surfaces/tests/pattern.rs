@@ -1,7 +1,7 @@
 //! Circular patterns: faces of a part with known symmetry find their images, and what has none says so.
 #![allow(clippy::unwrap_used)]
 
-mod common;
+use crate::common;
 
 use osculate_geom::{Axis, Point3, Side, TurnAxis, Unit3, Vec3, uv};
 use osculate_surfaces::pattern::{Circle, Pattern, PatternError, PatternFace, same_axis};

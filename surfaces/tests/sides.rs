@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod bodies;
-mod part21;
-mod solids;
+use crate::bodies;
+use crate::solids;
 
 use osculate_geom::{Point3, Side, Vec3};
 use osculate_surfaces::sides::{Before, Settled, Sides, settle};

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod part21;
-#[allow(dead_code)]
-mod solids;
+use crate::solids;
 
 use osculate_surfaces::{MeshOptions, mesh_faces, stl};
 use std::collections::HashMap;

@@ -1,7 +1,7 @@
 //! Exact strips of every kind of cutter on spline faces, smooth and wavy, against brute force ([`dense`]).
 #![allow(clippy::unwrap_used)]
 
-mod dense;
+use crate::dense;
 
 use dense::{Steps, dense};
 use osculate_geom::{Point3, uv};

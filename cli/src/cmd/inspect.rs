@@ -229,8 +229,8 @@ pub fn run(options: &InspectArgs, json: bool) -> Outcome {
     let why = failure(args, &part);
     // Faces with places that no part has can take minutes.
     if why.is_none() {
-        let off = part::unbalanced(&part);
-        part.diagnostics.extend(off);
+        let doubts = part::doubts(&part);
+        part.diagnostics.extend(doubts);
     }
     let oriented = |k: usize| part.faces[k].source.as_ref().is_some_and(|f| f.oriented);
     let found = hidden::find(&part, &oriented);

@@ -1,5 +1,6 @@
 //! Parts as commands see them: faces with names, from a file or built in.
 
+mod doubts;
 mod fingerprint;
 pub mod hidden;
 mod loaded;
@@ -7,14 +8,14 @@ pub mod mesh;
 mod sides;
 mod turned;
 
+pub use doubts::doubts;
 pub use loaded::{InBodies, Loaded, LoadedFace};
 pub use turned::{TurnedFaces, turned};
 
 use crate::failure::{Failure, read};
 use crate::job::builtin::{self, Builtin};
 use crate::job::{FaceChoice, Job, Source};
-use crate::words::number;
-use osculate_geom::{Box3, Diagnostic, Point3, Side, Surface, Unit3, Uv};
+use osculate_geom::{Box3, Point3, Side, Surface, Unit3, Uv};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::Walls;
 use osculate_surfaces::TrimmedSurface;
@@ -150,22 +151,6 @@ pub fn far(part: &Loaded) -> Option<String> {
     })
 }
 
-/// A warning for every face whose area does not fit the curves of its boundary, by a second method (Stokes).
-#[must_use]
-pub fn unbalanced(part: &Loaded) -> Vec<Diagnostic> {
-    let of = |f: &LoadedFace| {
-        let off = f.source.as_ref()?.imbalance()?;
-        let [loops, curves] = [off.loops_mm2, off.boundary_mm2].map(|x| number(x, 6));
-        let text = format!(
-            "as its loops were put together it has {loops} mm2 seen along its mean normal, and by the curves of its boundary {curves}: look at it \
-             (lines) before it is machined or checked"
-        );
-        Some(Diagnostic::warning(f.id.clone(), text))
-    };
-    let each: Vec<Option<Diagnostic>> = part.faces.par_iter().map(of).collect();
-    each.into_iter().flatten().collect()
-}
-
 /// The part of a file.
 pub fn open(path: &Path) -> Result<Loaded, Failure> {
     from_file(path, None)
@@ -277,8 +262,8 @@ pub fn of_job(job: &Job) -> Result<Part, Failure> {
         Source::File { path, unit_mm } => whole(from_file(path, *unit_mm)?)?,
         Source::Builtin(b) | Source::Ruled(b) => from_builtin(b.clone())?,
     };
-    let off = unbalanced(&part);
-    part.diagnostics.extend(off);
+    let doubts = doubts(&part);
+    part.diagnostics.extend(doubts);
     let chosen = machined(job, &part)?;
     let said = sides::said(job, &part)?;
     let open = settle(&mut part, (job.part().normals(), &said), &chosen);

@@ -1,10 +1,11 @@
 //! What the viewer draws, as one binary block and a JSON head that says what lies where.
 //!
 //! Little-endian; every section begins at a multiple of four bytes. Points are 16-bit steps of a box around part and
-//! passes (a metre gives steps of 0.015 mm: far below a pixel), normals are octahedral in two 16-bit numbers, and
-//! deviations stay 32-bit floats because the viewer shows their digits. A shared vertex costs 14 bytes, a triangle 6
-//! or 12. Points, normals and indices are written as differences from what stands before them: neighbours are alike,
-//! and the page packs the block (RFC 1950), which leaves a tenth of them.
+//! passes (a metre gives steps of 0.015 mm: far below a pixel), normals are octahedral in two 13-bit numbers, and
+//! deviations 32-bit floats of four digits, which is what the viewer shows. A shared vertex costs 14 bytes, a triangle 6
+//! or 12. Points, normals and indices are written as differences from what stands before them: neighbours are alike. Of records of
+//! several bytes all first bytes stand first, then all second ones and so on: bytes that mean the same are more alike than those of
+//! one record. The page packs the block (RFC 1950).
 
 use super::data::{FaceMesh, Report};
 use super::mesh::Clean;
@@ -65,21 +66,44 @@ impl Writer {
         at
     }
 
-    fn floats(&mut self, values: impl Iterator<Item = f32>) -> usize {
-        self.put(values.flat_map(f32::to_le_bytes))
+    /// Records of so many bytes, taken apart byte by byte.
+    fn records(&mut self, size: usize, bytes: &[u8]) -> usize {
+        self.put((0..size).flat_map(|k| bytes.iter().skip(k).step_by(size).copied()))
     }
 
-    /// Two bytes each, as differences from the value `stride` before.
+    /// Records of so many floats.
+    fn floats(&mut self, stride: usize, values: impl Iterator<Item = f32>) -> usize {
+        let bytes: Vec<u8> = values.flat_map(f32::to_le_bytes).collect();
+        self.records(4 * stride, &bytes)
+    }
+
+    /// Floats of four digits.
+    fn digits(&mut self, values: impl Iterator<Item = f32>) -> usize {
+        self.floats(1, values.map(four_digits))
+    }
+
+    /// Records of so many numbers of two bytes, as differences from the record before.
     fn shorts(&mut self, stride: usize, values: impl Iterator<Item = u16>) -> usize {
-        self.put(
-            differences(stride, values.map(u32::from)).into_iter().flat_map(|d| (d as u16).to_le_bytes()),
-        )
+        let bytes: Vec<u8> = differences(stride, values.map(u32::from))
+            .into_iter()
+            .flat_map(|d| (d as u16).to_le_bytes())
+            .collect();
+        self.records(2 * stride, &bytes)
     }
 
     /// Four bytes each, as differences from the value `stride` before.
     fn words(&mut self, stride: usize, values: impl Iterator<Item = u32>) -> usize {
         self.put(differences(stride, values).into_iter().flat_map(u32::to_le_bytes))
     }
+}
+
+/// A float with twelve bits of its fraction left, to the nearest: to one part in 8192.
+fn four_digits(x: f32) -> f32 {
+    if !x.is_finite() {
+        return x;
+    }
+    let rounded = f32::from_bits((x.to_bits() + 0x400) & !0x7ff);
+    if rounded.is_finite() { rounded } else { x }
 }
 
 /// Each value less the one `stride` before it, the first ones as they are; below zero they go round, in two bytes as in four.
@@ -112,7 +136,10 @@ impl Steps {
     }
 }
 
-/// A unit vector on the octahedron unfolded to a square, each coordinate from -32767 to 32767.
+/// Steps of a normal's two numbers on either side of zero: 0.03 deg, which no shading shows.
+const NORMAL_STEPS: f64 = 4095.0;
+
+/// A unit vector on the octahedron unfolded to a square, each coordinate from -4095 to 4095.
 fn octahedral(normal: [f32; 3]) -> [u16; 2] {
     let n = normal.map(f64::from);
     let sum = n[0].abs() + n[1].abs() + n[2].abs();
@@ -122,7 +149,7 @@ fn octahedral(normal: [f32; 3]) -> [u16; 2] {
     let (x, y) = (n[0] / sum, n[1] / sum);
     let sign = |a: f64| if a < 0.0 { -1.0 } else { 1.0 };
     let (x, y) = if n[2] < 0.0 { ((1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y)) } else { (x, y) };
-    [x, y].map(|a| ((a * 32767.0).round() as i16) as u16)
+    [x, y].map(|a| ((a * NORMAL_STEPS).round() as i16) as u16)
 }
 
 /// Packs `report`, whose faces are `faces` made clean.
@@ -153,7 +180,7 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
         .iter()
         .filter(|l| l.points_mm.len() > 1 && l.points_mm.iter().all(finite))
         .map(|l| {
-            let at = out.floats(l.points_mm.iter().flatten().copied());
+            let at = out.floats(3, l.points_mm.iter().flatten().copied());
             json!({"at": at, "count": l.points_mm.len(), "rapid": l.rapid})
         })
         .collect();
@@ -182,8 +209,8 @@ pub fn pack(report: &Report, faces: &[Clean]) -> Packed {
         let hidden = report.poses.len() - pose_count;
         notes.push(format!("{hidden} tool poses are not finite and not shown."));
     }
-    let poses_at = out.floats(poses.into_iter());
-    let machine = report.machine.as_ref().map(|m| m.head(|values| out.floats(values.into_iter())));
+    let poses_at = out.floats(numbers, poses.into_iter());
+    let machine = report.machine.as_ref().map(|m| m.head(|values| out.floats(9, values.into_iter())));
     for name in report.machine.iter().flat_map(|m| &m.boxed) {
         notes.push(format!("Of {name}, a body of the machine, its box is drawn: it has too many triangles."));
     }
@@ -212,11 +239,11 @@ fn face_head(out: &mut Writer, face: &Clean, of: &FaceMesh, steps: &Steps) -> Va
         "wide": wide,
         "position": out.shorts(3, face.positions.iter().flat_map(|p| steps.of(p))),
         "normal": out.shorts(2, face.normals.iter().flat_map(|n| octahedral(*n))),
-        "deviation": out.floats(face.deviation_mm.iter().copied()),
+        "deviation": out.digits(face.deviation_mm.iter().copied()),
         "index": if wide { out.words(1, indices) } else { out.shorts(1, indices.map(|i| i as u16)) },
         "border": out.words(1, face.borders.iter().flatten().copied()),
         "borders": face.borders.len(),
-        "scalars": face.scalars.iter().map(|s| out.floats(s.iter().copied())).collect::<Vec<_>>(),
+        "scalars": face.scalars.iter().map(|s| out.digits(s.iter().copied())).collect::<Vec<_>>(),
     })
 }
 
@@ -248,7 +275,7 @@ fn path_head(out: &mut Writer, report: &Report, steps: &Steps, notes: &mut Vec<S
         "counts": counts,
         "points": kept.len(),
         "position": out.shorts(3, kept.iter().flat_map(|k| k.0)),
-        "width": out.floats(kept.iter().map(|k| k.1)),
+        "width": out.digits(kept.iter().map(|k| k.1)),
     })
 }
 
@@ -260,7 +287,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn decode(q: [u16; 2]) -> [f64; 3] {
-        let [x, y] = q.map(|a| f64::from(a as i16) / 32767.0);
+        let [x, y] = q.map(|a| f64::from(a as i16) / NORMAL_STEPS);
         let z = 1.0 - x.abs() - y.abs();
         let t = (-z).max(0.0);
         let fold = |a: f64| if a < 0.0 { a + t } else { a - t };
@@ -304,6 +331,18 @@ mod tests {
         assert!(packed.head["path"]["points"].as_u64() < Some(PATH_POINTS as u64));
     }
 
+    #[test]
+    fn records_are_taken_apart_and_floats_keep_four_digits() {
+        let mut out = Writer::default();
+        assert_eq!(out.records(3, &[1, 2, 3, 4, 5, 6]), 0);
+        assert_eq!(out.bytes, [1, 4, 2, 5, 3, 6, 0, 0]);
+        for x in [0.073_64_f32, -1.0e-7, 3.4e38, 0.0] {
+            assert!((four_digits(x) - x).abs() <= x.abs() / 8192.0, "{x}");
+        }
+        assert!(four_digits(f32::NAN).is_nan() && four_digits(f32::INFINITY) == f32::INFINITY);
+        assert!(four_digits(f32::MAX).is_finite());
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
@@ -319,7 +358,7 @@ mod tests {
         }
 
         /// Half a step in each of two coordinates of a map that stretches lengths by at most 3 (a corner of the
-        /// octahedron against the sphere): 3 * sqrt(2) * 0.5 / 32767 = 6.5e-5.
+        /// octahedron against the sphere): 3 * sqrt(2) * 0.5 / 4095 = 5.2e-4.
         #[test]
         fn normals_come_back(x in -1.0..1.0_f32, y in -1.0..1.0_f32, z in -1.0..1.0_f32) {
             let length = (x * x + y * y + z * z).sqrt();
@@ -327,7 +366,7 @@ mod tests {
             let n = [x / length, y / length, z / length];
             let back = decode(octahedral(n));
             let error = (0..3).map(|i| (back[i] - f64::from(n[i])).powi(2)).sum::<f64>().sqrt();
-            prop_assert!(error < 6.5e-5, "{error}");
+            prop_assert!(error < 5.2e-4, "{error}");
         }
 
         /// A point comes back within half a step, and the rounding of f32, in each coordinate.

@@ -1,6 +1,6 @@
 //! Scenes whose possible axes have a closed form.
 
-use crate::scenes::{WIDE, cutter, obstacles, sphere};
+use crate::reach::scenes::{WIDE, cutter, obstacles, sphere};
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::reach::{
     ObstacleKind, ObstaclePoint, Obstacles, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,

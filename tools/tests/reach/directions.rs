@@ -1,6 +1,6 @@
 //! Counts, neighbours and the nearest of the directions, and sets of them.
 
-use crate::scenes::sphere;
+use crate::reach::scenes::sphere;
 use osculate_geom::{Unit3, Vec3};
 use osculate_tools::reach::{Bits, Directions, DirectionsError};
 use proptest::prelude::*;

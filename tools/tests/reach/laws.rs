@@ -1,6 +1,6 @@
 //! Laws: the scale of the part does not matter, nor where it stands.
 
-use crate::scenes::{WIDE, obstacles, scenes, sphere, tool};
+use crate::reach::scenes::{WIDE, obstacles, scenes, sphere, tool};
 use nalgebra::{Rotation3, UnitVector3};
 use osculate_geom::{Point3, Vec3};
 use osculate_tools::reach::{Mounted, ObstaclePoint, Place, Reach, ReachLimits, ReachProblem, Tool};

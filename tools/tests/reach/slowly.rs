@@ -1,6 +1,8 @@
 //! The same answers as asking for every direction and every point.
 
-use crate::scenes::{KINDS, WIDE, assert_all, cutter, obstacles, scenes, slow_spare, spare_of, sphere, tool};
+use crate::reach::scenes::{
+    KINDS, WIDE, assert_all, cutter, obstacles, scenes, slow_spare, spare_of, sphere, tool,
+};
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::reach::{
     Bits, ObstacleKind, ObstaclePoint, Place, Reach, ReachLimits, ReachProblem, Tool,

@@ -1,6 +1,6 @@
 //! `cut` against the tool put at many poses of each motion.
 
-use crate::common::{ball, flat, pose, sample, shapes, through, toroidal};
+use crate::removal::common::{ball, flat, pose, sample, shapes, through, toroidal};
 use osculate_geom::Unit3;
 use osculate_tools::removal::{Job, Sample, Swept, cut};
 use osculate_tools::{Cutter, Line, Pose};

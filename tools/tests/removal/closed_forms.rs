@@ -2,7 +2,7 @@
 //! some ten millimetres have an ulp of 2e-15, a standoff is a few dozen operations away, `cut` stops at
 //! distances of 1e-13.
 
-use crate::common::{ball, flat, pose, run, sample, through, toroidal, upright};
+use crate::removal::common::{ball, flat, pose, run, sample, through, toroidal, upright};
 use osculate_geom::analytic::Torus;
 use osculate_geom::{Axis, Flipped, Point3, Surface, Unit3, Vec3, uv};
 use osculate_tools::removal::{Sample, Swept};

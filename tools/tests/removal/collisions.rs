@@ -1,6 +1,6 @@
 //! What must not touch: holder, rapids, and what does not touch though it seems to.
 
-use crate::common::{ball, flat, run, sample, through, upright};
+use crate::removal::common::{ball, flat, run, sample, through, upright};
 use osculate_tools::removal::{Body, Cut, Job, JobError, Sample, Swept, cut};
 use osculate_tools::{Cutter, Holder, HolderSpec};
 
@@ -106,8 +106,8 @@ fn a_rapid_takes_only_what_no_feed_took_before() {
 fn the_far_side_of_a_thin_plate() {
     let below = |deep: f64| {
         through(&[
-            crate::common::pose([-4.0, 0.0, -1.0 + deep], [0.0, 0.0, -1.0]),
-            crate::common::pose([4.0, 0.0, -1.0 + deep], [0.0, 0.0, -1.0]),
+            crate::removal::common::pose([-4.0, 0.0, -1.0 + deep], [0.0, 0.0, -1.0]),
+            crate::removal::common::pose([4.0, 0.0, -1.0 + deep], [0.0, 0.0, -1.0]),
         ])
     };
     let top = [
@@ -135,7 +135,7 @@ fn a_knife_edge_is_not_a_gouge() {
     let n = osculate_geom::Vec3::new(edge.sin(), 0.0, -edge.cos());
     let at = |y: f64| {
         let tip = n * -through_mm + osculate_geom::Vec3::y() * y;
-        crate::common::pose(tip.into(), n.into())
+        crate::removal::common::pose(tip.into(), n.into())
     };
     let motions = through(&[at(-4.0), at(4.0)]);
     let c = run(&cutter, &motions, &[sample([0.0; 3], [0.0, 0.0, 1.0])], 0.5)[0];
@@ -178,7 +178,7 @@ fn impossible_jobs_are_refused() {
         let bad = [Swept { to: upright(x, 0.0, 0.0), ..good[0] }];
         assert!(matches!(of(Job { motions: &bad, ..job }), JobError::NotFinite { motion: 0, block: 1 }));
     }
-    let over = [Swept { to: crate::common::pose([0.0; 3], [0.0, 1e-4, -1.0]), ..good[0] }];
+    let over = [Swept { to: crate::removal::common::pose([0.0; 3], [0.0, 1e-4, -1.0]), ..good[0] }];
     assert!(matches!(of(Job { motions: &over, ..job }), JobError::Reversal { .. }));
     let lost = [sample([0.0, f64::INFINITY, 0.0], [0.0, 0.0, 1.0])];
     assert!(matches!(of(Job { samples: &lost, ..job }), JobError::SampleNotFinite { sample: 0, .. }));

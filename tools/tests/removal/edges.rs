@@ -1,6 +1,6 @@
 //! Sharp outer edges: a tool that goes a little too deep over one face takes little of the part, whatever the normal of the other says.
 
-use crate::common::ball;
+use crate::removal::common::ball;
 use osculate_geom::analytic::{Placed, Placement, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::removal::{

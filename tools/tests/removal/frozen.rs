@@ -5,7 +5,7 @@
 //! covers what its frozen poses cover, and no more than those grown by half of what a point moves from pose to pose. So on every
 //! ray of the stock what is left must hold all that the grown tools leave and lie in what the frozen ones leave.
 
-use crate::common::{ball, flat, pose, through, toroidal, upright};
+use crate::removal::common::{ball, flat, pose, through, toroidal, upright};
 use osculate_geom::{Box3, Point3, Vec3};
 use osculate_tools::removal::Swept;
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};

@@ -1,6 +1,6 @@
 //! Planted faults are found with their size and block.
 
-use crate::common::{ball, pose, run, through, upright};
+use crate::removal::common::{ball, pose, run, through, upright};
 use osculate_geom::analytic::{Cylinder, Placed, Placement, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Vec3};
 use osculate_tools::removal::{Kind, Limits, Sampling, Swept, Tally, sample_surface, tally};
@@ -110,7 +110,7 @@ fn two_points_swapped() {
 /// at most `K (spacing / sqrt 2)^2 / 2`, a fiftieth of its depth.
 #[test]
 fn planted_gouges_have_their_size_and_block() {
-    let cutter = crate::common::toroidal(10.0, 2.0);
+    let cutter = crate::removal::common::toroidal(10.0, 2.0);
     let (core, r) = (cutter.core_mm(), cutter.corner_mm());
     // Leaned by b along the feed, the corner's lowest point touches the plane.
     let b = 0.1f64;
@@ -164,7 +164,7 @@ fn planted_gouges_have_their_size_and_block() {
         assert!((got - depth).abs() < 0.05 * depth, "pivot: {got} of {depth}");
         // A tool that is larger than programmed by e goes down by e (1 - cos b) and e sin b: the flat's radius grows.
         let more = depth / b.sin();
-        let large = crate::common::toroidal(2.0 * (core + r + more), r);
+        let large = crate::removal::common::toroidal(2.0 * (core + r + more), r);
         let motions = passes(&|k| touching(x(k), 0.0, b, 0.0));
         let got = verdict(&large, &motions, &near(core, 0.0)).gouge_max_mm;
         assert!((got - depth).abs() < 0.05 * depth, "radius: {got} of {depth}");
@@ -209,7 +209,7 @@ fn threads_do_not_matter() {
         let lean = 0.3 * (0.7 * k as f64 + i as f64).sin();
         pose([0.5 * k as f64, 0.5 * i as f64, 0.01 * ((i * k) as f64).sin()], [lean, 0.1, 1.0])
     });
-    let cutter = crate::common::toroidal(6.0, 1.0);
+    let cutter = crate::removal::common::toroidal(6.0, 1.0);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| (face(10.0, 0.1), run(&cutter, &motions, &sampling.samples, 0.5)))

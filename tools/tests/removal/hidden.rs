@@ -1,6 +1,6 @@
 //! What hides between samples stays below its bound, which closes in with the square of the spacing.
 
-use crate::common::{ball, sample, toroidal, upright};
+use crate::removal::common::{ball, sample, toroidal, upright};
 use osculate_geom::analytic::{Cylinder, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::removal::{

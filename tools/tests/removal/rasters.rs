@@ -3,7 +3,7 @@
 //! Passes along circles are given as chords; their number is chosen so that the chords stray by at most a tenth of what is
 //! allowed, a ten-thousandth of the tolerance.
 
-use crate::common::{ball, run, sample, through, toroidal};
+use crate::removal::common::{ball, run, sample, through, toroidal};
 use osculate_geom::analytic::{Sphere, Torus};
 use osculate_geom::{Axis, Flipped, Surface, Uv, Vec3, uv};
 use osculate_geom::{Point3, Unit3};

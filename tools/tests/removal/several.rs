@@ -1,6 +1,6 @@
 //! Several tools one after the other: heights are the least of all, each tool has its own holder, and order counts for rapids.
 
-use crate::common::{ball, flat, sample, through, toroidal, upright};
+use crate::removal::common::{ball, flat, sample, through, toroidal, upright};
 use osculate_geom::analytic::Plane;
 use osculate_geom::{Box3, Domain, Interval, Point3};
 use osculate_tools::removal::stock::{Blank, Resolution};

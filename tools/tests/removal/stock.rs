@@ -3,8 +3,8 @@
 //! A wall's place counts to the cell over the number of rows, a rounded one's to about the cell squared over its radius:
 //! at cells of a fiftieth of the tool's radius volumes are good to well below 0.1 percent.
 
-use crate::common::{ball, flat, pose, shapes, through, toroidal, upright};
-use crate::volumes::cases;
+use crate::removal::common::{ball, flat, pose, shapes, through, toroidal, upright};
+use crate::removal::volumes::cases;
 use osculate_geom::{Box3, Point3, Unit3, Vec3};
 use osculate_tools::removal::stock::{Blank, BlankError, Carved, Resolution, Stock, StockJob, Upper};
 use osculate_tools::removal::{Body, Swept};

@@ -1,6 +1,6 @@
 //! From standoffs to verdicts.
 
-use crate::common::{ball, sample, through, upright};
+use crate::removal::common::{ball, sample, through, upright};
 use osculate_geom::analytic::Plane;
 use osculate_geom::{Domain, Interval};
 use osculate_tools::cl::{ClMove, ClPath, Motion};

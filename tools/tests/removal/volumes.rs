@@ -1,6 +1,6 @@
 //! Slots, pockets, holes, rings and faces with the volume that they take, in closed form.
 
-use crate::common::{ball, flat, pose, shapes, through, toroidal, upright};
+use super::common::{ball, flat, pose, shapes, through, toroidal, upright};
 use osculate_geom::Vec3;
 use osculate_tools::removal::Swept;
 use osculate_tools::{Cutter, Pose};

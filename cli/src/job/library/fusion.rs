@@ -162,7 +162,7 @@ pub(super) fn write(tools: &[Tool]) -> (String, Vec<Diagnostic>) {
             preset["tool-coolant"] = json!(if word == CoolantWord::Off { "disabled" } else { word.word() });
         }
         let mut entry = json!({
-            "type": kind, "unit": "millimeters", "description": tool.words(), "geometry": geometry,
+            "type": kind, "unit": "millimeters", "description": tool.words(), "vendor": "", "product-id": "", "geometry": geometry,
             "post-process": {
                 "number": tool.number(), "diameter-offset": tool.number(), "length-offset": tool.number(), "turret": 0, "comment": "",
             },

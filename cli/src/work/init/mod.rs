@@ -63,8 +63,10 @@ fn bent(face: &LoadedFace) -> Normals {
 /// of each that was tried.
 pub fn init(wanted: &Wanted<'_>) -> Result<First, Failure> {
     let refuse = |what: String| Failure::file(wanted.part, what);
-    let read = part::whole(part::open(wanted.part)?)?;
+    let mut read = part::whole(part::open(wanted.part)?)?;
     read.to_plan(wanted.part)?;
+    let doubts = part::doubts(&read);
+    read.diagnostics.extend(doubts);
     if read.faces.is_empty() {
         return Err(refuse("has no faces to machine (inspect says what it has)".to_owned()));
     }

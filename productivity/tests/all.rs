@@ -1,0 +1,36 @@
+//! Tests of strips, plans and their choice through the public names of the crate.
+//!
+//! One program for all of them: each file is a module, `cargo test --test all NAME::` runs one.
+
+mod access;
+mod against_exact;
+mod axis;
+mod compare;
+mod contour;
+#[path = "common/cutting.rs"]
+mod cutting;
+mod dense;
+mod drop;
+#[path = "common/dropped.rs"]
+mod dropped;
+mod errata;
+mod gradient;
+#[path = "common/heights.rs"]
+mod heights;
+mod isoparametric;
+#[path = "common/joined.rs"]
+mod joined;
+mod lead;
+mod leave_out;
+mod level;
+mod links;
+mod optimum;
+mod productivity_in_time;
+mod regions;
+mod rough;
+#[path = "common/rows.rs"]
+mod rows;
+#[path = "common/slot.rs"]
+mod slot;
+mod waterline;
+mod z_level;
