@@ -22,11 +22,13 @@ use super::job::{Cut, Sample};
 use super::rim::{OpenRim, Rims, around, key};
 use osculate_geom::{Point3, Surface, Unit3, Uv};
 use rayon::prelude::*;
-use std::collections::{HashMap, VecDeque};
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::OnceLock;
 
 /// What lies beneath is nearer to another place than this share of the depth that is asked for; at an inner edge it is as far.
 const NEARER: f64 = 0.999;
+/// Samples nearer than this share of a box are crowded: even ones are twice as far apart.
+const CROWDED: f64 = 0.25;
 /// Steps towards the nearest point of another face.
 const STEPS: usize = 8;
 /// Pieces of what was taken beneath a sample at first ...
@@ -85,9 +87,14 @@ impl<'a> Edges<'a> {
     fn hints(&self) -> &(Hints, Rims) {
         self.hints.get_or_init(|| {
             let mut out = Hints::new();
+            // Samples that were added where limits are near lie as close as one wants: of those together that look the same way one will do.
+            let mut taken = HashSet::new();
             // Places on fixtures are on no face.
             for s in self.samples.iter().filter(|s| (s.face as usize) < self.surfaces.len()) {
-                out.entry(key(&s.point, self.side_mm)).or_default().push((s.face, s.uv, s.point));
+                let way = [s.normal.x > 0.0, s.normal.y > 0.0, s.normal.z > 0.0];
+                if taken.insert((key(&s.point, CROWDED * self.side_mm), s.face, way)) {
+                    out.entry(key(&s.point, self.side_mm)).or_default().push((s.face, s.uv, s.point));
+                }
             }
             (out, Rims::new(self.rims, self.side_mm))
         })

@@ -27,7 +27,7 @@ use finding::Finding;
 use tree::Tree;
 
 /// The rules that read files.
-const RULES: [fn(&Tree) -> Vec<Finding>; 15] = [
+const RULES: [fn(&Tree) -> Vec<Finding>; 16] = [
     circles::no_module_circles,
     effects::quiet_libraries,
     floating::no_bare_mul_add,
@@ -38,6 +38,7 @@ const RULES: [fn(&Tree) -> Vec<Finding>; 15] = [
     data::foreign_data_has_a_notice,
     shape::heads,
     shape::lengths,
+    shape::tests_run,
     packaging::crate_roots,
     packaging::release_files,
     docs::readme_commands,

@@ -33,9 +33,42 @@ pub fn lengths(tree: &Tree) -> Vec<Finding> {
     long.map(|file| Finding::whole(&file.path, what(file))).collect()
 }
 
+/// The program of a crate's tests.
+const ALL_TESTS: &str = "all.rs";
+
+/// Every file in a crate's folder of tests is a module of its one program: cargo does not look for others, and what it leaves out runs nowhere.
+pub fn tests_run(tree: &Tree) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for folder in CRATES.map(|name| format!("{name}/tests")) {
+        let program = format!("{folder}/{ALL_TESTS}");
+        let all = tree.get(&program).map_or("", File::text);
+        let named = |stem: &str| all.lines().any(|line| line == format!("mod {stem};"));
+        for file in tree.rust_below(&folder) {
+            let name = file.path.strip_prefix(&format!("{folder}/")).unwrap_or_default();
+            let stem = name.strip_suffix(".rs").filter(|stem| !stem.contains('/') && name != ALL_TESTS);
+            if stem.is_some_and(|stem| !named(stem)) {
+                out.push(Finding::whole(
+                    &file.path,
+                    format!("no test of it runs: {program} does not name it"),
+                ));
+            }
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_of_tests_that_runs_nowhere_is_found() {
+        let found = |all: &str| {
+            let files = [("geom/tests/all.rs", all), ("geom/tests/a.rs", ""), ("geom/tests/common/b.rs", "")];
+            tests_run(&Tree::of(&files)).len()
+        };
+        assert_eq!([found("//! All.\n\nmod a;\n"), found("mod ab;\n// mod a;\n")], [0, 1]);
+    }
 
     #[test]
     fn a_file_without_a_head_is_found() {
