@@ -65,6 +65,7 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let root = root()?;
     // Before anything takes time.
     let mut chrome = Chrome::start()?;
+    chrome.warm()?;
     let out = root.join("target/browser");
     let mut golden = Golden::read(&root.join("xtask/browser/golden.json"))?;
     let mut wrong = Vec::new();

@@ -46,6 +46,14 @@ impl Look {
 }
 
 impl Chrome {
+    /// Draws something once: the first page that draws waits for the browser's renderer, seconds where it is software, and no report is to blame.
+    pub fn warm(&mut self) -> Result<(), Failure> {
+        self.open("about:blank")?;
+        let drawn = "(() => { const gl = document.createElement('canvas').getContext('webgl2'); gl?.clear(gl.COLOR_BUFFER_BIT); \
+                     gl?.finish(); return gl ? 1 : 0; })()";
+        if self.number(drawn)? > 0.0 { Ok(()) } else { Err(odd("WebGL", "it has none")) }
+    }
+
     /// Opens a report and waits until its part is drawn.
     pub fn report(&mut self, file: &Path) -> Result<(), Failure> {
         self.open(&format!("file://{}", file.display()))?;
