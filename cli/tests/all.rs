@@ -1,6 +1,7 @@
 //! Tests of the program, run as a user runs it, and of its library.
 //!
 //! One program for all of them: each file is a module, `cargo test --test all NAME::` runs one.
+#![allow(clippy::unwrap_used)]
 
 mod axes;
 mod bad_input;

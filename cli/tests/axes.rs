@@ -1,5 +1,4 @@
 //! The tool's axis as a field: machines of three and four axes, the sense of passes, and keys that do not go together.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Run, Scratch, osculate};

@@ -1,5 +1,4 @@
 //! `auto` and `compare`: what is chosen holds, by a distance check that shares no code with the program, and losers say why.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, job, osculate};

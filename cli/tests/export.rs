@@ -1,5 +1,4 @@
 //! `export` as a user runs it: files that read back, messages that say what is wrong.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, osculate};

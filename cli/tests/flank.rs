@@ -1,5 +1,4 @@
 //! `flank`: the table of methods against D98's values, the program against the envelope, and jobs that cannot be.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, osculate};

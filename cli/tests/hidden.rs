@@ -1,5 +1,4 @@
 //! A part of two bodies that overlap, from its file to a plan that holds: what lies within the other body is not missed.
-#![allow(clippy::unwrap_used)]
 
 #[path = "../../surfaces/tests/bodies/mod.rs"]
 mod bodies;

@@ -1,5 +1,4 @@
 //! A first job from a part alone, and what is said of jobs before they are planned.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, job, osculate};

@@ -1,5 +1,4 @@
 //! `inspect` and `probe` on the example parts and on built-in surfaces, against independent figures.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, osculate};

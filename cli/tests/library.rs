@@ -1,5 +1,4 @@
 //! The library as another program uses it: what it hands on, and what it refuses.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Every verb that judges a program gives the same verdict on it: `plan`'s own, and `verify`'s of the program that it wrote.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, job, osculate};

@@ -1,5 +1,4 @@
 //! Lists of operations: several tools and setups, raw material handed on, one program a setup, and what cannot be meant.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Run, Scratch, osculate};

@@ -1,7 +1,6 @@
 //! What the program writes: only regular files are replaced, nothing that is read, never a part of a set, and nothing that
 //! steers a terminal.
 #![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, job, osculate};

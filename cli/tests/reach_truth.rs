@@ -1,6 +1,5 @@
 //! The reach on five parts against every direction and every point taken one by one, by code of the test's own: a small version of
 //! `cargo run --release -p osculate --example reach_truth`.
-#![allow(clippy::unwrap_used)]
 
 #[path = "reach_truth/study.rs"]
 mod study;

@@ -1,5 +1,4 @@
 //! Operations that are planned in one place and repeated in others by turning: what comes of them, and what cannot be repeated.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Run, Scratch, osculate};

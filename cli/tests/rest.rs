@@ -2,7 +2,6 @@
 //!
 //! The part is a floor and a wall of 10 degrees draft with a fillet of 2.2 mm between them, the same all along y. A ball of radius R
 //! that touches both planes leaves more the larger it is: its centre and that of the fillet are on the same line out of the corner.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, osculate};

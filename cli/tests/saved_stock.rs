@@ -1,5 +1,4 @@
 //! Raw material that one job has left and another goes on with: the same as in one list, with fixtures of its own, and what is refused.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Run, Scratch, osculate};

@@ -1,6 +1,5 @@
 //! The second opinion against closed forms: kinematics by hand, a ball on a plane, one move in four wordings, words that it does
 //! not know. Programs that the post has written stand in `second_posted.rs`.
-#![allow(clippy::unwrap_used)]
 
 use osculate::second::{
     Accepted, Agreement, Figures, HolderPart, NoOpinion, Opinion, Options, PartPoint, Setup, Shape, Station,

@@ -1,5 +1,4 @@
 //! `verify --second-opinion`: frozen poses beside the verification, where they agree, where they do not, and where there are none.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, job, osculate};

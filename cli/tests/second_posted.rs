@@ -1,6 +1,5 @@
 //! The second opinion's reader on programs that the post has written: every built-in machine, dialect, feed mode and wording of
 //! the tool's direction gives the CL points back, and the joints' forward kinematics are the post's.
-#![allow(clippy::unwrap_used)]
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use osculate::second::{self, Station};

@@ -1,7 +1,5 @@
 //! Sides of faces that neither the file nor the part says: asked for by face, and taken from the job.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 use common::{Scratch, job};
 use osculate::{Failure, Job, Part};

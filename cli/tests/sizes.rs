@@ -1,6 +1,5 @@
 //! What verbs take of memory and processor time, as multiples of the size of the files that they read: the bounds of `docs/bounds.md`.
 #![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, osculate};

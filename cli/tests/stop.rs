@@ -1,6 +1,5 @@
 //! Stopping a run by a signal: how far it came is said, and no half file stays behind.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, job, osculate};

@@ -1,5 +1,4 @@
 //! Gradient lines and roughing from job file to verified program.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Scratch, job, osculate};

@@ -1,5 +1,4 @@
 //! Libraries of tools of other systems: read, written, read again. The texts here have the form of what LinuxCNC, FreeCAD and Fusion write.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

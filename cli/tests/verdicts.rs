@@ -1,6 +1,5 @@
 //! What a verdict must not leave out, through the program as a user runs it: neighbours, raw material, roughing that stops early,
 //! the real face behind a ruled one, tooth marks, the state of the control.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use common::{Run, Scratch, job, osculate};

@@ -1,6 +1,5 @@
 //! What is said of inputs that cannot be meant: what, where, what was expected, and what is nearest, held against
 //! `wrong/golden.json`. After a change of words: `OSCULATE_BLESS=1 cargo test -p osculate --test all wrong_inputs::`, and read what changed.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

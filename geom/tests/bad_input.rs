@@ -1,8 +1,6 @@
 //! Whatever the numbers are: constructors refuse what makes no curve or surface, and what they accept answers without a
 //! panic, anywhere.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::analytic::{
     Cone, Conic, ConicKind, Cylinder, Ellipsoid, Line, Paraboloid, Placed, Placement, Sphere, Spindle, Torus,
 };

@@ -1,7 +1,5 @@
 //! Curves against their closed forms, and surfaces swept by them against other kinds.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::analytic::{Cone, Conic, ConicKind, Cylinder, Line, Placed, Placement, Sphere, Torus};
 use osculate_geom::curve::{self, LengthError};
 use osculate_geom::{

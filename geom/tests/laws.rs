@@ -1,7 +1,5 @@
 //! The laws of surfaces on every analytic kind, and closed forms that tie them to known numbers.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::analytic::{
     Cone, Conic, ConicKind, Cylinder, Ellipsoid, Line, Paraboloid, Placed, Placement, Plane, Sphere, Spindle,
     Torus,

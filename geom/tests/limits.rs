@@ -1,7 +1,5 @@
 //! Normals and curvatures where the parametrisation gives none.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::analytic::{Cone, Conic, ConicKind, Ellipsoid, Line, Placement, Sphere, Spindle, Torus};
 use osculate_geom::limit::{self, LimitError, Tolerance};
 use osculate_geom::{

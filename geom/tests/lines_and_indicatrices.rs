@@ -1,7 +1,5 @@
 //! Lines on surfaces between Darboux and Frenet, and the indicatrices against the strips that they speak of.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::analytic::{Cylinder, Ellipsoid, Paraboloid, Sphere, Torus};
 use osculate_geom::indicatrix::{Conformity, DupinKind, dupin_kind, dupin_root_mm};
 use osculate_geom::line::{IsoLine, PathLine, PathState, SurfaceLine};

@@ -1,7 +1,5 @@
 //! Offsets against closed forms, against their own laws, and where they end.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::analytic::{Cone, Cylinder, Ellipsoid, Paraboloid, Sphere, Torus};
 use osculate_geom::offset::clear_range;
 use osculate_geom::{Flipped, Interval, Offset, OffsetError, Severity, Surface, laws, quadrature, uv};

@@ -1,7 +1,5 @@
 //! A Taylor polynomial away from its place against the surface's own jets there.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::analytic::{Paraboloid, Torus};
 use osculate_geom::{Jet2, Surface, Uv, uv};
 use proptest::prelude::*;

@@ -1,6 +1,7 @@
 //! Tests of machines, programs and the models of controls through the public names of the crate.
 //!
 //! One program for all of them: each file is a module, `cargo test --test all NAME::` runs one.
+#![allow(clippy::unwrap_used)]
 
 mod blade;
 mod blank;

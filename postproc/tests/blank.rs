@@ -1,7 +1,5 @@
 //! The box around the raw material in programs: where it lies in their coordinates, and that it moves nothing when it is read.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use common::wave;

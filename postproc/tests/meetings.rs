@@ -1,7 +1,5 @@
 //! Bodies of head and table along programs, against closed forms and against points all over them.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::convex::{Convex, Crowd};
 use osculate_geom::{Box3, Point3, Vec3};
 use osculate_postproc::meetings::{CLEARANCE_MM, InSpindle, Meetings, Standing, meetings};

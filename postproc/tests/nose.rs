@@ -1,7 +1,5 @@
 //! Ends of travel and places of the machine's own frame are at the spindle nose; words of programs are of the tip.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::common;
 
 use common::{path, pose};

@@ -1,5 +1,4 @@
 //! From where a ball reaches a dome, beside the area that the limit of the lean leaves.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::Paraboloid;
 use osculate_geom::{Unit3, Vec3};

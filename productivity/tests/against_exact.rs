@@ -1,5 +1,4 @@
 //! Closed forms of strip width against the exact swept strip: the order of their error as the tolerance falls.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Cylinder, Ellipsoid, Torus};
 use osculate_geom::roots::{End, bracketed};

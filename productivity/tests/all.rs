@@ -1,6 +1,7 @@
 //! Tests of strips, plans and their choice through the public names of the crate.
 //!
 //! One program for all of them: each file is a module, `cargo test --test all NAME::` runs one.
+#![allow(clippy::unwrap_used)]
 
 mod access;
 mod against_exact;
@@ -18,8 +19,6 @@ mod gradient;
 #[path = "common/heights.rs"]
 mod heights;
 mod isoparametric;
-#[path = "common/joined.rs"]
-mod joined;
 mod lead;
 mod leave_out;
 mod level;

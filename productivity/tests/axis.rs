@@ -1,6 +1,5 @@
 //! Fields of the tool's axis: what passes along them leave, that they keep the tool out of what stands around, and which places they
 //! say no axis reaches.
-#![allow(clippy::unwrap_used)]
 
 use crate::cutting;
 

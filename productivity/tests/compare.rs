@@ -1,5 +1,4 @@
 //! Screening of candidates: against closed forms where strips have one, and the reasons for what is not possible.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Paraboloid, Sphere};
 use osculate_geom::{Axis, Surface};

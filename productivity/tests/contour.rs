@@ -1,5 +1,4 @@
 //! Contour passes of a ball on a dome: heights, spacing and coverage against closed forms.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::Sphere;
 use osculate_geom::{Domain, Interval, Patch, Side, Surface, Vec3};

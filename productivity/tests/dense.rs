@@ -4,7 +4,6 @@
 //! A point at height z above the tip and at distance rho from the axis lies in the cutter as deep as its distance to the nearest
 //! of bottom, side and corner circle; this is never more than the depth along the face's normal. Between the poses of the path
 //! the tip goes straight and the axis is the normalised chord, as controls and the removal model have it.
-#![allow(clippy::unwrap_used)]
 
 use crate::cutting;
 

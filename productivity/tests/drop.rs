@@ -1,5 +1,4 @@
 //! Dropped cutters in parallel planes: what is left is measured with the swept cutter, spacing against closed forms.
-#![allow(clippy::unwrap_used)]
 
 use crate::dropped;
 

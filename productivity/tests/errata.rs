@@ -1,7 +1,6 @@
 //! Every erratum of R97 and M86: the printed form fails where the corrected one holds.
 //!
 //! Tests are named by paper and equation.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Ellipsoid, Paraboloid, Torus};
 use osculate_geom::indicatrix::Conformity;

@@ -1,5 +1,4 @@
 //! Gradient lines on three axes: what they leave and name, measured with the swept cutter; strips against M86's formula.
-#![allow(clippy::unwrap_used)]
 
 use crate::dropped;
 

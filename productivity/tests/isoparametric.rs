@@ -1,7 +1,6 @@
 //! What isoparametric plans leave on a part, judged by closed forms rather than by the planner's own reach.
-#![allow(clippy::unwrap_used)]
 
-use crate::joined;
+use crate::cutting::joined;
 
 use joined::joined;
 use osculate_geom::analytic::{Paraboloid, Plane, Torus};

@@ -1,5 +1,4 @@
 //! Lead that changes from place to place: what it leaves, how fast it changes and that no lead held all over is shorter.
-#![allow(clippy::unwrap_used)]
 
 use crate::cutting;
 

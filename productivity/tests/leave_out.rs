@@ -1,5 +1,4 @@
 //! Passes that end before the tool goes into a wall, against closed forms.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Line, Plane};
 use osculate_geom::{Domain, Extruded, Interval, Point3, Surface, Vec3, uv};

@@ -1,5 +1,4 @@
 //! Passes along level lines of a field: what they leave on analytic faces, by material removal, and spacings in closed form.
-#![allow(clippy::unwrap_used)]
 
 use crate::cutting;
 

@@ -4,7 +4,6 @@
 //! wherever the tool fits, upright or leaning along them, in any order and sense. Whatever the way from one to the next is, the tool
 //! stays out of plates and plane at every instant, its rapid moves stay above what may stand on the plane, and it goes over the sphere
 //! around the part no more often than passes lie in different channels.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Line, Plane};
 use osculate_geom::{Box3, Domain, Extruded, Interval, Point3, Unit3, Vec3, uv};

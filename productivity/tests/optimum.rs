@@ -1,5 +1,4 @@
 //! The posture of greatest productivity against scans and known cases.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Ellipsoid, Sphere, Torus};
 use osculate_geom::line::SurfaceLine;

@@ -1,5 +1,4 @@
 //! Passes in regions: on a cone along its rulings, where the far end needs several times the passes of the near one.
-#![allow(clippy::unwrap_used)]
 
 use crate::cutting;
 

@@ -1,6 +1,5 @@
 //! Roughing against closed forms and against a dense model of heights: what is taken of a known pocket, that nothing is met in rapid or
 //! straight down, that what is cleared is not cut again, and that a leaning axis clears what an upright one cannot.
-#![allow(clippy::unwrap_used)]
 
 use crate::heights;
 

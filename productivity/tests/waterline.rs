@@ -1,5 +1,4 @@
 //! Waterlines around steep faces: what is left is measured with the swept cutter, heights and lengths against closed forms.
-#![allow(clippy::unwrap_used)]
 
 use crate::dropped;
 

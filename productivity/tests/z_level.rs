@@ -1,6 +1,5 @@
 //! Roughing in layers: no move takes of the part plus its allowance, what is left lies close above it, and raw material is never
 //! met in rapid nor deeper than a step down.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::{Paraboloid, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Surface, Vec3};

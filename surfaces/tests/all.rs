@@ -1,6 +1,7 @@
 //! Tests of surfaces, files and bodies through the public names of the crate.
 //!
 //! One program for all of them: each file is a module, `cargo test --test all NAME::` runs one.
+#![allow(clippy::unwrap_used)]
 
 mod approximate;
 mod bodies;

@@ -1,7 +1,5 @@
 //! IGES written from faces and read again: the same splines, areas and sides, bodies that stay closed.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 use crate::solids;
 

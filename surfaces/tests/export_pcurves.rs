@@ -1,7 +1,5 @@
 //! The parameter curves of exported STEP: on the surface they are the edge, at every parameter, and a seam has two.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 use crate::solids;
 

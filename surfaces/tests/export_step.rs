@@ -1,7 +1,5 @@
 //! STEP written from faces and read again: the same surfaces to the bit, the same areas, bodies that stay closed.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 use crate::solids;
 

@@ -1,7 +1,5 @@
 //! Groups of faces and how their faces meet, on bodies whose answer is known.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 use crate::solids;
 

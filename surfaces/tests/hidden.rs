@@ -1,7 +1,5 @@
 //! Faces hidden in other bodies, against closed forms.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::bodies;
 
 use bodies::{ball, block, frame, post, splined, within};

@@ -1,7 +1,5 @@
 //! Assemblies, instances, names and colours of STEP files: every face at every place.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 
 use osculate_geom::Point3;

@@ -2,8 +2,6 @@
 //! instances, counts that lie, and long runs of one character. Every one ends soon, in bounded memory, and says what is
 //! wrong, where, and what to do.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 
 use osculate_surfaces::{Part, read, step};

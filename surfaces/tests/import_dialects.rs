@@ -1,8 +1,6 @@
 //! One square face written in the ways of Part 21 that occur in the wild: the face is read, or a diagnostic says what
 //! was lost. No dialect gives a part without faces and without a word.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 
 use osculate_surfaces::{ImportError, Part, read};

@@ -1,7 +1,5 @@
 //! IGES import against closed forms: every file is punched here, card by card.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::punched;
 
 use osculate_geom::{Point3, Surface, uv};

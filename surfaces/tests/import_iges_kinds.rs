@@ -1,7 +1,5 @@
 //! Kinds of IGES curves and surfaces against closed forms.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::punched;
 
 use osculate_geom::{Point3, Surface, uv};

@@ -1,7 +1,5 @@
 //! Groups, instances, names, status flags and the forms of IGES files.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::punched;
 
 use osculate_geom::{Point3, Surface, uv};

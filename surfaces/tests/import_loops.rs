@@ -1,8 +1,6 @@
 //! Loops that go through poles, around a surface without a partner, against their edges or beyond an apex, with areas and
 //! boxes in closed form.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 
 use osculate_surfaces::{Face, FaceKind, step};

@@ -1,7 +1,5 @@
 //! Bezier patch sets: Newell's layout and the one with degrees and poles.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::{Point3, Surface, uv};
 use osculate_surfaces::patches::{self, PatchesError};
 use osculate_surfaces::{FaceKind, Format, detect, read};

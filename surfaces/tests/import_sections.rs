@@ -1,7 +1,5 @@
 //! Sections of points: layouts, closed and open sides, contours, refusals.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::{Point3, Surface, uv};
 use osculate_surfaces::sections::{self, SectionsError};
 use osculate_surfaces::{FaceKind, Format, detect, read};

@@ -1,7 +1,5 @@
 //! STEP import against closed forms: every file is written here, face by face.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 
 use osculate_geom::{Axis, Side, Surface, uv};

@@ -1,7 +1,5 @@
 //! Faces as JSON and back: the same text, the same points to the bit; and every way a text can be wrong.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::part21;
 use crate::solids;
 

@@ -1,8 +1,6 @@
 //! Meshes of closed bodies: every side has its neighbour, areas and volumes tend to the exact ones with the chord
 //! tolerance, and no point of a face is farther from the mesh than that.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::solids;
 
 use osculate_geom::{Axis, Point3, Surface, uv};

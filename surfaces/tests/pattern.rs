@@ -1,5 +1,4 @@
 //! Circular patterns: faces of a part with known symmetry find their images, and what has none says so.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,7 +1,5 @@
 //! The side of the material from the whole part, held against files that say it.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::bodies;
 use crate::solids;
 

@@ -1,7 +1,5 @@
 //! Mesh files read back by their own rules.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::solids;
 
 use osculate_surfaces::{MeshOptions, mesh_faces, stl};

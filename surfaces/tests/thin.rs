@@ -1,8 +1,6 @@
 //! Packages of thin solids: plates with a hole, so thin that both sides lie within what the file says of its own exactness, against the
 //! closed form of their area and volume.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::Jet2;
 use osculate_surfaces::{Part, step};
 use std::f64::consts::PI;

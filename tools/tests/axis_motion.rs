@@ -1,5 +1,4 @@
 //! The motion of a cutter with an axis of its own against what its poses say, and leans of axes against their poses.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::Torus;
 use osculate_geom::line::{IsoLine, SurfaceLine};

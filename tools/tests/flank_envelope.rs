@@ -1,8 +1,6 @@
 //! The envelope of a moving flank against frozen positions, the reach of a moving cutter and D98's reference values; the
 //! global optimum against the values of other solvers and its own bound.
 
-#![allow(clippy::unwrap_used)]
-
 use osculate_geom::{Interval, Point3, Side, Surface, Unit3, uv};
 use osculate_surfaces::gallery::{
     LiuSize, ParaboloidSize, eq18_directrices, liu_directrices, paraboloid_directrices,

@@ -1,5 +1,4 @@
 //! Exact strips of every kind of cutter on spline faces, smooth and wavy, against brute force ([`dense`]).
-#![allow(clippy::unwrap_used)]
 
 use crate::dense;
 

@@ -1,7 +1,6 @@
 //! Exact strips on torus parts against independently computed widths (`data/torus_exact.json`).
 //!
 //! Fed along a parallel the sweep is a surface of revolution, whose meridian is known exactly.
-#![allow(clippy::unwrap_used)]
 
 use osculate_geom::analytic::Torus;
 use osculate_geom::{Axis, Flipped, Surface, uv};

@@ -1,7 +1,7 @@
 //! What passes leave on a face, by material removal along its normals, and how well they use the tolerance.
 
 #[path = "joined.rs"]
-mod joined;
+pub mod joined;
 
 use joined::joined;
 use osculate_geom::{Axis, Surface, Unit3, Uv};
