@@ -30,7 +30,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
-        Verb::Verify { files, job, lenient, second_opinion, ply, blocks } => cmd::verify::run(
+        Verb::Verify { files, job, lenient, second_opinion, ply, blocks, data } => cmd::verify::run(
             files,
             job,
             &cmd::verify::Options {
@@ -38,6 +38,7 @@ fn run(cli: &Cli) -> Outcome {
                 second_opinion: *second_opinion,
                 ply: ply.as_deref(),
                 blocks: blocks.as_deref(),
+                data: data.as_deref(),
             },
             cli.json,
         ),

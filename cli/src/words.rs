@@ -1,7 +1,8 @@
 //! Tables and numbers as text, for screens and pages.
 
-use osculate_geom::Diagnostic;
+use osculate_geom::{Diagnostic, Severity};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// Whether a character steers a terminal instead of standing on it: control characters, and those that turn the direction of writing.
 #[must_use]
@@ -88,9 +89,31 @@ impl Table {
     }
 }
 
-/// Findings, one a line.
+/// Places of findings that say the same which a line names; with more it counts the others.
+const PLACES: usize = 3;
+
+/// Findings, one a line; those that say the same of several places are one.
 pub fn findings(all: &[Diagnostic]) -> String {
-    all.iter().map(|d| format!("  {}\n", escaped(&d.to_string(), steers))).collect()
+    let mut told: Vec<(&Diagnostic, Vec<&str>)> = Vec::new();
+    let mut places: BTreeMap<(Severity, &str), usize> = BTreeMap::new();
+    for d in all {
+        let k = *places.entry((d.severity, &d.message)).or_insert(told.len());
+        if k == told.len() {
+            told.push((d, Vec::new()));
+        }
+        if !d.place.is_empty() {
+            told[k].1.push(&d.place);
+        }
+    }
+    let line = |(first, places): (&Diagnostic, Vec<&str>)| {
+        let mut place = places[..places.len().min(PLACES)].join(", ");
+        if places.len() > PLACES {
+            place += &format!(" and {} more", places.len() - PLACES);
+        }
+        let one = Diagnostic { place, ..first.clone() };
+        format!("  {}\n", escaped(&one.to_string(), steers))
+    };
+    told.into_iter().map(line).collect()
 }
 
 /// A number with `digits` significant digits, plain where it is neither huge nor tiny.
@@ -129,6 +152,15 @@ mod tests {
         assert_eq!(t.render(), "  name\n  ----------\n  two\\nlines\n");
         let found = findings(&[Diagnostic::note("F1 'a\nnote: F2'", "all is well")]);
         assert_eq!(found.lines().count(), 1, "{found}");
+    }
+
+    #[test]
+    fn what_is_the_same_in_several_places_is_one_line() {
+        let all = ["T1", "T2", "T3", "T4"].map(|place| Diagnostic::warning(place, "it is a drill"));
+        let other = Diagnostic::note("T2", "it is long");
+        let found = findings(&[all[0].clone(), other, all[1].clone(), all[2].clone(), all[3].clone()]);
+        assert_eq!(found, "  warning: T1, T2, T3 and 1 more: it is a drill\n  note: T2: it is long\n");
+        assert_eq!(findings(&all[..1]), "  warning: T1: it is a drill\n");
     }
 
     #[test]

@@ -21,6 +21,7 @@ mod library;
 mod lines;
 mod main_job;
 mod matrix;
+mod measured_data;
 mod mesh;
 mod operations;
 mod outputs;

@@ -84,7 +84,7 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
         } else {
             let line = |start: &str, mark: &str| {
                 let same = |l: &&str| l.starts_with(start) && l.contains(mark);
-                before.lines().find(same).map_or_else(String::new, |l| format!("{l}\n"))
+                before.lines().filter(same).map(|l| format!("{l}\n")).collect::<String>()
             };
             (line("| ", &format!("| `{name}` |")), line("- ", &format!("`{name}`")))
         };
@@ -181,6 +181,10 @@ fn one(
             return Ok((format!("{begin} - | - | {} | {rest} - | - |\n", init.seconds()), not_ended("init")));
         }
     }
+    let warned = warnings(&init);
+    let before: String = warned.iter().map(|w| because("init, before anything is planned", w)).collect();
+    let because = |verb: &str, why: &str| format!("{before}{}", because(verb, why));
+    let not_ended = |verb: &str| format!("{before}{}", not_ended(verb));
     let job = at("job/job.toml");
     let check = said(program, &["check", &job, "--json"], within)?;
     let asked: Value = serde_json::from_str(&check.out).unwrap_or_default();
@@ -213,6 +217,13 @@ fn one(
     );
     let why = if answer == "held" { String::new() } else { because("plan", &verdict(&s)) };
     Ok((row, why))
+}
+
+/// The warnings of a verb that ended well, from its JSON.
+fn warnings(said: &Said) -> Vec<String> {
+    let object: Value = serde_json::from_str(&said.out).unwrap_or_default();
+    let all = object["diagnostics"].as_array().cloned().unwrap_or_default();
+    all.iter().filter_map(|d| Some(d.as_str()?.strip_prefix("warning: ")?.to_owned())).collect()
 }
 
 /// What a verb that ended with a failure said, from its JSON or its last line.

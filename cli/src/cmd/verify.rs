@@ -9,6 +9,8 @@ use osculate::watch::Stage;
 use osculate::words::{self, Table, number};
 use osculate::work::check::{Checked, Source, check};
 use osculate::work::joints::JointFigures;
+use osculate::work::measured_data;
+use osculate::work::nc::Motions;
 use osculate::work::operations::{self, Text};
 use osculate::work::opinion::{self, SecondOpinion};
 use osculate::work::ply;
@@ -44,6 +46,8 @@ pub struct Options<'a> {
     pub ply: Option<&'a Path>,
     /// Where the blocks' engagement goes.
     pub blocks: Option<&'a Path>,
+    /// The folder for what was measured and the tool's way.
+    pub data: Option<&'a Path>,
 }
 
 /// Runs the verb.
@@ -52,6 +56,7 @@ pub fn run(files: &[PathBuf], job_path: &Path, options: &Options<'_>, json: bool
         let read: Vec<&Path> = files.iter().map(PathBuf::as_path).chain([job_path]).collect();
         output::file(path, &read)?;
     }
+    options.data.map_or(Ok(()), output::folder)?;
     let job_text = read_text(job_path)?;
     if Operations::are_in(&job_text) {
         return of_list(files, Operations::from_toml(&job_text, job_path)?, options, json);
@@ -87,6 +92,7 @@ pub fn run(files: &[PathBuf], job_path: &Path, options: &Options<'_>, json: bool
     if let (Some(path), Some(stock)) = (options.blocks, &v.stock) {
         output::write(path, stock.csv().as_bytes())?;
     }
+    data(options, (&v, &part), &read.motions)?;
     let joints = read.motions.joints.as_ref().map(JointFigures::of);
     answered((&v, wall_s), second, joints, json)
 }
@@ -106,12 +112,21 @@ fn of_list(files: &[PathBuf], list: Operations, options: &Options<'_>, json: boo
     let (part, list) = operations::part(list, &SCREEN)?;
     let given: Vec<Text<'_>> = files.iter().zip(&texts).map(|(file, text)| Text { file, text }).collect();
     let stage = Stage::begin(&SCREEN, "verify");
-    let v = operations::verify(&part, &list, &given, options.lenient, &|f| stage.at(f))?;
+    let (v, motions) = operations::verify(&part, &list, &given, options.lenient, &|f| stage.at(f))?;
     let wall_s = stage.end();
     if let (Some(path), Some(stock)) = (options.blocks, &v.stock) {
         output::write(path, stock.csv().as_bytes())?;
     }
+    data(options, (&v, &part), &motions)?;
     answered((&v, wall_s), None, None, json)
+}
+
+/// Writes what was measured and the tool's way, where that is asked for.
+fn data(options: &Options<'_>, of: (&Verified, &Part), motions: &Motions) -> Result<(), Failure> {
+    let Some(folder) = options.data else { return Ok(()) };
+    let files = measured_data::files(of, (&motions.motions, &motions.times_min));
+    let all: Vec<(&str, &[u8])> = files.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
+    output::set(folder, &all)
 }
 
 /// What was found, as data or for a person.

@@ -110,6 +110,9 @@ pub enum Verb {
         /// Write what each block took from the raw material, its chip section and engagement, as a CSV file.
         #[arg(long, value_name = "FILE")]
         blocks: Option<PathBuf>,
+        /// Write what was measured at every sample and the way of the tool into a folder, as files of VTK (.vtp, for ParaView) and NumPy (.npz).
+        #[arg(long, value_name = "FOLDER")]
+        data: Option<PathBuf>,
     },
     /// Machining time of an NC program with the axes' limits.
     Time(TimeArgs),

@@ -16,6 +16,7 @@ pub mod init;
 pub mod joints;
 pub mod left_out;
 pub mod look;
+pub mod measured_data;
 pub mod nc;
 pub mod operations;
 pub mod opinion;

@@ -18,17 +18,16 @@
 //! that is two thousand of them, most of which cost one point of the face between two that are known.
 
 use super::foot::{Beside, Foot, Place, most_mm, nearest};
+use super::hints::Hints;
 use super::job::{Cut, Sample};
-use super::rim::{OpenRim, Rims, around, key};
+use super::rim::{OpenRim, Rims};
 use osculate_geom::{Point3, Surface, Unit3, Uv};
 use rayon::prelude::*;
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::VecDeque;
 use std::sync::OnceLock;
 
 /// What lies beneath is nearer to another place than this share of the depth that is asked for; at an inner edge it is as far.
 const NEARER: f64 = 0.999;
-/// Samples nearer than this share of a box are crowded: even ones are twice as far apart.
-const CROWDED: f64 = 0.25;
 /// Steps towards the nearest point of another face.
 const STEPS: usize = 8;
 /// Pieces of what was taken beneath a sample at first ...
@@ -60,9 +59,6 @@ pub fn beside_edges(
     samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
 }
 
-/// Of each box of space the samples in it: face and place on it.
-type Hints = HashMap<[i64; 3], Vec<(u32, Uv, Point3)>>;
-
 /// All faces of a goal, found by place.
 pub(super) struct Edges<'a> {
     surfaces: &'a [&'a dyn Surface],
@@ -86,17 +82,8 @@ impl<'a> Edges<'a> {
 
     fn hints(&self) -> &(Hints, Rims) {
         self.hints.get_or_init(|| {
-            let mut out = Hints::new();
-            // Samples that were added where limits are near lie as close as one wants: of those together that look the same way one will do.
-            let mut taken = HashSet::new();
-            // Places on fixtures are on no face.
-            for s in self.samples.iter().filter(|s| (s.face as usize) < self.surfaces.len()) {
-                let way = [s.normal.x > 0.0, s.normal.y > 0.0, s.normal.z > 0.0];
-                if taken.insert((key(&s.point, CROWDED * self.side_mm), s.face, way)) {
-                    out.entry(key(&s.point, self.side_mm)).or_default().push((s.face, s.uv, s.point));
-                }
-            }
-            (out, Rims::new(self.rims, self.side_mm))
+            let hints = Hints::new(self.samples, self.surfaces.len(), self.side_mm);
+            (hints, Rims::new(self.rims, self.side_mm))
         })
     }
 
@@ -123,20 +110,8 @@ impl<'a> Edges<'a> {
     /// The place nearest to a point beneath a place of a face, as far as it is found, of all faces and of walls on open rims of this one;
     /// looking ends where it is below `enough_mm`.
     fn foot(&self, q: &Point3, (place, face): (&Point3, u32), enough_mm: f64) -> Foot {
-        let hints = &self.hints().0;
         // Of each face around, its own among them, the nearest sample.
-        let mut near: Vec<(f64, u32, Uv)> = Vec::new();
-        for key in around(q, self.side_mm) {
-            for (other, at, point) in hints.get(&key).into_iter().flatten() {
-                let away = (point - q).norm();
-                match near.iter_mut().find(|n| n.1 == *other) {
-                    Some(n) if away < n.0 => *n = (away, *other, *at),
-                    Some(_) => {}
-                    None => near.push((away, *other, *at)),
-                }
-            }
-        }
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let near = self.hints().0.nearest(q);
         let mut least = Foot { mm: f64::INFINITY, on: None };
         for (away, other, at) in near {
             let surface = self.surfaces[other as usize];

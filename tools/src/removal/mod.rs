@@ -59,6 +59,7 @@ mod foot;
 mod goal;
 mod grid;
 mod hidden;
+mod hints;
 mod job;
 mod material;
 mod piece;

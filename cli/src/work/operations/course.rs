@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::job::{Job, Operations};
 use crate::part::Part;
 use crate::work::goal::Aim;
-use crate::work::nc::{self, Call};
+use crate::work::nc::{self, Call, Motions};
 use crate::work::operations::Judged;
 use crate::work::operations::passages::Passages;
 use crate::work::verify::{self, Reading, Verified};
@@ -154,6 +154,13 @@ impl Course {
             }
         }
         Ok(out)
+    }
+
+    /// The motions alone, as reports take them.
+    pub fn into_motions(self) -> Motions {
+        let time_min = self.setup_min.iter().sum();
+        let Self { motions, times_min, at_nose, .. } = self;
+        Motions { motions, times_min, at_nose, time_min, ..Motions::default() }
     }
 
     /// The tools of a program whose first motion is `begin`.

@@ -16,6 +16,7 @@ use crate::failure::Failure;
 use crate::job::{Job, Operation, Operations};
 use crate::part::Part;
 use crate::watch::{Stage, Watch};
+use crate::work::nc::Motions;
 use crate::work::plan::Plan;
 use crate::work::program::WallS;
 use crate::work::stock::RawMaterial;
@@ -131,13 +132,13 @@ pub fn verify(
     texts: &[Text<'_>],
     lenient: bool,
     progress: &(dyn Fn(f64) + Sync),
-) -> Result<Verified, Failure> {
+) -> Result<(Verified, Motions), Failure> {
     let course = Course::read(list, part, texts, lenient).map_err(|why| part.warned(why))?;
     let (mut verified, _) = course.judge((list, part), &[], progress)?;
     let of_stock = std::mem::take(&mut verified.diagnostics);
     verified.diagnostics =
         part.part.diagnostics.iter().chain(&course.diagnostics).cloned().chain(of_stock).collect();
-    Ok(verified)
+    Ok((verified, course.into_motions()))
 }
 
 /// An operation judged.

@@ -8,7 +8,7 @@ use crate::report::{Column, Table};
 use crate::watch::{Stage, Watch};
 use crate::words::number;
 use crate::work::extras::Extras;
-use crate::work::nc::{self, Motions};
+use crate::work::nc;
 use crate::work::operations::Judged;
 use crate::work::operations::course::Course;
 use crate::work::operations::posted::Program;
@@ -104,7 +104,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     summary.operations = operations;
     summary.wall_s = wall_s;
     let clamped = course.setups.iter().zip(&programs).map(|(range, p)| (range.start, p.setup)).collect();
-    let read = motions(course);
+    let read = course.into_motions();
     let title = passes::title(job);
     let story = fill::Story {
         title: &title,
@@ -225,13 +225,6 @@ fn merged(steps: &[Step<'_>]) -> Planned<'static> {
         extras,
         with_strips: true,
     }
-}
-
-/// The motions as reports take them.
-fn motions(course: Course) -> Motions {
-    let time_min = course.setup_min.iter().sum();
-    let Course { motions, times_min, at_nose, .. } = course;
-    Motions { motions, times_min, at_nose, time_min, ..Motions::default() }
 }
 
 /// The operations with the figures that one compares.
