@@ -5,8 +5,8 @@ use super::rim::{around, key};
 use osculate_geom::{Box3, Point3, Uv, Vec3};
 use std::collections::HashMap;
 
-/// Samples that were added where limits are near crowd together: they are kept in boxes of this share of the others.
-const SMALL: f64 = 0.125;
+/// Samples of a flock at most: those that were added where limits are near crowd together by thousands.
+const MOST: usize = 24;
 
 /// Samples of a face that lie together.
 struct Flock {
@@ -16,6 +16,21 @@ struct Flock {
 }
 
 impl Flock {
+    /// The members in flocks of [`MOST`] at most, halved across the longest side of their boxes.
+    fn halved(face: u32, members: &mut [(Uv, Point3)], out: &mut Vec<Self>) {
+        let bounds = Box3::around(members.iter().map(|m| &m.1));
+        if members.len() <= MOST {
+            out.push(Self { face, bounds, members: members.to_vec() });
+            return;
+        }
+        let axis = (bounds.max - bounds.min).imax();
+        let middle = members.len() / 2;
+        members.select_nth_unstable_by(middle, |a, b| a.1[axis].total_cmp(&b.1[axis]));
+        let (low, high) = members.split_at_mut(middle);
+        Self::halved(face, low, out);
+        Self::halved(face, high, out);
+    }
+
     /// No member is nearer to a point, mm.
     fn away_mm(&self, q: &Point3) -> f64 {
         let beyond = |k: usize| (self.bounds.min[k] - q[k]).max(q[k] - self.bounds.max[k]).max(0.0);
@@ -35,19 +50,21 @@ pub(super) type Hint = (f64, u32, Uv);
 impl Hints {
     /// The samples on so many faces, found in boxes of this side. Places on fixtures are on no face.
     pub fn new(samples: &[Sample], faces: usize, side_mm: f64) -> Self {
-        let mut boxes: HashMap<[i64; 3], Vec<Flock>> = HashMap::new();
-        // The flock of each small box and face: its place among those of the large box.
-        let mut places: HashMap<([[i64; 3]; 2], u32), usize> = HashMap::new();
+        let mut whole: HashMap<[i64; 3], Vec<(u32, Vec<(Uv, Point3)>)>> = HashMap::new();
         for s in samples.iter().filter(|s| (s.face as usize) < faces) {
-            let keys = [side_mm, SMALL * side_mm].map(|side| key(&s.point, side));
-            let all = boxes.entry(keys[0]).or_default();
-            let place = *places.entry((keys, s.face)).or_insert(all.len());
-            if place == all.len() {
-                all.push(Flock { face: s.face, bounds: Box3::empty(), members: Vec::new() });
-            }
-            all[place].bounds.add(&s.point);
-            all[place].members.push((s.uv, s.point));
+            let all = whole.entry(key(&s.point, side_mm)).or_default();
+            let place = all.iter().position(|f| f.0 == s.face).unwrap_or_else(|| {
+                all.push((s.face, Vec::new()));
+                all.len() - 1
+            });
+            all[place].1.push((s.uv, s.point));
         }
+        let flocks = |all: Vec<(u32, Vec<(Uv, Point3)>)>| {
+            let mut out = Vec::new();
+            all.into_iter().for_each(|(face, mut members)| Flock::halved(face, &mut members, &mut out));
+            out
+        };
+        let boxes = whole.into_iter().map(|(key, all)| (key, flocks(all))).collect();
         Self { side_mm, boxes }
     }
 
