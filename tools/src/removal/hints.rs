@@ -8,11 +8,14 @@ use std::collections::HashMap;
 /// Samples of a flock at most: those that were added where limits are near crowd together by thousands.
 const MOST: usize = 24;
 
+/// Places on a face, and where they are.
+type Members = Vec<(Uv, Point3)>;
+
 /// Samples of a face that lie together.
 struct Flock {
     face: u32,
     bounds: Box3,
-    members: Vec<(Uv, Point3)>,
+    members: Members,
 }
 
 impl Flock {
@@ -50,7 +53,7 @@ pub(super) type Hint = (f64, u32, Uv);
 impl Hints {
     /// The samples on so many faces, found in boxes of this side. Places on fixtures are on no face.
     pub fn new(samples: &[Sample], faces: usize, side_mm: f64) -> Self {
-        let mut whole: HashMap<[i64; 3], Vec<(u32, Vec<(Uv, Point3)>)>> = HashMap::new();
+        let mut whole: HashMap<[i64; 3], Vec<(u32, Members)>> = HashMap::new();
         for s in samples.iter().filter(|s| (s.face as usize) < faces) {
             let all = whole.entry(key(&s.point, side_mm)).or_default();
             let place = all.iter().position(|f| f.0 == s.face).unwrap_or_else(|| {
@@ -59,7 +62,7 @@ impl Hints {
             });
             all[place].1.push((s.uv, s.point));
         }
-        let flocks = |all: Vec<(u32, Vec<(Uv, Point3)>)>| {
+        let flocks = |all: Vec<(u32, Members)>| {
             let mut out = Vec::new();
             all.into_iter().for_each(|(face, mut members)| Flock::halved(face, &mut members, &mut out));
             out
