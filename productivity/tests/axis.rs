@@ -165,7 +165,6 @@ fn found(tool: &Tool, machine: &Machine, left: Left<'_>) -> Found {
     };
     let wish = Wish {
         surface: &floor,
-        feeds: &[&along_v],
         scallop_mm: 0.02,
         feed_mm_min: 1000.0,
         joints: machine,
@@ -173,7 +172,7 @@ fn found(tool: &Tool, machine: &Machine, left: Left<'_>) -> Found {
         around: &Surroundings::of(&around).unwrap(),
         lean_rad: [0.0, 1.5],
     };
-    find(&wish).unwrap().remove(0)
+    find(&wish, &along_v).unwrap()
 }
 
 #[test]

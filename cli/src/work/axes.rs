@@ -2,12 +2,11 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::job::strategy::Kind;
 use crate::part::{self, LoadedFace, Part};
 use crate::work::setup;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv, Vec3};
 use osculate_postproc::{Machine, Orienting, Setup, in_travel};
-use osculate_productivity::axis::{self, Around, Feed, Found, Joints, Left, Surroundings, Wish};
+use osculate_productivity::axis::{Around, Found, Joints, Left, Possibilities, Surroundings, Wish};
 use osculate_productivity::plan::{Along, Named, Strategy, Tolerance};
 use osculate_tools::reach::{Member, Tool};
 use osculate_tools::{Cutter, Pose};
@@ -92,12 +91,32 @@ fn feed_of(strategy: &Strategy) -> impl Fn(Uv, &Jet2) -> Option<Vec3> + Sync + u
 /// A field, and what is to be said of it.
 type Told = (Found, Vec<Diagnostic>);
 
+/// What was found, by the place of the face and what else tells one from another.
+type Known<K, V> = Mutex<BTreeMap<K, Arc<V>>>;
+
 /// Fields of axes over the faces of a job with one tool, each found once.
 #[derive(Default)]
 pub struct Fields {
     around: OnceLock<Surroundings>,
-    /// By the place of the face and the direction of passes.
-    found: Mutex<BTreeMap<(usize, &'static str), Arc<Told>>>,
+    possible: Known<usize, Possibilities>,
+    /// By the direction of passes too.
+    found: Known<(usize, &'static str), Told>,
+}
+
+/// What is known, or else what is made of it now.
+fn known<K: Ord, V>(
+    all: &Known<K, V>,
+    key: K,
+    make: impl FnOnce() -> Result<V, Failure>,
+) -> Result<Arc<V>, Failure> {
+    let lock = || all.lock().unwrap_or_else(PoisonError::into_inner);
+    let before = lock().get(&key).cloned();
+    if let Some(before) = before {
+        return Ok(before);
+    }
+    let made = Arc::new(make()?);
+    lock().insert(key, Arc::clone(&made));
+    Ok(made)
 }
 
 impl Fields {
@@ -109,30 +128,30 @@ impl Fields {
         (place, face): (usize, &LoadedFace),
         (tolerance, strategy): (Tolerance, &Strategy),
     ) -> Result<Arc<Told>, Failure> {
-        let key = |s: &Strategy| (place, direction(s));
-        let known = |k: &(usize, &'static str)| {
-            let all = self.found.lock().unwrap_or_else(PoisonError::into_inner);
-            all.get(k).cloned()
-        };
-        if let Some(found) = known(&key(strategy)) {
-            return Ok(found);
-        }
         if self.around.get().is_none() {
             let _ = self.around.set(surroundings(job, faces, &job.cutter())?);
         }
         let around = self.around.get_or_init(Surroundings::default);
-        // What is possible is the same for all directions: those that are likely to be asked for next are found with it.
-        let lines = [Axis::U, Axis::V].map(|a| Strategy::Isoparametric { along: Along::Fixed(a) });
-        let given = matches!(&job.strategy().kind, Kind::Faces(s) if !direction(s).is_empty());
-        let one = given || direction(strategy).is_empty();
-        let wanted = if one { vec![*strategy] } else { lines.to_vec() };
-        let feeds: Vec<_> = wanted.iter().map(feed_of).collect();
-        let feeds: Vec<&Feed<'_>> = feeds.iter().map(|f| f as &Feed<'_>).collect();
-        let told = found(job, faces, (face, around), (tolerance, &feeds))?;
-        let mut all = self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        all.extend(wanted.iter().map(key).zip(told.into_iter().map(Arc::new)));
-        drop(all);
-        known(&key(strategy)).ok_or_else(|| Failure::job("no field of axes for a strategy"))
+        known(&self.found, (place, direction(strategy)), || {
+            let (cutter, holder) = (job.cutter(), job.holder());
+            let (setup, _) = setup::of(job, faces, None);
+            let control = job.control();
+            let joints = Standing::new(&control.machine, setup);
+            let wish = Wish {
+                surface: &*face.surface,
+                scallop_mm: tolerance.scallop_mm,
+                feed_mm_min: job.feed_mm_min(),
+                joints: &joints,
+                tool: &Tool::new(cutter, holder),
+                around,
+                lean_rad: [if cutter.is_ball() { 0.0 } else { LEAST_RAD }, FRAC_PI_2 - UPRIGHT_RAD],
+            };
+            let failed = |e| Failure::file(job.path(), format!("face {}: {e}", face.id));
+            // What is possible is the same for all directions.
+            let possible = known(&self.possible, place, || Possibilities::of(&wish).map_err(failed))?;
+            let found = possible.field(&wish, &feed_of(strategy)).map_err(failed)?;
+            Ok(told(faces, face, found))
+        })
     }
 }
 
@@ -162,31 +181,6 @@ fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surroundings
         left: faces.left(),
     };
     Surroundings::of(&around).map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))
-}
-
-/// The fields of axes over a face for passes that run along each of `feeds`, and what is to be said of them.
-fn found(
-    job: &Job,
-    faces: &Part,
-    (face, around): (&LoadedFace, &Surroundings),
-    (tolerance, feeds): (Tolerance, &[&Feed<'_>]),
-) -> Result<Vec<Told>, Failure> {
-    let (cutter, holder) = (job.cutter(), job.holder());
-    let (setup, _) = setup::of(job, faces, None);
-    let control = job.control();
-    let joints = Standing::new(&control.machine, setup);
-    let wish = Wish {
-        surface: &*face.surface,
-        feeds,
-        scallop_mm: tolerance.scallop_mm,
-        feed_mm_min: job.feed_mm_min(),
-        joints: &joints,
-        tool: &Tool::new(cutter, holder),
-        around,
-        lean_rad: [if cutter.is_ball() { 0.0 } else { LEAST_RAD }, FRAC_PI_2 - UPRIGHT_RAD],
-    };
-    let found = axis::find(&wish).map_err(|e| Failure::file(job.path(), format!("face {}: {e}", face.id)))?;
-    Ok(found.into_iter().map(|found| told(faces, face, found)).collect())
 }
 
 /// A field with what is to be said of it.

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{LoadedFace, Part, area};
+use crate::work::budget;
 use osculate_productivity::plan::Linked;
 use osculate_tools::removal::{self, Limits, Sample, Swept};
 
@@ -73,8 +74,10 @@ impl Look {
     pub fn objection(&self, job: &Job) -> Result<Option<Objection>, Failure> {
         let t = job.tolerance();
         let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
+        // What verdicts add can be shown to hold no more.
+        let left_mm = budget::left_in(job).gouge_mm;
         let found = [
-            ("gouges", self.gouge_mm, t.gouge_mm),
+            ("gouges", self.gouge_mm, left_mm),
             ("its holder takes", self.holder_mm, collision),
             ("leaves", self.left_mm, t.scallop_mm),
         ];
@@ -83,7 +86,7 @@ impl Look {
             digs_in: k == 0,
             left_mm: (k == 2).then_some(is),
             marks_mm: 0.0,
-            text: format!("{what} {is:.4} mm by a coarse look, {limit} mm is accepted"),
+            text: format!("{what} {is:.4} mm by a coarse look, {limit:.4} mm is accepted"),
         }))
     }
 }

@@ -17,6 +17,8 @@ const MOST: f64 = 5e5;
 const FEWEST: usize = 200;
 /// Points stand no closer than lets a ball go deeper between them by this part of what it may.
 const HIDDEN: f64 = 0.2;
+/// Where they stand further apart they are sunk the less; by this part of it at least, as the tool touches the face.
+const LEAST_SUNK: f64 = 0.2;
 /// Edges sharper than this part of the tool's radius count as so round.
 const SHARP: f64 = 0.1;
 /// What is kept from points that are not next to what is machined, of their spacing: half the side of a cell.
@@ -132,8 +134,14 @@ impl Surroundings {
             [found, others]
         };
         let apart = others.iter().map(|f| f.density.spacing_mm).fold(0.0, f64::max);
-        let own: Vec<Sample> = machined.into_iter().flat_map(|f| f.samples).collect();
+        let own: Vec<Sample> = machined.iter().flat_map(|f| &f.samples).copied().collect();
         let touched = Touched::new(&own, 0.5 * around.cutter.radius_mm());
+        // How deep a tool comes between points is known by how far they are apart.
+        let deeper = |apart_mm: f64| apart_mm * apart_mm / (8.0 * round_mm);
+        let by_mm = |apart_mm: f64| {
+            let more = deeper(apart_mm) - HIDDEN * around.gouge_mm;
+            (around.gouge_mm - more.max(0.0)).max(LEAST_SUNK * around.gouge_mm)
+        };
         let sunk = |s: &Sample| sunk(s, around.gouge_mm);
         let other = |s: Sample| {
             if touched.holds(&s.point) {
@@ -143,7 +151,11 @@ impl Surroundings {
             }
         };
         let others = others.into_iter().flat_map(|f| f.samples).map(other);
-        let points = own.iter().map(sunk).chain(others).chain(around.left.obstacles());
+        let own = machined.iter().flat_map(|f| {
+            let mm = by_mm(f.density.spacing_mm);
+            f.samples.iter().map(move |s| self::sunk(s, mm))
+        });
+        let points = own.chain(others).chain(around.left.obstacles());
         // Samples have finite coordinates, and there are far fewer than an index can hold.
         let obstacles = Obstacles::new(points).unwrap_or_default();
         Ok(Self { obstacles, keep_mm: ADDED * apart, stock_mm: around.left.keep_mm() })

@@ -29,8 +29,6 @@ const LIFTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 pub struct Wish<'a> {
     /// The face, with its trims and material side.
     pub surface: &'a dyn Surface,
-    /// The directions in which passes may run: a field is found for each.
-    pub feeds: &'a [&'a Feed<'a>],
     /// Highest material left between passes, mm.
     pub scallop_mm: f64,
     /// Feed, mm/min.
@@ -88,27 +86,42 @@ pub enum NoField {
     },
 }
 
-/// Finds the field of axes of least time over a face, for each direction of passes.
+/// What is possible at the nodes of a face, whatever the direction of passes.
+pub struct Possibilities {
+    lattice: Lattice,
+    /// Whether the joints reach but a line of axes.
+    on_line: bool,
+    directions: Directions,
+    /// The directions that the machine allows.
+    mask: Bits,
+    possible: Vec<Possible>,
+    /// Places between the nodes that the field is asked at.
+    between: Vec<Uv>,
+    unreached: Vec<Unreached>,
+    area_mm2: f64,
+    /// Nodes at which a tool was to stand.
+    places: usize,
+}
+
+/// Finds the field of axes of least time over a face for passes that run along a direction.
 ///
 /// # Errors
 /// Where the machine has no axis, or none is possible anywhere on the face.
-pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
+pub fn find(wish: &Wish<'_>, feed: &Feed<'_>) -> Result<Found, NoField> {
+    Possibilities::of(wish)?.field(wish, feed)
+}
+
+/// The face as passes see it that run out over its border, and how far to each side of a place its shape is looked at, mm.
+fn seen<'a>(wish: &Wish<'a>) -> (Extended<'a>, [f64; 2]) {
     let cutter: &Cutter = wish.tool.cutter();
     let widest_mm = WIDEST * cutter.radius_mm();
-    let face = Extended::by(wish.surface, widest_mm);
     // Half the strip of the tool's corner: what is narrower is the face's roughness, not its shape.
     let look_mm = (2.0 * cutter.corner_mm() * wish.scallop_mm).sqrt();
-    let lattice = Lattice::new(&face, cutter.radius_mm(), (widest_mm, look_mm));
-    let rough = lattice.nodes.iter().any(|n| n.rough);
-    let line = wish.joints.line();
-    let on_line = line.is_some();
-    let directions = line.map_or_else(|| Directions::icosphere(LEVEL), Directions::row);
-    let directions = directions.map_err(|_| NoField::NoAxis)?;
-    let all = directions.all();
-    let mask = Bits::of(all.len(), |k| wish.joints.reaches(&all[k]));
-    if mask.is_empty() {
-        return Err(NoField::NoAxis);
-    }
+    (Extended::by(wish.surface, widest_mm), [widest_mm, look_mm])
+}
+
+/// The reach of a tool over some of the directions.
+fn reach<'a>(wish: &Wish<'a>, directions: &'a Directions, mask: &'a Bits) -> Result<Reach<'a>, NoField> {
     let limits = ReachLimits {
         gouge_mm: 0.0,
         clearance_mm: wish.around.keep_mm,
@@ -117,117 +130,147 @@ pub fn find(wish: &Wish<'_>) -> Result<Vec<Found>, NoField> {
         most_lean_rad: wish.lean_rad[1],
     };
     let obstacles = &wish.around.obstacles;
-    let reach = Reach::new(ReachProblem {
-        tool: wish.tool,
-        limits,
-        obstacles,
-        directions: &directions,
-        allowed: Some(&mask),
-    })?;
-    let lifts_mm = LIFTS.map(|share| share * wish.scallop_mm);
-    let mut places: Vec<Option<Place>> = lattice
-        .nodes
-        .iter()
-        .map(|n| n.normal.filter(|_| n.stood).map(|normal| Place { point: n.point, normal }))
-        .collect();
-    let on_face: Vec<Place> = places.iter().flatten().copied().collect();
-    // Where the machine has few axes its other joints may leave even fewer.
-    let travels = |place: &Place, axis: &Unit3| {
-        !on_line || wish.joints.travels(&pose_with_axis(cutter, &place.point, &place.normal, axis))
-    };
-    let left = |place: &Place, bits: Bits| {
-        if !on_line {
-            return bits;
+    Ok(Reach::new(ReachProblem { tool: wish.tool, limits, obstacles, directions, allowed: Some(mask) })?)
+}
+
+/// Whether the machine's slides reach a place with an axis: where it has few axes its other joints may leave even fewer.
+fn travels(wish: &Wish<'_>, on_line: bool, place: &Place, axis: &Unit3) -> bool {
+    let pose = || pose_with_axis(wish.tool.cutter(), &place.point, &place.normal, axis);
+    !on_line || wish.joints.travels(&pose())
+}
+
+impl Possibilities {
+    /// Asks the nodes of a face.
+    ///
+    /// # Errors
+    /// Where the machine has no axis.
+    pub fn of(wish: &Wish<'_>) -> Result<Self, NoField> {
+        let cutter: &Cutter = wish.tool.cutter();
+        let (face, [widest_mm, look_mm]) = seen(wish);
+        let lattice = Lattice::new(&face, cutter.radius_mm(), (widest_mm, look_mm));
+        let line = wish.joints.line();
+        let on_line = line.is_some();
+        let directions = line.map_or_else(|| Directions::icosphere(LEVEL), Directions::row);
+        let directions = directions.map_err(|_| NoField::NoAxis)?;
+        let all = directions.all();
+        let mask = Bits::of(all.len(), |k| wish.joints.reaches(&all[k]));
+        if mask.is_empty() {
+            return Err(NoField::NoAxis);
         }
-        Bits::of(all.len(), |k| bits.contains(k) && travels(place, &all[k]))
-    };
-    let reached = reach.map(&on_face);
-    let mut reached = on_face.iter().zip(reached).map(|(place, bits)| left(place, bits));
-    let mut bits: Vec<Option<Bits>> =
-        places.iter().map(|p| p.as_ref().and_then(|_| reached.next())).collect();
-    // Where the tool cannot come down to the face it may still stand off by what may be left.
-    let lifted = |place: &Place| {
-        lifts_mm.iter().find_map(|mm| {
-            let place = Place { point: place.point + place.normal.into_inner() * *mm, ..*place };
-            let bits = left(&place, reach.map(&[place]).pop()?);
-            (!bits.is_empty()).then_some((place, bits))
-        })
-    };
-    places.par_iter_mut().zip(&mut bits).for_each(|(place, bits)| {
-        let (Some(place), Some(bits)) = (place, bits) else { return };
-        if bits.is_empty()
-            && let Some((lifted, found)) = lifted(place)
-        {
-            (*place, *bits) = (lifted, found);
-        }
-    });
-    // A ball's strip is the same at any lean.
-    let rims = !on_line && !cutter.is_ball();
-    let rim = |node: &Node, place: &Place| {
-        let jet = face.jet2(node.at);
-        Rim::of(&reach, place, [jet.du, jet.dv], wish.lean_rad[0])
-    };
-    let possible: Vec<Possible> = lattice
-        .nodes
-        .par_iter()
-        .zip(places.par_iter().zip(&bits))
-        .map(|(node, both)| match both {
-            (Some(place), Some(bits)) => {
-                let rim = rims.then(|| rim(node, place));
-                // Where no axis is possible nothing is cut: there the field goes on as it comes.
-                let none = bits.is_empty() && rim.as_ref().is_none_or(Rim::is_empty);
-                if none { Possible::default() } else { Possible::new(&directions, bits, rim) }
+        let reach = reach(wish, &directions, &mask)?;
+        let lifts_mm = LIFTS.map(|share| share * wish.scallop_mm);
+        let mut places: Vec<Option<Place>> = lattice
+            .nodes
+            .iter()
+            .map(|n| n.normal.filter(|_| n.stood).map(|normal| Place { point: n.point, normal }))
+            .collect();
+        let on_face: Vec<Place> = places.iter().flatten().copied().collect();
+        let left = |place: &Place, bits: Bits| {
+            if !on_line {
+                return bits;
             }
-            _ => Possible::default(),
-        })
-        .collect();
-    let asked = Asked {
-        cutter,
-        scallop_mm: wish.scallop_mm,
-        feed_mm_min: wish.feed_mm_min,
-        directions: &directions,
-        joints: wish.joints,
-        clear: &|place: &Place, axis: &Unit3| reach.is_clear(place, axis) && travels(place, axis),
-        on_line,
-    };
-    let clear = |point: &Point3, normal: &Unit3, axis: &Unit3| {
-        let place = Place { point: *point, normal: *normal };
-        wish.joints.reaches(axis) && reach.is_clear(&place, axis) && travels(&place, axis)
-    };
-    let held = |axis: Unit3| if on_line { wish.joints.nearest(&axis) } else { axis };
-    // Between the two, a whole number.
-    let parts = (ASKED / lattice.nodes.len() as f64).sqrt().clamp(ALONG[0], ALONG[1]) as usize;
-    let mut between = lattice.between(parts);
-    between.retain(|at| lattice.stands(*at));
-    let unreached = lattice
-        .nodes
-        .par_iter()
-        .zip(places.par_iter().zip(&bits).zip(&possible))
-        .filter_map(|(n, ((place, bits), all))| Some((n, place.as_ref()?, bits.as_ref()?, all)))
-        .filter(|(n, _, bits, all)| bits.is_empty() && !all.has_rim() && n.area_mm2 > 0.0)
-        .map(|(n, place, ..)| Unreached {
-            at: n.at,
-            point: n.point,
-            area_mm2: n.area_mm2,
-            best: reach.best(place),
-        })
-        .collect::<Vec<_>>();
-    let area_mm2 = lattice.nodes.iter().map(|n| n.area_mm2).sum();
-    let one = |feed: &&Feed<'_>| {
-        let lattice = lattice.along(&face, *feed);
-        let axes = Search::new(&asked, &lattice, &possible).best();
-        let axes = axes.ok_or(NoField::Nowhere { places: on_face.len() })?;
-        let mut spline = lattice.spline.clone();
+            Bits::of(all.len(), |k| bits.contains(k) && travels(wish, on_line, place, &all[k]))
+        };
+        let reached = reach.map(&on_face);
+        let mut reached = on_face.iter().zip(reached).map(|(place, bits)| left(place, bits));
+        let mut bits: Vec<Option<Bits>> =
+            places.iter().map(|p| p.as_ref().and_then(|_| reached.next())).collect();
+        // Where the tool cannot come down to the face it may still stand off by what may be left.
+        let lifted = |place: &Place| {
+            lifts_mm.iter().find_map(|mm| {
+                let place = Place { point: place.point + place.normal.into_inner() * *mm, ..*place };
+                let bits = left(&place, reach.map(&[place]).pop()?);
+                (!bits.is_empty()).then_some((place, bits))
+            })
+        };
+        places.par_iter_mut().zip(&mut bits).for_each(|(place, bits)| {
+            let (Some(place), Some(bits)) = (place, bits) else { return };
+            if bits.is_empty()
+                && let Some((lifted, found)) = lifted(place)
+            {
+                (*place, *bits) = (lifted, found);
+            }
+        });
+        // A ball's strip is the same at any lean.
+        let rims = !on_line && !cutter.is_ball();
+        let rim = |node: &Node, place: &Place| {
+            let jet = face.jet2(node.at);
+            Rim::of(&reach, place, [jet.du, jet.dv], wish.lean_rad[0])
+        };
+        let possible: Vec<Possible> = lattice
+            .nodes
+            .par_iter()
+            .zip(places.par_iter().zip(&bits))
+            .map(|(node, both)| match both {
+                (Some(place), Some(bits)) => {
+                    let rim = rims.then(|| rim(node, place));
+                    // Where no axis is possible nothing is cut: there the field goes on as it comes.
+                    let none = bits.is_empty() && rim.as_ref().is_none_or(Rim::is_empty);
+                    if none { Possible::default() } else { Possible::new(&directions, bits, rim) }
+                }
+                _ => Possible::default(),
+            })
+            .collect();
+        // Between the two, a whole number.
+        let parts = (ASKED / lattice.nodes.len() as f64).sqrt().clamp(ALONG[0], ALONG[1]) as usize;
+        let mut between = lattice.between(parts);
+        between.retain(|at| lattice.stands(*at));
+        let unreached = lattice
+            .nodes
+            .par_iter()
+            .zip(places.par_iter().zip(&bits).zip(&possible))
+            .filter_map(|(n, ((place, bits), all))| Some((n, place.as_ref()?, bits.as_ref()?, all)))
+            .filter(|(n, _, bits, all)| bits.is_empty() && !all.has_rim() && n.area_mm2 > 0.0)
+            .map(|(n, place, ..)| Unreached {
+                at: n.at,
+                point: n.point,
+                area_mm2: n.area_mm2,
+                best: reach.best(place),
+            })
+            .collect();
+        let area_mm2 = lattice.nodes.iter().map(|n| n.area_mm2).sum();
+        let places = on_face.len();
+        Ok(Self { lattice, on_line, directions, mask, possible, between, unreached, area_mm2, places })
+    }
+
+    /// The field of least time for passes that run along a direction; `wish` is that of [`Possibilities::of`].
+    ///
+    /// # Errors
+    /// Where no axis is possible anywhere on the face.
+    pub fn field(&self, wish: &Wish<'_>, feed: &Feed<'_>) -> Result<Found, NoField> {
+        let cutter: &Cutter = wish.tool.cutter();
+        let (face, [_, look_mm]) = seen(wish);
+        let reach = reach(wish, &self.directions, &self.mask)?;
+        let is_clear = |place: &Place, axis: &Unit3| {
+            reach.is_clear(place, axis) && travels(wish, self.on_line, place, axis)
+        };
+        let asked = Asked {
+            cutter,
+            scallop_mm: wish.scallop_mm,
+            feed_mm_min: wish.feed_mm_min,
+            directions: &self.directions,
+            joints: wish.joints,
+            clear: &is_clear,
+            on_line: self.on_line,
+        };
+        let clear = |point: &Point3, normal: &Unit3, axis: &Unit3| {
+            wish.joints.reaches(axis) && is_clear(&Place { point: *point, normal: *normal }, axis)
+        };
+        let held = |axis: Unit3| if self.on_line { wish.joints.nearest(&axis) } else { axis };
+        let lattice = self.lattice.along(&face, feed);
+        let axes = Search::new(&asked, &lattice, &self.possible).best();
+        let axes = axes.ok_or(NoField::Nowhere { places: self.places })?;
+        let rough = lattice.nodes.iter().any(|n| n.rough);
+        let mut spline = lattice.spline;
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
-        let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() };
+        let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces };
         let unsettled = settle(
             &mut field,
             (&face, rough.then_some(look_mm)),
-            (&between, wish.scallop_mm),
+            (&self.between, wish.scallop_mm),
             (&clear, &held, if cutter.is_ball() { Leaning::Any } else { Leaning::Least }),
         );
-        let unreached = unreached.clone();
-        Ok(Found { field, unreached, area_mm2, unsettled: [unsettled, between.len()] })
-    };
-    wish.feeds.par_iter().map(one).collect()
+        let unreached = self.unreached.clone();
+        Ok(Found { field, unreached, area_mm2: self.area_mm2, unsettled: [unsettled, self.between.len()] })
+    }
 }

@@ -17,6 +17,6 @@ mod settle;
 pub(crate) use around::sunk;
 pub use around::{Around, Left, Surroundings};
 pub use field::AxisField;
-pub use find::{Found, NoField, Unreached, Wish, find};
+pub use find::{Found, NoField, Possibilities, Unreached, Wish, find};
 pub use joints::Joints;
 pub use lattice::Feed;

@@ -49,6 +49,13 @@ impl Trial<'_> {
             && !self.failings(&f.tally, f.height_max_mm).is_empty()
     }
 
+    /// Whether what was measured leaves room for corners that the control blends: else nothing between samples can show that it holds.
+    pub fn can_be_shown(&self, t: &Tally) -> bool {
+        let wanted = self.wanted(0.0);
+        self.goal.limits.at_samples
+            || (t.gouge_max_mm <= wanted.gouge_mm && t.scallop_max_mm <= wanted.enough_mm)
+    }
+
     /// The answer, and why it is not held.
     pub fn answer(&self, f: &Figures, left_out: usize) -> (Answer, Vec<String>) {
         let mut bad = self.failings(&f.tally, f.height_max_mm);

@@ -405,7 +405,7 @@ impl<'a> Trial<'a> {
     /// are not looked at again.
     pub fn refine(&self, look: &mut Look, marks: &mut Marks) -> Result<Refined, ProveError> {
         let even = look.measured.samples.len();
-        let holds = self.holds(look);
+        let holds = self.holds(look) && self.can_be_shown(&look.tally);
         // Between samples of a path that fails already nothing is left to be found out.
         let max = self.goal.looks.max_samples;
         let most = if holds { max.saturating_sub(even).min(MOST_ADDED * even) } else { 0 };
