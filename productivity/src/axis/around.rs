@@ -17,7 +17,8 @@ const MOST: f64 = 5e5;
 const FEWEST: usize = 200;
 /// Points stand no closer than lets a ball go deeper between them by this part of what it may.
 const HIDDEN: f64 = 0.2;
-/// Where they stand further apart they are sunk the less; by this part of it at least, as the tool touches the face.
+/// Where they stand so far apart that it may go deeper by more than what it may they are sunk the less; by this part of it at least, as
+/// the tool touches the face.
 const LEAST_SUNK: f64 = 0.2;
 /// Edges sharper than this part of the tool's radius count as so round.
 const SHARP: f64 = 0.1;
@@ -139,7 +140,7 @@ impl Surroundings {
         // How deep a tool comes between points is known by how far they are apart.
         let deeper = |apart_mm: f64| apart_mm * apart_mm / (8.0 * round_mm);
         let by_mm = |apart_mm: f64| {
-            let more = deeper(apart_mm) - HIDDEN * around.gouge_mm;
+            let more = deeper(apart_mm) - around.gouge_mm;
             (around.gouge_mm - more.max(0.0)).max(LEAST_SUNK * around.gouge_mm)
         };
         let sunk = |s: &Sample| sunk(s, around.gouge_mm);
