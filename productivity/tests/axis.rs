@@ -254,3 +254,29 @@ fn a_machine_of_three_axes_has_a_field_of_one() {
         assert!(axis.angle(&up) < 1e-12 && slope.iter().all(|s| s.norm() < 1e-12));
     }
 }
+
+/// Between points of a plane that are s apart an end with a corner r comes s^2 / 8 r deeper: on a plane so large that this is far more
+/// than what is accepted the points are hardly sunk, on a small one by all of it.
+#[test]
+fn points_that_stand_far_apart_are_sunk_less() {
+    const GOUGE: f64 = 1e-3;
+    let spec = CutterSpec::Toroidal { diameter_mm: 10.0, corner_radius_mm: 1.0, length_mm: 40.0 };
+    let cutter = Cutter::try_from(spec).unwrap();
+    let sunk = |side: f64| {
+        let line = Line::new(Point3::origin(), Vec3::x(), Interval::new(0.0, side)).unwrap();
+        let plane = Extruded::new(line, Vec3::y(), Interval::new(0.0, side)).unwrap();
+        let faces = [Named { face: "plane", surface: &plane }];
+        let around =
+            Around { faces: &faces, check: &[], cutter: &cutter, gouge_mm: GOUGE, left: Left::default() };
+        let all = Surroundings::of(&around).unwrap();
+        let depths = all.obstacles.points().iter().map(|p| -p.point.z);
+        depths.fold([f64::INFINITY, 0.0], |[least, most], d| [least.min(d), f64::max(most, d)])
+    };
+    for (side, part) in [(5.0, 1.0), (400.0, 0.2)] {
+        let [least, most] = sunk(side);
+        assert!(
+            (least - part * GOUGE).abs() < 1e-12 && (most - part * GOUGE).abs() < 1e-12,
+            "{least} {most}"
+        );
+    }
+}

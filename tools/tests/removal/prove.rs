@@ -199,6 +199,18 @@ fn the_control_belongs_to_the_verdict() {
     assert!(v.words().contains("blended"), "{v}");
 }
 
+/// A path that is 0.003 mm deep everywhere, where 0.005 mm is accepted: corners blended by 0.001 mm leave room, by 0.003 mm none, and
+/// nothing that lies between samples can turn that.
+#[test]
+fn what_blended_corners_leave_no_room_for_is_not_looked_at_closer() {
+    let deep = |blend_mm| judged(Asked { z: -0.003, blend_mm, ..Asked::default() }).unwrap();
+    let room = deep(0.001);
+    assert!(room.is_held(), "{room}");
+    let none = deep(0.003);
+    assert!(none.answer() == Answer::NotShown && none.words().contains("blended"), "{none}");
+    assert_eq!(none.figures().added, 0);
+}
+
 /// A program 2 mm too deep, or one that never comes near, is told after a coarse look; one a little too deep is measured.
 #[test]
 fn hopeless_programs_end_early() {
