@@ -74,7 +74,7 @@ impl Look {
     pub fn objection(&self, job: &Job) -> Result<Option<Objection>, Failure> {
         let t = job.tolerance();
         let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
-        // What verdicts add can be shown to hold no more.
+        // Verdicts add what words and blended corners may take: with less room than that nothing can be shown to hold.
         let left_mm = budget::left_in(job).gouge_mm;
         let found = [
             ("gouges", self.gouge_mm, left_mm),
