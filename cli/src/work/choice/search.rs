@@ -26,7 +26,7 @@ const MOST_LOCAL: usize = 6;
 const MOST_BESIDE: usize = 3;
 const MOST_OTHERS: usize = 3;
 /// The same where one with a field of axes holds; nothing else is tried then, nor lines of curvature: on none of thirteen real faces
-/// were they quicker than both.
+/// was a plan along them the quickest that held.
 const MOST_LOCAL_BESIDE_FIELD: usize = 2;
 /// Plans with fields of axes, which are the first, and with those that are tried around one that holds.
 const MOST_FIELDS: usize = 3;
