@@ -267,3 +267,58 @@ fn a_holder_keeps_off_a_wall_too() {
     assert_eq!(link(&passes, &with(holder.clone()), &Walls::default()), without);
     assert_ne!(link(&passes, &with(holder), &walls), without);
 }
+
+#[test]
+fn under_a_ceiling_a_tool_stays_as_near_to_it_as_it_must() {
+    const RADIUS: f64 = 4.0;
+    const CLEARANCE: f64 = 0.5;
+    // A ball lies on the floor, under a ceiling that leans as it does; as it leaves the floor it comes nearer to that than it should.
+    let (sin, cos) = 70.0_f64.to_radians().sin_cos();
+    let axis = Unit3::new_normalize(Vec3::new(0.0, sin, cos));
+    let aside = Vec3::new(0.0, -cos, sin);
+    let ceiling_mm = RADIUS + 0.75;
+    let at = |x: f64| {
+        let centre = Point3::new(x, 0.0, RADIUS);
+        let pose = Pose { tip: centre - axis.into_inner() * RADIUS, axis };
+        let point = Point3::new(x, 0.0, 0.0);
+        CcPoint { uv: uv(x, 0.0), point, normal: Vec3::z_axis(), pose, width_mm: RADIUS }
+    };
+    let passes = [0.0, 60.0].map(|x| Pass { points: vec![at(x), at(x + 2.0)], closed: false });
+    let links = Links {
+        obstacles: Box3 { min: Point3::new(-5.0, -5.0, 0.0), max: Point3::new(65.0, 30.0, 30.0) },
+        clearance_mm: 5.0,
+        approach_mm: 1.2,
+        hop_mm: 0.3,
+        contacts: true,
+        dropped: false,
+        dip_mm: 0.0,
+        layer_mm: 0.0,
+        rates: Rates::default(),
+        cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 20.0 }).unwrap(),
+        holder: None,
+        feed_mm_min: 5000.0,
+        plunge_mm_min: 2500.0,
+    };
+    let foot = Point3::new(0.0, 0.0, RADIUS) + aside * ceiling_mm - axis.into_inner() * 10.0;
+    let foot = Line::new(foot, Vec3::x(), Interval::new(-10.0, 75.0)).unwrap();
+    let ceiling = Extruded::new(foot, axis.into_inner(), Interval::new(0.0, 50.0)).unwrap();
+    let keeping = Keeping { clearance_mm: CLEARANCE, accepted_mm: 0.0, radius_mm: RADIUS };
+    // A rib between the passes, higher than hops.
+    let foot = Line::new(Point3::new(30.0, 0.0, 0.0), Vec3::y(), Interval::new(-10.0, 30.0)).unwrap();
+    let rib = Extruded::new(foot, Vec3::z(), Interval::new(0.0, 1.0)).unwrap();
+    let named = [Named { face: "ceiling", surface: &ceiling }, Named { face: "rib", surface: &rib }];
+    let walls = Walls::of(&named, &[], &keeping).unwrap();
+    let linked = link(&passes, &links, &walls);
+    let moves = linked.path.moves.iter().zip(&linked.pass_of_move);
+    let way = moves.skip_while(|m| *m.1 != Some(0)).take_while(|m| *m.1 != Some(1));
+    let way: Vec<Pose> = way.filter(|m| m.1.is_none()).map(|(m, _)| m.pose).collect();
+    assert!(way.len() > 2);
+    for pose in way {
+        // Off the ceiling and the floor in the closed form; not over the sphere, which is five times as far.
+        let centre = pose.tip + axis.into_inner() * RADIUS;
+        let off = ceiling_mm - (centre - Point3::new(0.0, 0.0, RADIUS)).dot(&aside) - RADIUS;
+        assert!(off > CLEARANCE && off < 0.75 + 1e-9, "{off}");
+        assert!(centre.z > RADIUS - 1e-9, "{centre}");
+        assert!(centre.y < 10.0, "{centre}");
+    }
+}

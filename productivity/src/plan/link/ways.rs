@@ -28,6 +28,9 @@ const ALONG: [f64; 3] = [0.0, 0.5, 1.0];
 const ASIDE: [f64; 6] = [1.0, 0.5, 0.35, 0.25, 0.18, 0.125];
 /// Quotient of the heights at which a way over what stands between two passes is looked for.
 const HIGHER: f64 = 1.5;
+/// Where the ways off two contacts keep less from walls than they should the way across keeps this share of that: walls are known at
+/// points, beside which a tool may pass or over them.
+const AS_NEAR: f64 = 0.9;
 /// Low ways are not looked for where they would take so many times as long as one off the surface and back at least does: that is often
 /// not clear so low.
 const FED: f64 = 3.0;
@@ -280,7 +283,9 @@ impl<'a> Finder<'a> {
         way
     }
 
-    /// A way over what stands between two contacts, up their axes: as high as that needs, where that is lower than the safe plane.
+    /// A way over what stands between two contacts, up their axes: as high as that needs, where that is lower than the safe plane. The
+    /// ways off the contacts and down to them are those of a way over the safe plane too: what counts is the way across, which keeps
+    /// what it should, or nearly what they keep.
     fn over(&self, kept: &Kept<'_>, (from, to): (&CcPoint, &CcPoint), k: u32) -> Option<Way> {
         if from.pose.axis.angle(&to.pose.axis) > SWING {
             return None;
@@ -292,10 +297,18 @@ impl<'a> Finder<'a> {
         while height < most {
             let [high_a, high_b] = [a.retracted(height), b.retracted(height)];
             let poses = [from.pose, a, high_a, high_b, b, to.pose];
-            if kept.room(self.asked(&poses)).is_some_and(|room| room >= 1.0) {
-                let way = self.through(&poses, k);
+            let ups = if self.links.dropped {
+                Some(1.0)
+            } else {
+                [&poses[..3], &poses[3..]]
+                    .iter()
+                    .try_fold(1.0_f64, |least, ups| Some(least.min(kept.room(ups)?)))
+            };
+            let enough = ups.map_or(1.0, |ups| if ups < 1.0 { AS_NEAR * ups } else { 1.0 });
+            if kept.room(&poses[2..4]).is_some_and(|room| room >= enough) {
+                let way = Way { clear: ups.is_some(), ..self.through(&poses, k) };
                 let is_rapid = way.legs.iter().any(|leg| leg.motion == Motion::Rapid && leg.pose == high_b);
-                if best.as_ref().is_none_or(|b| way.min < b.min) {
+                if best.as_ref().is_none_or(|b| (!way.clear, way.min) < (!b.clear, b.min)) {
                     best = Some(way);
                 }
                 // Higher takes longer from here on.
@@ -451,9 +464,13 @@ impl<'a> Finder<'a> {
             return way.clone();
         }
         let over = self.over(&kept, (from, to), k);
+        let (over, tight) = match over {
+            Some(way) if !way.clear => (None, Some(way)),
+            over => (over, None),
+        };
         let known = [&low, &over].into_iter().flatten().map(|w| w.min).fold(f64::INFINITY, f64::min);
         let along = (!skipped.is_empty()).then(|| self.along(&kept, (from, to), skipped, known)).flatten();
         let fastest = [low, over, along].into_iter().flatten().min_by(|a, b| a.min.total_cmp(&b.min));
-        fastest.unwrap_or_else(|| self.around(from, to, k))
+        fastest.or(tight).unwrap_or_else(|| self.around(from, to, k))
     }
 }
