@@ -44,6 +44,9 @@ pub struct Verification {
     pub gouge_max_mm: f64,
     /// Area left standing at more than five times the scallop tolerance, or never touched.
     pub uncut_area_mm2: f64,
+    /// Area measured higher than the scallop tolerance, or never touched. Where the job accepts an area the uncut one counts what is next
+    /// to that as well: nothing can be shown about it.
+    pub high_area_mm2: f64,
     /// The most that a rapid move of the cutter took.
     pub rapid_max_mm: f64,
     /// The most that the holder took.
@@ -242,6 +245,7 @@ impl Verified {
             scallop_use: f.crest_median_mm / limits.scallop_mm,
             gouge_max_mm: f.tally.gouge_max_mm,
             uncut_area_mm2: f.tally.uncut_area_mm2,
+            high_area_mm2: f.high_area_mm2,
             rapid_max_mm: f.tally.rapid_max_mm,
             holder_max_mm: f.tally.holder_max_mm,
             tooth_mark_max_mm: f.mark_max_mm,

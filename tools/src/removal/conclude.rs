@@ -2,7 +2,7 @@
 
 use super::density::Hidden;
 use super::goal::{Goal, Gravity, Program};
-use super::job::Cut;
+use super::job::{Cut, Sample};
 use super::refine::{Measured, Refined};
 use super::tally::Tally;
 use super::tooth::Marks;
@@ -66,6 +66,8 @@ pub(super) fn concluded(
     let height = |(s, mark): (&Cut, &f64)| {
         if s.standoff_mm > trial.limits.uncut_mm { 0.0 } else { s.standoff_mm.max(0.0) + mark }
     };
+    let high = |(s, c): &(&Sample, &Cut)| !s.check_only && c.standoff_mm > trial.limits.scallop_mm;
+    let high_area_mm2 = samples.iter().zip(&cuts).filter(high).map(|(s, _)| s.area_mm2).sum();
     let machined =
         samples.iter().zip(&cuts).zip(&marks.each).filter(|((s, c), _)| !s.check_only && c.by.is_some());
     let with_marks = machined.map(|((_, c), m)| height((c, m))).fold(0.0, f64::max);
@@ -76,6 +78,7 @@ pub(super) fn concluded(
         hidden: Hidden { scallop_mm: (refined.hidden.scallop_mm - height_max_mm).max(0.0), ..refined.hidden },
         smallest_radius_mm: (bend > 0.0).then(|| 1.0 / bend),
         open_area_mm2: open_mm2,
+        high_area_mm2,
         crest_median_mm,
         mark_max_mm: marks.known.then(|| marks.most_mm()),
         height_max_mm,

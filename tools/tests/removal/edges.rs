@@ -167,7 +167,30 @@ fn what_may_hide_counts_into_an_area_that_is_accepted() {
     let (area, uncut) = (counted.figures().open_area_mm2, counted.figures().tally.uncut_area_mm2);
     assert!(area > 0.0 && area <= uncut + 1e-9 && uncut <= 36.0, "{area} {uncut}");
     assert!(counted.scope().iter().any(|row| row.covers.contains("may hide")), "{counted}");
+    // None of it was measured so high.
+    assert_eq!(counted.figures().high_area_mm2, 0.0);
     // An area that does not suffice changes nothing.
     let few = of(0.1 * area);
     assert!(few.answer() == Answer::NotShown && few.figures().open_area_mm2 == 0.0, "{few}");
+}
+
+/// Of an area that is accepted that is told which was measured too high: beside the last pass a ball leaves its circle.
+#[test]
+fn what_is_measured_too_high_is_told_of_an_area_that_is_accepted() {
+    let cutter = ball(6.0);
+    let sheet = plane();
+    let rows = 14;
+    let last_y = 0.3 * f64::from(rows - 1) - 0.9;
+    let all = motions(0.0, 0.5);
+    let mut goal = goal_of(&cutter, vec![face("F1", &sheet, &[])], Vec::new());
+    goal.limits.unreached_mm2 = 30.0;
+    let some = &all[..2 * rows as usize - 1];
+    let v = prove(&goal, Program { motions: some, times_min: &[], changes: &[] }, &|_| ()).expect("a face");
+    assert_eq!(v.answer(), Answer::Held, "{v}");
+    let scallop = goal.limits.scallop_mm;
+    let low = (scallop * (6.0 - scallop)).sqrt();
+    let (high, uncut) = (v.figures().high_area_mm2, v.figures().tally.uncut_area_mm2);
+    // Samples are 0.1 mm apart.
+    assert!((high - 6.0 * (6.0 - last_y - low)).abs() <= 6.0 * 0.1, "{high}");
+    assert!(uncut >= high && uncut <= high + 6.0 * 0.8, "{uncut}");
 }
