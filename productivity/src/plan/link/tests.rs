@@ -10,6 +10,29 @@ use osculate_tools::{Cutter, CutterSpec, Holder};
 const TROUGH_MM: f64 = 4.0;
 const BALL_MM: f64 = 3.0;
 
+/// Links over a box for a cutter without a holder.
+fn links_over(obstacles: Box3, cutter: Cutter) -> Links {
+    Links {
+        obstacles,
+        clearance_mm: 5.0,
+        approach_mm: 2.0,
+        hop_mm: 0.25,
+        contacts: true,
+        dropped: false,
+        dip_mm: 0.0,
+        layer_mm: 0.0,
+        rates: Rates::default(),
+        cutter,
+        holder: None,
+        feed_mm_min: 5000.0,
+        plunge_mm_min: 2500.0,
+    }
+}
+
+fn ball(diameter_mm: f64, length_mm: f64) -> Cutter {
+    Cutter::try_from(CutterSpec::Ball { diameter_mm, length_mm }).unwrap()
+}
+
 /// A pass along y on the wall of a half round trough about the y axis, `angle` from its bottom; the ball stands upright.
 fn pass(angle: f64, back: bool) -> Pass {
     let normal = Unit3::new_normalize(Vec3::new(-angle.sin(), 0.0, angle.cos()));
@@ -25,23 +48,13 @@ fn pass(angle: f64, back: bool) -> Pass {
 
 #[test]
 fn a_hop_does_not_go_into_the_wall_across() {
-    let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * BALL_MM, length_mm: 30.0 }).unwrap();
+    let cutter = ball(2.0 * BALL_MM, 30.0);
     let obstacles = Box3 { min: Point3::new(-4.0, 0.0, -4.0), max: Point3::new(4.0, 8.0, 0.0) };
     // Twice what there is room for between ball and wall.
     let links = Links {
-        obstacles,
-        clearance_mm: 5.0,
         approach_mm: 4.0 * (TROUGH_MM - BALL_MM),
         hop_mm: 4.0 * (TROUGH_MM - BALL_MM),
-        contacts: true,
-        dropped: false,
-        dip_mm: 0.0,
-        layer_mm: 0.0,
-        rates: Rates::default(),
-        cutter,
-        holder: None,
-        feed_mm_min: 5000.0,
-        plunge_mm_min: 2500.0,
+        ..links_over(obstacles, cutter)
     };
     let passes: Vec<Pass> =
         (-18..=18).map(|k| pass(f64::from(k) * 5.0f64.to_radians(), k % 2 == 0)).collect();
@@ -91,22 +104,14 @@ fn over_plane(apart: f64, radius: f64) -> Vec<Pass> {
 /// rib as high as everything between them at most.
 #[test]
 fn a_tool_that_keeps_its_axis_stays_low() {
-    let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 60.0 }).unwrap();
+    let cutter = ball(6.0, 60.0);
     let (top, clearance_mm) = (1.5, 5.0);
     let links = |dropped: bool| Links {
-        obstacles: Box3 { min: Point3::new(-150.0, 0.0, -2.0), max: Point3::new(150.0, 8.0, top) },
         clearance_mm,
         approach_mm: 2.0,
         hop_mm: 0.125,
-        contacts: true,
         dropped,
-        dip_mm: 0.0,
-        layer_mm: 0.0,
-        rates: Rates::default(),
-        cutter,
-        holder: None,
-        feed_mm_min: 5000.0,
-        plunge_mm_min: 2500.0,
+        ..links_over(Box3 { min: Point3::new(-150.0, 0.0, -2.0), max: Point3::new(150.0, 8.0, top) }, cutter)
     };
     let mut passes = over_plane(40.0, 3.0);
     for p in &mut passes[2].points {
@@ -125,21 +130,12 @@ fn a_tool_that_keeps_its_axis_stays_low() {
 
 #[test]
 fn a_hop_rises_by_no_more_than_is_clear() {
-    let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 30.0 }).unwrap();
+    let cutter = ball(6.0, 30.0);
     let links = |hop_mm: f64| Links {
-        obstacles: Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
-        clearance_mm: 5.0,
         approach_mm: 2.0,
         hop_mm,
-        contacts: true,
-        dropped: false,
-        dip_mm: 0.0,
-        layer_mm: 0.0,
-        rates: Rates::default(),
-        cutter,
-        holder: None,
-        feed_mm_min: 5000.0,
         plunge_mm_min: 10000.0,
+        ..links_over(Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) }, cutter)
     };
     // Of the hop from the first pass to the second.
     let top = |linked: &Linked| {
@@ -174,19 +170,13 @@ fn a_hop_keeps_off_a_wall_that_is_not_machined() {
     const APART: f64 = 8.8;
     let passes = over_plane(APART, RADIUS);
     let links = Links {
-        obstacles: Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
-        clearance_mm: 5.0,
         approach_mm: 1.2,
         hop_mm: 1.2,
-        contacts: true,
-        dropped: false,
-        dip_mm: 0.0,
-        layer_mm: 0.0,
-        rates: Rates::default(),
-        cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 }).unwrap(),
-        holder: None,
-        feed_mm_min: 5000.0,
         plunge_mm_min: 10000.0,
+        ..links_over(
+            Box3 { min: Point3::new(-5.0, 0.0, 0.0), max: Point3::new(14.0, 8.0, 1.5) },
+            ball(2.0 * RADIUS, 30.0),
+        )
     };
     // A thin wall on the plane x = 0, between the first two passes.
     let joined = |height: f64, clearance: f64| {
@@ -239,21 +229,12 @@ fn a_hop_keeps_off_a_wall_that_is_not_machined() {
 #[test]
 fn a_holder_keeps_off_a_wall_too() {
     let passes = over_plane(6.0, 4.0);
-    let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 10.0 }).unwrap();
+    let ball = ball(8.0, 10.0);
     let with = |holder: Option<Holder>| Links {
-        obstacles: Box3 { min: Point3::new(-3.0, 0.0, 0.0), max: Point3::new(9.0, 12.2, 20.0) },
-        clearance_mm: 5.0,
         approach_mm: 1.2,
         hop_mm: 1.2,
-        contacts: true,
-        dropped: false,
-        dip_mm: 0.0,
-        layer_mm: 0.0,
-        rates: Rates::default(),
-        cutter: ball,
         holder,
-        feed_mm_min: 5000.0,
-        plunge_mm_min: 2500.0,
+        ..links_over(Box3 { min: Point3::new(-3.0, 0.0, 0.0), max: Point3::new(9.0, 12.2, 20.0) }, ball)
     };
     // A post above the cutter's length, behind the middle between the ends of the first two passes: 5.05 mm off their axes, and
     // 4.2 mm off that of a tool half way between.
@@ -285,19 +266,12 @@ fn under_a_ceiling_a_tool_stays_as_near_to_it_as_it_must() {
     };
     let passes = [0.0, 60.0].map(|x| Pass { points: vec![at(x), at(x + 2.0)], closed: false });
     let links = Links {
-        obstacles: Box3 { min: Point3::new(-5.0, -5.0, 0.0), max: Point3::new(65.0, 30.0, 30.0) },
-        clearance_mm: 5.0,
         approach_mm: 1.2,
         hop_mm: 0.3,
-        contacts: true,
-        dropped: false,
-        dip_mm: 0.0,
-        layer_mm: 0.0,
-        rates: Rates::default(),
-        cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 20.0 }).unwrap(),
-        holder: None,
-        feed_mm_min: 5000.0,
-        plunge_mm_min: 2500.0,
+        ..links_over(
+            Box3 { min: Point3::new(-5.0, -5.0, 0.0), max: Point3::new(65.0, 30.0, 30.0) },
+            ball(2.0 * RADIUS, 20.0),
+        )
     };
     let foot = Point3::new(0.0, 0.0, RADIUS) + aside * ceiling_mm - axis.into_inner() * 10.0;
     let foot = Line::new(foot, Vec3::x(), Interval::new(-10.0, 75.0)).unwrap();
