@@ -8,14 +8,18 @@ use std::path::Path;
 
 /// Bytes of a page at most.
 const MOST_BYTES: u64 = 3_000_000;
-/// Until a part is drawn, ms, on an idle core; a busy one is given as much more as it takes for a fixed sum.
+/// Until a part is drawn, ms, on an idle core; a busy one is given as much more as it takes for a fixed sum, and half as much again: what
+/// else loads the computer slows drawing more than a sum.
 const FIRST_VIEW_MS: f64 = 2_000.0;
+const SLACK: f64 = 1.5;
 /// A page that comes late is opened this often at most: what else the computer does comes and goes, a slow page stays slow.
 const OPENINGS: usize = 4;
 /// Colours of a view that shows something: one of the background alone has three.
 const COLOURS: u64 = 40;
 /// Bodies of the machine stand where joints have them as exactly as single precision is, mm.
 const NOSE_MM: f64 = 0.01;
+/// Pages that the slider goes on between two looks at the machine.
+const PAGES: usize = 3;
 /// What moves changes the mean colours of a view by this at least, of 255.
 const MOVED: f64 = 0.15;
 
@@ -80,10 +84,11 @@ impl Visit<'_> {
             println!(
                 "browser: {bytes} bytes, drawn after {drawn_ms:.0} ms on a core that is {slowness:.1} times as slow as an idle one"
             );
-            if drawn_ms < FIRST_VIEW_MS * slowness {
+            let most_ms = SLACK * FIRST_VIEW_MS * slowness;
+            if drawn_ms < most_ms {
                 return Ok(());
             }
-            late.push(format!("{drawn_ms:.0} ms, later than {FIRST_VIEW_MS:.0} times {slowness:.1}"));
+            late.push(format!("{drawn_ms:.0} ms where {most_ms:.0} are allowed"));
         }
         self.wrong.push(format!("each time the part is drawn too late: after {}", late.join("; after ")));
         Ok(())
@@ -181,7 +186,7 @@ impl Visit<'_> {
         for _ in 0..3 {
             let off = self.chrome.number("Number(document.querySelector('#canvas-box').dataset.nose)")?;
             self.must(off < NOSE_MM, || format!("the spindle's nose is {off} mm off the end of the tool"));
-            self.chrome.key("PageUp", 33, 2)?;
+            self.chrome.key("PageUp", 33, PAGES)?;
         }
         let moved = self.chrome.look(Some(VIEW))?;
         self.must(shown.differs_by(&moved.fields) > MOVED, || "the slider moves no machine".to_owned());
