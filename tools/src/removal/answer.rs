@@ -194,9 +194,16 @@ impl Trial<'_> {
         }
         if goal.limits.unreached_mm2 > 0.0 {
             let mut text = format!(
-                "{:.3} mm2, where {} mm2 are accepted; {:.3} mm2 of it were measured higher than the scallop, what is next to that counts too",
-                f.tally.uncut_area_mm2, goal.limits.unreached_mm2, f.high_area_mm2
+                "{:.3} mm2, where {} mm2 are accepted",
+                f.tally.uncut_area_mm2, goal.limits.unreached_mm2
             );
+            // By a coarse look what is next to a high place does not count.
+            if !f.coarse {
+                text += &format!(
+                    "; {:.3} mm2 of it were measured higher than the scallop, what is next to that counts too",
+                    f.high_area_mm2
+                );
+            }
             if f.open_area_mm2 > 0.0 {
                 text += &format!(
                     "; {:.3} mm2 of it are cut, but more than the scallop may hide there between samples",

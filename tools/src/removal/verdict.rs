@@ -76,8 +76,8 @@ pub struct Figures {
     /// Of the uncut area that of places between samples where something higher than the scallop may hide, which counts into it where it is
     /// accepted, mm2.
     pub open_area_mm2: f64,
-    /// Area that was measured higher than the scallop, or never touched, mm2. Where an area is accepted the uncut one is larger: places
-    /// next to this one, about which nothing can be shown, count into that.
+    /// Area that was measured higher than the scallop, or never touched, mm2. Where an area is accepted the uncut one, but by a
+    /// coarse look, is no smaller: places next to this one, about which nothing can be shown, count into that.
     pub high_area_mm2: f64,
     /// The smallest radius of curvature at a sample, mm; None where everything is flat.
     pub smallest_radius_mm: Option<f64>,
