@@ -31,5 +31,6 @@ mod rough;
 mod rows;
 #[path = "common/slot.rs"]
 mod slot;
+mod swings;
 mod waterline;
 mod z_level;

@@ -3,13 +3,14 @@
 use super::around::Surroundings;
 use super::field::AxisField;
 use super::joints::Joints;
-use super::lattice::{Feed, Lattice, Node};
+use super::lattice::{Feed, Lattice, Node, steady_normal};
 use super::rim::Rim;
 use super::search::{Asked, Possible, Search};
 use super::settle::{Leaning, settle};
 use crate::plan::extended::Extended;
+use crate::plan::ripples::Ripples;
 use crate::width::WIDEST;
-use osculate_geom::{Point3, Surface, Unit3, Uv};
+use osculate_geom::{Jet2, Point3, Surface, Unit3, Uv};
 use osculate_tools::reach::{
     Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
 };
@@ -261,12 +262,19 @@ impl Possibilities {
         let axes = Search::new(&asked, &lattice, &self.possible).best();
         let axes = axes.ok_or(NoField::Nowhere { places: self.places })?;
         let rough = lattice.nodes.iter().any(|n| n.rough);
+        let ripples = rough.then(|| Ripples::new(&face, cutter.radius_mm()));
+        let normal = |at: Uv, jet: &Jet2| match &ripples {
+            Some(ripples) => feed(at, jet)
+                .and_then(|way| ripples.mean_normal(&face, at, &way))
+                .or_else(|| Some(steady_normal(&face, at, jet, look_mm)?.0)),
+            None => jet.normal().ok(),
+        };
         let mut spline = lattice.spline;
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
         let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces };
         let unsettled = settle(
             &mut field,
-            (&face, rough.then_some(look_mm)),
+            (&face, &normal),
             (&self.between, wish.scallop_mm),
             (&clear, &held, if cutter.is_ball() { Leaning::Any } else { Leaning::Least }),
         );

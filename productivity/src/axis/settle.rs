@@ -4,9 +4,8 @@
 //! axis by what they lack. What stays unclear after some rounds is counted.
 
 use super::field::AxisField;
-use super::lattice::steady_normal;
 use crate::plan::extended::Extended;
-use osculate_geom::{Point3, Surface, Unit3, Uv, Vec3, any_perpendicular};
+use osculate_geom::{Jet2, Point3, Surface, Unit3, Uv, Vec3, any_perpendicular};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -82,6 +81,9 @@ struct Short {
 /// Whether a tool that touches a point with a normal is clear with an axis.
 pub(super) type Clear<'a> = dyn Fn(&Point3, &Unit3, &Unit3) -> bool + Sync + 'a;
 
+/// The normal at a place; None where there is none.
+pub(super) type Normal<'a> = dyn Fn(Uv, &Jet2) -> Option<Unit3> + Sync + 'a;
+
 /// Brings an axis to where the joints can take it.
 pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 
@@ -99,10 +101,10 @@ type How<'a> = (&'a Clear<'a>, &'a Held<'a>, Leaning);
 /// Moves the poles of a field until the tool is clear at places of a face; how many of them it is not at.
 ///
 /// `held` brings an axis to where the joints can take it. A place at which no axis near the field's is clear is asked with the tool
-/// lifted by `lift_mm`. Where the face is rough its normals are means, up to `look_mm` to each side.
+/// lifted by `lift_mm`. The normals are those that passes see.
 pub(super) fn settle(
     field: &mut AxisField,
-    (face, look_mm): (&Extended<'_>, Option<f64>),
+    (face, normal): (&Extended<'_>, &Normal<'_>),
     (places, lift_mm): (&[Uv], f64),
     how: How<'_>,
 ) -> usize {
@@ -110,10 +112,7 @@ pub(super) fn settle(
         .par_iter()
         .filter_map(|at| {
             let jet = face.jet2(*at);
-            let normal = match look_mm {
-                Some(mm) => steady_normal(face, *at, &jet, mm)?.0,
-                None => jet.normal().ok()?,
-            };
+            let normal = normal(*at, &jet)?;
             let axis = field.at(*at).0;
             let lifted = |mm: f64| {
                 let point = jet.point + normal.into_inner() * mm;

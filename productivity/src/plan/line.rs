@@ -1,5 +1,6 @@
 //! Lines that passes run along.
 
+use crate::rectangle::Rectangle;
 use osculate_geom::line::{IsoLine, SurfaceLine};
 use osculate_geom::{Interval, Uv};
 
@@ -11,6 +12,10 @@ pub(super) trait PassLine: SurfaceLine {
     fn rate(&self, t: f64) -> Uv;
     /// Where `t` runs; periodic where the line closes.
     fn range(&self) -> Interval;
+    /// Whether the line goes on at its other end: round a face that meets itself there, smoothly or in a crease.
+    fn goes_round(&self, _: &Rectangle) -> bool {
+        self.range().periodic
+    }
 }
 
 impl PassLine for IsoLine<'_> {
@@ -22,5 +27,8 @@ impl PassLine for IsoLine<'_> {
     }
     fn range(&self) -> Interval {
         self.surface.domain().get(self.along)
+    }
+    fn goes_round(&self, rectangle: &Rectangle) -> bool {
+        rectangle.closes(self.along)
     }
 }

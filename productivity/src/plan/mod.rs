@@ -23,6 +23,7 @@ mod regions;
 mod repeat;
 mod resample;
 mod rest;
+pub(crate) mod ripples;
 pub(crate) mod samples;
 mod seat;
 mod senses;

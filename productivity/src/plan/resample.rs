@@ -5,8 +5,8 @@ use super::seat::Seat;
 use super::{CcPoint, Task};
 use osculate_geom::line::LineError;
 use osculate_geom::{Point3, Unit3};
-use osculate_tools::Pose;
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
+use osculate_tools::{Pose, pose_with_axis};
 
 /// Axis turns between two points are kept below this, so that machines see smooth orientation, rad.
 const MAX_TURN: f64 = 0.06;
@@ -14,6 +14,8 @@ const MAX_TURN: f64 = 0.06;
 const SIDEWAYS: f64 = 0.01;
 /// Halvings of one initial piece; past it the surface is not smooth.
 const MAX_DEPTH: u32 = 16;
+/// Halvings of the way over a crease.
+const MAX_ROLLS: u32 = 6;
 
 /// A contact pose at a line parameter.
 #[derive(Clone, Copy)]
@@ -76,13 +78,42 @@ fn halve(
     out: &mut Vec<Knot>,
 ) -> Result<(), LineError> {
     let mid = knot(seat, task, line, 0.5 * (a.t + b.t))?;
-    if depth < MAX_DEPTH && !straight(seat, task, line, &a, &b, Some(&mid))? {
+    if straight(seat, task, line, &a, &b, Some(&mid))? {
+        out.push(b);
+    } else if depth < MAX_DEPTH {
         halve(seat, task, line, a, mid, depth + 1, out)?;
         halve(seat, task, line, mid, b, depth + 1, out)?;
     } else {
-        out.push(b);
+        roll((seat, task, line), &a, &b, 0, out);
     }
     Ok(())
+}
+
+/// Goes from one side of a crease to the other: the tool rolls over it, as its normal turns, in as few steps as hold the tolerance.
+fn roll(
+    on @ (seat, task, line): (&Seat<'_>, &Task<'_>, &dyn PassLine),
+    a: &Knot,
+    b: &Knot,
+    depth: u32,
+    out: &mut Vec<Knot>,
+) {
+    let middle = || {
+        let normal = Unit3::try_new(a.normal.into_inner() + b.normal.into_inner(), 1e-6)?;
+        let axis = Unit3::try_new(a.pose.axis.into_inner() + b.pose.axis.into_inner(), 1e-6)?;
+        let (t, point) = (0.5 * (a.t + b.t), nalgebra::center(&a.point, &b.point));
+        let pose = pose_with_axis(task.cutter, &point, &normal, &axis);
+        let pose = seat.raised(line.uv(t), &normal, pose).0;
+        Some(Knot { t, v: 0.0, point, normal, pose, height: task.cutter.distance(&pose, &point) })
+    };
+    let motion = LinearMotion { from: a.pose, to: b.pose };
+    let mid = middle().filter(|mid| !motion.at(0.5).is_some_and(|now| holds(task, &now.pose, mid)));
+    match mid {
+        Some(mid) if depth < MAX_ROLLS => {
+            roll(on, a, &mid, depth + 1, out);
+            roll(on, &mid, b, depth + 1, out);
+        }
+        _ => out.push(*b),
+    }
 }
 
 /// Whether a pose of the straight motion does what the true pose of a knot does: at the contact, and as far to its
@@ -93,9 +124,16 @@ fn holds(task: &Task<'_>, pose: &Pose, knot: &Knot) -> bool {
         return false;
     }
     // A ball is the same under any lean.
+    if task.cutter.is_ball() {
+        return true;
+    }
+    // Where the contact swings round the end of the tool another part of it than the true one may go through the tangent plane.
+    if (knot.pose.tip - pose.tip).dot(&knot.normal) > t.chord_mm {
+        return false;
+    }
     let radius = task.cutter.radius_mm();
     let reach = radius.min(2.0 * (2.0 * t.scallop_mm * radius).sqrt());
-    task.cutter.is_ball() || pose.axis.angle(&knot.pose.axis) * reach <= t.chord_mm
+    pose.axis.angle(&knot.pose.axis) * reach <= t.chord_mm
 }
 
 /// Whether the straight motion from `a` to `b` holds the tolerance at three contacts between.

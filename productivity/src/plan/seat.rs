@@ -8,16 +8,13 @@
 
 use super::Task;
 use super::line::PassLine;
+use super::ripples::{AVERAGE, Ripples, places};
 use crate::rectangle::Rectangle;
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
 use osculate_geom::{Axis, Darboux, Domain, Point3, Unit3, Uv, Vec3};
 use osculate_tools::Pose;
 use rayon::prelude::*;
 
-/// The normal is averaged over this part of the tool's radius to both sides, or less where knots stand closer.
-const AVERAGE: f64 = 0.05;
-/// ... and over this part of the knot span: ripples have the length of one or two spans.
-const SPANS: f64 = 0.75;
 /// Depth of roughness that is looked for, as a part of the tool's radius: the look reaches as far as a ball of that
 /// radius on a plane would come as near.
 const ROUGHNESS: f64 = 0.0125;
@@ -36,12 +33,6 @@ const TOO_MUCH: f64 = 0.75;
 const INTO_CRESTS: f64 = 0.4;
 /// Raising moves the place of rest, slowly where that is on a steep part of the tool; rounds end early once settled.
 const ROUNDS: usize = 10;
-
-/// Length of the knot span around a parameter, in the parameter.
-fn span_at(breaks: &[f64], t: f64) -> f64 {
-    let k = breaks.partition_point(|b| *b <= t).clamp(1, breaks.len() - 1);
-    breaks[k] - breaks[k - 1]
-}
 
 /// Deviation of the normal from its average above which a face counts as rough, rad.
 const ROUGH_ANGLE: f64 = 0.01;
@@ -78,13 +69,11 @@ fn sunk(rest: &Rest, by_mm: f64) -> Pose {
     Pose { tip: rest.pose.tip - rest.frame.normal.into_inner() * by_mm, axis: rest.pose.axis }
 }
 
-/// Knots of a face, fetched once.
+/// Seats on one face.
 pub(super) struct Seat<'a> {
     task: &'a Task<'a>,
-    breaks: [Vec<f64>; 2],
+    ripples: Ripples,
     rough: bool,
-    /// The face's parameters and where it meets itself.
-    pub(super) rectangle: Rectangle,
     /// The parameters of what holds the tool.
     holds: Domain,
 }
@@ -105,9 +94,8 @@ impl<'a> Seat<'a> {
     }
 
     fn smooth(task: &'a Task<'a>) -> Self {
-        let breaks = [task.surface.breaks(Axis::U), task.surface.breaks(Axis::V)];
-        let rectangle = Rectangle::of(task.surface);
-        Self { task, breaks, rough: false, holds: rectangle.domain, rectangle }
+        let ripples = Ripples::new(task.surface, task.cutter.radius_mm());
+        Self { task, rough: false, holds: ripples.rectangle.domain, ripples }
     }
 
     /// Where a face goes on over its border it is the face itself alone, of these parameters, that holds the tool, and the
@@ -124,7 +112,7 @@ impl<'a> Seat<'a> {
 
     fn is_rough_along(&self, along: Axis) -> bool {
         let surface = self.task.surface;
-        let knots = &self.breaks[usize::from(along == Axis::V)];
+        let knots = self.ripples.breaks(along);
         let stride = knots.len().div_ceil(MOST_SPANS);
         let across = surface.domain().get(along.other());
         [0.02, 0.25, 0.5, 0.75, 0.98].par_iter().any(|f| {
@@ -153,9 +141,14 @@ impl<'a> Seat<'a> {
         self.rough && (looks(Axis::U, by[0]) || looks(Axis::V, by[1]))
     }
 
+    /// The face's parameters and where it meets itself.
+    pub(super) const fn rectangle(&self) -> &Rectangle {
+        &self.ripples.rectangle
+    }
+
     /// Whether the face meets itself at the ends of `axis`.
     pub(super) const fn closes(&self, axis: Axis) -> bool {
-        self.rectangle.closes(axis)
+        self.ripples.rectangle.closes(axis)
     }
 
     /// Whether the face changes its normal faster than the tool can follow.
@@ -167,31 +160,23 @@ impl<'a> Seat<'a> {
         self.task
     }
 
-    fn span(&self, axis: Axis, t: f64) -> f64 {
-        span_at(&self.breaks[usize::from(axis == Axis::V)], t)
-    }
-
-    /// Length of the knot span around a place of a line, in the line's parameter.
-    fn span_along(&self, line: &dyn PassLine, t: f64) -> f64 {
-        let (at, rate) = (self.rectangle.domain.bring(line.uv(t)), line.rate(t));
-        let of = |axis: Axis| self.span(axis, at.get(axis)) / rate.get(axis).abs();
-        of(Axis::U).min(of(Axis::V))
-    }
-
     /// The frame at `t` with its normal and tangent averaged along the line, and the speed there.
     pub(super) fn frame(&self, line: &dyn PassLine, t: f64) -> Result<(Darboux, f64), LineError> {
+        let (i, round) = (line.range(), line.goes_round(self.rectangle()));
+        // Both ends of a line that goes round are one place.
+        let held = |t: f64| match (i.periodic, round) {
+            (true, _) => t,
+            (false, true) => i.lo + (t - i.lo).rem_euclid(i.length()),
+            // Beyond the end of a line the end itself counts.
+            (false, false) => t.clamp(i.lo, i.hi),
+        };
+        let t = held(t);
         let (here, speed) = line.frame(t)?;
-        let i = line.range();
-        let reach = (AVERAGE * self.task.cutter.radius_mm() / speed.abs().max(1e-12))
-            .min(SPANS * self.span_along(line, t));
+        let reach = self.ripples.reach(line.uv(t), line.rate(t), speed);
         // Sums of normals and tangents and of their rates.
         let mut sums = [Vec3::zeros(); 4];
-        for k in -3..=3 {
-            // Beyond the end of a line the end itself counts.
-            let s = t + reach * f64::from(k) / 3.0;
-            let s = if i.periodic { s } else { s.clamp(i.lo, i.hi) };
-            let (f, v) = line.frame(s)?;
-            let weight = 4.0 - f64::from(k).abs();
+        for (share, weight) in places() {
+            let (f, v) = line.frame(held(t + reach * share))?;
             let turn = f.turn * v;
             for (sum, x) in sums.iter_mut().zip([
                 f.normal.into_inner(),
@@ -231,22 +216,27 @@ impl<'a> Seat<'a> {
         let surface = task.surface;
         let domain = surface.domain();
         let jet = surface.jet2(at);
-        let side = |axis: Axis, speed: f64| -> (f64, i32) {
+        let offsets = |axis: Axis, speed: f64| -> Vec<f64> {
             let t = domain.get(axis).bring(at.get(axis));
             let reach = reach_mm / speed.max(1e-12);
-            let step = (self.span(axis, t) / PER_SPAN).min(reach / FEWEST);
-            let n = (reach / step).ceil().min(MOST);
+            let step = (self.ripples.span(axis, t) / PER_SPAN).min(reach / FEWEST);
             // At most two dozen.
-            (reach / n, n as i32)
+            let n = (reach / step).ceil().min(MOST) as i32;
+            let mut all: Vec<f64> = (-n..=n).map(|k| reach * f64::from(k) / f64::from(n)).collect();
+            // Creases are at knots.
+            let knots = self.ripples.breaks(axis);
+            let from = knots.partition_point(|b| *b <= t - reach);
+            all.extend(knots[from..].iter().map(|b| b - t).take_while(|by| *by < reach));
+            all
         };
-        let ((du, nu), (dv, nv)) = (side(Axis::U, jet.du.norm()), side(Axis::V, jet.dv.norm()));
-        let mut points = Vec::with_capacity(((2 * nu + 1) * (2 * nv + 1)) as usize);
-        for i in -nu..=nu {
-            for j in -nv..=nv {
-                let p = Uv { u: at.u + du * f64::from(i), v: at.v + dv * f64::from(j) };
+        let (us, vs) = (offsets(Axis::U, jet.du.norm()), offsets(Axis::V, jet.dv.norm()));
+        let mut points = Vec::with_capacity(us.len() * vs.len());
+        for du in &us {
+            for dv in &vs {
+                let p = Uv { u: at.u + du, v: at.v + dv };
                 // Beyond the border the tool goes on at the height of its contact.
-                let holds = |p: &Uv| (i == 0 && j == 0) || self.holds.contains(*p);
-                let on = self.rectangle.bring(p).filter(holds);
+                let holds = |p: &Uv| (*du == 0.0 && *dv == 0.0) || self.holds.contains(*p);
+                let on = self.ripples.rectangle.bring(p).filter(holds);
                 points.extend(on.map(|p| surface.point(p)));
             }
         }
@@ -263,20 +253,24 @@ impl<'a> Seat<'a> {
         (seated, lift)
     }
 
+    /// A pose at a contact brought to rest on the face around it along a normal, and by how much.
+    pub(super) fn raised(&self, at: Uv, normal: &Unit3, pose: Pose) -> (Pose, f64) {
+        let radius = self.task.cutter.radius_mm();
+        let near = (2.0 * ROUGHNESS).sqrt() * radius;
+        let (seated, lift) = if self.rough { (pose, 0.0) } else { self.rest(at, normal, pose, near) };
+        // A tool that does not rest on its contact leans towards places further off than those next to it.
+        if self.rough || lift > 1e-3 * self.task.tolerance.gouge_mm {
+            self.rest(at, normal, pose, WIDE * radius)
+        } else {
+            (seated, lift)
+        }
+    }
+
     /// The pose that rests on the face at a line parameter, its frame, and the lift.
     fn resting(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
         let (frame, _) = self.frame(line, t)?;
         let pose = self.task.lean.on(line, t, &frame).pose(self.task.cutter, &frame, 0.0);
-        let radius = self.task.cutter.radius_mm();
-        let near = (2.0 * ROUGHNESS).sqrt() * radius;
-        let (seated, lift) =
-            if self.rough { (pose, 0.0) } else { self.rest(line.uv(t), &frame.normal, pose, near) };
-        // A tool that does not rest on its contact leans towards places further off than those next to it.
-        let (pose, lift) = if self.rough || lift > 1e-3 * self.task.tolerance.gouge_mm {
-            self.rest(line.uv(t), &frame.normal, pose, WIDE * radius)
-        } else {
-            (seated, lift)
-        };
+        let (pose, lift) = self.raised(line.uv(t), &frame.normal, pose);
         Ok((pose, frame, lift))
     }
 
