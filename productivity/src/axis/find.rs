@@ -265,7 +265,7 @@ impl Possibilities {
         let ripples = rough.then(|| Ripples::new(&face, cutter.radius_mm()));
         let normal = |at: Uv, jet: &Jet2| match &ripples {
             Some(ripples) => feed(at, jet)
-                .and_then(|way| ripples.mean_normal(&face, at, &way))
+                .and_then(|way| ripples.mean_normal(&face, jet, &way))
                 .or_else(|| Some(steady_normal(&face, at, jet, look_mm)?.0)),
             None => jet.normal().ok(),
         };

@@ -1,7 +1,8 @@
 //! The mean of a face's normals over a short stretch of a line: a tool's axis and contact are not to swing with every ripple between knots.
 
 use crate::rectangle::Rectangle;
-use osculate_geom::{Axis, Surface, Unit3, Uv, Vec3};
+use osculate_geom::{Axis, Jet2, Surface, Unit3, Uv, Vec3};
+use rayon::prelude::*;
 
 /// The normal is averaged over this part of the tool's radius to both sides, or less where knots stand closer.
 pub(super) const AVERAGE: f64 = 0.05;
@@ -9,6 +10,12 @@ pub(super) const AVERAGE: f64 = 0.05;
 const SPANS: f64 = 0.75;
 /// Places to each side of one that count, the nearer the more.
 const PLACES: i32 = 3;
+
+/// Normals to both sides of a crease differ by more than this, rad, so far from it as a part of the knot spans beside it.
+const CREASE_RAD: f64 = 0.01;
+const BESIDE: f64 = 1e-6;
+/// Where across a face its knots are asked, as shares of the other parameter.
+const ACROSS: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
 
 /// Length of the knot spans around a parameter, in the parameter: that of a span in its middle, and even from there to the next one's, so
 /// that nothing that is looked for as far as a span jumps from one to the next.
@@ -25,9 +32,27 @@ fn span_at(breaks: &[f64], t: f64) -> f64 {
     length(k) + (length(next) - length(k)) * share
 }
 
+/// The knots along a parameter at which the normals of a face jump, with both ends where it meets itself in a crease.
+fn creases(surface: &dyn Surface, axis: Axis, breaks: &[f64], closes: bool) -> Vec<f64> {
+    let across = surface.domain().get(axis.other());
+    let jumps = |before: f64, after: f64| {
+        ACROSS.iter().any(|share| {
+            let normal = |t: f64| surface.jet2(Uv::from_axis(axis, t, across.at(*share))).normal();
+            matches!([before, after].map(normal), [Ok(a), Ok(b)] if a.angle(&b) > CREASE_RAD)
+        })
+    };
+    let last = breaks.len() - 1;
+    let before = |k: usize| breaks[k] - BESIDE * (breaks[k] - breaks[k - 1]);
+    let after = |k: usize| breaks[k] + BESIDE * (breaks[k + 1] - breaks[k]);
+    let round = closes && jumps(before(last), after(0));
+    let is_crease = |k: &usize| if *k == 0 || *k == last { round } else { jumps(before(*k), after(*k)) };
+    (0..=last).into_par_iter().filter(is_crease).map(|k| breaks[k]).collect()
+}
+
 /// Knots of a face, fetched once, and how far normals are averaged between them.
 pub(crate) struct Ripples {
     breaks: [Vec<f64>; 2],
+    creases: [Vec<f64>; 2],
     /// The face's parameters and where it meets itself.
     pub(super) rectangle: Rectangle,
     radius_mm: f64,
@@ -36,13 +61,22 @@ pub(crate) struct Ripples {
 impl Ripples {
     /// Those of a face as a tool of this radius sees them.
     pub(crate) fn new(surface: &dyn Surface, radius_mm: f64) -> Self {
-        let breaks = [surface.breaks(Axis::U), surface.breaks(Axis::V)];
-        Self { breaks, rectangle: Rectangle::of(surface), radius_mm }
+        let breaks = [Axis::U, Axis::V].map(|axis| surface.breaks(axis));
+        let rectangle = Rectangle::of(surface);
+        let creases = [Axis::U, Axis::V].map(|axis| {
+            creases(surface, axis, &breaks[usize::from(axis == Axis::V)], rectangle.closes(axis))
+        });
+        Self { breaks, creases, rectangle, radius_mm }
     }
 
     /// The knots along a parameter.
     pub(super) fn breaks(&self, axis: Axis) -> &[f64] {
         &self.breaks[usize::from(axis == Axis::V)]
+    }
+
+    /// Those of them at which the face has a crease.
+    pub(super) fn creases(&self, axis: Axis) -> &[f64] {
+        &self.creases[usize::from(axis == Axis::V)]
     }
 
     /// Length of the knot span around a value of a parameter, in the parameter.
@@ -58,9 +92,9 @@ impl Ripples {
     }
 
     /// The normal at a place averaged along a line through it in a direction, `way`, as a pass' is. None where the face has none.
-    pub(crate) fn mean_normal(&self, surface: &dyn Surface, at: Uv, way: &Vec3) -> Option<Unit3> {
-        let jet = surface.jet2(at);
-        let rate = jet.forms().ok()?.rate(&jet, way);
+    pub(crate) fn mean_normal(&self, surface: &dyn Surface, jet: &Jet2, way: &Vec3) -> Option<Unit3> {
+        let at = jet.uv;
+        let rate = jet.forms().ok()?.rate(jet, way);
         let reach = self.reach(at, rate, jet.tangent(rate).norm());
         let mut sum = Vec3::zeros();
         for (share, weight) in places() {

@@ -223,10 +223,9 @@ impl<'a> Seat<'a> {
             // At most two dozen.
             let n = (reach / step).ceil().min(MOST) as i32;
             let mut all: Vec<f64> = (-n..=n).map(|k| reach * f64::from(k) / f64::from(n)).collect();
-            // Creases are at knots.
-            let knots = self.ripples.breaks(axis);
-            let from = knots.partition_point(|b| *b <= t - reach);
-            all.extend(knots[from..].iter().map(|b| b - t).take_while(|by| *by < reach));
+            let creases = self.ripples.creases(axis);
+            let from = creases.partition_point(|b| *b <= t - reach);
+            all.extend(creases[from..].iter().map(|b| b - t).take_while(|by| *by < reach));
             all
         };
         let (us, vs) = (offsets(Axis::U, jet.du.norm()), offsets(Axis::V, jet.dv.norm()));
