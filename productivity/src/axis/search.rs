@@ -174,7 +174,9 @@ impl<'a> Search<'a> {
         let all = self.asked.directions.all();
         let far = |a: &&Unit3| possible.rim.as_ref().is_none_or(|rim| rim.spot(a).is_none());
         let ways = possible.rim.iter().flat_map(|rim| rim.axes(MARGIN_RAD));
-        let next = ways.map(|(_, a)| a).filter(|a| self.asked.joints.reaches(a));
+        // Next to a way with no least lean what is said to be one may be none.
+        let next = ways.map(|(_, a)| a);
+        let next = next.filter(|a| self.asked.joints.reaches(a) && self.depth(node, a) > 0.0);
         let set = possible.depths.iter().zip(all).filter(|(d, _)| **d > 0).map(|(_, a)| a).filter(far);
         let found = set.copied().chain(next).fold((f64::NEG_INFINITY, *axis), |best, a| {
             let cosine = a.dot(axis);
@@ -246,8 +248,14 @@ impl<'a> Search<'a> {
         sum
     }
 
+    /// What a node counts for at most: a search that leaves a few with no possible axis may still be the best one.
+    fn most_min(&self, k: usize) -> f64 {
+        let strip_min = self.lattice.nodes[k].weight_mm2 / (self.widest_mm[k] * self.asked.feed_mm_min);
+        strip_min * NARROWEST.powf(NARROW + 1.0) * (1.0 + AT_RIM * f64::from(RIM))
+    }
+
     fn total_min(&self, axes: &[Unit3]) -> f64 {
-        let nodes: f64 = (0..axes.len()).map(|k| self.node_min(k, &axes[k])).sum();
+        let nodes: f64 = (0..axes.len()).map(|k| self.node_min(k, &axes[k]).min(self.most_min(k))).sum();
         let edges = self.lattice.edges.iter().map(|e| self.edge_min(e, &axes[e.ends[0]], &axes[e.ends[1]]));
         nodes + edges.sum::<f64>()
     }
