@@ -1,7 +1,8 @@
-//! The tool's axis as a field: machines of three and four axes, the sense of passes, and keys that do not go together.
+//! The tool's axis as a field or leaning to one side: machines of three and four axes, the sense of passes, and keys that do not go together.
 
 use crate::common;
 use common::{Run, Scratch, osculate};
+use osculate_geom::Vec3;
 use serde_json::Value;
 use std::path::Path;
 
@@ -97,6 +98,54 @@ fn a_wish_for_one_way_or_climb_is_kept_and_what_is_left_stays_the_same() {
         // Poses are those of the same passes; NC words round them otherwise.
         assert!((height(v) - height(&found[0])).abs() < 1e-3, "{} {}", height(v), height(&found[0]));
         assert!(v["air_length_mm"].as_f64() > found[0]["air_length_mm"].as_f64());
+    }
+}
+
+/// The place on the ellipsoid of [`text`] under the centre of a ball that touches it, and the axis as how far it leans along growing u and
+/// to the left of that, as tangents; None for a ball that does not touch.
+fn leans(line: &str, radius_mm: f64) -> Option<(f64, [f64; 2])> {
+    let numbers = line.strip_prefix("GOTO/")?.split(',').map(|x| x.parse().ok());
+    let [x, y, z, i, j, k] = <[f64; 6]>::try_from(numbers.collect::<Option<Vec<f64>>>()?).ok()?;
+    let (squares, axis) = (Vec3::new(900.0, 625.0, 400.0), Vec3::new(i, j, k));
+    let centre = Vec3::new(x, y, z) + axis * radius_mm;
+    let normal = |p: &Vec3| p.component_div(&squares).normalize();
+    let at = (0..100).fold(centre, |p, _| centre - normal(&p) * radius_mm);
+    if (at.dot(&at.component_div(&squares)) - 1.0).abs() > 1e-5 {
+        return None;
+    }
+    let (n, d) = (normal(&at), Vec3::new(-at.y * 1.2, at.x / 1.2, 0.0).normalize());
+    Some((at.y.atan2(at.x), [d, n.cross(&d)].map(|e| axis.dot(&e) / axis.dot(&n))))
+}
+
+#[test]
+fn passes_to_and_fro_lean_to_one_side() {
+    let s = Scratch::new();
+    for (name, lead, side) in [("left", 0.0, 20.0), ("right", 10.0, -15.0)] {
+        let strategy = match lead {
+            0.0 => format!("along = \"u\"\nside_tilt_deg = {side}"),
+            _ => format!("along = \"u\"\nlead_deg = {lead}\nside_tilt_deg = {side}"),
+        };
+        let job = s.write(&format!("{name}.toml"), &text(BALL, &strategy, "trunnion-ac"));
+        let out = s.path(name);
+        let v = plan(&job, &out).json();
+        assert_eq!(answer(&v), "held", "{v}");
+        assert_eq!(
+            [&v["lead_deg"], &v["tilt_deg"], &v["side_tilt_deg"]].map(|x| x.as_f64().unwrap().round()),
+            [lead, 0.0, side]
+        );
+        let cl = std::fs::read_to_string(out.join("path.cl")).unwrap();
+        let found: Vec<(f64, [f64; 2])> = cl.lines().filter_map(|line| leans(line, 4.0)).collect();
+        let [ahead, left] = [lead, side].map(|deg: f64| deg.to_radians().tan());
+        let mut senses = [0; 2];
+        for w in found.windows(2).filter(|w| (w[1].0 - w[0].0).abs() > 0.01) {
+            let grows = w[1].0 > w[0].0;
+            let lead = if grows { ahead } else { -ahead };
+            senses[usize::from(grows)] += 1;
+            for (_, [along, across]) in w {
+                assert!((across - left).abs() < 2e-3 && (along - lead).abs() < 2e-3, "{name}: {w:?}");
+            }
+        }
+        assert!(senses.iter().all(|n| *n > 20), "{name}: {senses:?}");
     }
 }
 

@@ -86,6 +86,31 @@ fn contacts_that_cannot_be_are_refused() {
     run("[contact]\nat = [nan, 0]\nalong = \"u\"\n").refused(&["at"]);
 }
 
+/// At one contact a tilt to one side is a lead turned to the left of the growing parameter, here where lines of parameter are no lines of
+/// curvature, so that the two sides differ; along another way it has no side.
+#[test]
+fn a_side_tilt_is_a_turned_lead() {
+    let scratch = Scratch::new();
+    let run = |lean: &str, along: &str| {
+        let text = format!(
+            "format = 1\n[part]\nbuiltin = {{ kind = \"ellipsoid\", semi_axes_mm = [30, 15, 20] }}\n\
+             [tool]\nkind = \"toroidal\"\ndiameter_mm = 10\ncorner_radius_mm = 2\n[tolerance]\nscallop_mm = 0.02\n\
+             [strategy]\nkind = \"isoparametric\"\n{lean}\n[contact]\nat = [0.6, 0.5]\n{along}\n"
+        );
+        osculate(&["strip", "--json", scratch.write("job.toml", &text).to_str().unwrap()])
+    };
+    let width = |lean: &str| run(lean, "along = \"u\"").json()["exact"]["left_mm"].as_f64().unwrap();
+    let sided = "along = \"u\"\nlead_deg = 10\nside_tilt_deg = 15";
+    let [ahead, left] = [10.0, 15.0].map(|deg: f64| deg.to_radians().tan());
+    let (lead, turn) = (ahead.hypot(left).atan().to_degrees(), left.atan2(ahead).to_degrees());
+    let turned = |deg: f64| width(&format!("lead_deg = {lead}\ntilt_deg = {deg}"));
+    assert!((width(sided) / turned(turn) - 1.0).abs() < 1e-9);
+    assert!((width(sided) / turned(-turn) - 1.0).abs() > 0.1);
+    for along in ["along = \"v\"", "angle_deg = 30"] {
+        run(sided, along).refused(&["side_tilt_deg", "[contact]"]);
+    }
+}
+
 /// What a contact cannot do is told with the quantities that matter; what it does all the same is measured.
 #[test]
 fn impossible_contacts_say_what_would_do() {

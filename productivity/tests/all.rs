@@ -29,6 +29,7 @@ mod regions;
 mod rough;
 #[path = "common/rows.rs"]
 mod rows;
+mod side_tilt;
 #[path = "common/slot.rs"]
 mod slot;
 mod swings;

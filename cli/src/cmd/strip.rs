@@ -2,11 +2,13 @@
 
 use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
+use osculate::job::strategy::Kind;
 use osculate::job::{ContactFeed, Job, LeadKey};
 use osculate::part;
 use osculate::words::{Table, number};
 use osculate_geom::{Surface, uv};
 use osculate_productivity::closed_form::{self, DomainError, Section};
+use osculate_productivity::plan::{Along, Strategy};
 use osculate_tools::{Contact, FeedLine, strip};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -80,6 +82,20 @@ pub fn run(path: &Path, json: bool) -> Outcome {
     }
     if job.strategy().lead == LeadKey::Local {
         let why = "[strategy] lead_deg = \"local\" is for paths: one contact needs a number";
+        return Err(Failure::file(job.path(), why));
+    }
+    let aside = match (job.strategy().side_tilt(), &job.strategy().kind) {
+        (
+            Some(_),
+            Kind::Faces(
+                Strategy::Isoparametric { along: Along::Fixed(axis) }
+                | Strategy::Regions { along: Along::Fixed(axis) },
+            ),
+        ) => Some(*axis),
+        _ => None,
+    };
+    if aside.is_some_and(|axis| table.feed != ContactFeed::Along(axis)) {
+        let why = "[strategy] side_tilt_deg is of passes along its parameter: one contact needs the same along in [contact]";
         return Err(Failure::file(job.path(), why));
     }
     let contact = Contact::new(&*face.surface, at, &cutter, feed, job.lean(0.0))

@@ -33,7 +33,8 @@ pub(super) fn layer_mm(raw: &Raw, tool: &Tool) -> f64 {
 
 /// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.
 ///
-/// A corner of radius r leaves `h = r - sqrt(r^2 - f^2/4)`; an edge that leans by the lead L leaves `h = f sin L cos L`.
+/// A corner of radius r leaves `h = r - sqrt(r^2 - f^2/4)`; an edge that leans by the lead L leaves `h = f sin L cos L`, and no more where
+/// some of L is to one side.
 pub(super) fn feed_per_tooth_mm(tool: &Tool, strategy: &Strategy, mark_mm: f64) -> Option<f64> {
     let r = tool.cutter().corner_mm();
     if r > 0.0 {
@@ -41,7 +42,8 @@ pub(super) fn feed_per_tooth_mm(tool: &Tool, strategy: &Strategy, mark_mm: f64) 
         return Some(2.0 * (h * (2.0 * r - h)).sqrt());
     }
     let LeadKey::Given(deg) = strategy.lead else { return None };
-    let slope = (deg.to_radians().sin() * deg.to_radians().cos()).abs();
+    let lead_rad = strategy.side_tilt().map_or(deg.to_radians(), |side| side.lean(1.0).lead_rad);
+    let slope = (lead_rad.sin() * lead_rad.cos()).abs();
     (slope > 0.0).then(|| mark_mm / slope)
 }
 

@@ -19,6 +19,7 @@ const NOT_BELOW: Range = Range { least: 0.0, most: 1e6, open: [false; 2] };
 const FINE: Range = Range { least: 1e-6, most: 1e3, open: [false; 2] };
 const FAR: Range = Range { least: -1e6, most: 1e6, open: [false; 2] };
 const LEAN: Range = Range { least: -90.0, most: 90.0, open: [true; 2] };
+const ASIDE: Range = Range { least: -60.0, most: 60.0, open: [false; 2] };
 const TURN: Range = Range { least: -360.0, most: 360.0, open: [false; 2] };
 
 /// Places of a circle: more are no part of a machine.
@@ -213,6 +214,8 @@ pub static TABLES: &[Table] = &[
         may("lead_rate_deg_per_mm", Kind::Number(Range { least: 0.0, most: 1e3, open: [true, false] }, "deg/mm"), "1", "0.5",
             "lead_deg = \"local\": its greatest change along the face"),
         may("tilt_deg", Kind::Number(TURN, "deg"), "0", "5", "turn of the leaning axis about the normal"),
+        may("side_tilt_deg", Kind::Number(ASIDE, "deg"), "none", "15",
+            "isoparametric, regions: lean to the left of the growing parameter, the same for passes to and fro; lead_deg is 0 where not given"),
         may("along", Kind::Word(AlongWord::WORDS), "auto", "\"u\"", "isoparametric, regions: the parameter along the passes"),
         may("axis", Kind::DirectionOr(AxisKey::WORDS), "\"feed\", or [0, 0, 1]", "\"field\"",
             "\"feed\": it leans along the feed; \"field\": the same for passes to and fro; a direction: contour_2cl, gradient_3c, isoplanar_3c, waterline_3c, z_level keep it"),

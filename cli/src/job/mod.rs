@@ -378,15 +378,11 @@ impl Job {
         self.strategy().is_open() || self.told.tools.len() > 1
     }
 
-    /// Lead and tilt, with this lead where the job leaves it to the program.
+    /// Lead and tilt, with this lead where the job leaves it to the program; of a tilt to one side those of passes along the growing
+    /// parameter.
     #[must_use]
     pub fn lean(&self, auto_lead_rad: f64) -> Lean {
-        let s = self.strategy();
-        let lead_rad = match s.lead {
-            LeadKey::Auto | LeadKey::Local => auto_lead_rad,
-            LeadKey::Given(deg) => deg.to_radians(),
-        };
-        Lean { lead_rad, tilt_rad: s.tilt_deg.to_radians() }
+        self.strategy().lean(auto_lead_rad)
     }
 
     /// Greatest change of a local lead per mm of the face.

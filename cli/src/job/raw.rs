@@ -192,6 +192,7 @@ pub struct Strategy {
     pub lead_deg: LeadKey,
     pub lead_rate_deg_per_mm: Option<f64>,
     pub tilt_deg: f64,
+    pub side_tilt_deg: Option<f64>,
     pub along: AlongWord,
     pub axis: Option<AxisKey>,
     #[serde(default)]

@@ -6,7 +6,8 @@ use crate::job::raw;
 use crate::job::roughing::{Layers, layers};
 use crate::job::words::{AlongWord, AxisKey, ClimbWord, Gouges, LeadKey, StrategyWord};
 use osculate_geom::{Axis, Unit3, Vec3};
-use osculate_productivity::plan::{self, Along, Milling, Senses};
+use osculate_productivity::plan::{self, Along, Milling, Senses, SideTilt};
+use osculate_tools::Lean;
 
 /// Greatest change of a local lead where the job says none: at 2000 mm/min some 30 degrees a second, as rotary axes can.
 const LEAD_RATE_DEG_PER_MM: f64 = 1.0;
@@ -54,6 +55,8 @@ pub struct Strategy {
     pub lead_rate_rad_per_mm: f64,
     /// Tilt.
     pub tilt_deg: f64,
+    /// Tilt to the left of the growing parameter on passes to and fro; the lead is then a given one.
+    pub side_tilt_deg: Option<f64>,
     /// The axis of tools that keep it.
     pub axis: Unit3,
     /// Whether passes to and fro share the axes of a tool that leans.
@@ -90,6 +93,43 @@ impl Strategy {
     #[must_use]
     pub fn may_be_field(&self) -> bool {
         self.axis_field || (self.axis_open && self.lead == LeadKey::Auto && self.tilt_deg == 0.0)
+    }
+
+    /// The lean to one side of the faces, where the job asks for one.
+    #[must_use]
+    pub fn side_tilt(&self) -> Option<SideTilt> {
+        match (self.side_tilt_deg, self.lead) {
+            (Some(side), LeadKey::Given(lead)) => {
+                Some(SideTilt { lead_rad: lead.to_radians(), side_rad: side.to_radians() })
+            }
+            _ => None,
+        }
+    }
+
+    /// As [`crate::job::Job::lean`].
+    #[must_use]
+    pub fn lean(&self, auto_lead_rad: f64) -> Lean {
+        if let Some(side) = self.side_tilt() {
+            return side.lean(1.0);
+        }
+        let lead_rad = match self.lead {
+            LeadKey::Auto | LeadKey::Local => auto_lead_rad,
+            LeadKey::Given(deg) => deg.to_radians(),
+        };
+        Lean { lead_rad, tilt_rad: self.tilt_deg.to_radians() }
+    }
+
+    /// Lead and tilt as the job gives them, of a lean of its passes: beside a tilt to one side that is the lead alone.
+    #[must_use]
+    pub fn as_given(&self, lean: Lean) -> Lean {
+        self.side_tilt().map_or(lean, |s| Lean { lead_rad: s.lead_rad, tilt_rad: 0.0 })
+    }
+
+    /// Whether a pass leaves the same either way: where the axis does not follow the feed.
+    #[must_use]
+    pub fn is_same_either_way(&self) -> bool {
+        let aside = self.side_tilt().is_some_and(|s| s.lead_rad == 0.0 && s.side_rad != 0.0);
+        aside || self.axis_field || self.kept_axis().is_some()
     }
 
     /// The axis that the tool keeps, where it keeps one.
@@ -146,12 +186,19 @@ impl Strategy {
             StrategyWord::ZLevel => Kind::Layers(layers(places, t)?),
             StrategyWord::Flank => Kind::Flank,
         };
+        let lead = match t.lead_deg {
+            LeadKey::Auto if t.side_tilt_deg.is_some() && !places.has(TABLE, "lead_deg") => {
+                LeadKey::Given(0.0)
+            }
+            lead => lead,
+        };
         let found = Self {
             word: t.kind,
             kind,
-            lead: t.lead_deg,
+            lead,
             lead_rate_rad_per_mm: t.lead_rate_deg_per_mm.unwrap_or(LEAD_RATE_DEG_PER_MM).to_radians(),
             tilt_deg: t.tilt_deg,
+            side_tilt_deg: t.side_tilt_deg,
             axis,
             axis_field: t.axis == Some(AxisKey::Field),
             axis_open: t.axis.is_none(),
@@ -183,6 +230,7 @@ impl Strategy {
         let lined = is(&[W::Isoparametric, W::Regions]);
         let rows = [
             ("along", lined, "isoparametric and regions"),
+            ("side_tilt_deg", lined, "isoparametric and regions"),
             ("feed_direction", drops, "gradient_3c, isoplanar_3c and z_level"),
             ("normal", is(&[W::Isoplanar]), "isoplanar"),
             ("stepdown_mm", layers, "z_level"),
@@ -234,6 +282,33 @@ impl Strategy {
     /// Refuses keys that contradict each other.
     fn agrees(&self, places: &Places, t: &raw::Strategy, tools: usize) -> Result<(), Failure> {
         let refuse = |key: &str, what: String| Err(places.refuse(TABLE, key, what));
+        if self.side_tilt_deg.is_some() {
+            let wrong = [
+                (
+                    self.axis_field,
+                    "axis",
+                    "axis = \"field\" finds the axis at each place: leave out side_tilt_deg",
+                ),
+                (
+                    t.along == AlongWord::Auto,
+                    "side_tilt_deg",
+                    "side_tilt_deg needs along = \"u\" or \"v\": its side is left of that parameter as it grows",
+                ),
+                (
+                    !matches!(self.lead, LeadKey::Given(_)),
+                    "lead_deg",
+                    "side_tilt_deg needs lead_deg as a number, which is 0 where it is left out",
+                ),
+                (
+                    self.tilt_deg != 0.0,
+                    "tilt_deg",
+                    "tilt_deg changes sides with the feed, side_tilt_deg does not: leave one of them out",
+                ),
+            ];
+            if let Some((_, key, what)) = wrong.into_iter().find(|w| w.0) {
+                return refuse(key, what.to_owned());
+            }
+        }
         if let Some(d) = self.feed_direction {
             let across = d - self.axis.into_inner() * d.dot(&self.axis);
             if across.norm() <= ACROSS * d.norm() {

@@ -126,8 +126,7 @@ fn walls(job: &Job, faces: &Part) -> Result<Arc<Walls>, Failure> {
 fn freedom(job: &Job) -> Freedom {
     let strategy = job.strategy();
     let wishes = strategy.senses != Senses::default();
-    // Only where axes do not follow the feed does a pass leave the same either way.
-    let same = strategy.axis_field || strategy.kept_axis().is_some();
+    let same = strategy.is_same_either_way();
     let from_above = matches!(strategy.kind, Kind::Drop(Drop::Waterlines));
     Freedom { turned: same && !wishes, in_turn: strategy.senses.milling != Milling::Any || from_above }
 }
@@ -184,7 +183,7 @@ pub fn each_direction(strategy: Strategy) -> Vec<Strategy> {
 pub struct Way<'a> {
     /// The strategy.
     pub strategy: &'a Strategy,
-    /// Lead and tilt.
+    /// Lead and tilt, but where the job tilts to one side.
     pub lean: Lean,
     /// How axes are found; the lead of `lean` is the least where it is found place by place.
     pub axes: Axes,
@@ -227,7 +226,9 @@ pub fn each_face(
             plan_face(&task, strategy).map_err(|e| Failure::file(job.path(), e))
         };
         let mut p = match way.axes {
-            Axes::Held => plan(way.strategy, way.lean.into())?,
+            Axes::Held => {
+                plan(way.strategy, job.strategy().side_tilt().map_or(way.lean.into(), Leaning::Sided))?
+            }
             Axes::Local => plan(way.strategy, Leaning::Local(&local))?,
             Axes::Field => {
                 let mut best: Option<Result<Passes, Failure>> = None;

@@ -290,15 +290,17 @@ pub fn summary_of(
     let totals = Totals { area_mm2: area_mm2 - left_mm2, time_min: times.time_min };
     let l = levels(&planned.passes.passes, job.feed_mm_min(), totals);
     let found = if planned.local { planned.passes.inclination_rad() } else { None };
+    let lean = job.strategy().as_given(planned.lean);
     let control = job.control();
     Ok(Summary {
         format: 1,
         strategy: planned.strategy.clone(),
         tool: serde_json::to_value(job.cutter_spec()).map_err(Failure::job)?,
         tool_words: job.tool_words(),
-        lead_deg: found.map_or(planned.lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
+        lead_deg: found.map_or(lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
         lead_range_deg: found.map(|[least, _, most]| [least, most].map(f64::to_degrees)),
-        tilt_deg: planned.lean.tilt_rad.to_degrees(),
+        tilt_deg: lean.tilt_rad.to_degrees(),
+        side_tilt_deg: job.strategy().side_tilt_deg,
         machine: control.machine.name().to_owned(),
         dialect: control.dialect_name.clone(),
         feed: control.feed_name.clone(),

@@ -43,6 +43,9 @@ pub struct Summary {
     pub lead_range_deg: Option<[f64; 2]>,
     /// Tilt, deg.
     pub tilt_deg: f64,
+    /// Tilt to the left of the growing parameter, deg, where the job asks for one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side_tilt_deg: Option<f64>,
     /// The machine by name.
     pub machine: String,
     /// The control's language.
@@ -160,9 +163,12 @@ pub struct OperationSummary {
 }
 
 impl Summary {
-    /// Lead and tilt in words, degrees.
+    /// Lead and tilt in words, degrees; a tilt to one side is to the left or right of the growing parameter.
     pub fn lean_words(&self) -> String {
-        let tilt = number(self.tilt_deg, 4);
+        let aside = |deg: f64| {
+            format!("{} to the {}", number(deg.abs(), 4), if deg < 0.0 { "right" } else { "left" })
+        };
+        let tilt = self.side_tilt_deg.map_or_else(|| number(self.tilt_deg, 4), aside);
         match self.lead_range_deg {
             Some([least, most]) => {
                 let [least, mean, most] = [least, self.lead_deg, most].map(|x| number(x, 3));

@@ -23,10 +23,10 @@ pub(super) fn fits(seat: &Seat<'_>, line: &dyn PassLine, parameters: &[f64]) -> 
         .par_iter()
         .map(|t| {
             let at = line.uv(*t);
-            let (frame, _) = line.frame(*t).ok()?;
+            let (frame, speed) = line.frame(*t).ok()?;
             // The fit depends on the direction of the feed alone, not on how the line bends.
             let feed = FeedLine::Angle(angle(task, at, &frame)?);
-            let contact = task.contact_at(at, feed).ok()?;
+            let contact = task.contact_at(at, feed, speed).ok()?;
             let refusal = contact.fits().err()?;
             let wide = seat.wide_lift(line, *t).ok()?;
             (task.surface.contains(at) && wide > task.tolerance.gouge_mm).then_some(refusal)

@@ -32,7 +32,7 @@ const COVER_ROWS: i32 = 10;
 /// How far on a pass may lie is asked at every so many columns first.
 const ASKED_STRIDE: usize = 12;
 /// How far towards its neighbours a pass looks for the face, and how far what lies there is its own: the ridge between two passes
-/// is about halfway, but not where axes of a field lean to one side.
+/// is about halfway, but not where axes lean to one side on all passes.
 const LOOKED: f64 = 0.75;
 const OWN: f64 = 0.55;
 /// A pass runs further than it must by this part of its strip's width: what it leaves grows with the square of what it lacks.
@@ -355,8 +355,9 @@ fn measure(
         if !task.surface.contains(at) {
             return Ok(None);
         }
-        let feed = if reversed { FeedLine::IsoReversed(along) } else { FeedLine::Iso(along) };
-        let contact = task.contact_at(at, feed).map_err(|e| task.contact(e))?;
+        let (feed, sense) =
+            if reversed { (FeedLine::IsoReversed(along), -1.0) } else { (FeedLine::Iso(along), 1.0) };
+        let contact = task.contact_at(at, feed, sense).map_err(|e| task.contact(e))?;
         match strip::exact(&contact, task.tolerance.scallop_mm) {
             Ok(s) => Ok(Some((t, s.width_mm))),
             // Where a line runs into a pole, or a ripple throws the unseated tool off its own contact, there is no
@@ -440,7 +441,8 @@ fn build(
     let [before, after] = [neighbour(k.checked_sub(1)), neighbour(Some(k + 1))];
     let within = |share: f64| [to(before, layout.across[0], share), to(after, layout.across[1], share)];
     let [below, above] = within(LOOKED);
-    let own = within(if matches!(task.lean, Leaning::Axes(_)) { LOOKED } else { OWN });
+    let one_side = matches!(task.lean, Leaning::Axes(_) | Leaning::Sided(_));
+    let own = within(if one_side { LOOKED } else { OWN });
     // Beyond what is its own a pass only goes as far as the face does.
     let stretch =
         |row: f64, s: [f64; 2]| if row >= own[0] && row <= own[1] { run_out(row, s) } else { Ok(s) };

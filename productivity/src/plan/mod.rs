@@ -38,7 +38,7 @@ pub use drop::{
     gradient_3c, rough, waterline_3c,
 };
 pub use isoparametric::isoparametric;
-pub use lead::{LeadField, Leaning, LocalLead};
+pub use lead::{LeadField, Leaning, LocalLead, SideTilt};
 pub use leave_out::{Guard, LeaveOutError, LeftOut, leave_out};
 pub use level::{curvature_5c, isoplanar, isoscallop, streamline};
 pub use link::{Freedom, Keeping, Linked, Links, Rates, Walls, link, link_stretches, ordered};

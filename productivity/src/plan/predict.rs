@@ -45,7 +45,7 @@ pub fn predicted_length_mm(task: &Task<'_>) -> f64 {
                 let jet = task.surface.jet2(at);
                 let share =
                     jet.du.cross(&jet.dv).norm() * d.u.length() * d.v.length() / (LOOKS * LOOKS) as f64;
-                let contact = task.contact_at(at, FeedLine::Iso(axis));
+                let contact = task.contact_at(at, FeedLine::Iso(axis), 1.0);
                 let strip = contact.ok().filter(|c| c.fits().is_ok() && !digs_in(task, c)).and_then(|c| {
                     strip::exact(&c, task.tolerance.scallop_mm)
                         .ok()

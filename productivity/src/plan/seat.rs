@@ -267,8 +267,8 @@ impl<'a> Seat<'a> {
 
     /// The pose that rests on the face at a line parameter, its frame, and the lift.
     fn resting(&self, line: &dyn PassLine, t: f64) -> Result<(Pose, Darboux, f64), LineError> {
-        let (frame, _) = self.frame(line, t)?;
-        let pose = self.task.lean.on(line, t, &frame).pose(self.task.cutter, &frame, 0.0);
+        let (frame, speed) = self.frame(line, t)?;
+        let pose = self.task.lean.on(line, t, (&frame, speed)).pose(self.task.cutter, &frame, 0.0);
         let (pose, lift) = self.raised(line.uv(t), &frame.normal, pose);
         Ok((pose, frame, lift))
     }
@@ -347,8 +347,8 @@ impl<'a> Seat<'a> {
 
     /// How far the whole end of the tool, not only the part of it next to the contact, is held off the face.
     pub(super) fn wide_lift(&self, line: &dyn PassLine, t: f64) -> Result<f64, LineError> {
-        let (frame, _) = self.frame(line, t)?;
-        let pose = self.task.lean.on(line, t, &frame).pose(self.task.cutter, &frame, 0.0);
+        let (frame, speed) = self.frame(line, t)?;
+        let pose = self.task.lean.on(line, t, (&frame, speed)).pose(self.task.cutter, &frame, 0.0);
         Ok(self.rest(line.uv(t), &frame.normal, pose, WIDE * self.task.cutter.radius_mm()).1)
     }
 }

@@ -140,6 +140,12 @@ pub enum PlanError {
         /// What is wrong.
         source: StripError,
     },
+    /// A tilt to one side of a face whose passes run along no parameter of it.
+    #[error("face {face}: a tilt to one side of the face is for isoparametric passes and regions")]
+    Sided {
+        /// The face.
+        face: String,
+    },
     /// The strategy needs another tool.
     #[error("strategy {strategy} needs a {need}")]
     Tool {
@@ -193,10 +199,18 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// The contact at a place, with the tool's axis there on a line along `feed`.
-    pub(super) fn contact_at(&self, at: Uv, feed: FeedLine) -> Result<Contact<'_>, ContactError> {
+    /// As [`Task::check`], for passes along level lines: these have no parameter by whose growth one side is told from the other.
+    pub(super) fn check_level(&self) -> Result<(), PlanError> {
+        match self.lean {
+            Leaning::Sided(_) => Err(PlanError::Sided { face: self.face.to_owned() }),
+            _ => self.check(),
+        }
+    }
+
+    /// The contact at a place, with the tool's axis there on a line along `feed`, whose parameter moves the contact at `speed`.
+    pub(super) fn contact_at(&self, at: Uv, feed: FeedLine, speed: f64) -> Result<Contact<'_>, ContactError> {
         let upright = Contact::new(self.surface, at, self.cutter, feed, Lean::default())?;
-        let lean = self.lean.against(at, &upright.frame);
+        let lean = self.lean.against(at, (&upright.frame, speed));
         // Between places that no axis reaches a field may lean over: passes there are cut off, or verification says so.
         upright.leaning(match self.lean {
             Leaning::Axes(_) => Lean { lead_rad: lean.lead_rad.min(MOST_LEAN_RAD), ..lean },

@@ -43,6 +43,9 @@ pub struct Row {
     pub axis: String,
     /// Tilt.
     pub tilt_deg: f64,
+    /// Tilt to the left of the growing parameter, where the job asks for one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side_tilt_deg: Option<f64>,
     /// Leads looked at.
     pub leads: usize,
     /// Time by strips at places; absent where there are none.
@@ -71,6 +74,7 @@ fn of_entry(jobs: &[Job], entry: &Entry, leads: usize) -> Row {
     let c = &entry.candidate;
     let finite = |x: f64| x.is_finite().then_some(x);
     let f = entry.figures;
+    let lean = jobs[c.tool].strategy().as_given(c.lean);
     let (outcome, why) = match &entry.state {
         State::Out(why) if f.is_some() => (Outcome::Fails, why.clone()),
         State::Out(why) => (Outcome::NotPossible, why.clone()),
@@ -84,10 +88,11 @@ fn of_entry(jobs: &[Job], entry: &Entry, leads: usize) -> Row {
     Row {
         tool: jobs[c.tool].tool_words(),
         strategy: candidates::words(&c.strategy),
-        lead_deg: c.lean.lead_rad.to_degrees(),
+        lead_deg: lean.lead_rad.to_degrees(),
         local_lead: c.axes == Axes::Local,
         axis: if c.axes == Axes::Field { "field" } else { "feed" }.to_owned(),
-        tilt_deg: c.lean.tilt_rad.to_degrees(),
+        tilt_deg: lean.tilt_rad.to_degrees(),
+        side_tilt_deg: jobs[c.tool].strategy().side_tilt_deg,
         leads,
         pointwise_min: finite(entry.screened.pointwise_min),
         layout_min: finite(entry.screened.layout_min),

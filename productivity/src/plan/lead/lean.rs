@@ -1,4 +1,4 @@
-//! The tool's axis in a task: lead and tilt held, a lead to be found, as found, or a field of axes.
+//! The tool's axis in a task: lead and tilt held, a lean to one side of the face, a lead to be found, as found, or a field of axes.
 
 use crate::axis::AxisField;
 use crate::compare::Around;
@@ -33,11 +33,37 @@ impl LocalLead<'_> {
     pub const MOST_RAD: f64 = std::f64::consts::FRAC_PI_4;
 }
 
+/// A lean with a lead towards the feed and a tilt whose side does not change with the sense of a pass, rad.
+///
+/// With d the unit tangent along which the parameter of the pass's line grows (the surface's own on an isoparametric line), t the feed, which
+/// is d or -d, and n the outward normal, the axis is along `n + tan(lead) t + tan(side) (n x d)`: a positive side is to the left of the
+/// growing parameter, seen from outside. Both lie strictly between -90 and 90 degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SideTilt {
+    /// From n towards the feed.
+    pub lead_rad: f64,
+    /// From n to the left of the growing parameter.
+    pub side_rad: f64,
+}
+
+impl SideTilt {
+    /// Lead and tilt against the feed: the lead is that of the whole lean, zero or more. `speed` is that of the line by its parameter, negative where
+    /// the feed runs against it.
+    #[must_use]
+    pub fn lean(self, speed: f64) -> Lean {
+        let (ahead, side) = (self.lead_rad.tan(), self.side_rad.tan());
+        let left = if speed < 0.0 { -side } else { side };
+        Lean { lead_rad: ahead.hypot(left).atan(), tilt_rad: left.atan2(ahead) }
+    }
+}
+
 /// The tool's axis in a task.
 #[derive(Clone, Copy)]
 pub enum Leaning<'a> {
     /// Lead and tilt held along all passes.
     Held(Lean),
+    /// A lean to the same side of the face along passes to and fro.
+    Sided(SideTilt),
     /// A lead to be found place by place, before passes are laid out.
     Local(&'a LocalLead<'a>),
     /// A lead as found.
@@ -56,11 +82,13 @@ impl From<Lean> for Leaning<'_> {
 pub(in crate::plan) type Feed<'a> = dyn Fn(Uv, &Jet2) -> Option<Vec3> + Sync + 'a;
 
 impl Leaning<'_> {
-    /// Lead and tilt at a place against the frame of a line there; the least lead where it has not been found yet.
+    /// Lead and tilt at a place against the frame of a line there, whose parameter moves it at `speed`; the least lead where it has not
+    /// been found yet.
     #[must_use]
-    pub fn against(&self, at: Uv, frame: &Darboux) -> Lean {
+    pub fn against(&self, at: Uv, (frame, speed): (&Darboux, f64)) -> Lean {
         match self {
             Self::Held(lean) => *lean,
+            Self::Sided(tilt) => tilt.lean(speed),
             Self::Local(l) => Lean { lead_rad: l.least_rad, tilt_rad: l.tilt_rad },
             Self::Field(f) => f.at(at).0,
             Self::Axes(f) => Lean::of(&f.at(at).0, frame),
@@ -70,7 +98,7 @@ impl Leaning<'_> {
     /// Lead and tilt at a place, about, where they have not been found yet: at a lead of sine `R k` the far side of a disc of radius R
     /// just clears a face that is hollow by k, to second order and whatever the feed.
     pub(in crate::plan) fn about(&self, at: Uv, forms: &Forms, frame: &Darboux, cutter: &Cutter) -> Lean {
-        let Self::Local(l) = self else { return self.against(at, frame) };
+        let Self::Local(l) = self else { return self.against(at, (frame, 1.0)) };
         let sine = cutter.radius_mm() * (-forms.principal().k_min).max(0.0);
         let lead_rad = sine.min(1.0).asin().clamp(l.least_rad, l.most_rad);
         Lean { lead_rad, tilt_rad: l.tilt_rad }
@@ -80,6 +108,12 @@ impl Leaning<'_> {
     pub(in crate::plan) fn checked(&self) -> Result<(), ContactError> {
         match self {
             Self::Held(lean) => lean.checked().map(|_| ()),
+            Self::Sided(tilt) => {
+                for lead_rad in [tilt.lead_rad, tilt.side_rad, tilt.lean(1.0).lead_rad] {
+                    Lean { lead_rad, tilt_rad: 0.0 }.checked()?;
+                }
+                Ok(())
+            }
             Self::Local(l) => {
                 for lead_rad in [l.least_rad, l.most_rad] {
                     Lean { lead_rad, tilt_rad: l.tilt_rad }.checked()?;
@@ -90,11 +124,11 @@ impl Leaning<'_> {
         }
     }
 
-    /// Lead and tilt on a line, against its frame at `t` or an average of that.
-    pub(in crate::plan) fn on(&self, line: &dyn PassLine, t: f64, frame: &Darboux) -> Lean {
+    /// Lead and tilt on a line, against its frame at `t` or an average of that, with the speed there.
+    pub(in crate::plan) fn on(&self, line: &dyn PassLine, t: f64, moved: (&Darboux, f64)) -> Lean {
         match self {
             Self::Held(lean) => *lean,
-            _ => self.against(line.uv(t), frame),
+            _ => self.against(line.uv(t), moved),
         }
     }
 
@@ -116,8 +150,8 @@ impl Leaning<'_> {
                 let ((axis, slope), rate) = (f.at(line.uv(t)), line.rate(t));
                 moving_with_axis(cutter, frame, speed, &axis, &(slope[0] * rate.u + slope[1] * rate.v))
             }
-            Self::Held(_) | Self::Local(_) => {
-                self.on(line, t, frame).moving(cutter, frame, 0.0, (speed, 0.0))
+            Self::Held(_) | Self::Sided(_) | Self::Local(_) => {
+                self.on(line, t, (frame, speed)).moving(cutter, frame, 0.0, (speed, 0.0))
             }
         }
     }

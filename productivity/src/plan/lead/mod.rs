@@ -11,5 +11,5 @@ mod field;
 mod lean;
 mod need;
 
-pub use lean::{LeadField, Leaning, LocalLead};
+pub use lean::{LeadField, Leaning, LocalLead, SideTilt};
 pub(super) use need::Clearance;

@@ -94,7 +94,7 @@ fn level_passes(
 /// # Errors
 /// [`PlanError`]; where the face lies level in the planes, [`PlanError::Contact`]: it has no lines there.
 pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
-    task.check()?;
+    task.check_level()?;
     if let Leaning::Local(local) = task.lean {
         let feed = |_: Uv, jet: &Jet2| jet.normal().ok().map(|n| n.cross(&normal));
         // Passes run out over the border: there too the lead must do.
@@ -198,7 +198,7 @@ fn finished(mut out: Passes, task: &Task<'_>, name: &str, even: &Even) -> Result
 /// # Errors
 /// [`PlanError`].
 pub fn isoscallop(task: &Task<'_>) -> Result<Passes, PlanError> {
-    task.check()?;
+    task.check_level()?;
     let none = |places: &[Place]| vec![Wish::default(); places.len()];
     even_passes(task, "isoscallop", Wishes { of: &none, trusts: &[0.0], binding: false })
 }
@@ -209,7 +209,7 @@ pub fn isoscallop(task: &Task<'_>) -> Result<Passes, PlanError> {
 /// # Errors
 /// [`PlanError`].
 pub fn streamline(task: &Task<'_>) -> Result<Passes, PlanError> {
-    task.check()?;
+    task.check_level()?;
     let wish = |places: &[Place]| places.par_iter().map(|p| widest(task, p)).collect();
     even_passes(task, "streamline", Wishes { of: &wish, trusts: &[0.0, 0.3, 1.0], binding: false })
 }
@@ -242,7 +242,7 @@ const NEAR_UMBILIC: f64 = 0.15;
 /// # Errors
 /// [`PlanError::Tool`] for a ball, which has no use of them; else [`PlanError`].
 pub fn curvature_5c(task: &Task<'_>) -> Result<Passes, PlanError> {
-    task.check()?;
+    task.check_level()?;
     if task.cutter.is_ball() {
         return Err(PlanError::Tool { strategy: "curvature_5c", need: "toroidal or flat cutter" });
     }

@@ -71,7 +71,7 @@ pub(super) fn reach(seat: &Seat<'_>, face: Face<'_>, at: Uv) -> Result<Reach, Li
     let (_, slope) = Face::ascent(&jet, &phi)?;
     let (frame, ..) = face.frame(at, false)?;
     let forms = jet.forms()?;
-    let q = Relative::new(&forms, &task.lean.against(at, &frame).tool_curvature(task.cutter, &frame))
+    let q = Relative::new(&forms, &task.lean.against(at, (&frame, 1.0)).tool_curvature(task.cutter, &frame))
         .along(&frame.left);
     let height_mm = height_mm(seat, face, at, phi.value, &frame)?;
     let radius = task.cutter.radius_mm();
