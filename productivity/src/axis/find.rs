@@ -10,7 +10,7 @@ use super::settle::{Leaning, settle};
 use crate::plan::extended::Extended;
 use crate::plan::ripples::Ripples;
 use crate::width::WIDEST;
-use osculate_geom::{Jet2, Point3, Surface, Unit3, Uv};
+use osculate_geom::{Jet2, Point3, Surface, Unit3, Uv, Vec3};
 use osculate_tools::reach::{
     Best, Bits, Directions, Place, Reach, ReachError, ReachLimits, ReachProblem, Tool,
 };
@@ -269,12 +269,23 @@ impl Possibilities {
                 .or_else(|| Some(steady_normal(&face, at, jet, look_mm)?.0)),
             None => jet.normal().ok(),
         };
+        // Of a rough face the normals of the nodes are means: they make a face without ripples.
+        let steady = rough.then(|| {
+            let mut spline = lattice.spline.clone();
+            let normal = |n: &Node| n.normal.map_or_else(Vec3::zeros, Unit3::into_inner);
+            spline.poles = lattice.nodes.iter().map(normal).collect();
+            AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces.clone() }
+        });
+        let upright = |at: Uv, jet: &Jet2| match &steady {
+            Some(steady) => Some(steady.at(at).0).filter(|n| n.iter().all(|x| x.is_finite())),
+            None => jet.normal().ok(),
+        };
         let mut spline = lattice.spline;
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
         let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces };
         let unsettled = settle(
             &mut field,
-            (&face, &normal),
+            (&face, &normal, &upright),
             (&self.between, wish.scallop_mm),
             (&clear, &held, if cutter.is_ball() { Leaning::Any } else { Leaning::Least }),
         );

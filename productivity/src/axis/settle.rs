@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Rounds of looking and moving.
-const ROUNDS: u32 = 30;
+const ROUNDS: u32 = 40;
 /// Rings around an axis that is not clear, rad: the spacing of directions and what is finer.
 const RINGS: [f64; 9] = [0.001, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.12, 0.16];
 /// So many of them are finer than a ball needs.
@@ -24,6 +24,11 @@ const BEYOND: f64 = 0.25;
 /// A pole whose places weigh less in it than one in the middle of its piece does moves by less than these lack: others move it too.
 const LEAST_WEIGHT: f64 = 0.44;
 
+/// A place that was not clear before draws the harder by this part each time, up to so many times: tuned on the edges of a turbine's blade,
+/// where places beside each other ask for different leans.
+const STUBBORN: f64 = 0.1;
+const HARDEST: f64 = 3.0;
+
 /// An axis that was found for a place counts until the field has turned so far there, rad.
 const KNOWN: f64 = 0.02;
 
@@ -36,10 +41,14 @@ struct Asked {
     at: Uv,
     point: Point3,
     normal: Unit3,
+    /// The normal off which its axis leans: next to ripples that of the face without them.
+    upright: Unit3,
     /// An axis that is not clear and the nearest to it that is, where there is one: what was found last.
     known: Option<(Unit3, Option<Unit3>)>,
     /// The axis that was found clear last.
     clear: Option<Unit3>,
+    /// How often it was not clear.
+    short: u32,
 }
 
 impl Asked {
@@ -55,7 +64,7 @@ impl Asked {
         }
         if self.known.is_none_or(|(from, _)| from.angle(axis) > KNOWN) {
             let next = match leaning {
-                Leaning::Least => raised(&self.normal, axis, held, &is_clear).or_else(|| {
+                Leaning::Least => raised(&self.upright, axis, held, &is_clear).or_else(|| {
                     between(axis, &nearest_clear(axis, &RINGS, held, &is_clear)?, held, &is_clear)
                 }),
                 Leaning::Any => nearest_clear(axis, &RINGS[FINER..], held, &is_clear),
@@ -101,10 +110,10 @@ type How<'a> = (&'a Clear<'a>, &'a Held<'a>, Leaning);
 /// Moves the poles of a field until the tool is clear at places of a face; how many of them it is not at.
 ///
 /// `held` brings an axis to where the joints can take it. A place at which no axis near the field's is clear is asked with the tool
-/// lifted by `lift_mm`. The normals are those that passes see.
+/// lifted by `lift_mm`. The normals are those that passes see, then those off which axes lean.
 pub(super) fn settle(
     field: &mut AxisField,
-    (face, normal): (&Extended<'_>, &Normal<'_>),
+    (face, normal, upright): (&Extended<'_>, &Normal<'_>, &Normal<'_>),
     (places, lift_mm): (&[Uv], f64),
     how: How<'_>,
 ) -> usize {
@@ -113,17 +122,25 @@ pub(super) fn settle(
         .filter_map(|at| {
             let jet = face.jet2(*at);
             let normal = normal(*at, &jet)?;
+            let upright = upright(*at, &jet).unwrap_or(normal);
             let axis = field.at(*at).0;
             let lifted = |mm: f64| {
                 let point = jet.point + normal.into_inner() * mm;
-                let mut asked = Asked { at: *at, point, normal, known: None, clear: None };
+                let mut asked = Asked { at: *at, point, normal, upright, known: None, clear: None, short: 0 };
                 (asked.is_clear(&axis, how) || asked.near().is_some()).then_some(asked)
             };
             lifted(0.0).or_else(|| {
                 // Beyond the border the tool may have no place to stand at all.
                 let on_face = face.contains(*at);
-                let none =
-                    || Asked { at: *at, point: jet.point, normal, known: Some((axis, None)), clear: None };
+                let none = || Asked {
+                    at: *at,
+                    point: jet.point,
+                    normal,
+                    upright,
+                    known: Some((axis, None)),
+                    clear: None,
+                    short: 0,
+                };
                 on_face.then(|| lifted(lift_mm).unwrap_or_else(none))
             })
         })
@@ -137,7 +154,12 @@ pub(super) fn settle(
             .map(|(_, place)| {
                 let axis = field.at(place.at).0;
                 (!place.is_clear(&axis, how)).then(|| {
-                    let by = place.near().map_or_else(Vec3::zeros, |a| a.into_inner() - axis.into_inner());
+                    // What others hold back is pulled the harder.
+                    let pull = (1.0 + STUBBORN * f64::from(place.short)).min(HARDEST);
+                    place.short += 1;
+                    let by = place
+                        .near()
+                        .map_or_else(Vec3::zeros, |a| (a.into_inner() - axis.into_inner()) * pull);
                     Short { at: place.at, by }
                 })
             })
@@ -189,7 +211,7 @@ fn move_poles<'a>(field: &mut AxisField, short: impl Iterator<Item = &'a Short>,
 
 /// Leans that are tried beyond an axis' that is no further from the normal than that, rad.
 const LEANS: f64 = 0.2;
-const RAISES: [f64; 7] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032];
+const RAISES: [f64; 9] = [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064, 0.128];
 
 /// The axis that leans the least further the same way and is clear.
 fn raised(normal: &Unit3, axis: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) -> bool) -> Option<Unit3> {
