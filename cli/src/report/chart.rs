@@ -4,7 +4,7 @@
 //! light and dark theme. A chart without data is `None`: the page then says so instead of showing an empty frame.
 
 use super::data::{Histogram, Pace, Pass, Stage};
-use super::legend::{Rgb, Scale, nice_step};
+use super::legend::{Scale, hex, nice_step};
 use super::text::{coordinate, count, escape, figure, fixed, short};
 use std::fmt::Write;
 
@@ -47,10 +47,6 @@ impl Axis {
             .map(|v| if v.abs() < 1e-9 * span { 0.0 } else { v })
             .collect()
     }
-}
-
-fn hex([r, g, b]: Rgb) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title: &str) -> String {
