@@ -15,6 +15,8 @@ use osculate_surfaces::TrimmedSurface;
 const STICK: f64 = 26.0;
 /// Half the size of the mark of a place that no axis reaches, px.
 const CROSS: f64 = 2.6;
+/// Least distance of two of them, px.
+const APART: f64 = 9.0;
 const RED: &str = "#b3122b";
 const INK: &str = "#222";
 
@@ -105,10 +107,15 @@ pub fn page(
     sheet.finish(WIDTH * all.len() as f64, TOP + HEIGHT, &format!("{name}: tool axes"))
 }
 
-/// The places that no axis reaches, those that are seen.
+/// The places that no axis reaches, those that are seen and not upon each other.
 fn marks(d: &mut Drawing, scene: &Scene, places: &[Point3]) {
-    let seen = places.iter().filter(|p| scene.sees(p)).map(|p| scene.place(p));
-    let lines: Vec<_> = seen.flat_map(cross).collect();
+    let mut kept: Vec<[f64; 2]> = Vec::new();
+    for [x, y] in places.iter().filter(|p| scene.sees(p)).map(|p| scene.place(p)) {
+        if kept.iter().all(|k| (k[0] - x).hypot(k[1] - y) > APART) {
+            kept.push([x, y]);
+        }
+    }
+    let lines: Vec<_> = kept.into_iter().flat_map(cross).collect();
     d.lines(&lines, pen("#fff", 2.6));
     d.lines(&lines, pen(RED, 1.2));
 }

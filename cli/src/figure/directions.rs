@@ -14,15 +14,15 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The page, the middle of the map and its radius, px.
 const WIDTH: f64 = 700.0;
-const HEIGHT: f64 = 500.0;
-const MIDDLE: Place = [226.0, 266.0];
+const HEIGHT: f64 = 520.0;
+const MIDDLE: Place = [226.0, 290.0];
 const RADIUS: f64 = 190.0;
 /// Leans with a ring, degrees.
 const RINGS_DEG: [f64; 5] = [15.0, 30.0, 45.0, 60.0, 75.0];
 /// Where rings are labelled, degrees anticlockwise from the direction of u.
 const LABELS_DEG: f64 = -67.5;
 /// Where the legend stands, and its rows, px.
-const LEGEND: Place = [456.0, 70.0];
+const LEGEND: Place = [456.0, 96.0];
 const ROW: f64 = 17.0;
 /// Radius of the dot of a direction that has too few neighbours for a cell, px.
 const DOT: f64 = 3.2;

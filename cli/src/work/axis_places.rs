@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::figure::directions::{Kind, Map, Named};
 use crate::part::LoadedFace;
 use crate::report::legend::{KINDS, Rgb, UNKNOWN};
-use crate::words::number;
+use crate::report::text::short;
 use crate::work::axes;
 use crate::work::axis_view::Look;
 use osculate_geom::{Surface, Uv};
@@ -15,10 +15,11 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// Where a direction is free, where the machine has none, and where what stands in the way is none of the few that have a colour of their own.
+/// Where a direction is free, where the machine has none, and where cutter or holder meet what is none of the few that have a colour of
+/// their own.
 const FREE: Rgb = [0xd3, 0xec, 0xdb];
 const NO_MACHINE: Rgb = [0x6b, 0x72, 0x7a];
-const OTHER: Rgb = [0x22, 0x22, 0x22];
+const OTHERS: [Rgb; 2] = [[0x3a, 0x3a, 0x3a], [0x8a, 0x5a, 0x33]];
 
 /// The directions at a place.
 #[derive(Debug, Serialize)]
@@ -91,10 +92,14 @@ impl Fate {
     }
 }
 
-/// Rows of the legend, the row of each direction, and how many are counted.
+/// The directions by their fate.
 struct Counted {
+    /// Rows of the legend, and the row of each direction.
     kinds: Vec<Kind>,
     kind_of: Vec<usize>,
+    /// What keeps the tool from directions, one by one, the most first.
+    barred: Vec<Share>,
+    /// How many are counted, and those of them that are free.
     all: usize,
     free: usize,
 }
@@ -123,9 +128,6 @@ pub(super) fn look(
     let picture = file.clone().map(|file| (file, map(look, face, (&place, &directions), &counted, &axes)));
     let normal = place.place.normal;
     let point = face.surface.point(at);
-    let barred = counted.kinds.iter().skip(1).filter(|k| k.percent > 0.0);
-    let mut barred: Vec<Share> = barred.map(|k| Share { what: k.name.clone(), percent: k.percent }).collect();
-    barred.sort_by(|a, b| b.percent.total_cmp(&a.percent));
     let of_field = |named: Named| AxisFigures {
         passes: named.name,
         axis: named.axis.into_inner().into(),
@@ -140,7 +142,7 @@ pub(super) fn look(
         directions: counted.all,
         free: counted.free,
         free_percent: counted.kinds[0].percent,
-        barred,
+        barred: counted.barred,
         axes: axes.into_iter().map(of_field).collect(),
         picture: file,
     };
@@ -160,29 +162,38 @@ fn count(look: &Look<'_>, place: &PlaceAxes, directions: &Directions) -> Counted
     let mut met: Vec<(Fate, usize)> =
         shares.iter().filter(|(f, _)| matches!(f, Fate::Meets(..))).map(|(f, n)| (*f, *n)).collect();
     met.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
-    let others: usize = met.iter().skip(KINDS.len()).map(|(_, n)| n).sum();
     let of = |fate: Fate| shares.get(&fate).copied().unwrap_or(0);
-    let free = of(Fate::Free);
-    let [least, most] = axes::leans_rad(&look.job.cutter()).map(|l| number(l.to_degrees(), 2));
+    let [least, most] = axes::leans_rad(&look.job.cutter()).map(|l| short(l.to_degrees(), 2));
     let kind = |name: String, colour: Rgb, n: usize| Kind { name, colour, percent: percent(n) };
+    let free = of(Fate::Free);
     let mut kinds = vec![kind("free".to_owned(), FREE, free)];
-    let named = met.iter().zip(KINDS).map(|((fate, n), colour)| kind(name(look, place, *fate), colour, *n));
-    kinds.extend(named);
-    let first_met = 1;
+    let (own, others) = met.split_at(met.len().min(KINDS.len()));
+    let owned = own.iter().zip(KINDS).map(|((fate, n), colour)| kind(name(look, place, *fate), colour, *n));
+    kinds.extend(owned);
     let rest = kinds.len();
-    kinds.push(kind("something else".to_owned(), OTHER, others));
-    kinds.push(kind(format!("lean not within {least}\u{b0} to {most}\u{b0}"), UNKNOWN, of(Fate::Lean)));
+    for ((body, of_holder), colour) in [("cutter", false), ("holder", true)].into_iter().zip(OTHERS) {
+        let own = || others.iter().filter(|(f, _)| matches!(f, Fate::Meets(h, _) if *h == of_holder));
+        kinds.push(kind(format!("{body}: {} others", own().count()), colour, own().map(|(_, n)| n).sum()));
+    }
+    let limits = format!("lean not within {least}\u{b0} to {most}\u{b0}");
+    kinds.push(kind(limits, UNKNOWN, of(Fate::Lean)));
     kinds.push(kind("out of the machine's range".to_owned(), NO_MACHINE, of(Fate::Machine)));
     let row = |fate: &Fate| match fate {
         Fate::Free => 0,
-        Fate::Meets(..) => {
-            let place = met.iter().take(KINDS.len()).position(|(f, _)| f == fate);
-            place.map_or(rest, |k| first_met + k)
+        Fate::Meets(of_holder, _) => {
+            let place = own.iter().position(|(f, _)| f == fate);
+            place.map_or(rest + usize::from(*of_holder), |k| 1 + k)
         }
-        Fate::Lean => rest + 1,
-        Fate::Machine => rest + 2,
+        Fate::Lean => rest + 2,
+        Fate::Machine => rest + 3,
     };
-    Counted { kind_of: fates.iter().map(row).collect(), kinds, all, free }
+    let single = others.iter().map(|(fate, n)| kind(name(look, place, *fate), UNKNOWN, *n));
+    let single: Vec<Kind> = single.collect();
+    let named = kinds[1..rest].iter().chain(&single).chain(&kinds[rest + 2..]);
+    let barred = named.filter(|k| k.percent > 0.0);
+    let mut barred: Vec<Share> = barred.map(|k| Share { what: k.name.clone(), percent: k.percent }).collect();
+    barred.sort_by(|a, b| b.percent.total_cmp(&a.percent));
+    Counted { kind_of: fates.iter().map(row).collect(), kinds, barred, all, free }
 }
 
 /// What the tool meets, in words.
@@ -201,17 +212,17 @@ fn map(
 ) -> String {
     let jet = face.surface.jet2(place.at);
     let p = jet.point;
-    let [u, v] = [place.at.u, place.at.v].map(|x| number(x, 5));
-    let [x, y, z] = [p.x, p.y, p.z].map(|x| number(x, 5));
+    let [u, v] = [place.at.u, place.at.v].map(|x| short(x, 5));
+    let [x, y, z] = [p.x, p.y, p.z].map(|x| short(x, 5));
     let lifted = if place.lift_mm > 0.0 {
-        format!("; nothing takes it down to the face: it stands {} mm off", number(place.lift_mm, 3))
+        format!("; nothing takes it down to the face: it stands {} mm off", short(place.lift_mm, 3))
     } else {
         String::new()
     };
     Map {
         title: format!("{} at u {u}, v {v}: tool axes, seen along the normal", face.id),
         notes: vec![
-            format!("{}, at ({x}, {y}, {z}) mm{lifted}", look.job.tool_words()),
+            format!("{}, at x {x}, y {y}, z {z} mm{lifted}", look.job.tool_words()),
             "each colour: the body of the tool that comes too near to something, and to what".to_owned(),
         ],
         directions,
