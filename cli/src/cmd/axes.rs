@@ -76,9 +76,6 @@ fn describe(found: &AxesOverFaces) -> String {
     out += &t.render();
     out += "\n";
     for face in &found.faces {
-        for why in face.fields.iter().filter_map(|f| f.no_field.as_ref()) {
-            out += &format!("  no field: {why}\n");
-        }
         // Where there is a field its findings say so.
         if face.fields.iter().all(|f| f.no_field.is_some()) {
             for why in &face.unreached {
@@ -86,7 +83,6 @@ fn describe(found: &AxesOverFaces) -> String {
             }
         }
     }
-    out += &words::findings(&found.diagnostics);
     let mut t = Table::left(["place", "u, v", "free %", "kept from the others by", "axis leans deg"]);
     for face in &found.faces {
         for (k, place) in face.places.iter().enumerate() {
@@ -99,7 +95,11 @@ fn describe(found: &AxesOverFaces) -> String {
             ]);
         }
     }
-    out += &format!("\n{}\n", t.render());
+    out += &format!("{}\n", t.render());
+    out += &words::findings(&found.diagnostics);
+    if !found.diagnostics.is_empty() {
+        out += "\n";
+    }
     out
 }
 

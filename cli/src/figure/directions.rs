@@ -216,14 +216,16 @@ impl Map<'_> {
     /// The normal and the axes of the field.
     fn marked(&self, d: &mut Drawing, round: &Round) {
         d.disc(MIDDLE, 2.2, "#fff", pen(INK, 1.0));
-        for named in self.axes {
+        for (k, named) in self.axes.iter().enumerate() {
             let at = round.place(&named.axis);
             d.disc(at, 5.0, "#fff", pen(INK, 1.6));
             if named.clear {
                 d.disc(at, 2.0, INK, pen("none", 0.0));
             }
             let word = Type { halo: true, bold: true, ..letters(11.0) };
-            d.text([at[0] + 8.0, at[1] - 5.0], &named.name, word);
+            // Two names beside one place stand apart.
+            let off = if k % 2 == 0 { [8.0, -5.0] } else { [-15.0, 13.0] };
+            d.text([at[0] + off[0], at[1] + off[1]], &named.name, word);
         }
     }
 

@@ -85,9 +85,7 @@ impl Fate {
             None => Self::Free,
             Some(Barred::Lean) => Self::Lean,
             Some(Barred::Machine) => Self::Machine,
-            Some(Barred::Near(gap)) => gap.met.map_or(Self::Meets(false, u32::MAX), |met| {
-                Self::Meets(met.member != Member::Cutter, met.obstacle.owner)
-            }),
+            Some(Barred::Meets(met)) => Self::Meets(met.member != Member::Cutter, met.obstacle.owner),
         }
     }
 }
@@ -198,8 +196,11 @@ fn count(look: &Look<'_>, place: &PlaceAxes, directions: &Directions) -> Counted
 
 /// What the tool meets, in words.
 fn name(look: &Look<'_>, place: &PlaceAxes, fate: Fate) -> String {
-    let met = place.barred.iter().flatten().filter(|b| Fate::of(Some(b)) == fate).find_map(Barred::met);
-    met.map_or_else(|| "something".to_owned(), |met| axes::met(look.part, &met).join(": "))
+    let met = place.barred.iter().flatten().find_map(|barred| match barred {
+        Barred::Meets(met) if Fate::of(Some(barred)) == fate => Some(met),
+        _ => None,
+    });
+    met.map_or_else(String::new, |met| axes::met(look.part, met).join(": "))
 }
 
 /// The map of a place.
@@ -223,7 +224,7 @@ fn map(
         title: format!("{} at u {u}, v {v}: tool axes, seen along the normal", face.id),
         notes: vec![
             format!("{}, at x {x}, y {y}, z {z} mm{lifted}", look.job.tool_words()),
-            "each colour: the body of the tool that comes too near to something, and to what".to_owned(),
+            "colours: the body of the tool that comes too near to something, and what stands in the way first, from the tip".to_owned(),
         ],
         directions,
         kind_of: &counted.kind_of,

@@ -1,7 +1,8 @@
 //! Why a direction is not possible at a place.
 
-use super::gap::{Gap, Met};
+use super::gap::Met;
 use super::problem::{Place, Reach};
+use super::stance::Stance;
 
 /// What keeps the tool from a direction: the first of these that does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,19 +11,9 @@ pub enum Barred {
     Lean,
     /// The machine does not allow the direction.
     Machine,
-    /// The tool comes too near to something, by as much as the spare is below zero; what is nearest, measured from its limit, is named.
-    Near(Gap),
-}
-
-impl Barred {
-    /// What the tool comes too near to, and with which body.
-    #[must_use]
-    pub const fn met(&self) -> Option<Met> {
-        match self {
-            Self::Near(gap) => gap.met,
-            Self::Lean | Self::Machine => None,
-        }
-    }
+    /// The tool comes too near to something. Of all such points it is the one that lies lowest along the axis: what stands in the way first, as
+    /// seen from the tip, which need not be what the tool goes into deepest.
+    Meets(Met),
 }
 
 impl Reach<'_> {
@@ -39,6 +30,7 @@ impl Reach<'_> {
         if !self.allows(place, direction) {
             return Some(Barred::Machine);
         }
-        (!self.is_clear(place, axis)).then(|| Barred::Near(self.gap(place, axis)))
+        let lowest = Stance::new(self, place, axis).lowest(self);
+        lowest.map(|found| Barred::Meets(self.met(found)))
     }
 }

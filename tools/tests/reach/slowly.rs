@@ -93,10 +93,17 @@ fn a_direction_is_possible_exactly_where_nothing_bars_it() {
                             assert!(leans && !mask.contains(k));
                             2
                         }
-                        Some(Barred::Near(gap)) => {
-                            let spare = spare_of(&tool, &limits, &gap.met.unwrap(), at, axis);
-                            assert!(gap.spare_mm < 0.0 && (spare - gap.spare_mm).abs() < 1e-11);
-                            assert_eq!(barred.and_then(|b| b.met()), gap.met);
+                        Some(Barred::Meets(met)) => {
+                            assert!(leans && mask.contains(k));
+                            let height = |p: &Point3| (p - at.point).dot(axis);
+                            let own = height(&met.obstacle.point);
+                            assert!(spare_of(&tool, &limits, &met, at, axis) < 0.0);
+                            // Of those that are in the way nothing lies lower.
+                            let lower = scene.points.iter().filter(|p| height(&p.point) < own - 1e-9);
+                            for obstacle in lower.filter(|_| k % 7 == 0) {
+                                let alone = slow_spare(&tool, &limits, &[*obstacle], at, axis);
+                                assert!(alone >= 0.0, "{alone} of {obstacle:?} below {met:?}");
+                            }
                             3
                         }
                     };
