@@ -67,7 +67,7 @@ fn in_words<S: Serializer>(all: &[Diagnostic], to: S) -> Result<S::Ok, S::Error>
 pub struct FaceFigures {
     /// Its id.
     pub face: String,
-    /// Area of the face.
+    /// Area of the face as the places of the field stand for it, as in the findings of a plan.
     pub area_mm2: f64,
     /// Area that no axis reaches.
     pub unreached_mm2: f64,
@@ -401,7 +401,7 @@ impl Possible {
         let on_face = |at: &Uv| face.surface.contains(*at) && all.reaches(*at);
         let normal = |at: &Uv| if on_face(at) { all.normal(wish, *at) } else { None };
         let by = axes::unreached_mm2(part, all.unreached());
-        let unreached_mm2 = by.values().sum();
+        let unreached_mm2 = by.values().fold(0.0, |sum, mm2| sum + mm2);
         let figures = FaceFigures {
             face: face.id.clone(),
             area_mm2: all.area_mm2(),
