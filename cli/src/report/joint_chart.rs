@@ -43,7 +43,7 @@ pub fn joints(machine: Option<&Machine>, poses: &[ToolPose], moved: Moved) -> Op
         let at = f64::from(pose.at_nose[joint]);
         if turns { at.to_degrees() } else { at }
     };
-    let lines: Vec<Vec<Option<[f64; 2]>>> = shown
+    let lines: Vec<Drawn> = shown
         .iter()
         .map(|(joint, _)| thinned(poses.iter().map(|p| [f64::from(p.time_min), value(p, *joint)]), end))
         .collect();
@@ -87,45 +87,61 @@ pub fn joints(machine: Option<&Machine>, poses: &[ToolPose], moved: Moved) -> Op
     Some(out + &base_line() + "</svg>")
 }
 
-/// Of values over the time up to `end` the least and the greatest of each slot, in their order; None where some are not known.
-fn thinned(all: impl Iterator<Item = [f64; 2]>, end: f64) -> Vec<Option<[f64; 2]>> {
-    let mut out: Vec<Option<[f64; 2]>> = Vec::new();
-    // The slot under way, and its least and greatest value with their places in the order.
-    let mut open: Option<(usize, [(usize, [f64; 2]); 2])> = None;
-    let close = |open: &mut Option<(usize, [(usize, [f64; 2]); 2])>, out: &mut Vec<Option<[f64; 2]>>| {
-        if let Some((_, mut ends)) = open.take() {
-            ends.sort_by_key(|e| e.0);
-            out.push(Some(ends[0].1));
-            if ends[1].0 != ends[0].0 {
-                out.push(Some(ends[1].1));
-            }
+/// What is drawn of a line: time and value, or a gap.
+type Drawn = Vec<Option<[f64; 2]>>;
+
+/// A stretch of time: the places with the least and the greatest value, by their numbers.
+struct Slot {
+    number: usize,
+    least: (usize, [f64; 2]),
+    most: (usize, [f64; 2]),
+}
+
+impl Slot {
+    /// Both places in their order, or the one that there is.
+    fn close(self, out: &mut Drawn) {
+        let (a, b) =
+            if self.least.0 <= self.most.0 { (self.least, self.most) } else { (self.most, self.least) };
+        out.push(Some(a.1));
+        if b.0 != a.0 {
+            out.push(Some(b.1));
         }
-    };
+    }
+}
+
+/// Of values over the time up to `end` the least and the greatest of each stretch, in their order; a gap where some are not known.
+fn thinned(all: impl Iterator<Item = [f64; 2]>, end: f64) -> Drawn {
+    let mut out = Drawn::new();
+    let mut open: Option<Slot> = None;
     for (n, point) in all.enumerate() {
         if !point.iter().all(|x| x.is_finite()) {
-            close(&mut open, &mut out);
-            if out.last().is_some_and(Option::is_some) {
+            if let Some(slot) = open.take() {
+                slot.close(&mut out);
                 out.push(None);
             }
             continue;
         }
-        let slot = (point[0] / end * JOINT_SLOTS as f64) as usize;
+        let number = (point[0] / end * JOINT_SLOTS as f64) as usize;
+        let own = (n, point);
         match &mut open {
-            Some((of, [least, most])) if *of == slot => {
-                if point[1] < least.1[1] {
-                    *least = (n, point);
+            Some(slot) if slot.number == number => {
+                if point[1] < slot.least.1[1] {
+                    slot.least = own;
                 }
-                if point[1] > most.1[1] {
-                    *most = (n, point);
+                if point[1] > slot.most.1[1] {
+                    slot.most = own;
                 }
             }
             _ => {
-                close(&mut open, &mut out);
-                open = Some((slot, [(n, point); 2]));
+                if let Some(slot) = open.replace(Slot { number, least: own, most: own }) {
+                    slot.close(&mut out);
+                }
             }
         }
     }
-    close(&mut open, &mut out);
+    if let Some(slot) = open {
+        slot.close(&mut out);
+    }
     out
 }
 
