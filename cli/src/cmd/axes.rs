@@ -6,7 +6,7 @@ use crate::screen::{cancel, output, render};
 use osculate::Part;
 use osculate::failure::{Done, Outcome};
 use osculate::job::Job;
-use osculate::report::text::short;
+use osculate::report::text::{fixed, short};
 use osculate::words::{self, Table, number};
 use osculate::work::axis_places::PlaceFigures;
 use osculate::work::axis_view::{self, Asked, AxesOverFaces, FieldFigures};
@@ -89,7 +89,7 @@ fn describe(found: &AxesOverFaces) -> String {
             t.row([
                 format!("{}-{}", face.face, k + 1),
                 place.uv.map(|x| short(x, 5)).join(", "),
-                number(place.free_percent, 3),
+                fixed(place.free_percent, 1),
                 kept_from(place),
                 leans(place),
             ]);
@@ -116,12 +116,12 @@ fn turns(field: &FieldFigures) -> String {
 
 /// What bars directions at a place, with its share.
 fn kept_from(place: &PlaceFigures) -> String {
-    let one = |s: &osculate::work::axis_places::Share| format!("{} {} %", s.what, number(s.percent, 3));
+    let one = |s: &osculate::work::axis_places::Share| format!("{} {} %", s.what, fixed(s.percent, 1));
     let mut all: Vec<String> = place.barred.iter().take(LISTED).map(one).collect();
     let more = place.barred.iter().skip(LISTED);
     if more.len() > 0 {
         let percent: f64 = more.clone().map(|s| s.percent).sum();
-        all.push(format!("{} more {} %", more.len(), number(percent, 3)));
+        all.push(format!("{} more {} %", more.len(), fixed(percent, 1)));
     }
     if place.lift_mm > 0.0 {
         all.push(format!("all of it {} mm off the face", number(place.lift_mm, 3)));

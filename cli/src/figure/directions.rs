@@ -7,7 +7,7 @@
 use super::drawing::{Anchor, Drawing, Type, letters, pen};
 use super::scene::Place;
 use crate::report::legend::{Rgb, hex};
-use crate::words::number;
+use crate::report::text::fixed;
 use osculate_geom::{Unit3, Vec3, any_perpendicular};
 use osculate_tools::reach::Directions;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -236,7 +236,7 @@ impl Map<'_> {
         for kind in self.kinds.iter().filter(|k| k.percent > 0.0) {
             let swatch = [[x, y - 9.0], [x + 11.0, y - 9.0], [x + 11.0, y + 1.0], [x, y + 1.0]];
             d.area(&swatch, &hex(kind.colour));
-            d.text([x + 18.0, y], &format!("{} %", number(kind.percent, 3)), letters(11.0));
+            d.text([x + 18.0, y], &format!("{} %", fixed(kind.percent, 1)), letters(11.0));
             d.text([x + 68.0, y], &kind.name, letters(11.0));
             y += ROW;
         }

@@ -47,11 +47,9 @@ pub fn joints(machine: Option<&Machine>, poses: &[ToolPose], moved: Moved) -> Op
         .iter()
         .map(|(joint, _)| thinned(poses.iter().map(|p| [f64::from(p.time_min), value(p, *joint)]), end))
         .collect();
-    let known = || lines.iter().flatten().flatten().map(|p| p[1]);
-    let [lo, hi] = known().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], v| [lo.min(v), hi.max(v)]);
-    if lo > hi {
-        return None;
-    }
+    let mut known: Vec<f64> = lines.iter().flatten().flatten().map(|p| p[1]).collect();
+    known.sort_by(f64::total_cmp);
+    let (lo, hi) = if turns { (*known.first()?, *known.last()?) } else { usual(&known)? };
     // Joints that rest have some room around their line.
     let room = (0.05 * (hi - lo)).max(0.5);
     let x = Axis { lo: 0.0, hi: end, from: LEFT, to: WIDTH - RIGHT };
@@ -59,7 +57,7 @@ pub fn joints(machine: Option<&Machine>, poses: &[ToolPose], moved: Moved) -> Op
     let (label, unit) = if turns {
         ("Rotary joints over the time", "joint, deg")
     } else {
-        ("Slides over the time", "slide at the spindle nose, mm")
+        ("Slides over the time", "slide at the spindle nose, mm; far ways run out of it")
     };
     let mut out = frame(label, x, y, &x.ticks(8.0), "time, min", unit);
     for (k, (line, (_, letter))) in lines.iter().zip(&shown).enumerate() {
@@ -85,6 +83,20 @@ pub fn joints(machine: Option<&Machine>, poses: &[ToolPose], moved: Moved) -> Op
         );
     }
     Some(out + &base_line() + "</svg>")
+}
+
+/// Share of places at either end that may lie out of the picture, and how far beyond the others they must be, of their range: slides go
+/// all the way to where tools are changed.
+const FAR: f64 = 0.02;
+const BEYOND: f64 = 1.0;
+
+/// The range of values in ascending order without a few that are far off; None where there are none.
+fn usual(known: &[f64]) -> Option<(f64, f64)> {
+    let (first, last) = (*known.first()?, *known.last()?);
+    let few = (FAR * known.len() as f64) as usize;
+    let (lo, hi) = (known[few], known[known.len() - 1 - few]);
+    let far = BEYOND * (hi - lo).max(1.0);
+    Some((if lo - first > far { lo } else { first }, if last - hi > far { hi } else { last }))
 }
 
 /// What is drawn of a line: time and value, or a gap.
@@ -205,7 +217,18 @@ mod tests {
         // C ends at 19 rad, which is beyond the tick at 1000 degrees.
         assert!(text.contains(">1000</text>"), "{text}");
         let text = joints(Some(&machine()), &poses(20), Moved::Sliding).expect("three slides");
-        assert!(text.contains("j2") && text.contains("nose, mm") && text.contains(">40</text>"), "{text}");
+        assert!(text.contains("j2") && text.contains("nose, mm;") && text.contains(">40</text>"), "{text}");
+    }
+
+    /// The last way to where tools are changed does not flatten what is cut; a joint that turns far shows it.
+    #[test]
+    fn slides_that_go_far_leave_the_picture_and_turns_do_not() {
+        let mut away = poses(200);
+        away[199].at_nose = [0.0, 0.0, 3000.0, 60.0, 0.0];
+        let text = joints(Some(&machine()), &away, Moved::Sliding).expect("three slides");
+        assert!(text.contains(">200</text>") && !text.contains("000</text>"), "{text}");
+        let text = joints(Some(&machine()), &away, Moved::Turning).expect("two joints");
+        assert!(text.contains(">10\u{2009}000</text>"), "{text}");
     }
 
     #[test]
