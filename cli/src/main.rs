@@ -27,6 +27,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Compare { job, out, nodes } => {
             cmd::compare::run(job, out.as_deref(), *nodes as usize, cli.json)
         }
+        Verb::Axes(options) => cmd::axes::run(options, cli.json),
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),

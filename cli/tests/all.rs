@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod axes;
+mod axis_view;
 mod bad_input;
 mod bodies;
 mod choice;

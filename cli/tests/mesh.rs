@@ -199,6 +199,7 @@ fn what_a_mesh_does_not_allow_is_said() {
     for args in [
         &["plan", job, "--out", out][..],
         &["compare", job],
+        &["axes", job],
         &["check", job],
         &["init", part, "--out", out],
         &["lines", part, "--face", "F1", "--out", out],

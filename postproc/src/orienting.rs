@@ -68,20 +68,34 @@ impl<'a> Orienting<'a> {
     /// tool need not stay in their plane. An axis along the outer joint leaves that one free, so that it costs nothing there.
     #[must_use]
     pub fn turn_s(&self, from: &Unit3, to: &Unit3) -> Option<f64> {
+        self.quickest(from, to).map(|(took_s, _)| took_s)
+    }
+
+    /// By how much each rotary joint turns in the quickest way from one axis to another, rad, not negative, as [`turn_s`](Self::turn_s)
+    /// counts; in the order of [`Machine::rotary`], zero for one that is not there. `None` where one of the two axes is not reached.
+    #[must_use]
+    pub fn turns_rad(&self, from: &Unit3, to: &Unit3) -> Option<[f64; 2]> {
+        self.quickest(from, to).map(|(_, turns)| turns)
+    }
+
+    /// The quickest way between two axes: its time, s, and the turn of each joint, rad.
+    fn quickest(&self, from: &Unit3, to: &Unit3) -> Option<(f64, [f64; 2])> {
         let (from, to) = (self.stances(from), self.stances(to));
         let first = usize::from(from.outer_free || to.outer_free);
         let between = |a: &[f64; 2], b: &[f64; 2]| {
+            let mut turns = [0.0; 2];
             let joints = self.machine.rotary().iter().enumerate().skip(first);
             let times = joints.map(|(k, &place)| {
                 let joint = self.machine.joint_at(place);
                 let step = b[k] - a[k];
                 let step = if joint.is_endless() { nearest_turn(step, 0.0) } else { step };
-                step.abs() / joint.drive.velocity_per_s
+                turns[k] = step.abs();
+                turns[k] / joint.drive.velocity_per_s
             });
-            times.fold(0.0, f64::max)
+            (times.fold(0.0, f64::max), turns)
         };
         let pairs = from.rotary_rad.iter().flat_map(|a| to.rotary_rad.iter().map(move |b| between(a, b)));
-        pairs.min_by(f64::total_cmp)
+        pairs.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// The axes that a machine of three or four axes reaches, no further than `step_rad` of its rotary joint apart; `None` with two

@@ -117,6 +117,17 @@ fn turns_in_closed_form() {
     assert!((turn_s([60.0, 10.0], [70.0, 60.0]) - 50.0 / 360.0).abs() < 1e-12);
     // To the other side of the pole: A over to the other branch by 20 is faster than C by 180.
     assert!((turn_s([10.0, 0.0], [10.0, 180.0]) - 20.0 / 180.0).abs() < 1e-12);
+    // The turns of both joints on the same ways, the outer first: C, then A.
+    let turns = |a: [f64; 2], b: [f64; 2]| {
+        let turns = joints.turns_rad(&leaning(a[0], a[1]), &leaning(b[0], b[1])).unwrap();
+        turns.map(f64::to_degrees)
+    };
+    let near = |got: [f64; 2], wanted: [f64; 2]| got.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-9);
+    assert!(near(turns([20.0, 10.0], [60.0, 40.0]), [30.0, 40.0]));
+    assert!(near(turns([60.0, 10.0], [70.0, 60.0]), [50.0, 10.0]));
+    // A swings through to its other side, and C rests.
+    assert!(near(turns([10.0, 0.0], [10.0, 180.0]), [0.0, 20.0]));
+    assert_eq!(joints.turns_rad(&leaning(150.0, 0.0), &leaning(10.0, 0.0)), None);
     // Low down it is C that turns.
     assert!((turn_s([100.0, 0.0], [100.0, 180.0]) - 0.5).abs() < 1e-12);
     // With one branch only there is no other way.

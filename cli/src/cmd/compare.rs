@@ -4,7 +4,7 @@ use crate::screen::progress::SCREEN;
 use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::figure::postures::{Arrays, Postures};
-use osculate::figure::{Study, Wanted, sheet};
+use osculate::figure::{Study, sheet};
 use osculate::job::Job;
 use osculate::part::{self, LoadedFace, Part};
 use osculate::watch::Stage;
@@ -12,7 +12,6 @@ use osculate::work::choice::{self, Choice, Row};
 use osculate::work::ideal::{self, Bound};
 use osculate::work::program::WallS;
 use osculate::work::verify::VerdictKeys;
-use osculate_geom::{Unit3, Vec3};
 use osculate_productivity::ideal::Feeding;
 use serde::Serialize;
 use std::fmt::Write;
@@ -20,8 +19,6 @@ use std::path::Path;
 
 /// Contenders that are verified beside the best.
 const VERIFIED: usize = 3;
-/// Lines of height of a face, which its pictures do not show.
-const LEVELS: usize = 1;
 
 /// The answer.
 #[derive(Debug, Serialize)]
@@ -155,8 +152,7 @@ fn of_face(
     at: &dyn Fn(usize),
 ) -> Result<FaceFields, Failure> {
     let refuse = |e: String| Failure::file(job.path(), format!("{}: {e}", face.id));
-    let wanted = Wanted { axis: Unit3::new_normalize(Vec3::z()), spacing_mm: None, levels: LEVELS };
-    let study = Study::of(&face.surface, face.nurbs(), &wanted).map_err(|e| refuse(e.to_string()))?;
+    let study = Study::to_paint(&face.surface, face.nurbs()).map_err(|e| refuse(e.to_string()))?;
     let scene = sheet::beside_bar(&study, None);
     let tolerance = job.tolerance();
     let mut draw = |picture: &str, postures: &Postures<'_>, tool: &str| {

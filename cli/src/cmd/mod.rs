@@ -1,5 +1,6 @@
 //! The verbs.
 
+pub mod axes;
 pub mod check;
 pub mod compare;
 pub mod complete;

@@ -5,7 +5,7 @@ use crate::screen::render;
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::part;
 use osculate::words::number;
-use osculate_geom::{Surface, Unit3, uv};
+use osculate_geom::{Surface, Unit3};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -33,15 +33,7 @@ pub fn run(args: &PartArgs, face: Option<&str>, at: &[[f64; 2]], json: bool) -> 
     let array = |d: &Unit3| [d.x, d.y, d.z];
     let mut points = Vec::new();
     for [u, v] in at {
-        let at = uv(*u, *v);
-        let d = face.surface.domain();
-        if !d.contains(at) {
-            let what = format!(
-                "{u},{v} is outside the parameters of {}: u in [{}, {}], v in [{}, {}]",
-                face.id, d.u.lo, d.u.hi, d.v.lo, d.v.hi
-            );
-            return Err(Failure::at("--at", what));
-        }
+        let at = face.at([*u, *v])?;
         let jet = face.surface.jet2(at);
         let forms = jet.forms().map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
         let p = forms.principal();

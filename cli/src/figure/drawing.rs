@@ -109,11 +109,13 @@ impl Drawing {
 
     /// A filled area.
     pub fn area(&mut self, outline: &[Place], fill: &str) {
-        let _ = writeln!(
-            self.body,
-            "<path d=\"{}\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"4\"/>",
-            path(outline, true)
-        );
+        self.areas([outline], fill);
+    }
+
+    /// Areas filled alike, as one path.
+    pub fn areas<'a>(&mut self, outlines: impl IntoIterator<Item = &'a [Place]>, fill: &str) {
+        let d: String = outlines.into_iter().map(|outline| path(outline, true)).collect();
+        let _ = writeln!(self.body, "<path d=\"{d}\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"4\"/>");
     }
 
     /// A disc.

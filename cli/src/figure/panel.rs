@@ -107,6 +107,10 @@ pub const WIDTH: f64 = 440.0;
 pub const HEIGHT: f64 = 396.0;
 /// Where the face is drawn: left, top, width, height.
 pub const FRAME: [f64; 4] = [16.0, 14.0, 408.0, 306.0];
+/// Length of a colour bar beside the face, px.
+pub const BAR_LENGTH: f64 = 150.0;
+/// Where it stands.
+pub const BAR_AT: [f64; 2] = [FRAME[0] + FRAME[2] - 70.0, FRAME[1]];
 
 const INK: &str = "#222";
 const MOST: &str = "#17477e";

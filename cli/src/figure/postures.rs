@@ -3,11 +3,12 @@
 //!
 //! Every node of the grid paints the cell around it, in pieces, so that cells follow the face and its trims.
 
+use super::cells;
 use super::drawing::{Anchor, Drawing, Type, letters, pen};
-use super::panel::{self, FRAME, HEIGHT, WIDTH};
+use super::panel::{self, BAR_AT, BAR_LENGTH, FRAME, HEIGHT, WIDTH};
 use super::scene::Scene;
 use super::study::Study;
-use crate::report::legend::{Rgb, Scale, UNKNOWN};
+use crate::report::legend::{KINDS, Rgb, Scale, UNKNOWN, hex};
 use osculate_geom::{Surface, Uv, Vec3};
 use osculate_productivity::field::{Field, best_postures};
 use osculate_productivity::optimum::{Limits, Optimum, OptimumError};
@@ -19,30 +20,15 @@ use serde::Serialize;
 const PIECES: usize = 4;
 /// Most strokes across the grid.
 const STROKES: usize = 12;
-/// Length of the colour bar, px, and where it stands.
-const BAR: f64 = 150.0;
-const BAR_AT: [f64; 2] = [FRAME[0] + FRAME[2] - 70.0, FRAME[1]];
-
 /// Rows of a list of tools, its coloured boxes, and how far left of a bar it stands, px.
 const ROW: f64 = 15.0;
 const SWATCH: f64 = 9.0;
 const INDENT: f64 = 30.0;
 /// The figure that shows the best tool of several in place of conformity.
 const TOOL: &str = "d";
-/// Colours of tools, told apart by colour-blind eyes and, the first four, by their lightness; a ninth tool has the first's.
-const TOOL_COLOURS: [Rgb; 8] = [
-    [0x33, 0x22, 0x88],
-    [0xdd, 0xcc, 0x77],
-    [0x11, 0x77, 0x33],
-    [0xcc, 0x66, 0x77],
-    [0x88, 0xcc, 0xee],
-    [0x88, 0x22, 0x55],
-    [0x44, 0xaa, 0x99],
-    [0x99, 0x99, 0x33],
-];
-
+/// The colour of a tool; a ninth has the first's.
 const fn tool_colour(tool: usize) -> Rgb {
-    TOOL_COLOURS[tool % TOOL_COLOURS.len()]
+    KINDS[tool % KINDS.len()]
 }
 
 /// The postures of a face.
@@ -213,15 +199,14 @@ impl<'a> Postures<'a> {
             for (t, name) in tools.names.iter().enumerate() {
                 let y = BAR_AT[1] + ROW * t as f64;
                 let (left, right) = (BAR_AT[0] - INDENT, BAR_AT[0] - INDENT + SWATCH);
-                let [r, g, b] = tool_colour(t);
                 let box_of = [[left, y], [right, y], [right, y + SWATCH], [left, y + SWATCH]];
-                d.area(&box_of, &format!("#{r:02x}{g:02x}{b:02x}"));
+                d.area(&box_of, &hex(tool_colour(t)));
                 d.text([right + 5.0, y + SWATCH - 1.0], name, letters(9.5));
             }
         } else if let Some(s) = &scale {
-            d.fragment(&s.bar(BAR), BAR_AT, 9.5);
+            d.fragment(&s.bar(BAR_LENGTH), BAR_AT, 9.5);
             let middle = Type { anchor: Anchor::Middle, ..letters(9.5) };
-            d.text([BAR_AT[0] + 24.0, BAR_AT[1] + BAR + 16.0], shown.unit, middle);
+            d.text([BAR_AT[0] + 24.0, BAR_AT[1] + BAR_LENGTH + 16.0], shown.unit, middle);
         }
         let top = FRAME[1] + FRAME[3] + 30.0;
         d.text([FRAME[0], top], shown.letter, Type { bold: true, ..letters(13.0) });
@@ -229,23 +214,14 @@ impl<'a> Postures<'a> {
         d
     }
 
-    /// The cells of all nodes, from far to near.
-    fn paint(&self, d: &mut Drawing, scene: &Scene, colour: impl Fn(usize) -> [u8; 3]) {
+    /// The cells of all nodes.
+    fn paint(&self, d: &mut Drawing, scene: &Scene, colour: impl Fn(usize) -> Rgb) {
         let [n, m] = self.field.count.map(|c| c * PIECES);
         let domain = self.face.domain();
         let at = |i: f64, j: f64| domain.at(i / n as f64, j / m as f64);
-        let mut cells: Vec<(f64, usize, usize)> = (0..n * m)
-            .map(|k| (k / m, k % m))
-            .filter(|(i, j)| self.face.contains(at(*i as f64 + 0.5, *j as f64 + 0.5)))
-            .map(|(i, j)| (scene.nearness(&self.face.point(at(i as f64 + 0.5, j as f64 + 0.5))), i, j))
-            .collect();
-        cells.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, i, j) in cells {
-            let corners = [[0, 0], [1, 0], [1, 1], [0, 1]]
-                .map(|[a, b]| scene.place(&self.face.point(at((i + a) as f64, (j + b) as f64))));
-            let [r, g, b] = colour(i / PIECES * self.field.count[1] + j / PIECES);
-            d.area(&corners, &format!("#{r:02x}{g:02x}{b:02x}"));
-        }
+        cells::paint(d, scene, (self.face, [n, m]), &at, |i, j| {
+            colour(i / PIECES * self.field.count[1] + j / PIECES)
+        });
     }
 
     /// Strokes along the feed at some of the nodes that are seen.

@@ -98,7 +98,15 @@ const ACROSS: f64 = 22.0;
 /// Most lines of a family in a figure.
 const MOST_LINES: usize = 400;
 
+/// Levels of a face whose lines are not looked at.
+const FEW: usize = 1;
+
 impl Study {
+    /// A face to paint on, whose lines are not looked at; `spline` as in [`Study::of`].
+    pub fn to_paint(face: &TrimmedSurface, spline: Option<&NurbsSurface>) -> Result<Self, StudyError> {
+        Self::of(face, spline, &Wanted { axis: Vec3::z_axis(), spacing_mm: None, levels: FEW })
+    }
+
     /// The lines of a face; `spline` is the spline that it is a piece of, where it is one.
     pub fn of(
         face: &TrimmedSurface,

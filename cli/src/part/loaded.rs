@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::part::mesh::MeshFacts;
 use crate::words::number;
-use osculate_geom::Diagnostic;
+use osculate_geom::{Diagnostic, Surface, Uv, uv};
 use osculate_surfaces::structure::Structure;
 use osculate_surfaces::{Face, NotUsed, NurbsSurface, TrimmedSurface};
 use std::sync::Arc;
@@ -84,6 +84,22 @@ impl LoadedFace {
     /// The spline that the face is a piece of, where it is one.
     pub fn nurbs(&self) -> Option<&NurbsSurface> {
         self.spline.as_deref().or_else(|| self.source.as_ref().and_then(|f| f.carrier.nurbs()).map(|n| &**n))
+    }
+
+    /// The place that an option `--at U,V` names.
+    ///
+    /// # Errors
+    /// Where it lies outside the rectangle of the parameters.
+    pub fn at(&self, [u, v]: [f64; 2]) -> Result<Uv, Failure> {
+        let (at, d) = (uv(u, v), self.surface.domain());
+        if d.contains(at) {
+            return Ok(at);
+        }
+        let what = format!(
+            "{u},{v} is outside the parameters of {}: u in [{}, {}], v in [{}, {}]",
+            self.id, d.u.lo, d.u.hi, d.v.lo, d.v.hi
+        );
+        Err(Failure::at("--at", what))
     }
 }
 

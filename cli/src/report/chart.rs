@@ -4,35 +4,35 @@
 //! light and dark theme. A chart without data is `None`: the page then says so instead of showing an empty frame.
 
 use super::data::{Histogram, Pace, Pass, Stage};
-use super::legend::{Rgb, Scale, nice_step};
+use super::legend::{Scale, hex, nice_step};
 use super::text::{coordinate, count, escape, figure, fixed, short};
 use std::fmt::Write;
 
 /// The frame that all charts share, in SVG user units.
-const WIDTH: f64 = 560.0;
-const HEIGHT: f64 = 210.0;
-const LEFT: f64 = 58.0;
-const RIGHT: f64 = 10.0;
-const TOP: f64 = 14.0;
-const BOTTOM: f64 = 40.0;
+pub(super) const WIDTH: f64 = 560.0;
+pub(super) const HEIGHT: f64 = 210.0;
+pub(super) const LEFT: f64 = 58.0;
+pub(super) const RIGHT: f64 = 10.0;
+pub(super) const TOP: f64 = 14.0;
+pub(super) const BOTTOM: f64 = 40.0;
 
 /// A linear axis from values to user units.
 #[derive(Clone, Copy)]
-struct Axis {
-    lo: f64,
-    hi: f64,
-    from: f64,
-    to: f64,
+pub(super) struct Axis {
+    pub lo: f64,
+    pub hi: f64,
+    pub from: f64,
+    pub to: f64,
 }
 
 impl Axis {
-    fn at(&self, value: f64) -> f64 {
+    pub fn at(&self, value: f64) -> f64 {
         let span = if self.hi > self.lo { self.hi - self.lo } else { 1.0 };
         self.from + (self.to - self.from) * ((value - self.lo) / span).clamp(0.0, 1.0)
     }
 
     /// Round values on the axis, about `wanted` of them.
-    fn ticks(&self, wanted: f64) -> Vec<f64> {
+    pub fn ticks(&self, wanted: f64) -> Vec<f64> {
         let span = self.hi - self.lo;
         if !(span > 0.0 && span.is_finite()) {
             return vec![self.lo];
@@ -49,11 +49,7 @@ impl Axis {
     }
 }
 
-fn hex([r, g, b]: Rgb) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
-fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title: &str) -> String {
+pub(super) fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title: &str) -> String {
     let mut out = format!(
         "<svg class=\"chart\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">",
         escape(label)
@@ -90,7 +86,7 @@ fn frame(label: &str, x: Axis, y: Axis, x_ticks: &[f64], x_title: &str, y_title:
     out
 }
 
-fn base_line() -> String {
+pub(super) fn base_line() -> String {
     format!("<path class=\"axis\" d=\"M{LEFT} {}H{}\"/>", HEIGHT - BOTTOM, WIDTH - RIGHT)
 }
 

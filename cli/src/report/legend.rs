@@ -14,6 +14,23 @@ pub type Rgb = [u8; 3];
 /// Where nothing is known.
 pub const UNKNOWN: Rgb = [0xb4, 0xb8, 0xbd];
 
+/// Colours of kinds, told apart by colour-blind eyes and, the first four, by their lightness.
+pub const KINDS: [Rgb; 8] = [
+    [0x33, 0x22, 0x88],
+    [0xdd, 0xcc, 0x77],
+    [0x11, 0x77, 0x33],
+    [0xcc, 0x66, 0x77],
+    [0x88, 0xcc, 0xee],
+    [0x88, 0x22, 0x55],
+    [0x44, 0xaa, 0x99],
+    [0x99, 0x99, 0x33],
+];
+
+/// A colour as markup has it.
+pub fn hex([r, g, b]: Rgb) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
 /// A value and the colour it has; between two stops the colour goes linearly, two stops at one value are a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {

@@ -10,6 +10,7 @@
 mod chart;
 mod data;
 pub mod fill;
+mod joint_chart;
 pub mod legend;
 pub mod machine;
 pub mod measured;

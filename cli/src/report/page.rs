@@ -5,6 +5,7 @@
 
 use super::chart;
 use super::data::{Outcome, Report, Table, Tool, Verdict};
+use super::joint_chart::{self, Moved};
 use super::legend::{Limits, Scale, UNKNOWN};
 use super::mesh::{Clean, clean};
 use super::opening::opening;
@@ -312,6 +313,16 @@ fn charts(out: &mut String, report: &Report, scales: &Scales) {
             "No strip widths are known.",
         ),
         ("Feed over the time", chart::pace(&report.pace), "No times of motions are known."),
+        (
+            "Rotary joints over the time",
+            joint_chart::joints(report.machine.as_ref(), &report.poses, Moved::Turning),
+            "No places of rotary joints are known.",
+        ),
+        (
+            "Slides over the time",
+            joint_chart::joints(report.machine.as_ref(), &report.poses, Moved::Sliding),
+            "No places of slides are known.",
+        ),
         ("Computing time", chart::stages(&report.stages), "No times are known."),
     ];
     out.push_str("<div class=\"charts\">");

@@ -155,6 +155,31 @@ fn the_page_of_200_000_triangles_stays_below_3_mb() {
     assert!((1_000_000..3_000_000).contains(&text.len()), "{}", text.len());
 }
 
+/// The charts of the joints stand on the page where the report has a machine; without one it says that nothing is known.
+#[test]
+fn joints_have_their_charts() {
+    let mut report = sheet(4);
+    let page = html(&report);
+    assert!(page.contains("No places of rotary joints are known") && page.contains("No places of slides"));
+    let joint = |letter: &str, turns: bool| machine::Joint {
+        letter: letter.into(),
+        turns,
+        of_table: true,
+        direction: [0.0, 0.0, 1.0],
+        point_mm: [0.0; 3],
+    };
+    let joints = vec![joint("X", false), joint("<i>", true)];
+    report.machine = Some(machine::Machine { joints, ..machine::Machine::default() });
+    let page = html(&report);
+    for name in ["Rotary joints over the time", "Slides over the time"] {
+        let chart = page.split(&format!("<h2>{name}</h2>")).nth(1).expect("a chart");
+        let chart = chart.split("</section>").next().expect("it ends");
+        assert_well_formed(chart);
+        assert!(chart.starts_with("<svg") && !chart.contains("NaN"), "{chart}");
+    }
+    assert!(page.contains(">&lt;i&gt;</text>") && !page.contains("No places of"));
+}
+
 #[test]
 fn same_report_same_bytes() {
     let report = sheet(80);

@@ -71,6 +71,8 @@ pub enum Verb {
         #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u64).range(1..=200))]
         nodes: u64,
     },
+    /// How the tool may lean over the faces of a job, without planning: the field of axes, and what stands in the way at single places.
+    Axes(AxesArgs),
     /// The main job: path, CL file, NC program, verification, report.
     Plan {
         /// The job file.
@@ -219,6 +221,23 @@ pub struct ToolsArgs {
     /// The lengths of a table of LinuxCNC are inches.
     #[arg(long, requires = "library")]
     pub inch: bool,
+}
+
+/// What `axes` takes.
+#[derive(Debug, Args)]
+pub struct AxesArgs {
+    /// The job file; the tool is its first, the strategy one whose tool leans along its passes.
+    pub job: PathBuf,
+    /// The face, by its id in `inspect`; all faces of the job where not given.
+    #[arg(long, value_name = "ID")]
+    pub face: Option<String>,
+    /// Surface parameters of a place whose directions are looked at; may be given more than once. The middle of each face and the place
+    /// with the fewest directions where not given.
+    #[arg(long, value_name = "U,V", value_parser = pair, allow_hyphen_values = true)]
+    pub at: Vec<[f64; 2]>,
+    /// Folder for pictures: the field over each face, and a round map of the directions at each place.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
 }
 
 /// What `lines` takes.

@@ -6,9 +6,11 @@ use crate::part::{self, LoadedFace, Part};
 use crate::work::setup;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv, Vec3};
 use osculate_postproc::{Machine, Orienting, Setup, in_travel};
-use osculate_productivity::axis::{Around, Found, Joints, Left, Possibilities, Surroundings, Wish};
+use osculate_productivity::axis::{
+    Around, Found, Joints, Left, NoField, Possibilities, Surroundings, Unreached, Wish,
+};
 use osculate_productivity::plan::{Along, Named, Strategy, Tolerance};
-use osculate_tools::reach::{Member, Tool};
+use osculate_tools::reach::{Member, Met, Tool};
 use osculate_tools::{Cutter, Pose};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
@@ -89,7 +91,7 @@ fn feed_of(strategy: &Strategy) -> impl Fn(Uv, &Jet2) -> Option<Vec3> + Sync + u
 }
 
 /// A field, and what is to be said of it.
-type Told = (Found, Vec<Diagnostic>);
+pub type Told = (Found, Vec<Diagnostic>);
 
 /// What was found, by the place of the face and what else tells one from another.
 type Known<K, V> = Mutex<BTreeMap<K, Arc<V>>>;
@@ -128,35 +130,51 @@ impl Fields {
         (place, face): (usize, &LoadedFace),
         (tolerance, strategy): (Tolerance, &Strategy),
     ) -> Result<Arc<Told>, Failure> {
-        if self.around.get().is_none() {
-            let _ = self.around.set(surroundings(job, faces, &job.cutter())?);
-        }
-        let around = self.around.get_or_init(Surroundings::default);
         known(&self.found, (place, direction(strategy)), || {
-            let (cutter, holder) = (job.cutter(), job.holder());
-            let (setup, _) = setup::of(job, faces, None);
-            let control = job.control();
-            let joints = Standing::new(&control.machine, setup);
-            let wish = Wish {
-                surface: &*face.surface,
-                scallop_mm: tolerance.scallop_mm,
-                feed_mm_min: job.feed_mm_min(),
-                joints: &joints,
-                tool: &Tool::new(cutter, holder),
-                around,
-                lean_rad: [if cutter.is_ball() { 0.0 } else { LEAST_RAD }, FRAC_PI_2 - UPRIGHT_RAD],
-            };
-            let failed = |e| Failure::file(job.path(), format!("face {}: {e}", face.id));
-            // What is possible is the same for all directions.
-            let possible = known(&self.possible, place, || Possibilities::of(&wish).map_err(failed))?;
-            let found = possible.field(&wish, &feed_of(strategy)).map_err(failed)?;
+            let found = self.asked(job, faces, (place, face), tolerance, |possible, wish| {
+                possible.field(wish, &feed_of(strategy))
+            })?;
             Ok(told(faces, face, found))
         })
     }
+
+    /// Asks what is possible over a face, whatever the direction of passes.
+    pub fn asked<T>(
+        &self,
+        job: &Job,
+        faces: &Part,
+        (place, face): (usize, &LoadedFace),
+        tolerance: Tolerance,
+        ask: impl FnOnce(&Possibilities, &Wish<'_>) -> Result<T, NoField>,
+    ) -> Result<T, Failure> {
+        if self.around.get().is_none() {
+            let _ = self.around.set(surroundings(job, faces, &job.cutter())?);
+        }
+        let (cutter, holder) = (job.cutter(), job.holder());
+        let (setup, _) = setup::of(job, faces, None);
+        let control = job.control();
+        let wish = Wish {
+            surface: &*face.surface,
+            scallop_mm: tolerance.scallop_mm,
+            feed_mm_min: job.feed_mm_min(),
+            joints: &Standing::new(&control.machine, setup),
+            tool: &Tool::new(cutter, holder),
+            around: self.around.get_or_init(Surroundings::default),
+            lean_rad: leans_rad(&cutter),
+        };
+        let failed = |e| Failure::file(job.path(), format!("face {}: {e}", face.id));
+        let possible = known(&self.possible, place, || Possibilities::of(&wish).map_err(failed))?;
+        ask(&possible, &wish).map_err(failed)
+    }
 }
 
-/// The direction of a strategy's passes where it is one of the parameters'.
-const fn direction(strategy: &Strategy) -> &'static str {
+/// The least and the greatest lean off the normal that a cutter is asked for, rad.
+pub fn leans_rad(cutter: &Cutter) -> [f64; 2] {
+    [if cutter.is_ball() { 0.0 } else { LEAST_RAD }, FRAC_PI_2 - UPRIGHT_RAD]
+}
+
+/// The direction of a strategy's passes where it is one of the parameters'; else empty.
+pub const fn direction(strategy: &Strategy) -> &'static str {
     match strategy {
         Strategy::Isoparametric { along: Along::Fixed(axis) }
         | Strategy::Regions { along: Along::Fixed(axis) } => match axis {
@@ -183,30 +201,44 @@ fn surroundings(job: &Job, faces: &Part, cutter: &Cutter) -> Result<Surroundings
     Surroundings::of(&around).map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))
 }
 
+/// Which body of the tool meets what, in words.
+pub fn met(faces: &Part, met: &Met) -> [String; 2] {
+    let body = if met.member == Member::Cutter { "cutter" } else { "holder" };
+    let mut all = faces.faces.iter().chain(&faces.check);
+    let name = match met.obstacle.owner {
+        Left::OWNER => "raw material that is left",
+        k => all.nth(k as usize).map_or("nothing", |f| f.id.as_str()),
+    };
+    [body, name].map(str::to_owned)
+}
+
+/// The area that no axis reaches by what stands in the way of the best of all, mm2.
+pub fn unreached_mm2(faces: &Part, unreached: &[Unreached]) -> BTreeMap<String, f64> {
+    let mut by: BTreeMap<String, f64> = BTreeMap::new();
+    for place in unreached {
+        let why = place.best.map_or_else(
+            || "no axis of the machine".to_owned(),
+            |best| {
+                let [body, name] = best.gap.met.map_or_else(
+                    || ["nothing".to_owned(), "nothing".to_owned()],
+                    |met| {
+                        let [body, name] = self::met(faces, &met);
+                        [format!("the {body}"), name]
+                    },
+                );
+                format!("{body} meets {name}")
+            },
+        );
+        *by.entry(why).or_default() += place.area_mm2;
+    }
+    by
+}
+
 /// A field with what is to be said of it.
 fn told(faces: &Part, face: &LoadedFace, found: Found) -> Told {
     let mut said = Vec::new();
     if !found.unreached.is_empty() {
-        let mut by: BTreeMap<String, f64> = BTreeMap::new();
-        for place in &found.unreached {
-            let why = place.best.map_or_else(
-                || "no axis of the machine".to_owned(),
-                |best| {
-                    let (body, owner) = best.gap.met.map_or(("nothing", None), |met| {
-                        let body = if met.member == Member::Cutter { "the cutter" } else { "the holder" };
-                        (body, Some(met.obstacle.owner))
-                    });
-                    let mut all = faces.faces.iter().chain(&faces.check);
-                    let name = match owner {
-                        Some(Left::OWNER) => "raw material that is left",
-                        Some(k) => all.nth(k as usize).map_or("nothing", |f| f.id.as_str()),
-                        None => "nothing",
-                    };
-                    format!("{body} meets {name}")
-                },
-            );
-            *by.entry(why).or_default() += place.area_mm2;
-        }
+        let by = unreached_mm2(faces, &found.unreached);
         let all: f64 = by.values().sum();
         let why =
             by.iter().map(|(why, area)| format!("{why} ({area:.1} mm2)")).collect::<Vec<_>>().join(", ");

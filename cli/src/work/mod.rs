@@ -1,6 +1,8 @@
 //! From a job to a program and its proof: choosing, passes, posting, verification, and what is told of them.
 
 pub mod axes;
+pub mod axis_places;
+pub mod axis_view;
 pub mod bodies;
 pub mod budget;
 pub mod check;

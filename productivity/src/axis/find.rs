@@ -89,17 +89,17 @@ pub enum NoField {
 
 /// What is possible at the nodes of a face, whatever the direction of passes.
 pub struct Possibilities {
-    lattice: Lattice,
+    pub(super) lattice: Lattice,
     /// Whether the joints reach but a line of axes.
-    on_line: bool,
-    directions: Directions,
+    pub(super) on_line: bool,
+    pub(super) directions: Directions,
     /// The directions that the machine allows.
-    mask: Bits,
-    possible: Vec<Possible>,
+    pub(super) mask: Bits,
+    pub(super) possible: Vec<Possible>,
     /// Places between the nodes that the field is asked at.
     between: Vec<Uv>,
-    unreached: Vec<Unreached>,
-    area_mm2: f64,
+    pub(super) unreached: Vec<Unreached>,
+    pub(super) area_mm2: f64,
     /// Nodes at which a tool was to stand.
     places: usize,
 }
@@ -113,7 +113,7 @@ pub fn find(wish: &Wish<'_>, feed: &Feed<'_>) -> Result<Found, NoField> {
 }
 
 /// The face as passes see it that run out over its border, and how far to each side of a place its shape is looked at, mm.
-fn seen<'a>(wish: &Wish<'a>) -> (Extended<'a>, [f64; 2]) {
+pub(super) fn seen<'a>(wish: &Wish<'a>) -> (Extended<'a>, [f64; 2]) {
     let cutter: &Cutter = wish.tool.cutter();
     let widest_mm = WIDEST * cutter.radius_mm();
     // Half the strip of the tool's corner: what is narrower is the face's roughness, not its shape.
@@ -122,7 +122,11 @@ fn seen<'a>(wish: &Wish<'a>) -> (Extended<'a>, [f64; 2]) {
 }
 
 /// The reach of a tool over some of the directions.
-fn reach<'a>(wish: &Wish<'a>, directions: &'a Directions, mask: &'a Bits) -> Result<Reach<'a>, NoField> {
+pub(super) fn reach<'a>(
+    wish: &Wish<'a>,
+    directions: &'a Directions,
+    mask: &'a Bits,
+) -> Result<Reach<'a>, NoField> {
     let limits = ReachLimits {
         gouge_mm: 0.0,
         clearance_mm: wish.around.keep_mm,
@@ -135,9 +139,43 @@ fn reach<'a>(wish: &Wish<'a>, directions: &'a Directions, mask: &'a Bits) -> Res
 }
 
 /// Whether the machine's slides reach a place with an axis: where it has few axes its other joints may leave even fewer.
-fn travels(wish: &Wish<'_>, on_line: bool, place: &Place, axis: &Unit3) -> bool {
+pub(super) fn travels(wish: &Wish<'_>, on_line: bool, place: &Place, axis: &Unit3) -> bool {
     let pose = || pose_with_axis(wish.tool.cutter(), &place.point, &place.normal, axis);
     !on_line || wish.joints.travels(&pose())
+}
+
+/// Of the directions in which a tool is clear at a place those with which the machine's slides reach it.
+pub(super) fn travelled(
+    wish: &Wish<'_>,
+    on_line: bool,
+    all: &[Unit3],
+    (place, bits): (&Place, Bits),
+) -> Bits {
+    if !on_line {
+        return bits;
+    }
+    Bits::of(all.len(), |k| bits.contains(k) && travels(wish, on_line, place, &all[k]))
+}
+
+/// Where the tool cannot come down to a place of the face it may still stand off by what may be left: the place so far out, with
+/// the directions there.
+pub(super) fn lifted(
+    wish: &Wish<'_>,
+    on_line: bool,
+    reach: &Reach<'_>,
+    place: &Place,
+) -> Option<(Place, Bits)> {
+    LIFTS.iter().find_map(|share| {
+        let point = place.point + place.normal.into_inner() * (share * wish.scallop_mm);
+        let place = Place { point, ..*place };
+        let bits = travelled(wish, on_line, reach.directions().all(), (&place, reach.bits(&place)));
+        (!bits.is_empty()).then_some((place, bits))
+    })
+}
+
+/// The least leans at a place of the face.
+pub(super) fn rim(wish: &Wish<'_>, reach: &Reach<'_>, jet: &Jet2, place: &Place) -> Rim {
+    Rim::of(reach, place, [jet.du, jet.dv], wish.lean_rad[0])
 }
 
 impl Possibilities {
@@ -159,45 +197,27 @@ impl Possibilities {
             return Err(NoField::NoAxis);
         }
         let reach = reach(wish, &directions, &mask)?;
-        let lifts_mm = LIFTS.map(|share| share * wish.scallop_mm);
         let mut places: Vec<Option<Place>> = lattice
             .nodes
             .iter()
             .map(|n| n.normal.filter(|_| n.stood).map(|normal| Place { point: n.point, normal }))
             .collect();
         let on_face: Vec<Place> = places.iter().flatten().copied().collect();
-        let left = |place: &Place, bits: Bits| {
-            if !on_line {
-                return bits;
-            }
-            Bits::of(all.len(), |k| bits.contains(k) && travels(wish, on_line, place, &all[k]))
-        };
         let reached = reach.map(&on_face);
-        let mut reached = on_face.iter().zip(reached).map(|(place, bits)| left(place, bits));
+        let mut reached = on_face.iter().zip(reached).map(|reached| travelled(wish, on_line, all, reached));
         let mut bits: Vec<Option<Bits>> =
             places.iter().map(|p| p.as_ref().and_then(|_| reached.next())).collect();
-        // Where the tool cannot come down to the face it may still stand off by what may be left.
-        let lifted = |place: &Place| {
-            lifts_mm.iter().find_map(|mm| {
-                let place = Place { point: place.point + place.normal.into_inner() * *mm, ..*place };
-                let bits = left(&place, reach.map(&[place]).pop()?);
-                (!bits.is_empty()).then_some((place, bits))
-            })
-        };
         places.par_iter_mut().zip(&mut bits).for_each(|(place, bits)| {
             let (Some(place), Some(bits)) = (place, bits) else { return };
             if bits.is_empty()
-                && let Some((lifted, found)) = lifted(place)
+                && let Some(found) = lifted(wish, on_line, &reach, place)
             {
-                (*place, *bits) = (lifted, found);
+                (*place, *bits) = found;
             }
         });
         // A ball's strip is the same at any lean.
         let rims = !on_line && !cutter.is_ball();
-        let rim = |node: &Node, place: &Place| {
-            let jet = face.jet2(node.at);
-            Rim::of(&reach, place, [jet.du, jet.dv], wish.lean_rad[0])
-        };
+        let rim = |node: &Node, place: &Place| rim(wish, &reach, &face.jet2(node.at), place);
         let possible: Vec<Possible> = lattice
             .nodes
             .par_iter()
@@ -214,7 +234,7 @@ impl Possibilities {
             .collect();
         // Between the two, a whole number.
         let parts = (ASKED / lattice.nodes.len() as f64).sqrt().clamp(ALONG[0], ALONG[1]) as usize;
-        let mut between = lattice.between(parts);
+        let (_, mut between) = lattice.between(parts);
         between.retain(|at| lattice.stands(*at));
         let unreached = lattice
             .nodes

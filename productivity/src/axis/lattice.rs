@@ -194,6 +194,11 @@ impl Lattice {
 
     /// Whether passes may stand at a place.
     pub fn stands(&self, at: Uv) -> bool {
+        self.nodes[self.nearest(at)].stood
+    }
+
+    /// The node next to a place of the rectangle.
+    pub fn nearest(&self, at: Uv) -> usize {
         let near = AXES.map(|axis| {
             let k = usize::from(axis == Axis::V);
             let (i, basis) = (self.rectangle.domain.get(axis), &self.spline.bases[k]);
@@ -202,7 +207,7 @@ impl Lattice {
             let k = x.round().clamp(0.0, basis.spans as f64) as usize;
             if self.rectangle.closes(axis) { (k + 1) % basis.count() } else { k + 1 }
         });
-        self.nodes[self.spline.index(near[0], near[1])].stood
+        self.spline.index(near[0], near[1])
     }
 
     /// Finds the edges between neighbouring nodes.
@@ -234,13 +239,12 @@ impl Lattice {
         }
     }
 
-    /// Places at equal parts of the cells, `parts` of them along each side.
-    pub fn between(&self, parts: usize) -> Vec<Uv> {
+    /// Places at equal parts of the cells, `parts` of them along each side, and how many that makes along u and along v; v grows first.
+    pub fn between(&self, parts: usize) -> ([usize; 2], Vec<Uv>) {
         let counts = self.spline.bases.map(|b| parts * b.spans + 1);
         let part = |k: usize, axis: usize| k as f64 / (counts[axis] - 1) as f64;
         let all = (0..counts[0] * counts[1]).map(|k| (k / counts[1], k % counts[1]));
-        all.map(|(i, j)| self.rectangle.domain.at(part(i, 0), part(j, 1)))
-            .map(|at| uv(self.paces[0].back(at.u), self.paces[1].back(at.v)))
-            .collect()
+        let at = all.map(|(i, j)| self.rectangle.domain.at(part(i, 0), part(j, 1)));
+        (counts, at.map(|at| uv(self.paces[0].back(at.u), self.paces[1].back(at.v))).collect())
     }
 }

@@ -86,6 +86,16 @@ impl Possible {
         self.rim.is_some()
     }
 
+    /// How many directions of the set are possible.
+    pub fn count(&self) -> usize {
+        self.depths.iter().filter(|d| **d > 0).count()
+    }
+
+    /// Whether some axis is possible, of the set or next to the normal.
+    pub fn is_any(&self) -> bool {
+        self.rim.as_ref().is_some_and(|rim| !rim.is_empty()) || self.count() > 0
+    }
+
     /// Whether nothing is asked for.
     fn is_free(&self) -> bool {
         self.depths.is_empty()

@@ -38,11 +38,13 @@ impl Reach<'_> {
     #[must_use]
     pub fn gap(&self, place: &Place, axis: &Unit3) -> Gap {
         let (spare_mm, found) = self.least_spare(place, axis, None);
-        let met = found.map(|(ball, solid)| {
-            let first = self.obstacles.balls()[ball as usize].first;
-            Met { obstacle: self.obstacles.points()[first as usize], member: self.solids[solid].member }
-        });
-        Gap { spare_mm, met }
+        Gap { spare_mm, met: found.map(|found| self.met(found)) }
+    }
+
+    /// The point of a ball of one, and a solid.
+    pub(super) fn met(&self, (ball, solid): (u32, usize)) -> Met {
+        let first = self.obstacles.balls()[ball as usize].first;
+        Met { obstacle: self.obstacles.points()[first as usize], member: self.solids[solid].member }
     }
 
     /// Whether an axis is possible at a place: its lean is within the limits and all points keep theirs.

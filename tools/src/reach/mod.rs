@@ -9,6 +9,7 @@
 //! - [`Reach::map`] gives the bits of many places at once. It decides cones of axes against balls of points together, and
 //!   answers as if each axis had been asked for with [`Reach::is_clear`].
 //! - [`Reach::gap`] says for any axis, of the set or not, how much is left, and which point has it.
+//! - [`Reach::barred`] says of one direction what keeps the tool from it.
 //! - [`Reach::best`] finds the axis with the most left: for a place without any bit, what stands in the way.
 //!
 //! ```
@@ -46,6 +47,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod barred;
 mod best;
 mod bits;
 mod cones;
@@ -58,6 +60,7 @@ mod stance;
 mod tool;
 mod view;
 
+pub use barred::Barred;
 pub use best::Best;
 pub use bits::Bits;
 pub use directions::{Directions, DirectionsError};

@@ -187,6 +187,12 @@ impl<'a> Reach<'a> {
         })
     }
 
+    /// The directions among which axes are chosen.
+    #[must_use]
+    pub const fn directions(&self) -> &'a Directions {
+        self.directions
+    }
+
     /// Whether the lean of an axis at a place is within the limits.
     #[must_use]
     pub fn leans_within_limits(&self, place: &Place, axis: &Unit3) -> bool {

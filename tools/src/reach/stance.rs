@@ -94,6 +94,39 @@ impl Stance {
         None
     }
 
+    /// Of all points that do not keep their limits the one that lies lowest along the axis, as a ball of its own, with the solid that it
+    /// comes nearest to; of several equally low ones any, always the same. None where all keep them.
+    pub fn lowest(&self, reach: &Reach<'_>) -> Option<(u32, usize)> {
+        let balls = reach.obstacles.balls();
+        let mut best: Option<(f64, u32, usize)> = None;
+        let mut stack: Vec<u32> = reach.obstacles.roots().collect();
+        while let Some(at) = stack.pop() {
+            let ball = &balls[at as usize];
+            let (spare, solid) = self.spare(reach, at, ball);
+            let (_, z) = self.local(&ball.centre);
+            if ball.second == 0 {
+                // A distance that is none is not clear.
+                if !spare.ge(&0.0) && best.is_none_or(|(low, ..)| z < low) {
+                    best = Some((z, at, solid));
+                }
+                continue;
+            }
+            let around = ball.radius_mm + self.rounding_mm;
+            if spare >= around || best.is_some_and(|(low, ..)| z - around >= low) {
+                continue;
+            }
+            let height = |k: u32| self.local(&balls[k as usize].centre).1;
+            let halves = [at + 1, ball.second];
+            // The lower half comes from the stack first.
+            stack.extend(if height(halves[0]) <= height(halves[1]) {
+                [halves[1], halves[0]]
+            } else {
+                halves
+            });
+        }
+        best.map(|(_, ball, solid)| (ball, solid))
+    }
+
     /// The least spare of the centre of a ball, with the solid that has it.
     pub fn spare(&self, reach: &Reach<'_>, at: u32, ball: &Ball) -> (f64, usize) {
         let kind = reach.obstacles.kind(at);

@@ -5,7 +5,7 @@ use crate::reach::scenes::{
 };
 use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::reach::{
-    Bits, ObstacleKind, ObstaclePoint, Place, Reach, ReachLimits, ReachProblem, Tool,
+    Barred, Bits, ObstacleKind, ObstaclePoint, Place, Reach, ReachLimits, ReachProblem, Tool,
 };
 use proptest::prelude::*;
 
@@ -60,6 +60,59 @@ fn a_gap_is_the_least_spare_and_names_what_has_it() {
             }
         }
     }
+}
+
+#[test]
+fn a_direction_is_possible_exactly_where_nothing_bars_it() {
+    let directions = sphere(2);
+    let all = directions.all();
+    let mask = Bits::of(all.len(), |k| all[k].y > -0.6);
+    let mut seen = [0; 4];
+    for scene in scenes() {
+        let obstacles = obstacles(&scene.points);
+        for kind in 0..KINDS {
+            let tool = tool(kind);
+            let limits = ReachLimits { least_lean_rad: 0.1, ..WIDE };
+            let allowed = Some(&mask);
+            let problem =
+                ReachProblem { tool: &tool, limits, obstacles: &obstacles, directions: &directions, allowed };
+            let reach = Reach::new(problem).unwrap();
+            for at in &scene.places {
+                let bits = reach.bits(at);
+                for (k, axis) in all.iter().enumerate() {
+                    let barred = reach.barred(at, k);
+                    assert_eq!(barred.is_none(), bits.contains(k), "{barred:?}");
+                    let leans = reach.leans_within_limits(at, axis);
+                    let which = match barred {
+                        None => 0,
+                        Some(Barred::Lean) => {
+                            assert!(!leans);
+                            1
+                        }
+                        Some(Barred::Machine) => {
+                            assert!(leans && !mask.contains(k));
+                            2
+                        }
+                        Some(Barred::Meets(met)) => {
+                            assert!(leans && mask.contains(k));
+                            let height = |p: &Point3| (p - at.point).dot(axis);
+                            let own = height(&met.obstacle.point);
+                            assert!(spare_of(&tool, &limits, &met, at, axis) < 0.0);
+                            // Of those that are in the way nothing lies lower.
+                            let lower = scene.points.iter().filter(|p| height(&p.point) < own - 1e-9);
+                            for obstacle in lower.filter(|_| k % 7 == 0) {
+                                let alone = slow_spare(&tool, &limits, &[*obstacle], at, axis);
+                                assert!(alone >= 0.0, "{alone} of {obstacle:?} below {met:?}");
+                            }
+                            3
+                        }
+                    };
+                    seen[which] += 1;
+                }
+            }
+        }
+    }
+    assert!(seen.iter().all(|n| *n > 0), "{seen:?}");
 }
 
 #[test]

@@ -93,6 +93,7 @@ const fn lines(kind: Kind) -> (&'static [&'static str], &'static [&'static str])
             &[
                 "plan FILE --out plan",
                 "compare FILE",
+                "axes FILE --out axes",
                 "strip FILE",
                 "flank FILE",
                 "verify path-of.cl --job FILE",
