@@ -24,9 +24,7 @@ const BEYOND: f64 = 0.25;
 /// A pole whose places weigh less in it than one in the middle of its piece does moves by less than these lack: others move it too.
 const LEAST_WEIGHT: f64 = 0.44;
 
-/// A place that was not clear before draws the harder by this part each time, up to so many times: tuned on the edges of a turbine's blade,
-/// where places beside each other ask for different leans.
-const STUBBORN: f64 = 0.1;
+/// Up to so many times harder a place draws that was not clear before.
 const HARDEST: f64 = 3.0;
 
 /// An axis that was found for a place counts until the field has turned so far there, rad.
@@ -64,7 +62,7 @@ impl Asked {
         }
         if self.known.is_none_or(|(from, _)| from.angle(axis) > KNOWN) {
             let next = match leaning {
-                Leaning::Least => raised(&self.upright, axis, held, &is_clear).or_else(|| {
+                Leaning::Least { .. } => raised(&self.upright, axis, held, &is_clear).or_else(|| {
                     between(axis, &nearest_clear(axis, &RINGS, held, &is_clear)?, held, &is_clear)
                 }),
                 Leaning::Any => nearest_clear(axis, &RINGS[FINER..], held, &is_clear),
@@ -97,10 +95,13 @@ pub(super) type Normal<'a> = dyn Fn(Uv, &Jet2) -> Option<Unit3> + Sync + 'a;
 pub(super) type Held<'a> = dyn Fn(Unit3) -> Unit3 + Sync + 'a;
 
 /// How far an axis that is not clear is brought from where it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Leaning {
     /// As little as is clear: the strips of flat and toroidal ends are widest there.
-    Least,
+    Least {
+        /// By which part a place draws the harder each time that it is not clear.
+        harder: f64,
+    },
     /// To a ring where it is: a ball's strip is the same at any lean, and it is better farther off.
     Any,
 }
@@ -145,6 +146,10 @@ pub(super) fn settle(
             })
         })
         .collect();
+    let (least_weight, harder) = match how.2 {
+        Leaning::Least { harder } => (LEAST_WEIGHT, harder),
+        Leaning::Any => (0.0, 0.0),
+    };
     let mut asked: Vec<usize> = (0..all.len()).collect();
     let mut best = (usize::MAX, field.spline.poles.clone());
     for round in 0..=ROUNDS {
@@ -155,7 +160,7 @@ pub(super) fn settle(
                 let axis = field.at(place.at).0;
                 (!place.is_clear(&axis, how)).then(|| {
                     // What others hold back is pulled the harder.
-                    let pull = (1.0 + STUBBORN * f64::from(place.short)).min(HARDEST);
+                    let pull = (1.0 + harder * f64::from(place.short)).min(HARDEST);
                     place.short += 1;
                     let by = place
                         .near()
@@ -181,8 +186,7 @@ pub(super) fn settle(
         } else {
             asked = (0..all.len()).collect();
         }
-        let least = if how.2 == Leaning::Least { LEAST_WEIGHT } else { 0.0 };
-        move_poles(field, short.iter().flatten(), least);
+        move_poles(field, short.iter().flatten(), least_weight);
     }
     field.spline.poles = best.1;
     best.0
