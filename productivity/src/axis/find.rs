@@ -24,8 +24,8 @@ const ASKED: f64 = 4e4;
 const ALONG: [f64; 2] = [4.0, 10.0];
 /// Shares of the scallop by which a tool is lifted that no axis takes down to the face: dents narrower than the tool.
 const LIFTS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
-/// Places that are not clear draw the harder by this part each time: tuned on the edges of a turbine's blade, where places beside each other
-/// ask for different leans.
+/// On a rough face places that are not clear draw the harder by this part each time: tuned on the edges of a turbine's blade, where places
+/// beside each other ask for different leans. On a smooth face they ask for nearly the same, and the least that is clear is best.
 const STUBBORN: f64 = 0.1;
 
 /// What a field is for.
@@ -306,11 +306,11 @@ impl Possibilities {
         let mut spline = lattice.spline;
         spline.poles = axes.iter().map(|a| a.into_inner()).collect();
         let mut field = AxisField { spline, rectangle: lattice.rectangle, paces: lattice.paces };
-        let leaning = match (cutter.is_ball(), self.on_line) {
-            (true, _) => Leaning::Any,
+        let leaning = if cutter.is_ball() {
+            Leaning::Any
+        } else {
             // On a line there is but one way to give, and others need it too.
-            (false, true) => Leaning::Least { harder: 0.0 },
-            (false, false) => Leaning::Least { harder: STUBBORN },
+            Leaning::Least { harder: if rough && !self.on_line { STUBBORN } else { 0.0 } }
         };
         let unsettled = settle(
             &mut field,

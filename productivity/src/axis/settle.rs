@@ -271,3 +271,53 @@ fn between(bad: &Unit3, good: &Unit3, held: &Held<'_>, clear: &dyn Fn(&Unit3) ->
     }
     Some(good)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::Spline;
+    use osculate_geom::analytic::Plane;
+    use osculate_geom::{Domain, Interval, uv};
+
+    /// By how much a tool must lean towards x at a place, rad: most at (5, 5), nothing 2.45 mm from there.
+    fn need(at: &Point3) -> f64 {
+        0.1 * (-0.5 * ((at.x - 5.0).powi(2) + (at.y - 5.0).powi(2))).exp() - 0.005
+    }
+
+    #[test]
+    fn poles_follow_what_places_between_them_need_and_no_more() {
+        let side = Interval::new(0.0, 10.0);
+        let plane = Plane::new(Domain { u: side, v: side });
+        let face = Extended::by(&plane, 0.0);
+        let places: Vec<Uv> =
+            (0..=1600).map(|k| uv(0.25 * f64::from(k / 41), 0.25 * f64::from(k % 41))).collect();
+        let normal: &Normal<'_> = &|_, jet| jet.normal().ok();
+        let settled = |clear: &Clear<'_>, leaning| {
+            let mut field = AxisField::held(&plane, Vec3::z_axis());
+            field.spline = Spline::constant(&field.rectangle, [10, 10], Vec3::z());
+            let held: &Held<'_> = &|axis| axis;
+            let short = settle(&mut field, (&face, normal, normal), (&places, 0.1), (clear, held, leaning));
+            (field, short)
+        };
+        let lean = |axis: &Unit3| axis.x.atan2(axis.z);
+        let leans: &Clear<'_> = &|at, _, axis| lean(axis) >= need(at);
+        for harder in [0.0, 0.1] {
+            let (field, short) = settled(leans, Leaning::Least { harder });
+            assert_eq!(short, 0);
+            for at in &places {
+                let (axis, point) = (field.at(*at).0, plane.point(*at));
+                assert!(leans(&point, &Vec3::z_axis(), &axis), "{at:?}: {} of {}", lean(&axis), need(&point));
+                // A span is a millimetre, over which the need changes by 0.06 at most.
+                assert!(lean(&axis) < need(&point).max(0.0) + 0.06, "{at:?}: {}", lean(&axis));
+            }
+            // Far from all that is needed hardly anything moves.
+            assert!(field.at(uv(0.5, 0.5)).0.angle(&Vec3::z_axis()) < 1e-6);
+        }
+        // What no axis near the field's makes clear is counted, and holds nothing else up.
+        let but_one: &Clear<'_> = &|at, _, axis| at.x.hypot(at.y) > 0.2 && lean(axis) >= need(at);
+        let (field, short) = settled(but_one, Leaning::Any);
+        assert_eq!(short, 1);
+        let not = places.iter().filter(|at| !but_one(&plane.point(**at), &Vec3::z_axis(), &field.at(**at).0));
+        assert_eq!(not.collect::<Vec<_>>(), [&uv(0.0, 0.0)]);
+    }
+}

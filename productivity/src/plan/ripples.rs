@@ -113,3 +113,45 @@ pub(super) fn places() -> impl Iterator<Item = (f64, f64)> {
         (k / f64::from(PLACES), f64::from(PLACES) + 1.0 - k.abs())
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use osculate_geom::Point3;
+    use osculate_surfaces::{Net, NurbsSurface};
+
+    /// A strip of width 2 over points of a line in a plane, of some degree in u with a knot wherever it can have one.
+    fn strip(degree: usize, line: &[[f64; 2]]) -> NurbsSurface {
+        let n = line.len();
+        let points = line.iter().flat_map(|[x, z]| [0.0, 2.0].map(|y| Point3::new(*x, y, *z))).collect();
+        let last = (n - degree) as f64;
+        let inner = (1..n - degree).map(|k| k as f64);
+        let ends = |t: f64| std::iter::repeat_n(t, degree + 1);
+        let knots = ends(0.0).chain(inner).chain(ends(last)).collect();
+        NurbsSurface::new(
+            [degree, 1],
+            [knots, vec![0.0, 0.0, 1.0, 1.0]],
+            Net { count: [n, 2], points, weights: None },
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn a_knot_is_a_crease_only_where_the_normal_jumps() {
+        let open = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 1.0], [4.0, 2.0], [5.0, 2.0]];
+        let at = |surface: &NurbsSurface, axis| Ripples::new(surface, 3.0).creases(axis).to_vec();
+        // The line bends at its third and fifth point only: the other knots are none, nor are its ends.
+        let bent = strip(1, &open);
+        assert_eq!(Ripples::new(&bent, 3.0).breaks(Axis::U).len(), 6);
+        assert_eq!(at(&bent, Axis::U), [2.0, 4.0]);
+        assert_eq!(at(&bent, Axis::V), [0.0; 0]);
+        // The same points as poles of a quadric: its tangent is steady over every knot.
+        assert_eq!(at(&strip(2, &open), Axis::U), [0.0; 0]);
+        // A square closes in an edge: both ends of its seam are one.
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+        assert_eq!(at(&strip(1, &square), Axis::U), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        // Cut in the middle of a side it closes without one.
+        let cut = [[0.5, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0], [0.5, 0.0]];
+        assert_eq!(at(&strip(1, &cut), Axis::U), [1.0, 2.0, 3.0, 4.0]);
+    }
+}
