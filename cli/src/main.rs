@@ -29,6 +29,7 @@ fn run(cli: &Cli) -> Outcome {
         }
         Verb::Axes(options) => cmd::axes::run(options, cli.json),
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
+        Verb::Sweep(args) => cmd::sweep::run(args, cli.json),
         Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
         Verb::Post(options) => cmd::post::run(options, cli.json),
         Verb::Verify { files, job, lenient, second_opinion, ply, blocks, data } => cmd::verify::run(

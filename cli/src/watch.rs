@@ -28,6 +28,11 @@ pub trait Watch: Sync {
         false
     }
 
+    /// Whether report and pictures are made: of many plans nobody looks at most.
+    fn wants_pages(&self) -> bool {
+        true
+    }
+
     /// Something finished that is worth keeping where results go to, by its name: a run that was stopped goes on from there.
     fn keep(&self, _name: &str, _bytes: &[u8]) {}
 

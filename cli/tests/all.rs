@@ -37,6 +37,7 @@ mod sides;
 mod sizes;
 mod stop;
 mod strip;
+mod sweep;
 mod three_axis;
 mod tools_library;
 mod verdicts;

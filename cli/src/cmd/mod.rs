@@ -18,6 +18,7 @@ pub mod post;
 pub mod probe;
 pub mod readback;
 pub mod strip;
+pub mod sweep;
 pub mod time;
 pub mod tools;
 pub mod verify;

@@ -22,6 +22,7 @@ mod picture;
 pub mod project;
 pub mod sheet;
 mod simplify;
+pub mod sweep;
 pub mod text;
 mod tool_body;
 mod viewer;

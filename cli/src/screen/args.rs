@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use osculate::failure::Failure;
 use osculate::part::{self, Loaded};
+use osculate::work::sweep::rows::Shard;
 use std::path::PathBuf;
 
 /// Plan, verify and post multi-axis NC machining of free-form surfaces.
@@ -81,6 +82,8 @@ pub enum Verb {
         #[arg(long)]
         out: PathBuf,
     },
+    /// One job with some of its values varied: every combination planned and judged, one table and a page of all.
+    Sweep(SweepArgs),
     /// The side of a cutter on a ruled face: every positioning side by side, the chosen one as path, NC program and report.
     Flank {
         /// The job file, with its flank table.
@@ -238,6 +241,40 @@ pub struct AxesArgs {
     /// Folder for pictures: the field over each face, and a round map of the directions at each place.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
+}
+
+/// What `sweep` takes.
+#[derive(Debug, Args)]
+pub struct SweepArgs {
+    /// The sweep: the job, and what is varied of it.
+    pub sweep: PathBuf,
+    /// Folder for the rows of finished cases and for the table; a run that was ended goes on from its rows.
+    #[arg(long, value_name = "FOLDER", required_unless_present = "print")]
+    pub out: Option<PathBuf>,
+    /// Only the K-th of N shards: the cases K, K + N, K + 2 N, ... No table is made.
+    #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with_all = ["merge", "print"])]
+    pub shard: Option<Shard>,
+    /// Only the table, from the rows of all shards in the folder.
+    #[arg(long, conflicts_with = "print")]
+    pub merge: bool,
+    /// Writes each plan with its program and report into a folder of its own, plans/000001 and so on.
+    #[arg(long, conflicts_with_all = ["merge", "print"])]
+    pub plans: bool,
+    /// Cases at the same time, each on one thread; as many as there are cores where not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=4096))]
+    pub threads: Option<u64>,
+    /// Prints the job of a case, by its number, and plans nothing.
+    #[arg(long, value_name = "CASE")]
+    pub print: Option<usize>,
+}
+
+/// `K/N`, K from 1 to N.
+fn shard(text: &str) -> Result<Shard, String> {
+    let two = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    match two {
+        Some((which, of)) if (1..=of).contains(&which) => Ok(Shard { which, of }),
+        _ => Err(format!("{text:?} is no shard: write K/N with K from 1 to N, such as 2/4")),
+    }
 }
 
 /// What `lines` takes.

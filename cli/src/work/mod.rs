@@ -33,4 +33,5 @@ pub mod rough;
 pub mod setup;
 pub mod stock;
 pub mod summary;
+pub mod sweep;
 pub mod verify;

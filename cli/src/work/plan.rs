@@ -237,14 +237,9 @@ impl Proved<'_> {
             hands: vec![(0, fill::tool(job))],
             extras: &planned.extras,
         };
-        let pages = fill::pages(&story, &|f| stage.at(f));
-        let mut files = vec![
-            PlanFile::of_text("path.cl", cl_text),
-            PlanFile::of_text(file, program.text),
-            PlanFile::of_text(REPORT, pages.html),
-            PlanFile::of_text("picture.svg", pages.svg),
-            PlanFile::of_text("path.svg", pages.path_svg),
-        ];
+        let pages = pages(&story, watch, &|f| stage.at(f));
+        let mut files = vec![PlanFile::of_text("path.cl", cl_text), PlanFile::of_text(file, program.text)];
+        files.extend(pages);
         summary.wall_s.report = stage.end();
         let w = summary.wall_s;
         summary.wall_s.total = w.import + w.plan + w.post + w.verify + w.ideal + w.report;
@@ -252,6 +247,16 @@ impl Proved<'_> {
         files.push(PlanFile::of_text("summary.json", text));
         Ok(Plan { job: job.clone(), summary, verified, diagnostics, files })
     }
+}
+
+/// Report and pictures of a plan; none where nobody looks at them.
+pub fn pages(story: &Story<'_>, watch: &dyn Watch, progress: &(dyn Fn(f64) + Sync)) -> Vec<PlanFile> {
+    if !watch.wants_pages() {
+        return Vec::new();
+    }
+    let made = fill::pages(story, progress);
+    let named = [(REPORT, made.html), ("picture.svg", made.svg), ("path.svg", made.path_svg)];
+    named.map(|(name, text)| PlanFile::of_text(name, text)).into()
 }
 
 /// How long a program takes, and what it asks of the joints.

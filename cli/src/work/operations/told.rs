@@ -14,7 +14,7 @@ use crate::work::operations::course::Course;
 use crate::work::operations::posted::Program;
 use crate::work::operations::standing;
 use crate::work::operations::step::Step;
-use crate::work::plan::{Plan, PlanFile, Times, summary_of};
+use crate::work::plan::{self, Plan, PlanFile, Times, summary_of};
 use crate::work::program::{Planned, WallS};
 use crate::work::summary::{OperationSummary, SetupSummary, Summary};
 use crate::work::verify::Verified;
@@ -121,7 +121,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         hands,
         extras: &extras,
     };
-    let pages = fill::pages(&story, &|f| stage.at(f));
+    let pages = plan::pages(&story, watch, &|f| stage.at(f));
     let mut files = Vec::new();
     for (k, step) in steps.iter().enumerate() {
         let cl = passes::cl_path(&step.job, &step.planned.linked);
@@ -140,9 +140,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         files.push(PlanFile::of_text("tool.tbl", text));
     }
     files.extend(programs.into_iter().map(|p| PlanFile::of_text(p.file, p.text)));
-    files.push(PlanFile::of_text("report.html", pages.html));
-    files.push(PlanFile::of_text("picture.svg", pages.svg));
-    files.push(PlanFile::of_text("path.svg", pages.path_svg));
+    files.extend(pages);
     wall_s.report = stage.end();
     wall_s.total = part.import_s + begin.elapsed().as_secs_f64();
     summary.wall_s = wall_s;

@@ -1,0 +1,182 @@
+//! `sweep`: a job with some of its values varied, every combination planned and judged, and one table of all.
+
+use crate::screen::args::SweepArgs;
+use crate::screen::progress::SCREEN;
+use crate::screen::{cancel, output, render};
+use osculate::Plan;
+use osculate::failure::{Done, Failure, Outcome};
+use osculate::words::{Table, number};
+use osculate::work::sweep::case::{Case, Row};
+use osculate::work::sweep::rows::{Rows, Shard, Writer};
+use osculate::work::sweep::{Sweep, page, run, table};
+use serde::Serialize;
+use std::path::Path;
+
+/// Files of the table.
+const TABLE: &str = "table.csv";
+const PAGE: &str = "sweep.html";
+/// Folder of the plans that are kept.
+const PLANS: &str = "plans";
+/// Cases that a message lists at most.
+const LISTED: usize = 8;
+/// Lines of the table on a screen.
+const SHOWN: usize = 20;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Told<'a> {
+    format: u32,
+    cases: usize,
+    /// Of them, what this run planned.
+    planned: usize,
+    /// Whether all are done and the table is written.
+    complete: bool,
+    held: usize,
+    not_held: usize,
+    not_shown: usize,
+    failed: usize,
+    fastest: Option<&'a Row>,
+}
+
+/// Runs the verb.
+pub fn run(args: &SweepArgs, json: bool) -> Outcome {
+    if let Some(number) = args.print {
+        let sweep = Sweep::load(&args.sweep)?;
+        let case = sweep.case(number)?;
+        let beside = case.path.parent().unwrap_or_else(|| Path::new("")).display().to_string();
+        let beside = if beside.is_empty() { ".".to_owned() } else { beside };
+        let head = format!(
+            "# Case {number}: {}. Put it into {beside}, beside which its files are.\n",
+            sweep.words_of(number)
+        );
+        render::text(&(head + &case.text))?;
+        return Ok(Done::Yes);
+    }
+    let Some(out) = &args.out else {
+        return Err(Failure::Usage(
+            "sweep needs --out FOLDER for its rows and its table, or --print CASE".to_owned(),
+        ));
+    };
+    output::folder(out)?;
+    let sweep = Sweep::load(&args.sweep)?;
+    let shard = args.shard.unwrap_or(Shard::WHOLE);
+    std::fs::create_dir_all(out)
+        .map_err(|e| Failure::file(out, format!("the folder cannot be made: {e}")))?;
+    let planned = if args.merge { 0 } else { plan_all(&sweep, shard, (out, args))? };
+    let rows = read(&sweep, out)?;
+    let complete = rows.count() == sweep.cases();
+    if args.merge && !complete {
+        let lacking: Vec<String> =
+            (1..=sweep.cases()).filter(|n| !rows.has(*n)).take(LISTED).map(|n| n.to_string()).collect();
+        let count = sweep.cases() - rows.count();
+        let more = if count > LISTED { ", ..." } else { "" };
+        let what = format!(
+            "{count} of {} cases have no row here ({}{more}): run their shards, or the sweep without --merge",
+            sweep.cases(),
+            lacking.join(", ")
+        );
+        return Err(Failure::file(out, what));
+    }
+    // Every shard that ends last finds all rows; the table is the same whoever makes it.
+    let whole = complete && (args.merge || shard == Shard::WHOLE);
+    let all: Vec<&Row> = rows.all().collect();
+    if whole {
+        let files = [(TABLE, table::csv(&sweep, all.iter().copied())), (PAGE, page::of(&sweep, &all))];
+        let files: Vec<(&str, &[u8])> = files.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
+        output::set(out, &files)?;
+    }
+    let failed = all.iter().filter(|r| r.figures.is_none()).count();
+    if json {
+        let count = |answer: &str| all.iter().filter(|r| r.answer == answer).count();
+        render::json(&Told {
+            format: 1,
+            cases: sweep.cases(),
+            planned,
+            complete,
+            held: count("held"),
+            not_held: count("not_held"),
+            not_shown: count("not_shown"),
+            failed,
+            fastest: page::fastest(&all),
+        })?;
+    } else {
+        render::text(&describe(&sweep, (&all, whole), out))?;
+    }
+    Ok(if failed == 0 { Done::Yes } else { Done::Incomplete })
+}
+
+/// The rows in a folder that are of this sweep.
+fn read(sweep: &Sweep, out: &Path) -> Result<Rows, Failure> {
+    let key = |n: usize| sweep.case(n).ok().map(|c| c.key);
+    Rows::read(out, &key)
+}
+
+/// Plans the cases of a shard that have no row yet; how many there were.
+fn plan_all(sweep: &Sweep, shard: Shard, (out, args): (&Path, &SweepArgs)) -> Result<usize, Failure> {
+    let own: Vec<usize> = shard.numbers(sweep.cases()).collect();
+    let refused = run::checked(sweep, &own)?;
+    if let Some((number, why)) = &refused.first {
+        let of = if own.len() == 1 { "the only case".to_owned() } else { format!("all {} cases", own.len()) };
+        if refused.count == own.len() {
+            return Err(Failure::file(sweep.path(), format!("{of} cannot be planned; case {number}: {why}")));
+        }
+        render::complaint(&format!(
+            "{} of {} cases cannot be planned and count as failed; the first is case {number} ({}): {why}",
+            refused.count,
+            own.len(),
+            sweep.words_of(*number)
+        ));
+    }
+    let writer = Writer::open(shard, out)?;
+    let rows = read(sweep, out)?;
+    if rows.stale() > 0 {
+        render::complaint(&format!(
+            "{}: {} rows are of another job, other files or another version, and do not count",
+            out.display(),
+            rows.stale()
+        ));
+    }
+    let left: Vec<usize> = own.iter().copied().filter(|n| !rows.has(*n)).collect();
+    let file = shard.file(out).display().to_string();
+    cancel::keep(Box::new(move || {
+        Ok(format!("what was finished is in {file}: the same command goes on from there"))
+    }));
+    let keep = |case: &Case, plan: &Plan| plan.write(&out.join(PLANS).join(format!("{:06}", case.number)));
+    let threads = args.threads.map_or_else(rayon::current_num_threads, |n| n as usize);
+    run::run(sweep, &left, (threads, args.plans.then_some(&keep)), (&writer, &SCREEN))?;
+    Ok(left.len())
+}
+
+fn describe(sweep: &Sweep, (rows, whole): (&[&Row], bool), out: &Path) -> String {
+    let mut text = format!("\n  {}", page::words(rows));
+    if rows.len() < sweep.cases() {
+        text += &format!("; {} of {} have no row yet", sweep.cases() - rows.len(), sweep.cases());
+    }
+    text += "\n\n";
+    let mut order: Vec<&&Row> = rows.iter().filter(|r| r.holds()).collect();
+    let time = |r: &Row| r.number("time_min").unwrap_or(f64::INFINITY);
+    order.sort_by(|a, b| time(a).total_cmp(&time(b)));
+    let headings = ["case"].into_iter().chain(sweep.varied().iter().map(|v| v.name.as_str()));
+    let mut t = Table::left(headings.chain(["min", "cutting min", "height mm", "gouge mm"]));
+    for row in order.iter().take(SHOWN) {
+        let labels = sweep.labels_of(row.case).into_iter().map(ToOwned::to_owned);
+        let shown = ["time_min", "cutting_time_min", "height_mm", "gouge_mm"]
+            .map(|name| row.number(name).map_or_else(|| "-".to_owned(), |x| number(x, 4)));
+        t.row(std::iter::once(row.case.to_string()).chain(labels).chain(shown));
+    }
+    if !order.is_empty() {
+        text += &t.render();
+        if order.len() > SHOWN {
+            text += &format!("  ... and {} more that hold\n", order.len() - SHOWN);
+        }
+    }
+    for row in rows.iter().filter(|r| r.figures.is_none()).take(3) {
+        text += &format!("  case {} failed ({}): {}\n", row.case, sweep.words_of(row.case), row.why);
+    }
+    if whole {
+        text += &format!("\n  {}, {}\n\n", out.join(TABLE).display(), out.join(PAGE).display());
+    } else {
+        text += "\n  no table yet: when all shards are done, sweep --merge makes it\n\n";
+    }
+    text
+}
