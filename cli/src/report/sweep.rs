@@ -5,15 +5,17 @@ use super::text::{coordinate, count, escape, figure};
 use std::fmt::Write;
 
 const STYLE: &str = include_str!("../../assets/report.css");
+/// Cells are one line, but the last of a row, which says why.
+const CELLS: &str = "td:not(:last-child), th { white-space: nowrap; }\n";
 
 /// Most dots of a chart; of more only the range and the median of each value are drawn.
 const DOTS: usize = 3000;
 /// Share of its place that the dots of a value take, and their radius.
 const SPREAD: f64 = 0.6;
 const RADIUS: f64 = 2.6;
-/// Most labels below a chart, and their length.
+/// Most labels below a chart, and the letters of all of them.
 const LABELS: usize = 12;
-const LETTERS: usize = 14;
+const LETTERS: usize = 80;
 
 /// A page of a sweep.
 pub struct Page {
@@ -74,7 +76,7 @@ pub fn html(page: &Page) -> String {
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}: sweep</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<div class=\"wrap\">\n<header><div><h1>{title}: sweep</h1><p>{}</p></div></header>\n",
+         <style>\n{STYLE}{CELLS}</style>\n</head>\n<body>\n<div class=\"wrap\">\n<header><div><h1>{title}: sweep</h1><p>{}</p></div></header>\n",
         escape(&page.subtitle),
         title = escape(&page.title),
     );
@@ -145,7 +147,7 @@ fn drawn(chart: &Chart) -> String {
     let mut out = frame(&format!("{} over {}", chart.y, chart.x), x, y, &[], &chart.x, chart.y);
     let stride = n.div_ceil(LABELS);
     for (k, label) in chart.labels.iter().enumerate().step_by(stride) {
-        let short: String = label.chars().take(LETTERS).collect();
+        let short: String = label.chars().take(LETTERS / n.min(LABELS)).collect();
         let _ = write!(
             out,
             "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}<title>{}</title></text>",

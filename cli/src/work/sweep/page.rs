@@ -4,13 +4,18 @@ use super::Sweep;
 use super::case::Row;
 use crate::report::sweep::{Chart, Dot, Grid, Page, html};
 use crate::words::number;
+use std::path::Path;
 
 /// Most rows of the table on the page.
 const SHOWN: usize = 2000;
 /// Most pairs of things varied that have a grid.
 const PAIRS: usize = 6;
 /// Figures that are drawn over what is varied, with their titles.
-const DRAWN: [(&str, &str); 2] = [("time_min", "time, min"), ("efficiency_percent", "efficiency, %")];
+const DRAWN: [(&str, &str); 3] = [
+    ("time_min", "time, min"),
+    ("cutting_time_min", "cutting time, min"),
+    ("efficiency_percent", "efficiency, %"),
+];
 /// Columns of the table, with their headings.
 const COLUMNS: [(&str, &str); 6] = [
     ("time_min", "min"),
@@ -79,9 +84,8 @@ pub fn of(sweep: &Sweep, rows: &[&Row]) -> String {
         let cells = cells.chain(COLUMNS.map(|(name, _)| shown(row.number(name)))).chain([row.why.clone()]);
         cells.collect()
     };
-    let name = sweep.path().file_stem().unwrap_or_default().to_string_lossy().into_owned();
     html(&Page {
-        title: name,
+        title: title(sweep.path()),
         subtitle: words(rows),
         charts,
         grids: grids.collect(),
@@ -89,6 +93,13 @@ pub fn of(sweep: &Sweep, rows: &[&Row]) -> String {
         rows: order.iter().take(SHOWN).map(line).collect(),
         left_out: order.len().saturating_sub(SHOWN),
     })
+}
+
+/// The sweep by its file, or by its folder where the file is called sweep.
+fn title(path: &Path) -> String {
+    let name = path.file_stem().unwrap_or_default();
+    let folder = path.parent().and_then(Path::file_name).filter(|_| name == "sweep");
+    folder.unwrap_or(name).to_string_lossy().into_owned()
 }
 
 /// How many of them hold, and which is the fastest.
