@@ -1,11 +1,15 @@
 //! `cargo xtask package`: the packages as a registry would get them, built, and tested where there is no repository around them.
 //!
-//! `cargo publish --dry-run` packs and builds each one. What it packed is then unpacked into a temporary folder, where the packages are a
-//! workspace of their own, and their tests run there: what a package lacks, or reads from the repository, fails. A package of which
-//! fewer tests pass than stand in it fails as well.
+//! `cargo publish --dry-run` says whether a registry would take them. What is packed is unpacked into a temporary folder, where the packages
+//! are a workspace of their own, built there without what only tests need, and tested: what a package lacks, or reads from the repository,
+//! fails. A package of which fewer tests pass than stand in it fails as well.
+//!
+//! Cargo's own check of what it packs is left out (`--no-verify`): from the second run on it builds a package on those below it as an earlier
+//! run has unpacked them.
 
 use crate::cmd::{Failure, cargo, output, root, run as run_command, write};
 use serde_json::Value;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -64,17 +68,28 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let metadata = output(cargo(&root, &["metadata", "--no-deps", "--format-version", "1", "--locked"]))?;
     let (packages, kept_back, target) = read(&metadata)?;
     let start = Instant::now();
-    let mut arguments = vec!["publish", "--workspace", "--dry-run", "--locked"];
-    kept_back.iter().for_each(|name| arguments.extend(["--exclude", name]));
-    arguments.extend(options.dirty.then_some("--allow-dirty"));
-    run_command(cargo(&root, &arguments))?;
-    println!("package: packed and built in {:.1} s", start.elapsed().as_secs_f64());
+    for verb in [["publish", "--dry-run"].as_slice(), &["package"]] {
+        let mut arguments = [verb, &["--workspace", "--no-verify", "--locked", "--quiet"]].concat();
+        kept_back.iter().for_each(|name| arguments.extend(["--exclude", name]));
+        arguments.extend(options.dirty.then_some("--allow-dirty"));
+        run_command(cargo(&root, &arguments))?;
+    }
+    println!("package: packed in {:.1} s", start.elapsed().as_secs_f64());
 
-    let folder = std::env::temp_dir().join(format!("osculate-packages-{}", std::process::id()));
+    let folder = std::env::temp_dir().join(format!("osculate-packages-{:016x}", number_of(&root)));
+    // What a run that was ended has left.
+    let _ = std::fs::remove_dir_all(&folder);
     let done = tested(options, &packages, &Places { root: &root, target: &target, folder: &folder });
     // Left over it only takes room; what failed is told above.
     let _ = std::fs::remove_dir_all(&folder);
     done
+}
+
+/// A number that a checkout keeps: two of them do not unpack into one folder, and cargo finds in it again what it has built.
+fn number_of(root: &Path) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    root.hash(&mut hasher);
+    hasher.finish()
 }
 
 /// Where things are.
@@ -88,6 +103,9 @@ struct Places<'a> {
 
 fn tested(options: &Options<'_>, packages: &[Package], places: &Places<'_>) -> Result<(), Failure> {
     unpack(packages, places)?;
+    let start = Instant::now();
+    run_command(in_packages(places, &["build", "--workspace"]))?;
+    println!("package: built in {:.1} s", start.elapsed().as_secs_f64());
     println!("package               size KiB  files  tests in it  passed       s");
     println!("-----------------------------------------------------------------");
     let mut wrong = 0;
@@ -154,7 +172,8 @@ fn unpack(packages: &[Package], places: &Places<'_>) -> Result<(), Failure> {
     std::fs::copy(places.root.join("Cargo.lock"), &lock).map_err(|why| Failure::Write { path: lock, why })?;
     for package in packages {
         let mut tar = Command::new("tar");
-        tar.current_dir(places.folder).arg("-xzf").arg(archive(package, places));
+        // Not with the times of the archive, which are the same whatever is in it: cargo would take what it built of the last one.
+        tar.current_dir(places.folder).arg("-xzmf").arg(archive(package, places));
         run_command(tar)?;
     }
     Ok(())
@@ -172,11 +191,16 @@ fn workspace(packages: &[Package]) -> String {
     text + "\n[profile.dev]\nopt-level = 2\ndebug = false\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n"
 }
 
+/// A cargo command among the unpacked packages. What it builds is kept between runs, so that the next one builds less.
+fn in_packages(places: &Places<'_>, arguments: &[&str]) -> Command {
+    let mut command = cargo(places.folder, arguments);
+    command.env("CARGO_TARGET_DIR", places.target.join("packaged"));
+    command
+}
+
 /// Runs the tests of a package, doctests included; what they print is shown where one fails.
 fn test(package: &Package, places: &Places<'_>) -> Result<Counts, Failure> {
-    let mut command = cargo(places.folder, &["test", "--quiet", "--no-fail-fast", "-p", &package.name]);
-    // Kept between runs, so that the next one builds less.
-    command.env("CARGO_TARGET_DIR", places.target.join("packaged"));
+    let mut command = in_packages(places, &["test", "--quiet", "--no-fail-fast", "-p", &package.name]);
     let line = format!("cargo test -p {}", package.name);
     let answer = command.output().map_err(|why| Failure::Start { line: line.clone(), why })?;
     let said = String::from_utf8_lossy(&answer.stdout).into_owned();
