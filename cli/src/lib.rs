@@ -101,6 +101,9 @@ pub mod watch;
 pub mod words;
 pub mod work;
 
+/// The linear algebra of the signatures of all crates below, in the version that they have.
+pub use osculate_geom::nalgebra;
+
 pub use failure::Failure;
 pub use job::Job;
 pub use osculate_tools::removal::{Answer, Verdict};
@@ -109,3 +112,8 @@ pub use watch::Watch;
 pub use work::check::verify;
 pub use work::plan::{Plan, PlanFile, plan};
 pub use work::verify::Verified;
+
+/// The example of the package's README is run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -32,7 +32,7 @@ fn files_that_are_no_parts() {
     inspect(&scratch.write("empty.step", "")).refused(&["empty.step", "empty"]);
     inspect(&scratch.write("prose.step", "It was a dark and stormy night.\n"))
         .refused(&["prose.step", "no format that is read"]);
-    let hull = include_str!("../../examples/wigley-hull/hull.step");
+    let hull = include_str!("data/hull.step");
     let cut = &hull[..hull.len() / 3];
     let run = inspect(&scratch.write("cut.step", cut));
     // What is complete of a truncated file is shown, and that it is not the whole.
@@ -103,7 +103,7 @@ fn jobs_that_cannot_be_done_say_what_where_and_what_to_change() {
 #[test]
 fn faces_that_are_not_there() {
     let scratch = Scratch::new();
-    std::fs::write(scratch.path("hull.step"), include_str!("../../examples/wigley-hull/hull.step")).unwrap();
+    std::fs::write(scratch.path("hull.step"), include_str!("data/hull.step")).unwrap();
     let part = |faces: &str| {
         let text = job(|j| {
             let start = j.find("builtin").unwrap();

@@ -3,7 +3,7 @@
 use crate::common;
 use common::{Scratch, osculate};
 
-const HULL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/wigley-hull/hull.step");
+const HULL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/hull.step");
 
 #[test]
 fn every_format_is_written_and_read_back() {

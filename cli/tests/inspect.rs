@@ -1,50 +1,7 @@
-//! `inspect` and `probe` on the example parts and on built-in surfaces, against independent figures.
+//! `inspect` and `probe` on built-in surfaces and on small files, against closed forms.
 
 use crate::common;
-use common::{Scratch, osculate};
-use serde_json::Value;
-
-fn inspect(path: &str) -> Value {
-    let full = format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"));
-    let run = osculate(&["inspect", &full, "--json"]);
-    assert_eq!(run.code, 0, "{}", run.err);
-    run.json()
-}
-
-fn close(got: &Value, want: f64, relative: f64) {
-    let got = got.as_f64().unwrap();
-    assert!((got - want).abs() <= relative * want.abs(), "{got} against {want}");
-}
-
-/// Figures of another kernel for the same files.
-#[test]
-fn example_parts() {
-    let blade = inspect("examples/eee-hpt-rotor2/blade.igs");
-    assert_eq!(blade["format"], "iges");
-    let faces = blade["faces"].as_array().unwrap();
-    assert_eq!(faces.len(), 1);
-    assert_eq!(
-        (&faces[0]["kind"], &faces[0]["degree"], &faces[0]["poles"]),
-        (&"bspline".into(), &serde_json::json!([3, 3]), &serde_json::json!([419, 5]))
-    );
-    // The other kernel's area is good to 0.25 mm2.
-    close(&blade["area_mm2"], 10_828.078, 4e-5);
-    close(&blade["bbox_mm"][0], 6401.0556, 1e-5);
-    close(&blade["bbox_mm"][5], 380.4920, 1e-5);
-
-    let hull = inspect("examples/wigley-hull/hull.step");
-    assert_eq!(hull["faces"].as_array().unwrap().len(), 1);
-    close(&hull["area_mm2"], 858_197.884, 1e-5);
-
-    let propeller = inspect("examples/propeller/propeller.step");
-    let faces = propeller["faces"].as_array().unwrap();
-    let count = |kind: &str| faces.iter().filter(|f| f["kind"] == kind).count();
-    assert_eq!(
-        [faces.len(), count("bspline"), count("plane"), count("cylinder"), count("torus")],
-        [20, 12, 4, 2, 2]
-    );
-    close(&propeller["area_mm2"], 11_819.797, 1e-5);
-}
+use common::{Scratch, close, osculate};
 
 #[test]
 fn built_in_surfaces() {

@@ -1,35 +1,7 @@
 //! Every verb that judges a program gives the same verdict on it: `plan`'s own, and `verify`'s of the program that it wrote.
 
 use crate::common;
-use common::{Scratch, job, osculate};
-use serde_json::Value;
-use std::path::{Path, PathBuf};
-
-/// Plans (or flank mills) a job, verifies the program that it wrote, and holds the two verdicts against each other, byte for byte.
-fn agree(scratch: &Scratch, name: &str, verb: &str, job: &Path) -> Value {
-    let out = scratch.path(name);
-    let run = osculate(&[verb, job.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-    assert!(run.code == 0 || run.code == 1, "{name}: {}{}", run.out, run.err);
-    let summary: Value = serde_json::from_str(
-        &std::fs::read_to_string(out.join("summary.json"))
-            .unwrap_or_else(|e| panic!("{name}: {e}: {}{}", run.out, run.err)),
-    )
-    .unwrap();
-    let is_program = |p: &PathBuf| p.file_stem().is_some_and(|s| s == "program");
-    let program = std::fs::read_dir(&out).unwrap().map(|e| e.unwrap().path()).find(is_program).unwrap();
-    let checked = osculate(&["verify", program.to_str().unwrap(), "--job", job.to_str().unwrap(), "--json"]);
-    assert_eq!(checked.code, run.code, "{name}: {}", checked.err);
-    let v = checked.json();
-    assert_eq!(summary["verdict"].to_string(), v["verdict"].to_string(), "{name}");
-    let own = summary["verification"].as_object().unwrap();
-    for (key, value) in own {
-        assert_eq!(value.to_string(), v[key].to_string(), "{name}: {key}");
-    }
-    // The answer, the exit status and the key of older scripts say one thing.
-    let held = v["verdict"]["answer"] == "held";
-    assert_eq!((v["within_tolerance"] == true, run.code == 0), (held, held), "{name}");
-    v["verdict"].clone()
-}
+use common::{Scratch, job, verdict};
 
 /// Two pages of a text mesh of a box from (-8, -8, -12) to (8, 8, -6): a vice below the part.
 fn vice() -> String {
@@ -119,39 +91,7 @@ fn small_jobs() {
     ];
     for (name, want, text) in cases {
         let path = s.write(&format!("{name}.toml"), &text);
-        let verdict = agree(&s, name, "plan", &path);
+        let verdict = verdict::planned_and_verified(&s, name, "plan", &path);
         assert_eq!(verdict["answer"], want, "{name}: {verdict}");
     }
-}
-
-/// Whole parts take minutes with the build of tests: `cargo xtask parts` plans and verifies those, small ones are in `operations.rs`.
-fn is_whole_part(job: &str) -> bool {
-    job.lines().any(|line| line == "format = 2")
-}
-
-#[test]
-fn every_other_example_of_one_operation() {
-    let s = Scratch::new();
-    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
-    let mut names: Vec<String> = std::fs::read_dir(&examples)
-        .unwrap()
-        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    let mut run = 0;
-    for name in names {
-        let job = examples.join(&name).join("job.toml");
-        let text = std::fs::read_to_string(&job).unwrap();
-        // The main job of the README is planned and verified by `.ci/run`, with the build that a user would run.
-        if is_whole_part(&text) || name == "eee-hpt-rotor2" {
-            continue;
-        }
-        run += 1;
-        let verb = if text.contains("[flank]") { "flank" } else { "plan" };
-        let verdict = agree(&s, &name, verb, &job);
-        // A face that is bent 2.3 mm across cannot be flank milled, and the example shows how that is told.
-        let want = if name == "centrifugal-blade" { "not_held" } else { "held" };
-        assert_eq!(verdict["answer"], want, "{name}: {verdict}");
-    }
-    assert!(run >= 7, "{run}");
 }

@@ -9,7 +9,7 @@ use std::os::unix::fs::{FileTypeExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-const HULL: &str = include_str!("../../examples/wigley-hull/hull.step");
+const HULL: &str = include_str!("data/hull.step");
 
 fn text(path: &Path) -> &str {
     path.to_str().unwrap()

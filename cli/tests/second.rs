@@ -8,7 +8,7 @@ use osculate::second::{
 
 macro_rules! machine {
     ($name:literal) => {
-        include_str!(concat!("../../postproc/machines/", $name, ".toml"))
+        osculate_postproc::built_in_text($name).expect("built in")
     };
 }
 

@@ -8,9 +8,8 @@ use osculate_postproc::{Dialect, FeedMode, Machine, Orientation, PostOptions, Se
 use osculate_tools::Pose;
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 
-fn machine_text(name: &str) -> String {
-    let path = format!("{}/../postproc/machines/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(path).unwrap()
+fn machine_text(name: &str) -> &'static str {
+    osculate_postproc::built_in_text(name).expect("built in")
 }
 
 /// Directions that every machine of this name reaches, away from its poles, in the table's frame.
@@ -109,7 +108,7 @@ fn posted_points_come_back() {
                         }
                     };
                     posted += 1;
-                    let stations = second::stations(&program.text, dialect.name(), &text, None)
+                    let stations = second::stations(&program.text, dialect.name(), text, None)
                         .unwrap_or_else(|e| panic!("{label}: {e}\n{}", program.text));
                     comes_back(&label, &path, &stations);
                 }
@@ -130,11 +129,11 @@ fn an_archive_of_sinumerik_comes_back() {
         let path = path("head-ca", true);
         let program = post(&path, &machine, &setup(), &options).unwrap();
         assert!(program.text.contains("_SPF"));
-        let stations = second::stations(&program.text, "sinumerik", &machine_text("head-ca"), None).unwrap();
+        let stations = second::stations(&program.text, "sinumerik", machine_text("head-ca"), None).unwrap();
         comes_back("archive", &path, &stations);
         // Without the subprogram there is nothing to say.
         let main = program.text.split("%_N_OSCULATE_WAY_SPF").next().unwrap();
-        assert!(second::stations(main, "sinumerik", &machine_text("head-ca"), None).is_err());
+        assert!(second::stations(main, "sinumerik", machine_text("head-ca"), None).is_err());
     }
 }
 
@@ -159,7 +158,7 @@ fn joints_lead_to_the_same_place() {
                 values[*place] = v.to_radians();
             }
             let want = machine.forward(&values, &at_table);
-            let [tip, axis] = second::forward(&text, linear, rotary, 123.4).unwrap();
+            let [tip, axis] = second::forward(text, linear, rotary, 123.4).unwrap();
             // Rounding at half a metre.
             assert!((Point3::from(tip) - want.tip).norm() < 1e-10, "{name}");
             assert!((Vec3::from(axis) - want.axis.into_inner()).norm() < 1e-12, "{name}");
@@ -208,7 +207,7 @@ fn spoilt_programs_end_in_an_answer() {
                 let to = (from + place(3)).min(spoilt.len());
                 spoilt.splice(from..to, word.chars());
                 let spoilt: String = spoilt.into_iter().collect();
-                match second::stations(&spoilt, dialect.name(), &text, None) {
+                match second::stations(&spoilt, dialect.name(), text, None) {
                     Ok(got) => {
                         fine += 1;
                         assert!(

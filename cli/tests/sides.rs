@@ -73,7 +73,7 @@ fn what_cannot_be_meant_is_refused() {
     assert!(of("[\"F1\", \"F1\"]", "below_normal").contains("once"));
     assert!(said("[[part.side]]\nfaces = [\"F1\"]\n").contains("material"));
     // A file that says the sides itself.
-    let hull = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/wigley-hull/hull.step");
+    let hull = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/hull.step");
     let text = job(|j| {
         let start = j.find("builtin").unwrap();
         let end = j[start..].find('\n').unwrap() + start;

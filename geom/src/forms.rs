@@ -106,6 +106,18 @@ impl Forms {
     }
 
     /// Normal curvature in the direction of a tangent vector, 1/mm, convex positive (Euler).
+    ///
+    /// ```
+    /// use osculate_geom::{Interval, Surface, Vec3, analytic::Cylinder, uv};
+    /// // A shaft of radius 25 mm along z, at its side x = 25: around it, along it, and half way between.
+    /// let shaft = Cylinder::new(25.0, Interval::new(0.0, 80.0))?;
+    /// let forms = shaft.jet2(uv(0.0, 40.0)).forms()?;
+    /// let k = [Vec3::y(), Vec3::z(), Vec3::new(0.0, 1.0, 1.0)].map(|d| forms.normal_curvature(&d));
+    /// for (got, want) in k.into_iter().zip([1.0 / 25.0, 0.0, 0.5 / 25.0]) {
+    ///     assert!((got - want).abs() < 1e-15);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn normal_curvature(&self, direction: &Vec3) -> f64 {
         let c = self.components(direction);
@@ -128,6 +140,16 @@ impl Forms {
     }
 
     /// Gaussian curvature K, 1/mm2.
+    ///
+    /// ```
+    /// use osculate_geom::{Surface, analytic::Torus, uv};
+    /// // Inside of a ring a saddle, on top of it a parabolic place.
+    /// let ring = Torus::new(200.0, 60.0)?;
+    /// let k = |v: f64| ring.jet2(uv(0.0, v)).forms().map(|f| f.gauss());
+    /// assert!((k(std::f64::consts::PI)? + 1.0 / (60.0 * 140.0)).abs() < 1e-15);
+    /// assert!(k(std::f64::consts::FRAC_PI_2)?.abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn gauss(&self) -> f64 {
         self.curvature.determinant()

@@ -55,6 +55,16 @@ impl Darboux {
 /// Geodesic curvature, 1/mm, of the curve with parameter rate `rate` and parameter acceleration `acceleration`,
 /// positive when it bends to the left (`b = n x t`).
 ///
+/// ```
+/// use osculate_geom::{Surface, analytic::Sphere, geodesic_curvature, uv};
+/// // A parallel of a sphere, walked to the east: it bends towards the pole, by the tangent of its latitude over the radius.
+/// let (radius_mm, latitude) = (50.0, 0.3_f64);
+/// let jet = Sphere::new(radius_mm)?.jet2(uv(1.0, latitude));
+/// let k = geodesic_curvature(&jet, uv(1.0, 0.0), uv(0.0, 0.0))?;
+/// assert!((k - latitude.tan() / radius_mm).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`Degenerate`] without a tangent plane.
 pub fn geodesic_curvature(jet: &Jet2, rate: Uv, acceleration: Uv) -> Result<f64, Degenerate> {

@@ -47,6 +47,9 @@ mod surface;
 mod swept;
 mod taylor;
 
+/// The linear algebra of the signatures: dependents that take it from here have the same version.
+pub use nalgebra;
+
 pub use curve::{Curve, CurveJet3, CurveTaylor, Frenet, FrenetError};
 pub use diagnostic::{Diagnostic, Severity};
 pub use domain::{Domain, Interval};
@@ -61,3 +64,8 @@ pub use series::{MAX_ORDER, Series};
 pub use surface::{Flipped, Patch, Surface};
 pub use swept::{Extruded, Revolved, Ruled, SweepError, TurnAxis};
 pub use taylor::Taylor;
+
+/// The example of the package's README is run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -100,6 +100,16 @@ pub struct GeodesicLine<'a> {
 impl<'a> GeodesicLine<'a> {
     /// The geodesic through `at` along `direction`, integrated in steps of at most `max_step_mm`.
     ///
+    /// ```
+    /// use osculate_geom::{Interval, Vec3, analytic::Cylinder, line::GeodesicLine, uv};
+    /// // On a cylinder it is a helix: 3 mm around for 4 mm along.
+    /// let shaft = Cylinder::new(25.0, Interval::new(0.0, 80.0))?;
+    /// let helix = GeodesicLine::new(&shaft, uv(0.0, 10.0), &Vec3::new(0.0, 3.0, 4.0), 1.0)?;
+    /// let after = helix.state(50.0)?.at;
+    /// assert!((after.u - 30.0 / 25.0).abs() < 1e-12 && (after.v - 50.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane at the start.
     pub fn new(

@@ -80,3 +80,8 @@ pub use source::MoveSource;
 pub use suggest::{Suggestion, suggest};
 pub use travel::{in_travel, into_travel};
 pub use turn::quicker_turns;
+
+/// The example of the package's README is run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

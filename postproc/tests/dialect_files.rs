@@ -10,14 +10,8 @@ use osculate_postproc::{
     Orientation, PostOptions, Setup, post, shipped_dialects,
 };
 
-/// The page that explains dialects to users, with a file for a control that no line of this library knows.
-const PAGE: &str = include_str!("../../docs/dialects.md");
-
-/// The dialect file of the page.
-fn made_up() -> &'static str {
-    let after = PAGE.split("```toml\n").nth(1).expect("the page has a file");
-    after.split("```").next().expect("it ends")
-}
+/// A file for a control that no line of this library knows; the page that explains dialects to users shows it.
+const MADE_UP: &str = include_str!("data/osp.toml");
 
 fn options(dialect: Dialect, feed: FeedMode) -> PostOptions {
     PostOptions {
@@ -64,7 +58,7 @@ fn assert_comes_back(file: &DialectFile, feed: FeedMode) {
 
 #[test]
 fn a_dialect_made_by_toml_alone() {
-    let file = DialectFile::from_toml(made_up()).unwrap();
+    let file = DialectFile::from_toml(MADE_UP).unwrap();
     assert_eq!((file.name(), file.engine(), file.extension()), ("osp", Dialect::Fanuc, "min"));
     let (_, text) = posted(&file, FeedMode::Tcp);
     let lines: Vec<&str> = text.lines().collect();
@@ -137,8 +131,8 @@ fn what_a_dialect_refuses_is_said() {
 #[test]
 fn what_is_no_dialect_file() {
     let refused = |from: &str, to: &str, words: &[&str]| {
-        assert!(made_up().contains(from), "{from}");
-        let e = DialectFile::from_toml(&made_up().replace(from, to)).expect_err(to).to_string();
+        assert!(MADE_UP.contains(from), "{from}");
+        let e = DialectFile::from_toml(&MADE_UP.replace(from, to)).expect_err(to).to_string();
         words.iter().for_each(|w| assert!(e.contains(w), "{w}: {e}"));
     };
     refused("format = 1", "format = 2", &["format = 2"]);

@@ -2,9 +2,9 @@
 //! `cargo run --release -p osculate-productivity --example productivity_in_time` from the repository's root.
 #![allow(clippy::print_stdout, clippy::expect_used)]
 
-#[path = "../tests/common/rows.rs"]
+#[path = "../tests/repository/rows.rs"]
 mod rows;
-#[path = "../tests/common/slot.rs"]
+#[path = "../tests/repository/slot.rs"]
 mod slot;
 
 use osculate_geom::Surface;

@@ -42,3 +42,8 @@ pub mod rough;
 mod spline;
 pub mod split;
 mod width;
+
+/// The example of the package's README is run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

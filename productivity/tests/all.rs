@@ -22,16 +22,13 @@ mod isoparametric;
 mod lead;
 mod leave_out;
 mod level;
+#[path = "common/limits.rs"]
+mod limits;
 mod links;
 mod optimum;
-mod productivity_in_time;
 mod regions;
 mod rough;
-#[path = "common/rows.rs"]
-mod rows;
 mod side_tilt;
-#[path = "common/slot.rs"]
-mod slot;
 mod swings;
 mod waterline;
 mod z_level;

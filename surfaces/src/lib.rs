@@ -76,3 +76,8 @@ pub use trim::Imbalance;
 pub use trim::analytic::{Analytic, Shape};
 pub use trim::carrier::FaceSurface;
 pub use trimmed::{Loop, TrimError, TrimmedSurface};
+
+/// The example of the package's README is run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -46,3 +46,4 @@ mod sides;
 mod solids;
 mod stl;
 mod thin;
+mod turned;

@@ -8,7 +8,6 @@ use osculate_surfaces::Face;
 use osculate_surfaces::groups::{Look, groups};
 use osculate_surfaces::sides::{Meeting, OpenRim, meetings, open_rims};
 use std::f64::consts::{FRAC_PI_2, TAU};
-use std::path::Path;
 
 fn all(faces: &[Face]) -> Vec<&Face> {
     faces.iter().collect()
@@ -47,27 +46,6 @@ fn a_body_inside_out_has_inner_edges() {
     assert!(met.len() == 14 && met.iter().all(|m| (m.bend_rad + FRAC_PI_2).abs() < 1e-6));
     let found = groups(&all(&faces), &met);
     assert!(found.iter().any(|g| g.look == Look::Round && g.faces == [0] && g.hollow_mm.is_infinite()));
-}
-
-/// The upper and the lower sides of a propeller's two blades are formed, and each of them has one like it.
-#[test]
-fn the_blades_of_a_propeller_are_alike() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/propeller/propeller.step");
-    let part = osculate_surfaces::read(&std::fs::read(path).unwrap()).unwrap();
-    let faces = all(&part.faces);
-    let met = meetings(&faces, part.uncertainty_mm);
-    let found = groups(&faces, &met);
-    let mut numbers: Vec<usize> = found.iter().flat_map(|g| g.faces.iter().copied()).collect();
-    numbers.sort_unstable();
-    assert_eq!(numbers, (0..faces.len()).collect::<Vec<_>>());
-    let of = |id: &str| {
-        let k = part.faces.iter().position(|f| f.id == id).unwrap();
-        found.iter().find(|g| g.faces.contains(&k)).unwrap()
-    };
-    for id in ["F6", "F7", "F11", "F12"] {
-        assert_eq!((of(id).look, of(id).alike), (Look::Formed, 2), "{id}");
-    }
-    assert_eq!((of("F20").look, of("F8").look), (Look::Hole, Look::Round));
 }
 
 /// Length of polylines on their faces, by the faces' numbers.

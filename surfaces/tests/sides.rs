@@ -2,35 +2,11 @@
 
 use crate::bodies;
 use crate::solids;
+use crate::turned::{assert_come_back, found, of_solids, turned};
 
 use osculate_geom::{Point3, Side, Vec3};
-use osculate_surfaces::sides::{Before, Settled, Sides, settle};
-use osculate_surfaces::{Face, Part, patches};
+use osculate_surfaces::{Face, patches};
 use proptest::prelude::*;
-use std::path::Path;
-
-/// Faces of which some are turned over, as a seed has it, and which.
-fn turned(faces: &[Face], seed: u64) -> (Vec<Face>, Vec<Side>) {
-    let mut state = seed;
-    let each = |f: &Face| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        if state >> 63 == 1 { (f.clone().flipped(), Side::Against) } else { (f.clone(), Side::Along) }
-    };
-    faces.iter().map(each).unzip()
-}
-
-fn found(faces: &[Face], known: &[Option<Side>]) -> Sides {
-    of_solids(faces, known, &[])
-}
-
-fn of_solids(faces: &[Face], sides: &[Option<Side>], solids: &[Option<usize>]) -> Sides {
-    settle(&faces.iter().collect::<Vec<_>>(), &Before { sides, solids, uncertainty_mm: None })
-}
-
-fn example(path: &str) -> Part {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
-    osculate_surfaces::read(&std::fs::read(root.join(path)).unwrap()).unwrap()
-}
 
 /// The faces of closed bodies have the sides that their files say, whatever sides they are given with.
 #[test]
@@ -41,23 +17,9 @@ fn closed_bodies_get_the_sides_that_their_files_say() {
         ("sphere", solids::sphere()),
         ("torus", solids::torus()),
         ("cone", solids::cone()),
-        ("propeller", example("propeller/propeller.step").faces),
     ];
     for (what, faces) in bodies {
-        assert!(faces.iter().all(|f| f.oriented));
-        for seed in 1..4 {
-            let (given, truth) = turned(&faces, seed);
-            let sides = found(&given, &vec![None; given.len()]);
-            let truth: Vec<Option<Side>> = truth.into_iter().map(Some).collect();
-            assert_eq!(sides.of, truth, "{what}, seed {seed}");
-            assert_eq!(sides.groups.len(), 1, "{what}");
-            assert!(
-                sides.groups[0].certainty > 0.9 && sides.conflicts.is_empty(),
-                "{what}: {:?}",
-                sides.groups
-            );
-            assert_eq!(sides.groups[0].settled, Settled::Enclosed, "{what}");
-        }
+        assert_come_back(what, &faces);
     }
 }
 
@@ -94,64 +56,6 @@ fn solids_within_others_get_their_sides_from_their_own_faces() {
     let sides = found(&faces, &[]);
     assert_eq!(sides.of[..6], [Some(Side::Along); 6]);
     assert_eq!(sides.of[6], Some(Side::Against));
-}
-
-/// A file says which faces bound which solid.
-#[test]
-fn files_say_which_faces_bound_which_solid() {
-    let part = example("propeller/propeller.step");
-    let ids = |p: &Part| p.faces.iter().map(|f| f.id.clone()).collect::<Vec<_>>();
-    let solids = part.structure.solids(ids(&part).iter().map(String::as_str));
-    assert!(!solids.is_empty() && solids.iter().all(|s| *s == Some(0)), "{solids:?}");
-    assert_eq!(part.structure.solids(["F0"]), [None]);
-}
-
-/// A known face settles those that hang together with it, even against what rays say: a mould is cut from within. Known faces that
-/// do not fit are named, and stay as they are.
-#[test]
-fn known_faces_settle_the_others() {
-    let faces = example("propeller/propeller.step").faces;
-    let (given, truth) = turned(&faces, 5);
-    let mut known = vec![None; given.len()];
-    known[3] = Some(truth[3].flipped());
-    let sides = found(&given, &known);
-    let within: Vec<Option<Side>> = truth.iter().map(|s| Some(s.flipped())).collect();
-    assert_eq!(sides.of, within);
-    assert_eq!(sides.groups[0].settled, Settled::Known);
-    assert!(sides.groups[0].certainty < -0.9);
-    // A small face against a large one.
-    let largest =
-        (0..faces.len()).max_by(|a, b| faces[*a].area_mm2().total_cmp(&faces[*b].area_mm2())).unwrap();
-    let smallest =
-        (0..faces.len()).min_by(|a, b| faces[*a].area_mm2().total_cmp(&faces[*b].area_mm2())).unwrap();
-    let mut known = vec![None; given.len()];
-    known[largest] = Some(truth[largest]);
-    known[smallest] = Some(truth[smallest].flipped());
-    let sides = found(&given, &known);
-    assert_eq!(sides.groups[0].otherwise, [smallest]);
-    for (k, (got, want)) in sides.of.iter().zip(&truth).enumerate() {
-        assert_eq!(*got == Some(*want), k != smallest);
-    }
-}
-
-/// What hangs together with nothing and encloses nothing stays open.
-#[test]
-fn an_open_sheet_stays_open() {
-    let faces = example("propeller/propeller.step").faces;
-    let sides = found(&faces[6..7], &[None]);
-    assert_eq!((sides.of, sides.groups[0].settled), (vec![None], Settled::Open));
-    assert!(found(&[], &[]).of.is_empty());
-}
-
-#[test]
-fn threads_do_not_change_the_answer() {
-    let (faces, _) = turned(&example("propeller/propeller.step").faces, 9);
-    let known = vec![None; faces.len()];
-    let with = |n: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        pool.install(|| found(&faces, &known))
-    };
-    assert_eq!(with(1), with(4));
 }
 
 /// Four corners of a bilinear patch, the first two along one side.

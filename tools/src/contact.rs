@@ -105,6 +105,22 @@ impl Lean {
 
     /// The pose that touches at the frame's point, raised by `lift_mm` along the normal.
     ///
+    /// ```
+    /// use osculate_geom::{Axis, Domain, Interval, analytic::Plane, uv};
+    /// use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean};
+    /// // A ball on a plane, fed along x and leaning by 30 degrees that way: its centre stands over the contact, its tip behind.
+    /// let range = Interval::new(0.0, 50.0);
+    /// let plane = Plane::new(Domain { u: range, v: range });
+    /// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+    /// let lean = Lean { lead_rad: 30f64.to_radians(), tilt_rad: 0.0 };
+    /// let contact = Contact::new(&plane, uv(20.0, 25.0), &ball, FeedLine::Iso(Axis::U), lean)?;
+    /// let pose = lean.pose(&ball, &contact.frame, 0.0);
+    /// assert!((pose.axis.x - 0.5).abs() < 1e-12);
+    /// assert!((pose.tip.x - (20.0 - 2.5)).abs() < 1e-12);
+    /// assert!((pose.tip.z - 5.0 * (1.0 - 0.75f64.sqrt())).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Without lead a flat or toroidal cutter touches with its whole bottom; the CC point is then taken where it
     /// is for a vanishing positive lead, on the corner's side towards the feed.
     #[must_use]
@@ -270,6 +286,23 @@ impl SurfaceLine for ContactLine<'_> {
 
 impl<'a> Contact<'a> {
     /// The contact at `at` with the feed along `feed`.
+    ///
+    /// ```
+    /// use osculate_geom::{Axis, Flipped, Interval, analytic::Cylinder, uv};
+    /// use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean};
+    /// // A ball of radius 5 along a bore of radius 20: across the feed they differ by 1/5 - 1/20, along it by 1/5.
+    /// let bore = Flipped(Cylinder::new(20.0, Interval::new(0.0, 80.0))?);
+    /// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+    /// let contact = Contact::new(&bore, uv(0.0, 40.0), &ball, FeedLine::Iso(Axis::V), Lean::default())?;
+    /// contact.fits()?;
+    /// let relative = contact.relative();
+    /// assert!((relative.min - 0.15).abs() < 1e-12 && (relative.max - 0.2).abs() < 1e-12);
+    /// // One of radius 25 does not fit.
+    /// let thick = Cutter::try_from(CutterSpec::Ball { diameter_mm: 50.0, length_mm: 60.0 })?;
+    /// let contact = Contact::new(&bore, uv(0.0, 40.0), &thick, FeedLine::Iso(Axis::V), Lean::default())?;
+    /// assert!(contact.fits().is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`ContactError::Lean`] and [`ContactError::Line`]. Whether the tool fits is a separate question:

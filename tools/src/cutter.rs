@@ -14,7 +14,7 @@ use crate::meridian::{Arc, LocalNear, Meridian, end_mill_corner};
 use crate::pose::Pose;
 use osculate_geom::{Point3, Unit3, Vec3};
 
-/// A validated cutter.
+/// A validated cutter, made from a [`CutterSpec`](crate::CutterSpec).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cutter {
     pub(crate) radius: f64,

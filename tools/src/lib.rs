@@ -45,3 +45,8 @@ pub use cutter::{Cutter, CutterError, Entry, Line, Part};
 pub use holder::{Holder, HolderError, HolderSection};
 pub use pose::Pose;
 pub use spec::{CutterSpec, HolderSpec};
+
+/// The example of the package's README is run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -3,6 +3,22 @@
 use serde::{Deserialize, Serialize};
 
 /// A cutter as a user writes it. All lengths mm, angles deg; the diameter is the outer one but for `apt`.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_tools::{Cutter, CutterError, CutterSpec, Line, Pose};
+/// let bull = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 2.0, length_mm: 60.0 };
+/// let cutter = Cutter::try_from(bull)?;
+/// // It stands upright on the origin. A line up to its corner, 9 mm from the axis, enters at z = 2 - sqrt(2^2 - 1^2).
+/// let pose = Pose { tip: Point3::origin(), axis: Vec3::z_axis() };
+/// let up = Line { origin: Point3::new(9.0, 0.0, -10.0), direction: Vec3::z_axis() };
+/// let entry = cutter.entry(&pose, &up).ok_or("it misses the tool")?;
+/// assert!((up.point(entry.at_mm).z - (2.0 - 3f64.sqrt())).abs() < 1e-12);
+/// // Sizes that make no cutter are refused.
+/// let none = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 11.0, length_mm: 60.0 };
+/// assert_eq!(Cutter::try_from(none), Err(CutterError::Corner { corner_mm: 11.0, radius_mm: 10.0 }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub enum CutterSpec {

@@ -57,6 +57,8 @@ pub enum Failure {
     Differs(usize),
     /// What is wrong with pages in a browser.
     Pages(usize),
+    /// Packages whose tests do not pass outside the repository.
+    Packages(usize),
     /// Damaged files with which something was found.
     Mutants(usize),
     /// A step of `ci` failed.
@@ -82,6 +84,7 @@ impl std::fmt::Display for Failure {
             Self::NoPeer { what, how } => write!(f, "{what} is missing: {how}"),
             Self::Differs(count) => write!(f, "{count} parts came out differently, see above"),
             Self::Pages(count) => write!(f, "browser: {count} findings, see above"),
+            Self::Packages(count) => write!(f, "{count} packages do not stand alone, see above"),
             Self::Mutants(count) => write!(f, "{count} findings on damaged files, see above"),
             Self::Untidy(1) => write!(f, "tidy: 1 finding, see above"),
             Self::Untidy(count) => write!(f, "tidy: {count} findings, see above"),

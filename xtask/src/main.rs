@@ -1,6 +1,6 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
 //! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask first-hour`, `cargo xtask browser`, `cargo xtask plans`,
-//! `cargo xtask mutate`, `cargo xtask fuzz`, `cargo xtask truth` and `cargo xtask sides`.
+//! `cargo xtask mutate`, `cargo xtask fuzz`, `cargo xtask package`, `cargo xtask truth` and `cargo xtask sides`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -17,6 +17,7 @@ mod fuzz;
 mod interop;
 mod measured;
 mod mutate;
+mod package;
 mod parts;
 mod plans;
 mod test;
@@ -41,6 +42,8 @@ usage: cargo xtask COMMAND
   interop roundtrip
                 CL to NC and back on a real blade, for every machine, dialect and feed mode: a table of what is off
   ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
+  package [--allow-dirty] [--only PACKAGE]
+                the packages as a registry would get them: packed, built, unpacked elsewhere and their tests run there; a table
   bench [--peers]
                 times of the kernel; with --peers OpenCASCADE and SISL beside them (Debian: g++, libocct-*-dev, libsisl-dev)
   reference [--data FOLDER]
@@ -125,6 +128,10 @@ fn main() -> ExitCode {
                     "mutate takes --data FOLDER, --count N, --seed S, --program FILE and --keep FOLDER",
                 );
             }
+        },
+        ["package", rest @ ..] => match package::Options::of(rest) {
+            Some(options) => package::run(&options),
+            None => return wrong_usage(package::TAKES),
         },
         ["fuzz", rest @ ..] => match fuzz::Options::of(rest) {
             Some(options) => fuzz::fuzz(&options),

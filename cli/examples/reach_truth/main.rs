@@ -5,7 +5,7 @@
 
 #![allow(clippy::print_stdout, reason = "a study prints its figures")]
 
-#[path = "../../tests/reach_truth/study.rs"]
+#[path = "../../tests/repository/reach_truth/study.rs"]
 mod study;
 
 use std::error::Error;

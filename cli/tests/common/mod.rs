@@ -1,6 +1,8 @@
 //! Running the program as a user does.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub mod verdict;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -114,4 +116,10 @@ max_samples = 20000
 "#
         .to_owned(),
     )
+}
+
+/// Asserts a number of an answer to a relative tolerance.
+pub fn close(got: &serde_json::Value, want: f64, relative: f64) {
+    let got = got.as_f64().unwrap();
+    assert!((got - want).abs() <= relative * want.abs(), "{got} against {want}");
 }

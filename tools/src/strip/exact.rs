@@ -48,6 +48,22 @@ const MOTION_TOLERANCE: f64 = 2e-9;
 
 /// The exact strip at a contact for the tolerance `scallop_mm`.
 ///
+/// ```
+/// use osculate_geom::{Axis, Interval, analytic::Cylinder, uv};
+/// use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean, strip};
+/// // A ball of radius 5 along a shaft of radius 20: the strip ends where its circle is h off the shaft's. The centres lie 25 mm
+/// // apart, so that the law of cosines has the angle there, and the strip is measured on the shaft.
+/// let (shaft_mm, ball_mm, h) = (20.0, 5.0, 0.01_f64);
+/// let shaft = Cylinder::new(shaft_mm, Interval::new(0.0, 80.0))?;
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * ball_mm, length_mm: 60.0 })?;
+/// let contact = Contact::new(&shaft, uv(0.0, 40.0), &ball, FeedLine::Iso(Axis::V), Lean::default())?;
+/// let got = strip::exact(&contact, h)?;
+/// let (apart, high) = (shaft_mm + ball_mm, shaft_mm + h);
+/// let angle = ((apart * apart + high * high - ball_mm * ball_mm) / (2.0 * apart * high)).acos();
+/// assert!((got.width_mm - 2.0 * shaft_mm * angle).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// The tool may undercut (Q need not be definite): then `undercut_mm` says how deep.
 ///
 /// # Errors

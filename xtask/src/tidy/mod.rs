@@ -27,7 +27,7 @@ use finding::Finding;
 use tree::Tree;
 
 /// The rules that read files.
-const RULES: [fn(&Tree) -> Vec<Finding>; 16] = [
+const RULES: [fn(&Tree) -> Vec<Finding>; 17] = [
     circles::no_module_circles,
     effects::quiet_libraries,
     floating::no_bare_mul_add,
@@ -41,6 +41,7 @@ const RULES: [fn(&Tree) -> Vec<Finding>; 16] = [
     shape::tests_run,
     packaging::crate_roots,
     packaging::release_files,
+    packaging::published,
     docs::readme_commands,
     docs::named_files,
     notation::code_names,

@@ -53,6 +53,45 @@ pub fn release_files(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
+/// The package that is for the workspace alone.
+const OWN: &str = "xtask";
+
+/// Every package that is published has licence texts equal to those at the root, a README, and says what a registry shows of it; it leaves out its
+/// tests of the repository. The workspace's own package is not published.
+pub fn published(tree: &Tree) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for folder in CRATES {
+        let path = format!("{folder}/Cargo.toml");
+        let manifest = tree.get(&path).map(|f| f.text()).unwrap_or_default();
+        let of = |name| key(manifest, "[package]", name);
+        if folder == OWN {
+            if of("publish") != Some("false") {
+                findings.push(Finding::whole(&path, "no `publish = false`"));
+            }
+            continue;
+        }
+        for name in ["description", "keywords", "categories", "documentation", "readme"] {
+            if of(name).is_none_or(str::is_empty) {
+                findings.push(Finding::whole(&path, format!("no {name} under `[package]`")));
+            }
+        }
+        let left_out = of("exclude").is_some_and(|list| list.contains("\"/tests/repository\""));
+        if tree.has(&format!("{folder}/tests/repository")) && !left_out {
+            findings.push(Finding::whole(&path, "`exclude` does not name \"/tests/repository\""));
+        }
+        if tree.get(&format!("{folder}/README.md")).is_none() {
+            findings.push(Finding::whole(format!("{folder}/README.md"), "missing"));
+        }
+        for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            let copy = format!("{folder}/{name}");
+            if tree.get(&copy).map(|f| f.text()) != tree.get(name).map(|f| f.text()) {
+                findings.push(Finding::whole(copy, "missing, or not the text at the root"));
+            }
+        }
+    }
+    findings
+}
+
 /// The value of `key = value` in a table of a TOML text as cargo writes it, without quotes.
 fn key<'a>(toml: &'a str, table: &str, key: &str) -> Option<&'a str> {
     let mut lines = toml.lines().skip_while(|line| line.trim() != table).skip(1);
@@ -89,6 +128,38 @@ mod tests {
         assert_eq!(crates("tools", "pub mod a;\n", MANIFEST), 1);
         assert_eq!(crates("tools", ROOT, "[lints]\n[workspace]\nworkspace = true\n"), 1);
         assert_eq!(crate_roots(&Tree::of(&[])).len(), 2 * CRATES.len());
+    }
+
+    #[test]
+    fn packages_that_a_registry_would_show_badly_are_found() {
+        let good = "[package]\ndescription = \"a\"\nkeywords = [\"a\"]\ncategories = [\"a\"]\ndocumentation = \"a\"\n\
+                    readme = \"README.md\"\nexclude = [\"/tests/repository\"]\n";
+        // Everything is in order but for one file.
+        let found = |changed: &str, text: Option<&str>| {
+            let mut files = vec![("LICENSE-MIT".to_owned(), "mit"), ("LICENSE-APACHE".to_owned(), "apache")];
+            for folder in CRATES {
+                let manifest = if folder == OWN { "[package]\npublish = false\n" } else { good };
+                files.extend([
+                    (format!("{folder}/Cargo.toml"), manifest),
+                    (format!("{folder}/README.md"), "a"),
+                ]);
+                files.extend([
+                    (format!("{folder}/LICENSE-MIT"), "mit"),
+                    (format!("{folder}/LICENSE-APACHE"), "apache"),
+                ]);
+            }
+            files.push(("tools/tests/repository/main.rs".to_owned(), ""));
+            files.retain(|(path, _)| path != changed);
+            files.extend(text.map(|text| (changed.to_owned(), text)));
+            let files: Vec<(&str, &str)> = files.iter().map(|(path, text)| (path.as_str(), *text)).collect();
+            published(&Tree::of(&files)).len()
+        };
+        assert_eq!(found("a", None), 0);
+        assert_eq!(found("tools/README.md", None), 1);
+        assert_eq!([found("geom/LICENSE-MIT", None), found("geom/LICENSE-MIT", Some("other"))], [1, 1]);
+        assert_eq!(found("tools/Cargo.toml", Some(&good.replace("[\"/tests/repository\"]", "[]"))), 1);
+        assert_eq!(found("geom/Cargo.toml", Some(&good.replace("description", "words"))), 1);
+        assert_eq!(found("xtask/Cargo.toml", Some("[package]\n")), 1);
     }
 
     #[test]

@@ -33,19 +33,19 @@ pub fn lengths(tree: &Tree) -> Vec<Finding> {
     long.map(|file| Finding::whole(&file.path, what(file))).collect()
 }
 
-/// The program of a crate's tests.
-const ALL_TESTS: &str = "all.rs";
+/// The programs of a crate's tests by their folders: one that is published with it, and one that needs the repository.
+const PROGRAMS: [(&str, &str); 2] = [("tests", "all.rs"), ("tests/repository", "main.rs")];
 
-/// Every file in a crate's folder of tests is a module of its one program: cargo does not look for others, and what it leaves out runs nowhere.
+/// Every file in a crate's folders of tests is a module of its program: cargo does not look for others, and what it leaves out runs nowhere.
 pub fn tests_run(tree: &Tree) -> Vec<Finding> {
     let mut out = Vec::new();
-    for folder in CRATES.map(|name| format!("{name}/tests")) {
-        let program = format!("{folder}/{ALL_TESTS}");
+    for (folder, main) in CRATES.iter().flat_map(|name| PROGRAMS.map(|(f, m)| (format!("{name}/{f}"), m))) {
+        let program = format!("{folder}/{main}");
         let all = tree.get(&program).map_or("", File::text);
         let named = |stem: &str| all.lines().any(|line| line == format!("mod {stem};"));
         for file in tree.rust_below(&folder) {
             let name = file.path.strip_prefix(&format!("{folder}/")).unwrap_or_default();
-            let stem = name.strip_suffix(".rs").filter(|stem| !stem.contains('/') && name != ALL_TESTS);
+            let stem = name.strip_suffix(".rs").filter(|stem| !stem.contains('/') && name != main);
             if stem.is_some_and(|stem| !named(stem)) {
                 out.push(Finding::whole(
                     &file.path,
@@ -65,7 +65,14 @@ mod tests {
     fn a_file_of_tests_that_runs_nowhere_is_found() {
         let found = |all: &str| {
             let files = [("geom/tests/all.rs", all), ("geom/tests/a.rs", ""), ("geom/tests/common/b.rs", "")];
-            tests_run(&Tree::of(&files)).len()
+            let of_repository = [
+                ("geom/tests/repository/main.rs", all),
+                ("geom/tests/repository/a.rs", ""),
+                ("geom/tests/repository/data/b.rs", ""),
+            ];
+            let counts = [&files, &of_repository].map(|files| tests_run(&Tree::of(files)).len());
+            assert_eq!(counts[0], counts[1]);
+            counts[0]
         };
         assert_eq!([found("//! All.\n\nmod a;\n"), found("mod ab;\n// mod a;\n")], [0, 1]);
     }

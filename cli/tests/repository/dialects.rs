@@ -3,7 +3,7 @@
 use crate::common;
 use common::{Scratch, job, osculate};
 
-const PAGE: &str = include_str!("../../docs/dialects.md");
+const PAGE: &str = include_str!("../../../docs/dialects.md");
 
 /// What stands between the first of these marks and the next end.
 fn between<'t>(text: &'t str, start: &str, end: &str) -> &'t str {

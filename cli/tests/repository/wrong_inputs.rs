@@ -1,5 +1,5 @@
 //! What is said of inputs that cannot be meant: what, where, what was expected, and what is nearest, held against
-//! `wrong/golden.json`. After a change of words: `OSCULATE_BLESS=1 cargo test -p osculate --test all wrong_inputs::`, and read what changed.
+//! `wrong/golden.json`. After a change of words: `OSCULATE_BLESS=1 cargo test -p osculate --test repository wrong_inputs::`, and read what changed.
 
 use crate::common;
 
@@ -276,7 +276,7 @@ fn each_wrong_input_is_told_as_it_was_found_good() {
     }
     assert!(off.is_empty(), "{}", off.join("\n"));
     assert!(said.len() >= 60, "{}", said.len());
-    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wrong/golden.json");
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/repository/wrong/golden.json");
     if std::env::var_os("OSCULATE_BLESS").is_some() {
         std::fs::write(&golden, serde_json::to_string_pretty(&said).unwrap() + "\n").unwrap();
     }

@@ -1,6 +1,6 @@
 //! A part of two bodies that overlap, from its file to a plan that holds: what lies within the other body is not missed.
 
-#[path = "../../surfaces/tests/bodies/mod.rs"]
+#[path = "../../../surfaces/tests/bodies/mod.rs"]
 mod bodies;
 use crate::common;
 

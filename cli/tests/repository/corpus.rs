@@ -5,21 +5,21 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-#[path = "../../fuzz/looks/cl.rs"]
+#[path = "../../../fuzz/looks/cl.rs"]
 mod cl;
-#[path = "../../fuzz/looks/iges.rs"]
+#[path = "../../../fuzz/looks/iges.rs"]
 mod iges;
-#[path = "../../fuzz/looks/job.rs"]
+#[path = "../../../fuzz/looks/job.rs"]
 mod job;
-#[path = "../../fuzz/looks/json.rs"]
+#[path = "../../../fuzz/looks/json.rs"]
 mod json;
-#[path = "../../fuzz/looks/machine.rs"]
+#[path = "../../../fuzz/looks/machine.rs"]
 mod machine;
-#[path = "../../fuzz/looks/mesh.rs"]
+#[path = "../../../fuzz/looks/mesh.rs"]
 mod mesh;
-#[path = "../../fuzz/looks/nc.rs"]
+#[path = "../../../fuzz/looks/nc.rs"]
 mod nc;
-#[path = "../../fuzz/looks/step.rs"]
+#[path = "../../../fuzz/looks/step.rs"]
 mod step;
 
 /// A look takes milliseconds on an idle machine; the tests run on loaded ones.

@@ -1,0 +1,11 @@
+//! Tests that read files of the repository around the package, and are not published with it: example parts.
+//!
+//! `cargo test --test repository NAME::` runs those of one file.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../common/limits.rs"]
+mod limits;
+mod optimum;
+mod productivity_in_time;
+mod rows;
+mod slot;

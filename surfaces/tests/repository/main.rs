@@ -1,0 +1,9 @@
+//! Tests that read files of the repository around the package, and are not published with it: the example parts.
+//!
+//! `cargo test --test repository NAME::` runs those of one file.
+#![allow(clippy::unwrap_used)]
+
+mod groups;
+mod sides;
+#[path = "../turned.rs"]
+mod turned;

@@ -1,0 +1,8 @@
+//! Tests that read files of the repository around the package, and are not published with it: an example part.
+//!
+//! `cargo test --test repository NAME::` runs those of one file.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../dense/mod.rs"]
+mod dense;
+mod strip_blade;
