@@ -86,8 +86,9 @@
 //!
 //! The crates below work without a job. `osculate_geom` has the trait that a surface of one's own implements, `osculate_tools` the
 //! exact strips of a cutter and the verdict on motions, `osculate_productivity` the passes, `osculate_postproc` machines and
-//! dialects, `osculate_surfaces` what CAD files hold. Three programs in `cli/examples` start from here: `plan_a_part` goes from a
-//! STEP file to a report, `judge_a_program` spoils a program and shows what the verdict says of it, `own_surface` does without a job.
+//! dialects, `osculate_surfaces` what CAD files hold. Programs of a page in `cli/examples` start from here: `read_a_face`
+//! and `strip_widths` look at geometry, `own_surface` and `own_machine` bring a surface and a machine, `plan_a_part` goes from a STEP file to a report,
+//! `judge_a_program` spoils a program and shows what the verdict says of it, `sweep` plans many jobs.
 
 pub mod failure;
 pub mod figure;

@@ -50,7 +50,18 @@ mod tests {
     #[test]
     fn the_programs_of_the_folder_are_found_and_none_is_a_failure() {
         let root = root().unwrap();
-        assert_eq!(names(&root).unwrap(), ["judge_a_program", "own_surface", "plan_a_part"]);
+        assert_eq!(
+            names(&root).unwrap(),
+            [
+                "judge_a_program",
+                "own_machine",
+                "own_surface",
+                "plan_a_part",
+                "read_a_face",
+                "strip_widths",
+                "sweep",
+            ]
+        );
         let said = names(&root.join("xtask")).unwrap_err().to_string();
         assert!(said.starts_with("cannot read cli/examples"), "{said}");
     }
