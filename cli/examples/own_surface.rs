@@ -8,7 +8,7 @@
 
 use osculate_geom::{Axis, Domain, Interval, Jet2, Series, Side, Surface, Taylor, Uv, uv};
 use osculate_tools::removal::{
-    Answer, Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Looks, Program, Swept, prove,
+    Answer, Goal, GoalFace, GoalLimits, GoalStock, GoalTool, Program, Swept, prove,
 };
 use osculate_tools::{Contact, ContactError, Cutter, CutterSpec, FeedLine, Lean, Pose, strip};
 use std::error::Error;
@@ -51,26 +51,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let pairs = poses.windows(2).zip(1..);
         Ok(pairs.map(|(p, block)| Swept { from: p[0], to: p[1], rapid: false, block }).collect())
     };
-    let tool =
-        GoalTool { cutter: &ball, flutes: &ball, shank: None, holder: None, teeth: None, spindle_rpm: None };
-    let goal = Goal {
-        machined: vec![GoalFace {
-            name: "wave",
-            surface: &Wave,
-            outlines: Vec::new(),
-            part_of_it: None,
-            open_rims: &[],
-        }],
-        checked: Vec::new(),
-        unseen: Vec::new(),
-        fixtures: Vec::new(),
-        tools: vec![tool],
-        stock: GoalStock::Assumed { layer_mm: 1.0 },
-        limits: GoalLimits { scallop_mm, gouge_mm: 0.5 * scallop_mm, unreached_mm2: 0.0, at_samples: false },
-        looks: Looks { spacing_mm: None, max_samples: 200_000, between: true },
-        roughing_mm: None,
-        control: GoalControl::default(),
-    };
+    let (faces, tools) = (vec![GoalFace::new("wave", &Wave)], vec![GoalTool::new(&ball)]);
+    let stock = GoalStock::Assumed { layer_mm: 1.0 };
+    let mut goal = Goal::new(faces, tools, stock, GoalLimits::new(scallop_mm, 0.5 * scallop_mm));
+    goal.looks.max_samples = 200_000;
     let enough = 1 + (10.0 / (0.9 * strip.width_mm)).ceil() as usize;
     for (passes, answer) in [(enough, Answer::Held), (enough - 2, Answer::NotHeld)] {
         let motions = path(passes)?;

@@ -70,14 +70,7 @@ fn main() {
     println!("{name} {tool} scallop {scallop_mm}");
     for lead in leads.split(',') {
         let lean = Lean { lead_rad: lead.parse::<f64>().unwrap().to_radians(), tilt_rad: 0.0 };
-        let task = Task {
-            surface: &*surface,
-            face: name,
-            cutter: &cutter,
-            lean: lean.into(),
-            tolerance,
-            progress: &|_| {},
-        };
+        let task = Task::new(name, &*surface, &cutter, lean, tolerance);
         for s in all.iter().filter(|s| only.is_empty() || only.iter().any(|o| o == s.name())) {
             let start = Instant::now();
             let passes = match run(&task, s) {

@@ -41,6 +41,7 @@ mod rectangle;
 pub mod rough;
 mod spline;
 pub mod split;
+mod system;
 mod width;
 
 /// The example of the package's README is run with the tests.

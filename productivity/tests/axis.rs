@@ -66,9 +66,7 @@ proptest! {
         // A toroidal end must lean off every normal of the dome, which lean off z by 23 degrees.
         let tilt = if end == 0 { tilt } else { 30.0 + 0.3 * tilt };
         let field = AxisField::held(&dome, tilted(tilt, about));
-        let task = Task {
-            surface: &dome, face: "F1", cutter: &cutter, lean: Leaning::Axes(&field), tolerance: TOLERANCE, progress: &|_| {},
-        };
+        let task = Task::new("F1", &dome, &cutter, Leaning::Axes(&field), TOLERANCE);
         let mut passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
         let spacing = 0.5;
         let moves = motions(&dome, &passes, &cutter);
@@ -120,14 +118,7 @@ fn a_narrow_groove_is_found_between_columns() {
     let tolerance = Tolerance { scallop_mm: 0.05, ..TOLERANCE };
     let cutter = ball(8.0, 40.0);
     let field = AxisField::held(&Groove, tilted(10.0, 30.0));
-    let task = Task {
-        surface: &Groove,
-        face: "F1",
-        cutter: &cutter,
-        lean: Leaning::Axes(&field),
-        tolerance,
-        progress: &|_| {},
-    };
+    let task = Task::new("F1", &Groove, &cutter, Leaning::Axes(&field), tolerance);
     let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
     let moves = motions(&Groove, &passes, &cutter);
     let found = verdict(&Groove, &moves, &cutter, tolerance, 0.04);

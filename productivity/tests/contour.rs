@@ -17,14 +17,7 @@ const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chor
 fn passes_on_a_sphere_are_parallels_spaced_by_the_strip() {
     let surface = dome();
     let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 40.0 }).unwrap();
-    let task = Task {
-        surface: &surface,
-        face: "F1",
-        cutter: &cutter,
-        lean: Lean::default().into(),
-        tolerance: TOLERANCE,
-        progress: &|_| {},
-    };
+    let task = Task::new("F1", &surface, &cutter, Lean::default(), TOLERANCE);
     let got = contour_2cl(&task, Vec3::z_axis()).unwrap();
     let mut latitudes: Vec<f64> = Vec::new();
     for pass in &got.passes {
@@ -60,14 +53,7 @@ fn other_cutters_and_faces_that_look_away_are_refused() {
     let surface = dome();
     let flat = Cutter::try_from(CutterSpec::Flat { diameter_mm: 8.0, length_mm: 40.0 }).unwrap();
     let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 40.0 }).unwrap();
-    let task = |cutter| Task {
-        surface: &surface,
-        face: "F1",
-        cutter,
-        lean: Lean::default().into(),
-        tolerance: TOLERANCE,
-        progress: &|_| {},
-    };
+    let task = |cutter| Task::new("F1", &surface, cutter, Lean::default(), TOLERANCE);
     assert!(matches!(contour_2cl(&task(&flat), Vec3::z_axis()), Err(PlanError::Tool { .. })));
     assert!(matches!(contour_2cl(&task(&ball), -Vec3::z_axis()), Err(PlanError::Nothing { .. })));
 }

@@ -10,7 +10,7 @@ use crate::cutting;
 use osculate_geom::analytic::{Paraboloid, Sphere, Torus};
 use osculate_geom::{Axis, Box3, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Along, DropTask, Entry, Headings, Links, Named, Pass, Passes, PlanError, Rates, RoughTask, Rows, Sizes,
+    Along, DropTask, Entry, Headings, Links, Named, Pass, Passes, PlanError, RoughTask, Rows, Sizes,
     Strategy, Task, Tolerance, drop_cutter, gradient_3c, rough, run,
 };
 use osculate_tools::removal::Swept;
@@ -120,8 +120,7 @@ fn holds(name: &str, surface: &dyn Surface, tool: &Tool, passes: &[Pass]) {
 fn plan(surface: &dyn Surface, tool: &Tool, lead_rad: f64, strategy: &Strategy) -> Vec<Pass> {
     let lean = Lean { lead_rad, tilt_rad: 0.0 };
     let cutter = &tool.cutter();
-    let task =
-        Task { surface, face: "F1", cutter, lean: lean.into(), tolerance: TOLERANCE, progress: &|_| {} };
+    let task = Task::new("F1", surface, cutter, lean, TOLERANCE);
     run(&task, strategy).unwrap().passes
 }
 
@@ -200,21 +199,9 @@ fn roughing_keeps_its_allowance() {
         stands_mm: 0.5,
     };
     let blank = Box3 { min: Point3::new(-9.0, -9.0, -4.0), max: Point3::new(9.0, 9.0, 3.0) };
-    let links = Links {
-        obstacles: blank,
-        clearance_mm: 5.0,
-        approach_mm: 1.0,
-        hop_mm: 0.125,
-        contacts: true,
-        dropped: false,
-        layer_mm: 0.0,
-        dip_mm: 0.0,
-        rates: Rates::default(),
-        cutter: TOROIDAL.cutter(),
-        holder: None,
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 400.0,
-    };
+    let mut links = Links::new(blank, TOROIDAL.cutter(), 1000.0);
+    (links.clearance_mm, links.approach_mm, links.hop_mm) = (5.0, 1.0, 0.125);
+    links.plunge_mm_min = 400.0;
     let resolution = Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 };
     let stock = Stock::fill(&Blank::Box(blank), &resolution).unwrap().stock;
     let rough = rough(&RoughTask {

@@ -68,7 +68,7 @@ fn centres(moves: &[ClMove], radius: f64) -> Vec<Point3> {
 }
 
 fn plan(surface: &dyn Surface, cutter: &Cutter, lean: Lean, tolerance: Tolerance) -> Vec<ClMove> {
-    let task = Task { surface, face: "F1", cutter, lean: lean.into(), tolerance, progress: &|_| {} };
+    let task = Task::new("F1", surface, cutter, lean, tolerance);
     let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap();
     joined(surface, &passes.passes, cutter).moves
 }
@@ -115,14 +115,7 @@ fn groove_passes_are_evenly_spaced_by_the_exact_strip() {
     let cutter = Cutter::try_from(spec).unwrap();
     let lean = Lean { lead_rad: 12f64.to_radians(), tilt_rad: 0.0 };
     let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
-    let task = Task {
-        surface: &groove,
-        face: "F1",
-        cutter: &cutter,
-        lean: lean.into(),
-        tolerance,
-        progress: &|_| {},
-    };
+    let task = Task::new("F1", &groove, &cutter, lean, tolerance);
     let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
     assert!(passes.len() > 10);
     // Two neighbouring passes leave the design height, 98 % of the tolerance, where their exact strips meet: the
@@ -150,14 +143,7 @@ fn a_tool_too_large_for_the_hollow_is_refused_with_the_largest_that_fits() {
     let groove = Flipped(Patch { surface: torus, domain, side: Side::Along });
     let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 130.0, length_mm: 200.0 }).unwrap();
     let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
-    let task = Task {
-        surface: &groove,
-        face: "F7",
-        cutter: &cutter,
-        lean: Lean::default().into(),
-        tolerance,
-        progress: &|_| {},
-    };
+    let task = Task::new("F7", &groove, &cutter, Lean::default(), tolerance);
     let error = isoparametric(&task, Along::Auto).unwrap_err().to_string();
     assert!(error.contains("F7") && error.contains("does not fit"), "{error}");
     assert!(error.contains("60.000 mm or less") || error.contains("59.999"), "{error}");
@@ -183,7 +169,7 @@ fn progress_goes_on_only() {
         let told = Mutex::new(Vec::new());
         let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
         let progress = |f: f64| told.lock().unwrap().push(f);
-        let task = Task { surface: &surface, face: "F1", cutter, lean, tolerance, progress: &progress };
+        let task = Task::new("F1", &surface, cutter, lean, tolerance).watched(&progress);
         // Threads may tell theirs in any order.
         let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         one_thread.install(|| isoparametric(&task, Along::Auto)).unwrap();
@@ -205,7 +191,7 @@ fn passes_run_out_until_the_border_is_cut_between_them() {
     let lean = Lean { lead_rad: 3f64.to_radians(), tilt_rad: 0.0 };
     let tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.005, chord_mm: 0.002 };
     let (face, progress) = ("F1", &|_| {});
-    let task = Task { surface: &plane, face, cutter, lean: lean.into(), tolerance, progress };
+    let task = Task::new(face, &plane, cutter, lean, tolerance).watched(progress);
     let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
     let inside = |p: &Point3, pose: &Pose| {
         let way = p - pose.tip;

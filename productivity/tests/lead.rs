@@ -57,7 +57,7 @@ fn local() -> LocalLead<'static> {
 
 fn plan(lean: Leaning<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {
     let (surface, cutter) = (&bend(), &cutter());
-    run(&Task { surface, face: "F1", cutter, lean, tolerance: TOLERANCE, progress: &|_| {} }, strategy)
+    run(&Task::new("F1", surface, cutter, lean, TOLERANCE), strategy)
 }
 
 /// Whether passes hold the tolerance, and by how much they go too deep.
@@ -174,8 +174,7 @@ fn the_lead_changes_no_faster_than_the_rate_and_clears_everywhere() {
 fn passes_end_before_the_tool_digs_in_beyond_a_border() {
     let (face, cutter) = (sheared(7, 1.0), cutter());
     let lean = Leaning::Local(&local());
-    let task =
-        Task { surface: &face, face: "F1", cutter: &cutter, lean, tolerance: TOLERANCE, progress: &|_| {} };
+    let task = Task::new("F1", &face, &cutter, lean, TOLERANCE);
     let passes = run(&task, &Strategy::Isoparametric { along: Along::Fixed(Axis::U) }).unwrap();
     let moves = motions(&face, &passes.passes, &cutter);
     let v = verdict(&face, &moves, &cutter, TOLERANCE, 0.25);

@@ -35,7 +35,7 @@ impl Job {
     fn plan(&self, surface: &dyn Surface, strategy: &Strategy) -> Passes {
         let lean = Lean { lead_rad: self.lead_rad, tilt_rad: 0.0 };
         let (cutter, tolerance) = (&self.cutter, self.tolerance);
-        let task = Task { surface, face: "F1", cutter, lean: lean.into(), tolerance, progress: &|_| {} };
+        let task = Task::new("F1", surface, cutter, lean, tolerance);
         run(&task, strategy).unwrap()
     }
 

@@ -8,7 +8,7 @@
 use osculate_geom::analytic::{Line, Plane};
 use osculate_geom::{Box3, Domain, Extruded, Interval, Point3, Unit3, Vec3, uv};
 use osculate_productivity::plan::{
-    CcPoint, Freedom, Keeping, Links, Named, Pass, Rates, Stretches, Walls, link_stretches, ordered,
+    CcPoint, Freedom, Keeping, Links, Named, Pass, Stretches, Walls, link_stretches, ordered,
 };
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::{Cutter, CutterSpec, Holder, Pose};
@@ -140,21 +140,13 @@ fn passes(plates: &[Plate], rows: &[(f64, f64, f64, f64, bool)]) -> Vec<Pass> {
 }
 
 fn links() -> Links {
-    Links {
-        obstacles: Box3 { min: Point3::new(-SIDE, -SIDE, 0.0), max: Point3::new(SIDE, SIDE, 18.0) },
-        clearance_mm: 5.0,
-        approach_mm: 2.0,
-        hop_mm: 0.25,
-        dip_mm: INTO,
-        contacts: true,
-        dropped: false,
-        layer_mm: LAYER,
-        cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: LENGTH }).unwrap(),
-        holder: Some(Holder::cylinder(2.0 * HOLDER[0], HOLDER[1]).unwrap()),
-        feed_mm_min: 1500.0,
-        plunge_mm_min: 750.0,
-        rates: Rates::default(),
-    }
+    let obstacles = Box3 { min: Point3::new(-SIDE, -SIDE, 0.0), max: Point3::new(SIDE, SIDE, 18.0) };
+    let ball = CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: LENGTH };
+    let mut links = Links::new(obstacles, Cutter::try_from(ball).unwrap(), 1500.0);
+    links.clearance_mm = 5.0;
+    (links.dip_mm, links.layer_mm) = (INTO, LAYER);
+    links.holder = Some(Holder::cylinder(2.0 * HOLDER[0], HOLDER[1]).unwrap());
+    links
 }
 
 proptest! {

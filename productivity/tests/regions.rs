@@ -21,8 +21,7 @@ fn cone() -> Patch<Cone> {
 fn plan(lean: Lean, strategy: &Strategy) -> Passes {
     let (surface, cutter) = (&cone(), &cutter());
     let lean = lean.into();
-    run(&Task { surface, face: "F1", cutter, lean, tolerance: TOLERANCE, progress: &|_| {} }, strategy)
-        .unwrap()
+    run(&Task::new("F1", surface, cutter, lean, TOLERANCE), strategy).unwrap()
 }
 
 fn cutter() -> Cutter {

@@ -7,7 +7,7 @@ use heights::{Done, Heights};
 use osculate_geom::analytic::{Placed, Placement, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Unit3, Vec3};
 use osculate_productivity::plan::{
-    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Rows, Search, Sizes, rough,
+    Entry, Headings, Links, Named, PlanError, RoughTask, Roughing, Rows, Search, Sizes, rough,
 };
 use osculate_tools::cl::Motion;
 use osculate_tools::removal::Swept;
@@ -67,21 +67,8 @@ impl How<'_> {
 
 fn planned(faces: &[Placed<Plane>], block: Box3, stock: &Stock, how: How<'_>) -> Result<Roughing, PlanError> {
     let cutter = flat();
-    let links = Links {
-        obstacles: block,
-        clearance_mm: 5.0,
-        approach_mm: 1.0,
-        hop_mm: 1.0,
-        contacts: true,
-        dropped: false,
-        layer_mm: 0.0,
-        dip_mm: 0.0,
-        rates: Rates::default(),
-        cutter,
-        holder: None,
-        feed_mm_min: FEED,
-        plunge_mm_min: 0.5 * FEED,
-    };
+    let mut links = Links::new(block, cutter, FEED);
+    (links.clearance_mm, links.approach_mm, links.hop_mm) = (5.0, 1.0, 1.0);
     let named: Vec<Named<'_>> = faces.iter().map(|f| Named { face: "F1", surface: f }).collect();
     rough(&RoughTask {
         faces: &named,

@@ -68,14 +68,7 @@ proptest! {
 fn passes_lean_to_one_side() {
     let (dome, cutter) = (Paraboloid::new([0.02, 0.01], 8.0).unwrap(), toroidal());
     let task = |lean: Leaning<'static>| -> Vec<Vec<[f64; 2]>> {
-        let task = Task {
-            surface: &dome,
-            face: "F1",
-            cutter: &cutter,
-            lean,
-            tolerance: TOLERANCE,
-            progress: &|_| {},
-        };
+        let task = Task::new("F1", &dome, &cutter, lean, TOLERANCE);
         let mut found = Vec::new();
         for along in [Axis::U, Axis::V] {
             let passes = isoparametric(&task, Along::Fixed(along)).unwrap().passes;
@@ -110,14 +103,7 @@ fn passes_lean_to_one_side() {
 fn lines_without_a_parameter_and_angles_that_are_none_are_refused() {
     let (dome, cutter) = (Paraboloid::new([0.02, 0.01], 8.0).unwrap(), toroidal());
     let plan = |lean: Leaning<'static>, strategy: Strategy| {
-        let task = Task {
-            surface: &dome,
-            face: "F1",
-            cutter: &cutter,
-            lean,
-            tolerance: TOLERANCE,
-            progress: &|_| {},
-        };
+        let task = Task::new("F1", &dome, &cutter, lean, TOLERANCE);
         run(&task, &strategy)
     };
     let normal = Vec3::x_axis();

@@ -13,7 +13,7 @@ const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.05, gouge_mm: 0.02, chord
 
 fn planned(surface: &dyn Surface, cutter: &Cutter, field: &AxisField, tolerance: Tolerance) -> Vec<Pass> {
     let lean = Leaning::Axes(field);
-    let task = Task { surface, face: "F1", cutter, lean, tolerance, progress: &|_| {} };
+    let task = Task::new("F1", surface, cutter, lean, tolerance);
     isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes
 }
 

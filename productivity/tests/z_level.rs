@@ -4,7 +4,7 @@
 use osculate_geom::analytic::{Paraboloid, Plane};
 use osculate_geom::{Box3, Domain, Interval, Point3, Surface, Vec3};
 use osculate_productivity::plan::{
-    Entry, Headings, Links, Named, PlanError, Rates, RoughTask, Roughing, Rows, Sizes, rough as roughed,
+    Entry, Headings, Links, Named, PlanError, RoughTask, Roughing, Rows, Sizes, rough as roughed,
 };
 use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
 use osculate_tools::removal::{Job, Swept, cut, sample_surface};
@@ -25,21 +25,9 @@ fn toroid() -> Cutter {
 }
 
 fn rough(face: &dyn Surface, cutter: &Cutter, blank: Box3, sizes: Sizes) -> Result<Roughing, PlanError> {
-    let links = Links {
-        obstacles: blank,
-        clearance_mm: 5.0,
-        approach_mm: 1.0,
-        hop_mm: 1.0,
-        contacts: true,
-        dropped: false,
-        layer_mm: 0.0,
-        dip_mm: 0.0,
-        rates: Rates::default(),
-        cutter: *cutter,
-        holder: None,
-        feed_mm_min: 1000.0,
-        plunge_mm_min: 400.0,
-    };
+    let mut links = Links::new(blank, *cutter, 1000.0);
+    (links.clearance_mm, links.approach_mm, links.hop_mm) = (5.0, 1.0, 1.0);
+    links.plunge_mm_min = 400.0;
     let faces = [Named { face: "F1", surface: face }];
     let resolution = Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 };
     let stock = Stock::fill(&Blank::Box(blank), &resolution).unwrap().stock;

@@ -7,13 +7,8 @@ use crate::work::rough;
 use crate::work::stock::{self, RawMaterial};
 use osculate_geom::{Offset, Surface};
 use osculate_surfaces::TrimmedSurface;
-use osculate_tools::removal::{
-    Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Looks,
-};
+use osculate_tools::removal::{Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool};
 use osculate_tools::{Cutter, Holder};
-
-/// Most samples where the job does not say.
-const MAX_SAMPLES: usize = 1_000_000;
 
 /// Most samples of a step on the way to a part.
 const STEP_SAMPLES: usize = 400_000;
@@ -99,16 +94,15 @@ impl<'a> Aim<'a> {
     pub fn goal(&self, control: GoalControl, speeds_rpm: &[Option<f64>]) -> Goal<'_> {
         let job = self.job;
         let most = if self.step { STEP_SAMPLES } else { usize::MAX };
-        let face = |k: usize, f: &'a LoadedFace| GoalFace {
-            name: &f.id,
-            surface: self.offsets.get(k).map_or(&*f.surface as &dyn Surface, |o| o),
-            outlines: if f.surface.is_trimmed() {
-                f.surface.loops().iter().map(|l| l.points.as_slice()).collect()
-            } else {
-                Vec::new()
-            },
-            part_of_it: f.part_of_it.clone(),
-            open_rims: self.faces.open_rims(&f.id),
+        let face = |k: usize, f: &'a LoadedFace| {
+            let surface = self.offsets.get(k).map_or(&*f.surface as &dyn Surface, |o| o);
+            let mut face = GoalFace::new(&f.id, surface);
+            if f.surface.is_trimmed() {
+                face.outlines = f.surface.loops().iter().map(|l| l.points.as_slice()).collect();
+            }
+            face.part_of_it.clone_from(&f.part_of_it);
+            face.open_rims = self.faces.open_rims(&f.id);
+            face
         };
         let machined: Vec<GoalFace<'_>> =
             self.faces.faces.iter().enumerate().map(|(k, f)| face(k, f)).collect();
@@ -125,41 +119,34 @@ impl<'a> Aim<'a> {
             Some(assumed) => assumed,
         };
         let speed = |k: usize| speeds_rpm.get(k).copied().flatten();
-        let tools = self.tools.iter().enumerate().map(|(k, t)| GoalTool {
-            cutter: &t.cutter,
-            flutes: &t.flutes,
-            shank: t.shank.as_ref(),
-            holder: t.holder.as_ref(),
-            teeth: t.teeth,
-            spindle_rpm: speed(k).or(t.spindle_rpm),
+        let tools = self.tools.iter().enumerate().map(|(k, t)| {
+            let mut tool = GoalTool::new(&t.cutter);
+            tool.flutes = &t.flutes;
+            tool.shank = t.shank.as_ref();
+            tool.holder = t.holder.as_ref();
+            tool.teeth = t.teeth;
+            tool.spindle_rpm = speed(k).or(t.spindle_rpm);
+            tool
         });
-        Goal {
-            machined,
-            checked,
-            unseen: self.faces.unseen.clone(),
-            fixtures: self.fixtures.clone(),
-            tools: tools.collect(),
-            stock,
-            limits: self.limits(),
-            looks: Looks {
-                spacing_mm: job.verification().spacing_mm,
-                max_samples: job.verification().max_samples.unwrap_or(MAX_SAMPLES).min(most),
-                between: !self.step,
-            },
-            roughing_mm: job.strategy().layers().map(|l| l.allowance_mm),
-            control,
-        }
+        let mut goal = Goal::new(machined, tools.collect(), stock, self.limits());
+        goal.checked = checked;
+        goal.unseen.clone_from(&self.faces.unseen);
+        goal.fixtures.clone_from(&self.fixtures);
+        goal.looks.spacing_mm = job.verification().spacing_mm;
+        goal.looks.max_samples = job.verification().max_samples.unwrap_or(goal.looks.max_samples).min(most);
+        goal.looks.between = !self.step;
+        goal.roughing_mm = job.strategy().layers().map(|l| l.allowance_mm);
+        goal.control = control;
+        goal
     }
 
     /// What must hold.
     pub fn limits(&self) -> GoalLimits {
         let (job, tolerance) = (self.job, self.job.tolerance());
-        GoalLimits {
-            scallop_mm: tolerance.scallop_mm,
-            gouge_mm: tolerance.gouge_mm,
-            unreached_mm2: job.unreached_mm2(),
-            at_samples: self.step || job.verification().accept == Accept::Samples,
-        }
+        let mut limits = GoalLimits::new(tolerance.scallop_mm, tolerance.gouge_mm);
+        limits.unreached_mm2 = job.unreached_mm2();
+        limits.at_samples = self.step || job.verification().accept == Accept::Samples;
+        limits
     }
 
     /// The faces that it is about.

@@ -39,22 +39,18 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
     for f in faces.faces.iter().chain(&faces.check) {
         obstacles = obstacles.union(&part::bounds(f));
     }
-    let feed_mm_min = job.feed_mm_min();
-    Links {
-        obstacles,
-        clearance_mm: job.setup().clearance_mm,
-        approach_mm: job.setup().approach_mm,
-        hop_mm: job.setup().hop_mm,
-        contacts: !matches!(job.strategy().kind, Kind::Drop(Drop::Waterlines)),
-        dropped: matches!(job.strategy().kind, Kind::Drop(_)),
-        dip_mm: INTO_WALLS * job.tolerance().gouge_mm,
-        layer_mm: job.layer_mm(),
-        cutter: *cutter,
-        holder: job.holder().cloned(),
-        feed_mm_min,
-        plunge_mm_min: 0.5 * feed_mm_min,
-        rates: rates(job.control()),
-    }
+    let (setup, kind) = (job.setup(), &job.strategy().kind);
+    let mut links = Links::new(obstacles, *cutter, job.feed_mm_min());
+    links.clearance_mm = setup.clearance_mm;
+    links.approach_mm = setup.approach_mm;
+    links.hop_mm = setup.hop_mm;
+    links.contacts = !matches!(kind, Kind::Drop(Drop::Waterlines));
+    links.dropped = matches!(kind, Kind::Drop(_));
+    links.dip_mm = INTO_WALLS * job.tolerance().gouge_mm;
+    links.layer_mm = job.layer_mm();
+    links.holder = job.holder().cloned();
+    links.rates = rates(job.control());
+    links
 }
 
 /// How fast the joints of a machine go between passes: the slowest of each kind.
@@ -139,8 +135,11 @@ pub fn in_order(job: &Job, faces: &Part, passes: Stretches) -> Result<Stretches,
 
 /// How passes are joined where what stands on the faces is known as raw material, or else is a layer.
 fn links_by(job: &Job, faces: &Part, walls: &Walls) -> Links {
-    let layer_mm = if walls.knows_stock() { 0.0 } else { job.layer_mm() };
-    Links { layer_mm, ..links(job, faces, &job.cutter()) }
+    let mut links = links(job, faces, &job.cutter());
+    if walls.knows_stock() {
+        links.layer_mm = 0.0;
+    }
+    links
 }
 
 /// Passes joined to a path.
@@ -222,7 +221,7 @@ pub fn each_face(
         let here = move |f: f64| progress((k as f64 + f) / n as f64);
         let plan = |strategy: &Strategy, lean: Leaning<'_>| {
             let (surface, face) = (&*face.surface, face.id.as_str());
-            let task = Task { surface, face, cutter, lean, tolerance, progress: &here };
+            let task = Task::new(face, surface, cutter, lean, tolerance).watched(&here);
             plan_face(&task, strategy).map_err(|e| Failure::file(job.path(), e))
         };
         let mut p = match way.axes {
@@ -342,7 +341,7 @@ fn ranked(job: &Job, faces: &Part, cutter: &Cutter, leads: &[f64]) -> Vec<f64> {
             .iter()
             .map(|face| {
                 let (surface, face) = (&*face.surface, face.id.as_str());
-                predicted_length_mm(&Task { surface, face, cutter, lean, tolerance, progress: &|_| {} })
+                predicted_length_mm(&Task::new(face, surface, cutter, lean, tolerance))
             })
             .sum();
         out.push((length, *deg));

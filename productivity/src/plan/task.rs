@@ -26,8 +26,9 @@ pub enum Along {
     Fixed(Axis),
 }
 
-/// What to plan.
+/// What to plan: [`Task::new`].
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub struct Task<'a> {
     /// The face, with its trims and material side.
     pub surface: &'a dyn Surface,
@@ -41,6 +42,26 @@ pub struct Task<'a> {
     pub tolerance: Tolerance,
     /// Told how far the work is, 0 to 1.
     pub progress: &'a (dyn Fn(f64) + Sync),
+}
+
+impl<'a> Task<'a> {
+    /// Passes over a face, by the name that messages give it; nobody is told how far the work is.
+    #[must_use]
+    pub fn new(
+        face: &'a str,
+        surface: &'a dyn Surface,
+        cutter: &'a Cutter,
+        lean: impl Into<Leaning<'a>>,
+        tolerance: Tolerance,
+    ) -> Self {
+        Self { surface, face, cutter, lean: lean.into(), tolerance, progress: &|_| {} }
+    }
+
+    /// The same, told to somebody as it goes on, from 0 to 1.
+    #[must_use]
+    pub fn watched(self, progress: &'a (dyn Fn(f64) + Sync)) -> Self {
+        Self { progress, ..self }
+    }
 }
 
 /// One contact point of a pass.

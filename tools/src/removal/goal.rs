@@ -13,6 +13,7 @@ use std::ops::Range;
 
 /// A face with its name.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct GoalFace<'a> {
     /// As people name it.
     pub name: &'a str,
@@ -25,6 +26,14 @@ pub struct GoalFace<'a> {
     /// Polylines of its rim where no other face goes on, in pieces: nothing says what lies beneath, and depth counts up to the rim as if a
     /// wall stood there along the normals. Everywhere else depth is that along the normals and from all other faces.
     pub open_rims: &'a [Vec<Uv>],
+}
+
+impl<'a> GoalFace<'a> {
+    /// All of a face that is not trimmed and has neighbours all around.
+    #[must_use]
+    pub const fn new(name: &'a str, surface: &'a dyn Surface) -> Self {
+        Self { name, surface, outlines: Vec::new(), part_of_it: None, open_rims: &[] }
+    }
 }
 
 /// Why faces of the part are not looked at.
@@ -43,6 +52,7 @@ pub enum Unseen {
 
 /// A tool that motions carry.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub struct GoalTool<'a> {
     /// The whole tool below the holder.
     pub cutter: &'a Cutter,
@@ -56,6 +66,21 @@ pub struct GoalTool<'a> {
     pub teeth: Option<u32>,
     /// Revolutions a minute. Without it tooth marks are not known.
     pub spindle_rpm: Option<f64>,
+}
+
+impl<'a> GoalTool<'a> {
+    /// A cutter that cuts all along, without a holder; nothing is known of its teeth and speed.
+    #[must_use]
+    pub const fn new(cutter: &'a Cutter) -> Self {
+        Self { cutter, flutes: cutter, shank: None, holder: None, teeth: None, spindle_rpm: None }
+    }
+
+    /// The same with so many teeth at a speed, whose marks are told.
+    #[must_use]
+    pub const fn turning(mut self, teeth: u32, spindle_rpm: f64) -> Self {
+        (self.teeth, self.spindle_rpm) = (Some(teeth), Some(spindle_rpm));
+        self
+    }
 }
 
 /// Raw material.
@@ -91,6 +116,7 @@ impl GoalStock<'_> {
 
 /// What must hold, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GoalLimits {
     /// Highest material left: scallop and tooth mark together; of a roughing above its allowance.
     pub scallop_mm: f64,
@@ -102,8 +128,17 @@ pub struct GoalLimits {
     pub at_samples: bool,
 }
 
+impl GoalLimits {
+    /// All of the faces is to be machined, and what may hide between samples counts.
+    #[must_use]
+    pub const fn new(scallop_mm: f64, gouge_mm: f64) -> Self {
+        Self { scallop_mm, gouge_mm, unreached_mm2: 0.0, at_samples: false }
+    }
+}
+
 /// How densely faces are looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Looks {
     /// Distance of samples, mm; from the width of a strip where not given.
     pub spacing_mm: Option<f64>,
@@ -111,6 +146,21 @@ pub struct Looks {
     pub max_samples: usize,
     /// Whether what may hide between them is bounded; where it is not, only limits met at the samples can be told.
     pub between: bool,
+}
+
+impl Default for Looks {
+    /// Samples by the width of strips, a million at most, and a bound on what hides between them.
+    fn default() -> Self {
+        Self { spacing_mm: None, max_samples: 1_000_000, between: true }
+    }
+}
+
+impl Looks {
+    /// Samples at a distance, and no more than so many.
+    #[must_use]
+    pub const fn spaced(spacing_mm: f64, max_samples: usize) -> Self {
+        Self { spacing_mm: Some(spacing_mm), max_samples, between: true }
+    }
 }
 
 /// How grave a remark on the state of the control is.
@@ -155,7 +205,8 @@ pub struct GoalFixture {
     pub motions: Range<usize>,
 }
 
-/// Everything that must be so.
+/// Everything that must be so: [`Goal::new`].
+#[non_exhaustive]
 pub struct Goal<'a> {
     /// Faces to machine; at least one.
     pub machined: Vec<GoalFace<'a>>,
@@ -177,6 +228,30 @@ pub struct Goal<'a> {
     pub roughing_mm: Option<f64>,
     /// The control.
     pub control: GoalControl,
+}
+
+impl<'a> Goal<'a> {
+    /// A finishing of faces, with nothing beside them, seen as densely as usual; the state of the control is not looked at.
+    #[must_use]
+    pub fn new(
+        machined: Vec<GoalFace<'a>>,
+        tools: Vec<GoalTool<'a>>,
+        stock: GoalStock<'a>,
+        limits: GoalLimits,
+    ) -> Self {
+        Self {
+            machined,
+            checked: Vec::new(),
+            unseen: Vec::new(),
+            fixtures: Vec::new(),
+            tools,
+            stock,
+            limits,
+            looks: Looks::default(),
+            roughing_mm: None,
+            control: GoalControl::default(),
+        }
+    }
 }
 
 /// What a program does, as it was read back.

@@ -4,8 +4,7 @@ use crate::removal::common::ball;
 use osculate_geom::analytic::{Placed, Placement, Plane};
 use osculate_geom::{Domain, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_tools::removal::{
-    Answer, Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Looks, Program, Swept, Verdict,
-    prove,
+    Answer, Goal, GoalFace, GoalLimits, GoalStock, GoalTool, Looks, Program, Swept, Verdict, prove,
 };
 use osculate_tools::{Cutter, Pose};
 
@@ -47,7 +46,9 @@ fn judged(cutter: &Cutter, motions: &[Swept]) -> Verdict {
 }
 
 fn face<'a>(name: &'a str, surface: &'a dyn Surface, open_rims: &'a [Vec<Uv>]) -> GoalFace<'a> {
-    GoalFace { name, surface, outlines: Vec::new(), part_of_it: None, open_rims }
+    let mut face = GoalFace::new(name, surface);
+    face.open_rims = open_rims;
+    face
 }
 
 /// The first face is machined, others are checked.
@@ -61,25 +62,11 @@ fn judged_on<'a>(
 }
 
 fn goal_of<'a>(cutter: &'a Cutter, machined: Vec<GoalFace<'a>>, checked: Vec<GoalFace<'a>>) -> Goal<'a> {
-    Goal {
-        machined,
-        checked,
-        unseen: Vec::new(),
-        fixtures: Vec::new(),
-        tools: vec![GoalTool {
-            cutter,
-            flutes: cutter,
-            shank: None,
-            holder: None,
-            teeth: None,
-            spindle_rpm: None,
-        }],
-        stock: GoalStock::Assumed { layer_mm: 0.5 },
-        limits: GoalLimits { scallop_mm: 0.02, gouge_mm: GOUGE_MM, unreached_mm2: 0.0, at_samples: false },
-        looks: Looks { spacing_mm: Some(0.1), max_samples: 1_000_000, between: true },
-        roughing_mm: None,
-        control: GoalControl::default(),
-    }
+    let (tools, stock) = (vec![GoalTool::new(cutter)], GoalStock::Assumed { layer_mm: 0.5 });
+    let mut goal = Goal::new(machined, tools, stock, GoalLimits::new(0.02, GOUGE_MM));
+    goal.checked = checked;
+    goal.looks = Looks::spaced(0.1, 1_000_000);
+    goal
 }
 
 #[test]
@@ -156,8 +143,8 @@ fn what_may_hide_counts_into_an_area_that_is_accepted() {
     let all = motions(0.0, 0.5);
     let of = |unreached_mm2: f64| {
         let mut goal = goal_of(&cutter, vec![face("F1", &sheet, &[])], Vec::new());
-        goal.limits = GoalLimits { scallop_mm: 0.00376, unreached_mm2, ..goal.limits };
-        goal.looks = Looks { spacing_mm: Some(0.1), max_samples: 4600, between: true };
+        (goal.limits.scallop_mm, goal.limits.unreached_mm2) = (0.00376, unreached_mm2);
+        goal.looks = Looks::spaced(0.1, 4600);
         prove(&goal, Program { motions: &all, times_min: &[], changes: &[] }, &|_| ()).expect("a face")
     };
     let open = of(0.0);

@@ -94,42 +94,14 @@ fn dipped(mut motions: Vec<Swept>, dips: &[[f64; 2]]) -> Vec<Swept> {
 fn judged(asked: Asked) -> Result<Verdict, ProveError> {
     let (face, cutter) = (plane(), ball());
     let surface: &dyn Surface = &face;
-    let goal = Goal {
-        machined: vec![GoalFace {
-            name: "F1",
-            surface,
-            outlines: Vec::new(),
-            part_of_it: None,
-            open_rims: &[],
-        }],
-        checked: Vec::new(),
-        unseen: asked.unseen,
-        fixtures: Vec::new(),
-        // 1000 rpm and two teeth: 2000 a minute.
-        tools: vec![GoalTool {
-            cutter: &cutter,
-            flutes: &cutter,
-            shank: None,
-            holder: None,
-            teeth: Some(2),
-            spindle_rpm: Some(1000.0),
-        }],
-        stock: GoalStock::Assumed { layer_mm: 0.5 },
-        limits: GoalLimits {
-            scallop_mm: asked.scallop_mm,
-            gouge_mm: 0.005,
-            unreached_mm2: 0.0,
-            at_samples: false,
-        },
-        looks: Looks { spacing_mm: Some(0.05), max_samples: 100_000, between: true },
-        roughing_mm: None,
-        control: GoalControl {
-            words: String::new(),
-            remarks: asked.remarks,
-            blend_mm: asked.blend_mm,
-            bodies: String::new(),
-        },
-    };
+    // 1000 rpm and two teeth: 2000 a minute.
+    let tools = vec![GoalTool::new(&cutter).turning(2, 1000.0)];
+    let stock = GoalStock::Assumed { layer_mm: 0.5 };
+    let limits = GoalLimits::new(asked.scallop_mm, 0.005);
+    let mut goal = Goal::new(vec![GoalFace::new("F1", surface)], tools, stock, limits);
+    goal.unseen = asked.unseen;
+    goal.looks = Looks::spaced(0.05, 100_000);
+    goal.control = GoalControl { remarks: asked.remarks, blend_mm: asked.blend_mm, ..GoalControl::default() };
     let motions = dipped(raster(asked.z), &asked.dips);
     let times_min = times(&motions, asked.feed_mm_min);
     prove(&goal, Program { motions: &motions, times_min: &times_min, changes: &[] }, &|_| ())

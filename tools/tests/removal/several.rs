@@ -5,8 +5,8 @@ use osculate_geom::analytic::Plane;
 use osculate_geom::{Box3, Domain, Interval, Point3};
 use osculate_tools::removal::stock::{Blank, Resolution};
 use osculate_tools::removal::{
-    Answer, Change, Cut, Goal, GoalControl, GoalFace, GoalLimits, GoalStep, GoalStock, GoalTool, Job,
-    JobError, Looks, Program, ProveError, Sample, Swept, Verdict, cut, prove, prove_in_steps,
+    Answer, Change, Cut, Goal, GoalFace, GoalLimits, GoalStep, GoalStock, GoalTool, Job, JobError, Looks,
+    Program, ProveError, Sample, Swept, Verdict, cut, prove, prove_in_steps,
 };
 use osculate_tools::{Cutter, Holder, Pose};
 use proptest::prelude::*;
@@ -179,37 +179,16 @@ impl Plate {
     ) -> T {
         let i = Interval::new(0.0, 8.0);
         let face = Plane::new(Domain { u: i, v: i });
-        let tool = |k: usize, rpm: f64| GoalTool {
-            cutter: &self.tools[k],
-            flutes: &self.tools[k],
-            shank: None,
-            holder: None,
-            teeth: Some(2),
-            spindle_rpm: Some(rpm),
+        let tools = [(0, 3000.0), (1, 6000.0)].map(|(k, rpm)| GoalTool::new(&self.tools[k]).turning(2, rpm));
+        let stock = GoalStock::Declared {
+            blank,
+            resolution: Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 },
+            layer_mm: 0.5,
+            words: "a plate",
         };
-        let goal = Goal {
-            machined: vec![GoalFace {
-                name: "F1",
-                surface: &face,
-                outlines: Vec::new(),
-                part_of_it: None,
-                open_rims: &[],
-            }],
-            checked: Vec::new(),
-            unseen: Vec::new(),
-            fixtures: Vec::new(),
-            tools: vec![tool(0, 3000.0), tool(1, 6000.0)],
-            stock: GoalStock::Declared {
-                blank,
-                resolution: Resolution { cell_mm: 0.25, tri: true, budget_bytes: 1 << 28 },
-                layer_mm: 0.5,
-                words: "a plate",
-            },
-            limits: GoalLimits { scallop_mm: 0.01, gouge_mm: 0.005, unreached_mm2: 0.0, at_samples: false },
-            looks: Looks { spacing_mm: Some(0.1), max_samples: 100_000, between: true },
-            roughing_mm: None,
-            control: GoalControl::default(),
-        };
+        let machined = vec![GoalFace::new("F1", &face)];
+        let mut goal = Goal::new(machined, tools.to_vec(), stock, GoalLimits::new(0.01, 0.005));
+        goal.looks = Looks::spaced(0.1, 100_000);
         ask(&goal, Program { motions: &self.motions, times_min: &self.times_min, changes })
     }
 }
@@ -254,17 +233,13 @@ fn operations_are_judged_when_they_end() {
     let (first, all) = (both.first, both.motions.len());
     let alone = both.judged(&[first], plate()).unwrap();
     let proved = both.with(&[first], plate(), |goal, program| {
-        let own = |tools: usize| Goal {
-            machined: goal.machined.clone(),
-            checked: Vec::new(),
-            unseen: Vec::new(),
-            fixtures: Vec::new(),
-            tools: goal.tools[..tools].to_vec(),
-            stock: goal.stock,
-            limits: GoalLimits { at_samples: true, ..goal.limits },
-            looks: Looks { between: false, ..goal.looks },
-            roughing_mm: None,
-            control: GoalControl::default(),
+        let own = |tools: usize| {
+            let tools = goal.tools[..tools].to_vec();
+            let mut own = Goal::new(goal.machined.clone(), tools, goal.stock, goal.limits);
+            own.limits.at_samples = true;
+            own.looks = goal.looks;
+            own.looks.between = false;
+            own
         };
         let steps = [
             GoalStep { goal: own(1), from: 0, motions: 0..first },

@@ -5,10 +5,10 @@
 //! and points across the wanted feed; what no field can do (a curl of X) is spread over the face. Where only the length of the
 //! gradient matters X follows the field's own direction and the problem is solved again: the matrix stays the same.
 
-use super::band::{Band, Factor, NotDefinite};
 use crate::plan::Task;
 use crate::rectangle::Rectangle;
 use crate::spline::{Four, Spline};
+use crate::system::{Factor, NotDefinite, Symmetric};
 use osculate_geom::{Axis, Forms, Jet2, Uv};
 use rayon::prelude::*;
 
@@ -68,18 +68,18 @@ impl Problem {
     ) -> Result<Self, NotDefinite> {
         let zero = Spline::constant(rectangle, spans, 0.0);
         let places = places(task, rectangle, &zero);
-        let mut band = zero.band();
+        let mut matrix = Symmetric::zeros(zero.poles.len());
         for p in &places {
             let rows = p.rows(&zero);
             for (k, (i, a)) in rows.iter().enumerate() {
                 for (j, b) in &rows[..=k] {
                     // Both residuals of the place.
-                    band.add(*i, *j, p.area_mm2 * (a[0] * b[0] + a[1] * b[1]));
+                    matrix.add(*i, *j, p.area_mm2 * (a[0] * b[0] + a[1] * b[1]));
                 }
             }
         }
-        zero.smooth(&mut band, SMOOTH[usize::from(wishes)]);
-        Ok(Self { places, zero, factor: band.factor()? })
+        zero.smooth(&mut matrix, SMOOTH[usize::from(wishes)]);
+        Ok(Self { places, zero, factor: matrix.factor()? })
     }
 
     /// The field that is zero everywhere.
@@ -125,23 +125,14 @@ impl Spline {
         self.bases[0].order(i) * self.bases[1].count() + self.bases[1].order(j)
     }
 
-    fn band(&self) -> Band {
-        let n = self.bases[1].count();
-        // In a row of blocks the farthest pole is the last of the block.
-        Band::zeros(
-            self.poles.len(),
-            ((self.bases[0].width() - 1) * n + self.bases[1].width()).min(self.poles.len()),
-        )
-    }
-
     /// Adds the squares of the poles' second differences, and a trace of the poles themselves.
-    fn smooth(&self, band: &mut Band, weight: f64) {
+    fn smooth(&self, matrix: &mut Symmetric, weight: f64) {
         let [nu, nv] = self.bases.map(|b| b.count());
         let mut add = |poles: [usize; 3]| {
             for (i, a) in poles.iter().zip([1.0, -2.0, 1.0]) {
                 for (j, b) in poles.iter().zip([1.0, -2.0, 1.0]) {
                     if i >= j {
-                        band.add(*i, *j, weight * a * b);
+                        matrix.add(*i, *j, weight * a * b);
                     }
                 }
             }
@@ -157,7 +148,7 @@ impl Spline {
             }
         }
         for k in 0..self.poles.len() {
-            band.add(k, k, HOLD);
+            matrix.add(k, k, HOLD);
         }
     }
 }

@@ -4,7 +4,6 @@
 //! pass covers the face to both sides, [`cells`] takes levels as far apart as that allows everywhere, [`trace`] finds
 //! all components of a level, and [`passes`] keeps what the trims need of them, in an order that saves links.
 
-mod band;
 mod cell;
 mod cells;
 mod correct;

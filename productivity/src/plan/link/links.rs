@@ -6,8 +6,9 @@ use crate::plan::{CcPoint, Pass};
 use osculate_geom::Box3;
 use osculate_tools::{Cutter, Holder};
 
-/// How passes are linked. Lengths mm, feeds mm/min.
+/// How passes are linked: [`Links::new`]. Lengths mm, feeds mm/min.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Links {
     /// Box of everything the tool must stay clear of on rapid moves.
     pub obstacles: Box3,
@@ -40,6 +41,27 @@ pub struct Links {
 }
 
 impl Links {
+    /// A cutter without a holder among obstacles, and its feed on the part: rapids 10 mm clear of all of them, approaches from 2 mm
+    /// at half the feed, hops of .25 mm, on passes that touch finished faces.
+    #[must_use]
+    pub fn new(obstacles: Box3, cutter: Cutter, feed_mm_min: f64) -> Self {
+        Self {
+            obstacles,
+            clearance_mm: 10.0,
+            approach_mm: 2.0,
+            hop_mm: 0.25,
+            dip_mm: 0.0,
+            contacts: true,
+            dropped: false,
+            layer_mm: 0.0,
+            cutter,
+            holder: None,
+            feed_mm_min,
+            plunge_mm_min: 0.5 * feed_mm_min,
+            rates: Rates::default(),
+        }
+    }
+
     /// What the tool is of, each standing on the one before: the cutter, and the sections of its holder.
     pub(super) fn bodies(&self) -> impl Iterator<Item = &Cutter> {
         let sections = self.holder.as_ref().map(Holder::sections).unwrap_or_default();
