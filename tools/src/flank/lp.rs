@@ -100,7 +100,27 @@ pub(super) fn solve<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector2;
+    use crate::flank::oracle;
+    use nalgebra::{Vector2, Vector3};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Half spaces around the origin and a box, so that there is a least value: another solver finds the same.
+        #[test]
+        fn another_solver_finds_the_same_value(
+            c in [-1.0..1.0f64, -1.0..1.0, -1.0..1.0],
+            planes in prop::collection::vec(([-1.0..1.0f64, -1.0..1.0, -1.0..1.0], 0.01..2.0f64), 0..60),
+        ) {
+            let sides = (0..6).map(|k| (Vector3::ith(k / 2, if k % 2 == 0 { 1.0 } else { -1.0 }), 3.0));
+            let all = planes.into_iter().map(|(a, b)| (Vector3::from(a), b)).chain(sides);
+            let (a, b): (Vec<_>, Vec<_>) = all.unzip();
+            let c = Vector3::from(c);
+            let rows: Vec<_> = a.iter().zip(&b).map(|(a, b)| (a.as_slice().to_vec(), *b)).collect();
+            let want = oracle::least(&vec![vec![0.0; 3]; 3], c.as_slice(), &rows).expect("bounded");
+            let got = solve(&c, &Rows { a, b }, Vector3::zeros(), 1e-12).expect("a feasible start");
+            prop_assert!((c.dot(&got.x) - want).abs() < 1e-8, "{} and {want}", c.dot(&got.x));
+        }
+    }
 
     /// The best line through |x|: |x| - (a + b x) on [-1, 1] alternates with 1/2, at -1, 0 and 1.
     #[test]

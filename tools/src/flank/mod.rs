@@ -48,6 +48,8 @@ pub mod global;
 mod largest;
 mod lp;
 mod minimax;
+#[cfg(test)]
+mod oracle;
 pub mod path;
 mod rule;
 mod ruled;

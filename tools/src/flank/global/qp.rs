@@ -267,6 +267,57 @@ pub(super) fn lower_bound(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flank::oracle;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Rows of four neighbouring unknowns with one shared bound, as a linearised minimax problem over a spline has them.
+        #[test]
+        fn another_solver_finds_the_same_value(
+            n in 4usize..9,
+            values in prop::collection::vec(-1.0..1.0f64, 400),
+            count in 5usize..40,
+            weight in 0.01..1.0f64,
+        ) {
+            const LENGTH: usize = 4;
+            let number = |k: usize| values[k % values.len()];
+            let first: Vec<u32> = (0..count).map(|k| (k % (n - LENGTH + 1)) as u32).collect();
+            let rows = Rows { length: LENGTH, first, values: (0..count * LENGTH).map(number).collect() };
+            let both = (0..count).flat_map(|k| [1.0, -1.0].map(|sign| (k, sign)));
+            let constraints: Vec<Constraint> = both
+                .map(|(k, sign)| Constraint { row: k as u32, sign, share: 1.0, limit: sign * number(7 * k + 3) })
+                .collect();
+            let mut curvature = Bordered::zeros(n, LENGTH);
+            (0..n).for_each(|i| curvature.add(i, i, weight));
+            let linear: Vec<f64> = (0..n).map(|i| 0.1 * number(11 * i)).collect();
+            let limit = 2.0;
+            let p = Program { rows: &rows, constraints: &constraints, curvature: &curvature, linear: &linear, cost: 1.0, limit };
+            let got = p.solve().expect("feasible");
+            let value = got.x.iter().zip(&linear).map(|(x, f)| 0.5 * weight * x * x + f * x).sum::<f64>() + got.t;
+
+            // The same in all unknowns, t the last of them.
+            let mut all: Vec<(Vec<f64>, f64)> = constraints
+                .iter()
+                .map(|c| {
+                    let (first, row) = rows.row(c.row as usize);
+                    let mut a = vec![0.0; n + 1];
+                    row.iter().zip(&mut a[first..]).for_each(|(g, a)| *a = c.sign * g);
+                    a[n] = -c.share;
+                    (a, c.limit)
+                })
+                .collect();
+            all.extend((0..2 * n).map(|k| {
+                let mut a = vec![0.0; n + 1];
+                a[k / 2] = if k % 2 == 0 { 1.0 } else { -1.0 };
+                (a, limit)
+            }));
+            let h: Vec<Vec<f64>> =
+                (0..=n).map(|i| (0..=n).map(|j| if i == j && i < n { weight } else { 0.0 }).collect()).collect();
+            let c: Vec<f64> = linear.iter().copied().chain([1.0]).collect();
+            let want = oracle::least(&h, &c, &all).expect("bounded");
+            prop_assert!((value - want).abs() < 1e-7, "{value} and {want}");
+        }
+    }
 
     /// Best constant and line in the maximum norm: the known answers of Chebyshev's problem for t^2 on [-1, 1].
     #[test]
