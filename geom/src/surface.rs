@@ -243,7 +243,7 @@ impl<S: Surface> Surface for Flipped<S> {
 /// A surface restricted to a parameter rectangle and given a material side.
 ///
 /// ```
-/// use osculate_geom::{Domain, Interval, Patch, Side, Surface, analytic::Sphere, quadrature::area};
+/// use osculate_geom::{Domain, Interval, Patch, Side, analytic::Sphere, quadrature::area};
 /// use std::f64::consts::FRAC_PI_2;
 /// // An octant of a ball has an eighth of its area.
 /// let quarter = Interval::new(0.0, FRAC_PI_2);

@@ -4,9 +4,8 @@
 //! kind points away from the axis or centre, so material inside is [`Side::Along`](crate::Side::Along).
 //!
 //! ```
-//! use osculate_geom::{Point3, Surface, Vec3, uv};
 //! use osculate_geom::analytic::{Cylinder, Placed, Placement};
-//! use osculate_geom::Interval;
+//! use osculate_geom::{Interval, Point3, Surface, Vec3, uv};
 //! // A shaft of radius 25 mm whose axis runs along x instead of z, from x = 100 on; its angle begins at +z.
 //! let placement = Placement::new(Point3::new(100.0, 0.0, 0.0), Vec3::x_axis(), Some(Vec3::z()));
 //! let shaft = Placed { surface: Cylinder::new(25.0, Interval::new(0.0, 80.0))?, placement };
