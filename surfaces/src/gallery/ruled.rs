@@ -95,7 +95,8 @@ pub struct HyperbolicSize {
 /// let s = gallery::d98_hyperbolic(80.0, 30f64.to_radians())?;
 /// let [low, high] = [uv(0.5, 0.0), uv(0.5, 1.0)].map(|at| s.jet2(at));
 /// assert!(((high.point - low.point).norm() - 80.0).abs() < 1e-12);
-/// assert!((low.normal()?.dot(&high.normal()?) - 30f64.to_radians().cos()).abs() < 1e-12);
+/// let (low, high) = (low.normal()?, high.normal()?);
+/// assert!((low.dot(&high) - 30f64.to_radians().cos()).abs() < 1e-12);
 /// assert!(gallery::d98_hyperbolic(-80.0, 0.5).is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
