@@ -28,6 +28,9 @@ pub struct JetBlock {
 
 impl JetBlock {
     /// Puts a jet into a lane.
+    ///
+    /// # Panics
+    /// For a lane from [`LANES`] on.
     #[inline]
     pub fn set(&mut self, lane: usize, jet: &Jet2) {
         self.uv[0].0[lane] = jet.uv.u;
@@ -43,6 +46,9 @@ impl JetBlock {
     }
 
     /// The jet in a lane.
+    ///
+    /// # Panics
+    /// For a lane from [`LANES`] on.
     #[inline]
     #[must_use]
     pub fn get(&self, lane: usize) -> Jet2 {
@@ -63,6 +69,9 @@ impl JetBlock {
     }
 
     /// Copies a lane to a lane of another block.
+    ///
+    /// # Panics
+    /// For a lane from [`LANES`] on.
     #[inline(always)]
     pub fn copy_lane(&self, lane: usize, to: &mut Self, to_lane: usize) {
         for k in 0..2 {
@@ -153,6 +162,9 @@ impl CurvatureBlock {
     ///
     /// # Errors
     /// [`Degenerate`] where S_u and S_v are parallel or vanish.
+    ///
+    /// # Panics
+    /// For a lane from [`LANES`] on.
     pub fn get(&self, lane: usize) -> Result<Principal, Degenerate> {
         let sin_uv = self.sin_uv.0[lane];
         if self.k_max.0[lane].is_nan() {
@@ -178,6 +190,19 @@ pub const fn block_count(places: usize) -> usize {
 
 /// Jets of any surface in blocks, one after the other, replacing what `out` held: what a surface without a
 /// faster way of its own does. The last block is filled up with its last place.
+///
+/// ```
+/// use osculate_geom::{Surface, analytic::Torus, batch, uv};
+/// // Ten places of a ring in two blocks: the same curvatures as one at a time.
+/// let ring = Torus::new(200.0, 60.0)?;
+/// let places: Vec<_> = (0..10).map(|k| uv(0.1, 0.3 * f64::from(k))).collect();
+/// let mut blocks = Vec::new();
+/// batch::jets_into(&ring, &places, &mut blocks);
+/// assert_eq!(blocks.len(), batch::block_count(places.len()));
+/// let (ninth, alone) = (blocks[1].curvatures().get(0)?, ring.jet2(places[8]).forms()?.principal());
+/// assert!((ninth.k_min - alone.k_min).abs() < 1e-15 && (ninth.k_max - alone.k_max).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn jets_into<S: Surface + ?Sized>(surface: &S, at: &[Uv], out: &mut Vec<JetBlock>) {
     out.resize(block_count(at.len()), JetBlock::default());
     for (places, block) in at.chunks(LANES).zip(out) {

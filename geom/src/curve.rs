@@ -15,6 +15,27 @@ use crate::roots::{End, RootError, bracketed};
 use crate::series::{MAX_ORDER, Series, factorial};
 
 /// A parametric curve in space, mm.
+///
+/// ```
+/// use osculate_geom::{Curve, CurveTaylor, Interval, Vec3};
+/// /// A thread of radius 6 mm that climbs 8 mm per radian.
+/// struct Thread;
+/// impl Curve for Thread {
+///     fn domain(&self) -> Interval {
+///         Interval::new(0.0, 10.0)
+///     }
+///     fn taylor(&self, t: f64, order: usize) -> CurveTaylor {
+///         let rise = |k| [8.0 * t, 8.0].get(k).copied().unwrap_or(0.0);
+///         // Every derivative of sine and cosine is a quarter turn further on.
+///         let turned = |k: usize| (t + k as f64 * std::f64::consts::FRAC_PI_2).sin_cos();
+///         CurveTaylor::from_derivatives(t, order, |k| Vec3::new(6.0 * turned(k).1, 6.0 * turned(k).0, rise(k)))
+///     }
+/// }
+/// // Curvature r / (r^2 + h^2), torsion h / (r^2 + h^2).
+/// let frenet = Thread.jet(1.0).frenet()?;
+/// assert!((frenet.curvature_per_mm - 0.06).abs() < 1e-14 && (frenet.torsion_per_mm - 0.08).abs() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Curve: Send + Sync {
     /// The parameter interval; ends may be infinite.
     fn domain(&self) -> Interval;
@@ -261,6 +282,14 @@ const MAX_PANELS: usize = 1 << 10;
 /// Arc length over `part`, mm, refined between breaks until two refinements agree to `relative`.
 ///
 /// Where the curve has a cusp inside a panel the refinement converges slowly and the error says how far it came.
+///
+/// ```
+/// use osculate_geom::{Curve, analytic::{Conic, Placement}, curve};
+/// let circle = Conic::circle(10.0, Placement::identity())?;
+/// let length = curve::length(&circle, circle.domain(), 1e-12);
+/// assert!((length.value - std::f64::consts::TAU * 10.0).abs() < 1e-10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn length(curve: &dyn Curve, part: Interval, relative: f64) -> Integral {
     let speed = |t: f64| curve.taylor(t, 1).derivative(1).norm();
     let mut cuts = vec![part.lo];
@@ -280,6 +309,15 @@ pub fn length(curve: &dyn Curve, part: Interval, relative: f64) -> Integral {
 }
 
 /// The parameter `length_mm` along the curve from the beginning of its domain, met to `tolerance_mm`.
+///
+/// ```
+/// use osculate_geom::{analytic::{Conic, Placement}, curve};
+/// // 5 mm along a circle of radius 10 is half a radian; 70 mm are more than a turn.
+/// let circle = Conic::circle(10.0, Placement::identity())?;
+/// assert!((curve::parameter_at(&circle, 5.0, 1e-9)? - 0.5).abs() < 1e-9);
+/// assert!(curve::parameter_at(&circle, 70.0, 1e-9).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`LengthError`].

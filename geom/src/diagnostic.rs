@@ -14,6 +14,17 @@ pub enum Severity {
 }
 
 /// One finding, returned beside a value.
+///
+/// ```
+/// use osculate_geom::{Diagnostic, Severity};
+/// let lost = Diagnostic::loss("#42", "a face without edges is left out");
+/// assert_eq!(lost.severity, Severity::Loss);
+/// // Findings are shown one a line, with the place.
+/// assert!(lost.to_string().contains("#42") && lost.to_string().contains("left out"));
+/// // The worst of many.
+/// let all = [Diagnostic::note("", "2 faces"), lost];
+/// assert_eq!(all.iter().map(|d| d.severity).max(), Some(Severity::Loss));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// How much it matters.

@@ -34,6 +34,12 @@ impl Interval {
     }
 
     /// The parameter brought into the interval: wrapped where periodic, clamped elsewhere.
+    ///
+    /// ```
+    /// use osculate_geom::Interval;
+    /// assert_eq!(Interval::new(0.0, 10.0).bring(12.0), 10.0);
+    /// assert_eq!(Interval::periodic(0.0, 10.0).bring(12.0), 2.0);
+    /// ```
     #[must_use]
     pub fn bring(&self, t: f64) -> f64 {
         if self.periodic {
@@ -68,6 +74,15 @@ impl Interval {
 }
 
 /// The parameter rectangle of a surface.
+///
+/// ```
+/// use osculate_geom::{Axis, Domain, Interval, uv};
+/// let domain = Domain { u: Interval::periodic(0.0, 360.0), v: Interval::new(0.0, 80.0) };
+/// assert_eq!(domain.at(0.25, 0.5), uv(90.0, 40.0));
+/// assert_eq!(domain.bring(uv(-90.0, 100.0)), uv(270.0, 80.0));
+/// assert_eq!(domain.get(Axis::V).length(), 80.0);
+/// assert!(domain.contains(uv(400.0, 80.0)) && !domain.contains(uv(0.0, 81.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
     /// Range of the first parameter.

@@ -53,6 +53,19 @@ pub enum FacetsError {
 impl Facets {
     /// Triangles, each counter-clockwise seen from outside the material.
     ///
+    /// ```
+    /// use osculate_geom::{Facets, FacetsError, Point3, Surface};
+    /// // A rectangle of 3 x 4 mm as two triangles, counter-clockwise seen from +z, where the tool is.
+    /// let p = |x: f64, y: f64| Point3::new(x, y, 0.0);
+    /// let mesh = Facets::new(vec![[p(0.0, 0.0), p(3.0, 0.0), p(3.0, 4.0)], [p(0.0, 0.0), p(3.0, 4.0), p(0.0, 4.0)]])?;
+    /// assert_eq!((mesh.area_mm2(), mesh.pieces().len()), (12.0, 2));
+    /// assert_eq!(mesh.point(Facets::corner(1, 2)), p(0.0, 4.0));
+    /// // A sliver without area has no normal.
+    /// let flat = [p(0.0, 0.0), p(1.0, 0.0), p(2.0, 0.0)];
+    /// assert_eq!(Facets::new(vec![flat]).unwrap_err(), FacetsError::Flat { triangle: 0 });
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`FacetsError`] where there is none, and for one that is not finite or has no area.
     pub fn new(triangles: Vec<[Point3; 3]>) -> Result<Self, FacetsError> {

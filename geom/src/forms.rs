@@ -194,6 +194,15 @@ pub struct Principal {
 
 impl Principal {
     /// Normal curvature at an angle from `d_max`, 1/mm, by Euler's formula `k_max cos^2 + k_min sin^2` [R97, eq. 47].
+    ///
+    /// ```
+    /// use osculate_geom::{Surface, analytic::Torus, uv};
+    /// // At 45 degrees to the principal directions: the mean of both curvatures.
+    /// let forms = Torus::new(200.0, 60.0)?.jet2(uv(0.0, 0.0)).forms()?;
+    /// let k = forms.principal().euler(45f64.to_radians());
+    /// assert!((k - forms.mean()).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn euler(&self, angle_rad: f64) -> f64 {
         let (s, c) = angle_rad.sin_cos();

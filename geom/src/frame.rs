@@ -28,6 +28,17 @@ impl Darboux {
     /// The frame of a line through the jet's point in `direction` (made tangent), with geodesic curvature
     /// `geodesic_per_mm` (positive: the line bends to the left, towards `b`).
     ///
+    /// ```
+    /// use osculate_geom::{Darboux, Surface, Vec3, analytic::Sphere, uv};
+    /// // East along the equator of a ball of radius 50, at its place on the x axis: north is to the left, and the
+    /// // frame turns about it by 1/50 for every mm.
+    /// let jet = Sphere::new(50.0)?.jet2(uv(0.0, 0.0));
+    /// let frame = Darboux::new(&jet, &Vec3::y(), 0.0)?;
+    /// assert!((frame.normal.x - 1.0).abs() < 1e-15 && (frame.left.z - 1.0).abs() < 1e-15);
+    /// assert!((frame.turn - Vec3::z() / 50.0).norm() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane.
     pub fn new(jet: &Jet2, direction: &Vec3, geodesic_per_mm: f64) -> Result<Self, Degenerate> {
@@ -91,6 +102,17 @@ pub struct LineCurvature {
 
 /// Normal curvature, geodesic curvature and geodesic torsion of the line with parameter rate `rate` and parameter
 /// acceleration `acceleration`.
+///
+/// ```
+/// use osculate_geom::{Interval, Surface, analytic::Cylinder, line_curvature, uv};
+/// // A helix at 45 degrees on a shaft of radius 25: half the curvature of the circle, straight on the surface, and
+/// // half as much torsion.
+/// let jet = Cylinder::new(25.0, Interval::new(0.0, 80.0))?.jet2(uv(0.0, 40.0));
+/// let k = line_curvature(&jet, uv(1.0, 25.0), uv(0.0, 0.0))?;
+/// assert!((k.normal_per_mm - 0.5 / 25.0).abs() < 1e-15 && k.geodesic_per_mm.abs() < 1e-15);
+/// assert!((k.torsion_per_mm.abs() - 0.5 / 25.0).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`Degenerate`] without a tangent plane.

@@ -32,6 +32,18 @@ fn acceleration(surface: &dyn Surface, s: GeodesicState) -> Result<Uv, Degenerat
 impl GeodesicState {
     /// The start of the geodesic through `at` along the tangent vector `direction`.
     ///
+    /// ```
+    /// use osculate_geom::{Vec3, analytic::Sphere, geodesic::GeodesicState, uv};
+    /// // Great circles: a quarter turn north from the equator in small steps ends at the pole's latitude.
+    /// let ball = Sphere::new(10.0)?;
+    /// let mut state = GeodesicState::start(&ball, uv(0.3, 0.0), &Vec3::z())?;
+    /// for _ in 0..50 {
+    ///     state = state.step(&ball, 10.0 * std::f64::consts::FRAC_PI_4 / 50.0)?;
+    /// }
+    /// assert!((state.at.v - std::f64::consts::FRAC_PI_4).abs() < 1e-9 && (state.at.u - 0.3).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Degenerate`] without a tangent plane.
     pub fn start(surface: &dyn Surface, at: Uv, direction: &Vec3) -> Result<Self, Degenerate> {

@@ -45,6 +45,18 @@ pub enum DupinKind {
 }
 
 /// The kind of Dupin's indicatrix; curvatures up to `flat_per_mm` from zero count as zero.
+///
+/// ```
+/// use osculate_geom::indicatrix::{DupinKind, dupin_kind};
+/// use osculate_geom::{Surface, analytic::Torus, uv};
+/// // A ring is bent one way outside and both ways inside.
+/// let ring = Torus::new(200.0, 60.0)?;
+/// let kind = |v: f64| ring.jet2(uv(0.0, v)).forms().map(|f| dupin_kind(&f.principal(), 1e-12));
+/// assert_eq!(kind(0.0)?, DupinKind::Ellipse);
+/// assert_eq!(kind(std::f64::consts::FRAC_PI_2)?, DupinKind::ParallelLines);
+/// assert_eq!(kind(std::f64::consts::PI)?, DupinKind::Hyperbolas);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn dupin_kind(k: &Principal, flat_per_mm: f64) -> DupinKind {
     let bent = [k.k_max, k.k_min].map(|x| x.abs() > flat_per_mm);

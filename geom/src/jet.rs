@@ -73,6 +73,15 @@ impl Jet2 {
     }
 
     /// The tangent vector `a S_u + b S_v`.
+    ///
+    /// ```
+    /// use osculate_geom::{Interval, Surface, Vec3, analytic::Cylinder, uv};
+    /// // A radian around a shaft of radius 25 is 25 mm, and bends towards the axis.
+    /// let jet = Cylinder::new(25.0, Interval::new(0.0, 80.0))?.jet2(uv(0.0, 40.0));
+    /// assert!((jet.tangent(uv(1.0, 2.0)) - Vec3::new(0.0, 25.0, 2.0)).norm() < 1e-12);
+    /// assert!((jet.second(uv(1.0, 2.0)) - Vec3::new(-25.0, 0.0, 0.0)).norm() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn tangent(&self, rate: Uv) -> Vec3 {
         self.du * rate.u + self.dv * rate.v

@@ -11,6 +11,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub const LANES: usize = 8;
 
 /// N numbers.
+///
+/// ```
+/// use osculate_geom::lanes::{Lanes, dot};
+/// let (x, y) = (Lanes([3.0, 5.0]), Lanes([4.0, 12.0]));
+/// let v = [x, y, Lanes::splat(0.0)];
+/// assert_eq!(dot(&v, &v).sqrt(), Lanes([5.0, 13.0]));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 // Whole registers: a load that straddles two cache lines costs as much as the arithmetic.
 #[repr(align(64))]

@@ -11,11 +11,63 @@
 //!
 //! Lengths are millimetres, angles radians.
 //!
+//! # From a surface to curvature
+//!
+//! A place of a surface is a pair of parameters; the jet there has point and derivatives, and everything local follows from it.
+//!
 //! ```
 //! use osculate_geom::{analytic::Sphere, uv, Surface};
 //! let ball = Sphere::new(10.0)?;
 //! let k = ball.jet2(uv(0.3, 0.5)).forms()?.principal();
 //! assert!((k.k_max - 0.1).abs() < 1e-12 && (k.k_min - 0.1).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From curves to a surface
+//!
+//! A [`Curve`] is turned, moved or joined to another one: [`Revolved`], [`Extruded`], [`Ruled`]. What comes out is a [`Surface`]
+//! as exact as the curve.
+//!
+//! ```
+//! use osculate_geom::analytic::Line;
+//! use osculate_geom::{Interval, Point3, Revolved, Surface, TurnAxis, Vec3, uv};
+//! // A line beside the z axis, turned about it: a cylinder of radius 25.
+//! let side = Line::segment(Point3::new(25.0, 0.0, 0.0), Point3::new(25.0, 0.0, 80.0))?;
+//! let axis = TurnAxis { origin: Point3::origin(), direction: Vec3::z_axis() };
+//! let shaft = Revolved::new(side, axis, Interval::new(0.0, std::f64::consts::TAU))?;
+//! assert!((shaft.jet2(uv(1.0, 0.5)).forms()?.mean().abs() - 0.5 / 25.0).abs() < 1e-15);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From a surface to a line on it
+//!
+//! A tool follows a line with the surface's normal as its measure. The frame and how it turns:
+//!
+//! ```
+//! use osculate_geom::{Axis, Flipped, Interval, analytic::Cylinder, line::{IsoLine, SurfaceLine}};
+//! // Along a bore of radius 20 the frame does not turn; around it, once in 2 pi 20 mm.
+//! let bore = Flipped(Cylinder::new(20.0, Interval::new(0.0, 80.0))?);
+//! let turn = |along, fixed| {
+//!     let line = IsoLine { surface: &bore, along, fixed, reversed: false };
+//!     line.frame(1.0).map(|(frame, _)| frame.turn.norm())
+//! };
+//! assert!(turn(Axis::V, 0.0)?.abs() < 1e-15 && (turn(Axis::U, 40.0)? - 1.0 / 20.0).abs() < 1e-15);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From a part and a tool to what fits
+//!
+//! Both curvatures add up to [`Relative`]; where its smaller eigenvalue is negative the tool digs in.
+//!
+//! ```
+//! use osculate_geom::{Flipped, Interval, Relative, Surface, ToolCurvature, analytic::Cylinder, uv};
+//! let bore = Flipped(Cylinder::new(20.0, Interval::new(0.0, 80.0))?).jet2(uv(0.0, 40.0)).forms()?;
+//! let ball = |radius_mm: f64| ToolCurvature {
+//!     along: 1.0 / radius_mm,
+//!     across: 1.0 / radius_mm,
+//!     direction: bore.frame[0],
+//! };
+//! assert!(Relative::new(&bore, &ball(19.0)).min > 0.0 && Relative::new(&bore, &ball(21.0)).min < 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

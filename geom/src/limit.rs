@@ -354,6 +354,20 @@ pub fn normal(surface: &dyn Surface, at: Uv, tolerance: &Tolerance) -> Result<Un
 /// [`Forms::rate`] has no answer; normal, frame, curvature matrix and all that is made of them are those of the
 /// surface. The frame's first direction is then that of the parameter which moves the point more.
 ///
+/// ```
+/// use osculate_geom::{Interval, analytic::{Cone, Sphere}, limit, uv};
+/// // The pole of a ball is as round as the rest; a cone has a point there.
+/// let (ball, pole) = (Sphere::new(10.0)?, uv(0.4, std::f64::consts::FRAC_PI_2));
+/// let forms = limit::forms(&ball, pole, &limit::Tolerance::ROUNDING)?;
+/// assert!((forms.mean() - 0.1).abs() < 1e-9);
+/// let cone = Cone::new(0.0, 0.5, Interval::new(0.0, 10.0))?;
+/// assert!(matches!(
+///     limit::forms(&cone, uv(0.4, 0.0), &limit::Tolerance::ROUNDING),
+///     Err(limit::LimitError::Apex { .. })
+/// ));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`LimitError`] where there is no normal, or curvatures from different sides differ or have no bound.
 pub fn forms(surface: &dyn Surface, at: Uv, tolerance: &Tolerance) -> Result<Forms, LimitError> {

@@ -32,6 +32,19 @@ pub trait SurfaceLine: Sync {
 }
 
 /// The line of constant parameter: `along` varies, the other parameter is `fixed`.
+///
+/// ```
+/// use osculate_geom::{Axis, Interval, analytic::Cylinder, line::{IsoLine, SurfaceLine}};
+/// // Around a shaft of radius 25, at its place on the x axis: a radian is 25 mm, and the line leaves along y.
+/// let shaft = Cylinder::new(25.0, Interval::new(0.0, 80.0))?;
+/// let around = IsoLine { surface: &shaft, along: Axis::U, fixed: 40.0, reversed: false };
+/// let (frame, speed) = around.frame(0.0)?;
+/// assert!((speed - 25.0).abs() < 1e-12 && (frame.tangent.y - 1.0).abs() < 1e-15);
+/// // Fed the other way the tangent turns round, the normal stays.
+/// let (back, _) = IsoLine { reversed: true, ..around }.frame(0.0)?;
+/// assert!((back.tangent.y + 1.0).abs() < 1e-15 && back.normal == frame.normal);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct IsoLine<'a> {
     /// The surface.
@@ -157,6 +170,18 @@ pub struct PathState {
 }
 
 /// Any line on a surface, given as a path in its parameters.
+///
+/// ```
+/// use osculate_geom::line::{PathLine, PathState, SurfaceLine};
+/// use osculate_geom::{Domain, Interval, analytic::Plane, uv};
+/// // The parabola v = u^2 on a plane: at its vertex it goes along x and turns to the left by 2 rad/mm, about the normal.
+/// let side = Interval::new(-5.0, 5.0);
+/// let plane = Plane::new(Domain { u: side, v: side });
+/// let path = |t: f64| PathState { at: uv(t, t * t), rate: uv(1.0, 2.0 * t), acceleration: uv(0.0, 2.0) };
+/// let (frame, speed) = PathLine { surface: &plane, path }.frame(0.0)?;
+/// assert!((speed - 1.0).abs() < 1e-15 && (frame.turn.z - 2.0).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct PathLine<'a, F> {
     /// The surface.
     pub surface: &'a dyn Surface,

@@ -59,6 +59,16 @@ const D: [f64; 7] = [
 impl<const N: usize> OdeStep<N> {
     /// The step of length `h` from `start`, where the slope is `slope`.
     ///
+    /// ```
+    /// use osculate_geom::ode::OdeStep;
+    /// // y' = y from 1: e^h to fifth order, and in between.
+    /// let f = |y: &[f64; 1]| Ok::<_, std::convert::Infallible>(*y);
+    /// let step = OdeStep::take([1.0], [1.0], 0.1, f)?;
+    /// assert!((step.end[0] - 0.1f64.exp()).abs() < 1e-8 && step.error[0].abs() < 1e-6);
+    /// assert!((step.at(0.5)[0] - 0.05f64.exp()).abs() < 1e-7);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// The first error of `f`, which is asked at six states.
     pub fn take<X>(

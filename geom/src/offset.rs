@@ -65,6 +65,17 @@ pub struct Offset<S> {
 impl<S: Surface> Offset<S> {
     /// The surface `distance_mm` outside (negative: inside) of `base`.
     ///
+    /// ```
+    /// use osculate_geom::{Offset, Surface, analytic::Sphere, uv};
+    /// // A ball of radius 10 grows to 12; 10 mm inwards it is a point, which is no surface.
+    /// let ball = Sphere::new(10.0)?;
+    /// let grown = Offset::new(&ball, 2.0)?;
+    /// assert!((grown.jet2(uv(0.3, 0.5)).forms()?.mean() - 1.0 / 12.0).abs() < 1e-14);
+    /// assert!((grown.further(-3.0)?.point(uv(0.0, 0.0)).x - 9.0).abs() < 1e-14);
+    /// assert!(Offset::new(&ball, -10.0)?.regular(uv(0.3, 0.5)).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`OffsetError::Distance`].
     pub fn new(base: S, distance_mm: f64) -> Result<Self, OffsetError> {
@@ -237,6 +248,14 @@ pub struct ClearRange {
 /// These are looked for at `per_span` x `per_span` places between breaks, and settled from the best of them by steps
 /// that halve down to a billionth of a span. An extreme narrower than the samples can be missed; one that is found is
 /// met to rounding squared. Places outside the trims and without a tangent plane do not count.
+///
+/// ```
+/// use osculate_geom::{analytic::Torus, offset::clear_range};
+/// // A ring can lose its tube's radius, and gain until its hole closes.
+/// let range = clear_range(&Torus::new(200.0, 60.0)?, 4);
+/// assert!((range.inward_mm + 60.0).abs() < 1e-9 && (range.outward_mm - 140.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn clear_range(surface: &dyn Surface, per_span: usize) -> ClearRange {
     let domain = surface.domain();
     let curvature = |at: Uv, most: bool| -> Option<f64> {

@@ -37,6 +37,13 @@ impl Uv {
     }
 
     /// The pair with `along` on `axis` and `across` on the other axis.
+    ///
+    /// ```
+    /// use osculate_geom::{Axis, Uv, uv};
+    /// let on_v_line = Uv::from_axis(Axis::V, 0.2, 7.0);
+    /// assert_eq!(on_v_line, uv(7.0, 0.2));
+    /// assert_eq!((on_v_line.get(Axis::V), on_v_line.get(Axis::V.other())), (0.2, 7.0));
+    /// ```
     #[must_use]
     pub const fn from_axis(axis: Axis, along: f64, across: f64) -> Self {
         match axis {
@@ -67,6 +74,15 @@ impl Axis {
 }
 
 /// An axis-aligned box, mm. Empty until the first point is added.
+///
+/// ```
+/// use osculate_geom::{Box3, Point3};
+/// let mut bounds = Box3::around(&[Point3::new(0.0, 0.0, 0.0), Point3::new(2.0, 3.0, 6.0)]);
+/// assert_eq!((bounds.diagonal_mm(), bounds.centre()), (7.0, Point3::new(1.0, 1.5, 3.0)));
+/// bounds.add(&Point3::new(-1.0, 1.0, 1.0));
+/// assert_eq!(bounds.grown(0.5).min, Point3::new(-1.5, -0.5, -0.5));
+/// assert!(Box3::empty().is_empty() && Box3::empty().union(&bounds) == bounds);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Box3 {
     /// Smallest coordinates.

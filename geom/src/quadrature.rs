@@ -23,6 +23,12 @@ pub struct Integral {
 }
 
 /// Integral of `f` over `[lo, hi]` by `panels` Gauss panels of equal length.
+///
+/// ```
+/// use osculate_geom::quadrature::gauss;
+/// // One panel is exact to degree 9.
+/// assert!((gauss(0.0, 2.0, 1, |x| x.powi(9)) - 102.4).abs() < 1e-12);
+/// ```
 pub fn gauss(lo: f64, hi: f64, panels: usize, mut f: impl FnMut(f64) -> f64) -> f64 {
     let n = panels.max(1);
     let step = (hi - lo) / n as f64;
@@ -40,6 +46,17 @@ pub fn gauss(lo: f64, hi: f64, panels: usize, mut f: impl FnMut(f64) -> f64) -> 
 /// until two refinements agree to `relative`, at most five times.
 ///
 /// Places without a tangent plane have no area and contribute nothing.
+///
+/// ```
+/// use osculate_geom::{analytic::Sphere, quadrature::{area, over_surface}};
+/// use std::f64::consts::PI;
+/// // A ball's area, and its total curvature, which is 4 pi whatever its radius.
+/// let ball = Sphere::new(10.0)?;
+/// assert!((area(&ball, 1e-10).value - 400.0 * PI).abs() < 1e-6);
+/// let total = over_surface(&ball, 1e-10, |jet| jet.forms().map_or(0.0, |f| f.gauss()));
+/// assert!((total.value - 4.0 * PI).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn over_surface(surface: &dyn Surface, relative: f64, f: impl Fn(&Jet2) -> f64) -> Integral {
     let (bu, bv) = (surface.breaks(Axis::U), surface.breaks(Axis::V));
     let run = |panels: usize| -> f64 {

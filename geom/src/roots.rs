@@ -58,6 +58,16 @@ const MAX_EVALUATIONS: u32 = 160;
 /// Chandrupatla's method: inverse quadratic interpolation where it is safe, bisection elsewhere. Works on kinks and
 /// jumps too (it then returns the place of the sign change).
 ///
+/// ```
+/// use osculate_geom::roots::{End, RootError, bracketed};
+/// let f = |x: f64| x * x - 2.0;
+/// let end = |x: f64| End { x, f: f(x) };
+/// let root = bracketed(end(0.0), end(2.0), 1e-14, f)?;
+/// assert!((root.x - 2f64.sqrt()).abs() < 1e-14);
+/// assert!(matches!(bracketed(end(2.0), end(3.0), 1e-14, f), Err(RootError::NoSignChange { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`RootError::NoSignChange`]; [`RootError::NotConverged`] where the function returns NaN.
 pub fn bracketed(a: End, b: End, x_tol: f64, mut f: impl FnMut(f64) -> f64) -> Result<Root, RootError> {

@@ -20,6 +20,16 @@ pub const MAX_ORDER: usize = 6;
 const TERMS: usize = (MAX_ORDER + 1) * (MAX_ORDER + 2) / 2;
 
 /// A function of two variables to a given order about a place.
+///
+/// ```
+/// use osculate_geom::{Axis, Series};
+/// // x^2 y about (3, 5) to second order.
+/// let (x, y) = (Series::variable(Axis::U, 3.0, 2), Series::variable(Axis::V, 5.0, 2));
+/// let f = x * x * y;
+/// assert_eq!((f.value(), f.derivative(1, 0), f.derivative(1, 1)), (45.0, 30.0, 6.0));
+/// // The third derivative was not asked for, and is not said to be zero.
+/// assert!(f.derivative(2, 1).is_nan());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Series {
     order: usize,

@@ -10,6 +10,13 @@ pub fn general([[p, q], [r, s]]: [[f64; 2]; 2], [a, b]: [f64; 2]) -> [f64; 2] {
 
 /// The solution of the symmetric `[[e, f], [f, g]] x = b`, as the first fundamental form has it; not finite where the
 /// determinant vanishes.
+///
+/// ```
+/// use osculate_geom::solve;
+/// // 2 x + y = 5, x + 4 y = 6.
+/// let [x, y] = solve::symmetric([2.0, 1.0, 4.0], [5.0, 6.0]);
+/// assert!((x - 2.0).abs() < 1e-15 && (y - 1.0).abs() < 1e-15);
+/// ```
 #[inline]
 #[must_use]
 pub fn symmetric([e, f, g]: [f64; 3], b: [f64; 2]) -> [f64; 2] {

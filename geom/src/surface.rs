@@ -10,6 +10,29 @@ use std::sync::Arc;
 ///
 /// `tools`, `productivity` and `postproc` see surfaces only through this trait. Three methods are
 /// required.
+///
+/// A surface of one's own from its formula, by the arithmetic of [`Series`](crate::Series):
+///
+/// ```
+/// use osculate_geom::{Axis, Domain, Interval, Jet2, Series, Side, Surface, Taylor, Uv, uv};
+/// /// z = x y over a square.
+/// struct Saddle;
+/// impl Surface for Saddle {
+///     fn domain(&self) -> Domain {
+///         Domain { u: Interval::new(-9.0, 9.0), v: Interval::new(-9.0, 9.0) }
+///     }
+///     fn jet2(&self, at: Uv) -> Jet2 {
+///         self.taylor(at, 2).jet2()
+///     }
+///     fn taylor(&self, at: Uv, order: usize) -> Taylor {
+///         let (x, y) = (Series::variable(Axis::U, at.u, order), Series::variable(Axis::V, at.v, order));
+///         Taylor { uv: at, side: Side::Along, coordinates: [x, y, x * y] }
+///     }
+/// }
+/// let forms = Saddle.jet2(uv(0.0, 0.0)).forms()?;
+/// assert!((forms.gauss() + 1.0).abs() < 1e-15 && forms.mean().abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Surface: Send + Sync {
     /// The parameter rectangle. A trimmed surface gives the rectangle of its untrimmed carrier.
     fn domain(&self) -> Domain;
@@ -191,6 +214,15 @@ impl<S: Surface + ?Sized> Surface for Arc<S> {
 }
 
 /// A surface with its material side turned over: the same points, the opposite outward normal.
+///
+/// ```
+/// use osculate_geom::{Flipped, Interval, Surface, analytic::Cylinder, uv};
+/// // The wall of a bore of radius 20 instead of a shaft's: hollow, with the normal towards the axis.
+/// let bore = Flipped(Cylinder::new(20.0, Interval::new(0.0, 80.0))?);
+/// let forms = bore.jet2(uv(0.0, 40.0)).forms()?;
+/// assert!((forms.normal.x + 1.0).abs() < 1e-15 && (forms.principal().k_min + 1.0 / 20.0).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Flipped<S>(pub S);
 
@@ -209,6 +241,17 @@ impl<S: Surface> Surface for Flipped<S> {
 }
 
 /// A surface restricted to a parameter rectangle and given a material side.
+///
+/// ```
+/// use osculate_geom::{Domain, Interval, Patch, Side, analytic::Sphere, quadrature::area};
+/// use std::f64::consts::FRAC_PI_2;
+/// // An octant of a ball has an eighth of its area.
+/// let quarter = Interval::new(0.0, FRAC_PI_2);
+/// let domain = Domain { u: quarter, v: quarter };
+/// let octant = Patch { surface: Sphere::new(10.0)?, domain, side: Side::Along };
+/// assert!((area(&octant, 1e-10).value - 100.0 * FRAC_PI_2).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Patch<S> {
     /// The whole surface.

@@ -97,6 +97,21 @@ pub struct Revolved<C> {
 impl<C: Curve> Revolved<C> {
     /// The curve turned from the angle `turn.lo` to `turn.hi`, rad; a full turn closes.
     ///
+    /// ```
+    /// use osculate_geom::analytic::{Conic, ConicKind, Placement};
+    /// use osculate_geom::{Interval, Point3, Revolved, Surface, TurnAxis, Vec3, uv};
+    /// use std::f64::consts::{FRAC_PI_2, TAU};
+    /// // Half a circle about the axis makes a ball.
+    /// let frame = Placement::new(Point3::origin(), -Vec3::y_axis(), Some(Vec3::x()));
+    /// let kind = ConicKind::Ellipse { semi_axes_mm: [10.0, 10.0] };
+    /// let arc = Conic::new(kind, frame, Interval::new(-FRAC_PI_2, FRAC_PI_2))?;
+    /// let axis = TurnAxis { origin: Point3::origin(), direction: Vec3::z_axis() };
+    /// let ball = Revolved::new(arc, axis, Interval::new(0.0, TAU))?;
+    /// assert!((ball.jet2(uv(0.3, 0.5)).forms()?.gauss() - 0.01).abs() < 1e-15);
+    /// assert!(ball.domain().u.periodic);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SweepError::Axis`], [`SweepError::Turn`].
     pub fn new(curve: C, axis: TurnAxis, turn: Interval) -> Result<Self, SweepError> {
@@ -181,6 +196,17 @@ pub struct Extruded<C> {
 impl<C: Curve> Extruded<C> {
     /// The curve moved by `v direction` for v over `range`, which may be infinite.
     ///
+    /// ```
+    /// use osculate_geom::analytic::{Conic, Placement};
+    /// use osculate_geom::{Extruded, Interval, Point3, SweepError, Surface, Vec3, uv};
+    /// let circle = Conic::circle(25.0, Placement::identity())?;
+    /// let shaft = Extruded::new(circle, Vec3::z(), Interval::new(0.0, 80.0))?;
+    /// assert_eq!(shaft.point(uv(0.0, 30.0)), Point3::new(25.0, 0.0, 30.0));
+    /// let nowhere = Extruded::new(circle, Vec3::zeros(), Interval::new(0.0, 80.0));
+    /// assert!(matches!(nowhere, Err(SweepError::Direction { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SweepError::Direction`], [`SweepError::Range`].
     pub fn new(curve: C, direction: Vec3, range: Interval) -> Result<Self, SweepError> {
@@ -249,6 +275,16 @@ pub struct Ruled<A, B> {
 
 impl<A: Curve, B: Curve> Ruled<A, B> {
     /// The ruled surface between two curves with ends.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Ruled, Surface, analytic::Line, uv};
+    /// // Two straight edges that are turned against each other: a saddle.
+    /// let edge = |y: f64, rise: f64| Line::segment(Point3::new(0.0, y, 0.0), Point3::new(10.0, y, rise));
+    /// let ruled = Ruled::new(edge(0.0, 0.0)?, edge(10.0, 10.0)?)?;
+    /// assert_eq!(ruled.point(uv(0.5, 0.5)), Point3::new(5.0, 5.0, 2.5));
+    /// assert!(ruled.jet2(uv(0.5, 0.5)).forms()?.gauss() < 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`SweepError::Unlimited`] for a curve without ends.

@@ -52,6 +52,15 @@ impl Taylor {
     /// Point and derivatives to second order of the polynomial at another place, with the side of this one.
     ///
     /// Off the surface's own by the first terms left out, in the steps of u and v to the power of the order and one.
+    ///
+    /// ```
+    /// use osculate_geom::{Surface, analytic::Sphere, uv};
+    /// // A polynomial of order 6 a hundredth of a radian on: off by the seventh power of that.
+    /// let ball = Sphere::new(10.0)?;
+    /// let near = ball.taylor(uv(0.3, 0.5), 6).jet2_at(uv(0.31, 0.5));
+    /// assert!((near.point - ball.point(uv(0.31, 0.5))).norm() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn jet2_at(&self, at: Uv) -> Jet2 {
         let (order, x, y) = (self.order(), at.u - self.uv.u, at.v - self.uv.v);

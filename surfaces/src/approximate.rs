@@ -73,6 +73,17 @@ const PLACES: [f64; 4] = [0.15, 0.4, 0.6, 0.85];
 
 /// The bicubic surface over `domain` that stays within `tolerance_mm` of `surface` at the places measured.
 ///
+/// ```
+/// use osculate_geom::{Domain, Interval, Surface, analytic::Sphere, uv};
+/// use osculate_surfaces::approximate;
+/// // A piece of a ball without weights: a thousandth of a millimetre off its radius at most.
+/// let part = Domain { u: Interval::new(0.0, 1.0), v: Interval::new(-0.5, 0.5) };
+/// let near = approximate(&Sphere::new(10.0)?, &part, 1e-3)?;
+/// assert!(near.error_mm <= 1e-3 && !near.surface.is_rational());
+/// assert!((near.surface.point(uv(0.3, 0.2)).coords.norm() - 10.0).abs() <= 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ApproximateError`].
 pub fn approximate(

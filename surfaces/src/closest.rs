@@ -83,6 +83,16 @@ pub fn closest_batch(
 /// The nearest point in the neighbourhood of a hint: where the distance stops shrinking on the way down from
 /// there. A parameter stops at the ends of its range and wraps where the surface is periodic.
 ///
+/// ```
+/// use osculate_geom::{Point3, analytic::Torus, uv};
+/// use osculate_surfaces::closest_near;
+/// // Beside a ring of radii 50 and 10 on the x axis: 40 mm from the side that the hint is on.
+/// let ring = Torus::new(50.0, 10.0)?;
+/// let foot = closest_near(&ring, &Point3::new(100.0, 0.0, 0.0), uv(0.1, 0.1))?;
+/// assert!((foot.distance_mm - 40.0).abs() < 1e-9 && foot.uv.v.abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ClosestError::NotFinite`], [`ClosestError::NotConverged`].
 pub fn closest_near<S: Surface + ?Sized>(
@@ -107,6 +117,19 @@ const STARTS: usize = 6;
 /// The nearest point of any surface, from the nearest points of a grid: eight steps between neighbouring
 /// breaks, fewer where that would be more than 64. Not certain: a feature smaller than the grid can be
 /// missed.
+///
+/// ```
+/// use osculate_geom::{Interval, Point3, analytic::Cylinder};
+/// use osculate_surfaces::{ClosestError, FootKind, closest_sampled};
+/// // Above the end of a shaft of radius 10: on its rim.
+/// let shaft = Cylinder::new(10.0, Interval::new(0.0, 50.0))?;
+/// let foot = closest_sampled(&shaft, &Point3::new(13.0, 0.0, 54.0))?;
+/// assert!((foot.distance_mm - 5.0).abs() < 1e-9 && foot.kind == FootKind::Edge);
+/// // A shaft without ends has no grid.
+/// let endless = Cylinder::new(10.0, Interval::new(f64::NEG_INFINITY, f64::INFINITY))?;
+/// assert!(matches!(closest_sampled(&endless, &Point3::origin()), Err(ClosestError::Unbounded { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`ClosestError::Unbounded`] where the domain has no end; otherwise as [`closest_near`].

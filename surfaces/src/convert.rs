@@ -70,8 +70,23 @@ fn checked(part: Interval, whole: Interval) -> Result<Interval, ConvertError> {
 }
 
 /// A curve with an exact NURBS form.
+///
+/// ```
+/// use osculate_geom::analytic::{Conic, Placement};
+/// use osculate_geom::Interval;
+/// use osculate_surfaces::CurveToNurbs;
+/// // A circle is rational of degree two, and stays a circle.
+/// let circle = Conic::circle(10.0, Placement::identity())?;
+/// let arc = circle.to_nurbs(Interval::new(0.0, 1.5))?;
+/// assert!(arc.is_rational() && arc.degree() == 2);
+/// assert!((arc.point(0.7).coords.norm() - 10.0).abs() < 1e-12);
+/// // Beyond what there is no arc.
+/// assert!(circle.to_nurbs(Interval::new(0.0, 9.0)).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait CurveToNurbs: Curve {
-    /// The part of the curve over a parameter interval, in the curve's sense.
+    /// The part of the curve over a parameter interval, in the curve's sense. The parameter of an arc counts its pieces from 0, a
+    /// quarter turn each at most: it is not the angle.
     ///
     /// # Errors
     /// [`ConvertError`].
@@ -79,9 +94,20 @@ pub trait CurveToNurbs: Curve {
 }
 
 /// A surface with an exact NURBS form.
+///
+/// ```
+/// use osculate_geom::{Domain, Interval, Surface, analytic::Torus};
+/// use osculate_surfaces::ToNurbs;
+/// // Exact: the Gaussian curvature on the outer equator of a ring is that of its radii. The equator is half way along v.
+/// let ring = Torus::new(50.0, 10.0)?;
+/// let part = ring.to_nurbs(Domain { u: Interval::new(0.0, 1.0), v: Interval::new(-1.0, 1.0) })?;
+/// let k = part.jet2(part.domain().at(0.0, 0.5)).forms()?.gauss();
+/// assert!((k - 1.0 / (10.0 * 60.0)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait ToNurbs: Surface {
     /// The part of the surface over a parameter rectangle, with u and v in the surface's sense and the material on the
-    /// same side.
+    /// same side. Along arcs the parameter is as in [`CurveToNurbs::to_nurbs`], not the angle.
     ///
     /// # Errors
     /// [`ConvertError`].

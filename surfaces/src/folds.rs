@@ -41,6 +41,13 @@ pub struct Folds {
 }
 
 /// Where the normals of a surface turn by more than 120 deg within pieces no larger than `within_mm`, at places that `counts`.
+///
+/// ```
+/// use osculate_surfaces::{folds::folds, gallery};
+/// // A smooth patch has none: all of it was looked through.
+/// let found = folds(&gallery::m86(4), 0.1, &|_| true);
+/// assert!(found.found.is_empty() && found.open == 0);
+/// ```
 #[must_use]
 pub fn folds(surface: &NurbsSurface, within_mm: f64, counts: &(dyn Fn(Uv) -> bool + Sync)) -> Folds {
     let patches = surface.bezier_patches();

@@ -42,6 +42,12 @@ pub enum ImportError {
 }
 
 /// The format of a file, by its first lines.
+///
+/// ```
+/// use osculate_surfaces::{Format, detect};
+/// assert_eq!(detect(b"ISO-10303-21;\nHEADER;"), Some(Format::Step));
+/// assert_eq!(detect(b"%PDF-1.7"), None);
+/// ```
 #[must_use]
 pub fn detect(bytes: &[u8]) -> Option<Format> {
     if step::looks_like(bytes) {
@@ -99,6 +105,17 @@ fn kind(bytes: &[u8]) -> &'static str {
 }
 
 /// Reads a file of any format that [`detect`] knows.
+///
+/// ```
+/// use osculate_surfaces::{Format, ImportError, read};
+/// // One flat patch of 10 x 20 mm as text. Its file does not say on which side the material is.
+/// let part = read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 0\n")?;
+/// assert_eq!((part.format, part.faces.len()), (Format::Patches, 1));
+/// assert!((part.faces[0].area_mm2() - 200.0).abs() < 1e-9 && !part.faces[0].oriented);
+/// // What is no part is told by what it seems to be.
+/// assert!(matches!(read(b"%PDF-1.7"), Err(ImportError::Unknown { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`ImportError`] where the bytes are neither, or nothing of them can be read.

@@ -69,6 +69,18 @@ pub enum KnotError {
 }
 
 /// A checked knot vector.
+///
+/// ```
+/// use osculate_surfaces::{KnotError, Knots};
+/// // A clamped quadratic of two spans: 0 0 0, 1, 2 2 2.
+/// let knots = Knots::new(2, 4, vec![0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0])?;
+/// assert_eq!((knots.domain(), knots.span_count(), knots.multiplicity(2.0)), ([0.0, 2.0], 2, 3));
+/// // At a break the span to its right.
+/// assert_eq!((knots.find(0.5), knots.find(1.0)), (0, 1));
+/// // Multiple knots are written out.
+/// assert!(matches!(Knots::new(2, 4, vec![0.0, 1.0, 2.0]), Err(KnotError::Count { need: 7, got: 3 })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knots {
     degree: usize,

@@ -7,6 +7,8 @@
 //!
 //! Lengths are millimetres, parameters have no unit.
 //!
+//! # From poles to a nearest point
+//!
 //! ```
 //! use osculate_geom::{Point3, Surface, uv};
 //! use osculate_surfaces::{Net, NurbsSurface, closest};
@@ -19,6 +21,52 @@
 //! assert_eq!(saddle.point(uv(0.5, 0.5)).z, 0.25);
 //! let foot = closest(&saddle, &Point3::new(2.0, 2.0, 1.0), None)?;
 //! assert!((foot.distance_mm - 2f64.sqrt()).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From a CAD file to a face
+//!
+//! [`read`] takes what [`detect`] knows: STEP, IGES, Bezier patches, sections of points, the JSON of this crate. A [`Part`] has its
+//! faces, what was not understood by kind and count, and findings.
+//!
+//! ```
+//! use osculate_geom::{Axis, Surface};
+//! use osculate_surfaces::read;
+//! // Bezier patches as text stand for a file here: one flat patch of 10 x 20 mm.
+//! let part = read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 0\n")?;
+//! let face = part.face("F1").ok_or("it has no face")?;
+//! assert!((face.area_mm2() - 200.0).abs() < 1e-9 && part.not_used.is_empty());
+//! // A face is a surface, with its trims and its material side.
+//! assert_eq!(face.spans(Axis::U, 0.5).len(), 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From points to a surface
+//!
+//! [`fit`] goes through points or near them, [`fn@approximate`] is near another surface, [`ToNurbs`] is exact.
+//!
+//! ```
+//! use osculate_geom::{Point3, Surface, uv};
+//! use osculate_surfaces::fit::{LoftOptions, Spacing, loft};
+//! // Four straight sections on a plane that rises with y: the surface between them is that plane.
+//! let section = |y: f64| (0..5).map(|k| Point3::new(10.0 * f64::from(k), y, 0.5 * y)).collect::<Vec<_>>();
+//! let options = LoftOptions { degree: [3, 3], spacing: Spacing::Chord, closed: false, tolerance_mm: None };
+//! let sheet = loft(&[section(0.0), section(10.0), section(20.0), section(30.0)], &options)?.surface;
+//! assert!((sheet.point(uv(0.5, 0.5)) - Point3::new(20.0, 15.0, 7.5)).norm() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From faces to a file
+//!
+//! [`step`], [`iges`] and [`mod@json`] write faces, [`mesh_faces`] makes triangles of them and [`stl`] writes these.
+//!
+//! ```
+//! use osculate_surfaces::{MeshOptions, mesh_faces, read, stl};
+//! let part = read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 0\n")?;
+//! let mesh = mesh_faces(&part.faces, &MeshOptions::chord(0.01))?;
+//! // Two triangles are a rectangle.
+//! assert_eq!((mesh.triangles.len(), mesh.area_mm2()), (2, 200.0));
+//! assert_eq!(stl::ascii(&mesh, "plate").matches("facet normal").count(), 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -216,6 +216,15 @@ impl Face {
 
     /// Principal curvatures on a grid of about `per_side` points between any two sides, inside the face; `None`
     /// where no sampled point has a tangent plane.
+    ///
+    /// ```
+    /// use osculate_surfaces::patches;
+    /// // A parabolic sheet z = x (20 - x) / 20, x from 0 to 20 mm: bent by z'' = 1 / 10 at its top, less beside it, and not across.
+    /// let part = patches::read(b"1\n2 1\n0 0 0\n0 10 0\n10 0 10\n10 10 10\n20 0 0\n20 10 0\n")?;
+    /// let range = part.faces[0].curvature_range(9).ok_or("it has no tangent plane")?;
+    /// assert!(range.k_max_per_mm <= 0.1 + 1e-12 && range.k_max_per_mm > 0.09 && range.k_min_per_mm.abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn curvature_range(&self, per_side: usize) -> Option<CurvatureRange> {
         let spans = self.surface.breaks(Axis::U).len().max(self.surface.breaks(Axis::V).len()) - 1;
@@ -277,6 +286,15 @@ impl Surface for Face {
 
 impl Part {
     /// The face with this id.
+    ///
+    /// ```
+    /// use osculate_surfaces::patches;
+    /// let part = patches::read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 0\n")?;
+    /// assert_eq!(part.face("F1").map(|f| f.trimmed()), Some(false));
+    /// assert!(part.face("F2").is_none());
+    /// assert!((part.bbox().diagonal_mm() - 500f64.sqrt()).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn face(&self, id: &str) -> Option<&Face> {
         self.faces.iter().find(|f| f.id == id)

@@ -229,6 +229,17 @@ pub fn read(bytes: &[u8]) -> Result<Part, PatchesError> {
 
 /// Reads a set of Bezier patches with `unit_mm` millimetres in a unit of the file.
 ///
+/// ```
+/// use osculate_surfaces::patches;
+/// // A patch of 2 x 3 inches.
+/// let part = patches::read_in(b"1\n1 1\n0 0 0\n0 3 0\n2 0 0\n2 3 0\n", Some(25.4))?;
+/// assert!((part.faces[0].area_mm2() - 6.0 * 25.4 * 25.4).abs() < 1e-6);
+/// // A text that ends early says what is missing.
+/// let why = patches::read(b"1\n1 1\n0 0 0\n0 3 0\n").unwrap_err();
+/// assert!(matches!(why, patches::PatchesError::Ends { got: 2, want: 4, .. }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`PatchesError`] names the line and what was due there.
 pub fn read_in(bytes: &[u8], unit_mm: Option<f64>) -> Result<Part, PatchesError> {

@@ -35,6 +35,17 @@ const MOST_FOLDS: usize = 36;
 const SAME_AXIS: f64 = 1e-6;
 
 /// Equal turns about an axis, a full circle of them.
+///
+/// ```
+/// use osculate_geom::{Point3, TurnAxis, Vec3};
+/// use osculate_surfaces::pattern::Circle;
+/// // Six blades about the z axis: the third stands at 120 degrees.
+/// let axis = TurnAxis { origin: Point3::origin(), direction: Vec3::z_axis() };
+/// let wheel = Circle { axis, count: 6 };
+/// assert!((wheel.angle_deg(2) - 120.0).abs() < 1e-12);
+/// let turned = wheel.turn(3) * Point3::new(5.0, 0.0, 1.0);
+/// assert!((turned - Point3::new(-5.0, 0.0, 1.0)).norm() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
     /// The axis.

@@ -11,6 +11,17 @@ use std::fmt::Write;
 const HEADER: usize = 80;
 
 /// The mesh as binary STL: counter-clockwise triangles seen from outside, little endian.
+///
+/// ```
+/// use osculate_surfaces::{MeshOptions, facets, mesh_faces, patches, stl};
+/// // 80 bytes of head, a count, and 50 bytes a triangle; what was written is read back.
+/// let part = patches::read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 5\n")?;
+/// let mesh = mesh_faces(&part.faces, &MeshOptions::chord(0.1))?;
+/// let bytes = stl::binary(&mesh);
+/// assert_eq!(bytes.len(), 84 + 50 * mesh.triangles.len());
+/// assert_eq!(facets::read(&bytes)?.triangles.len(), mesh.triangles.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn binary(mesh: &PartMesh) -> Vec<u8> {
     let triangles = rounded(mesh);

@@ -23,6 +23,15 @@ pub struct Loop {
 
 impl Loop {
     /// Enclosed area in the parameter plane, positive where the loop runs counter-clockwise.
+    ///
+    /// ```
+    /// use osculate_geom::uv;
+    /// use osculate_surfaces::Loop;
+    /// let triangle = Loop { points: vec![uv(0.0, 0.0), uv(3.0, 0.0), uv(0.0, 4.0)] };
+    /// assert_eq!(triangle.signed_area(), 6.0);
+    /// let points = triangle.points.into_iter().rev().collect();
+    /// assert_eq!(Loop { points }.signed_area(), -6.0);
+    /// ```
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         let n = self.points.len();
@@ -109,6 +118,23 @@ impl TrimmedSurface {
     ///
     /// Loops may run across the sides of a periodic direction: consecutive points are taken as they are, so that a
     /// loop around a cylinder goes from u to u plus one period.
+    ///
+    /// ```
+    /// use osculate_geom::{Axis, Domain, Interval, Side, Surface, analytic::Plane, uv};
+    /// use osculate_surfaces::{TrimError, TrimmedSurface};
+    /// use std::sync::Arc;
+    /// // A plate of 40 x 40 mm with a hole of 20 x 20 in it.
+    /// let side = Interval::new(0.0, 40.0);
+    /// let square = |lo: f64, hi: f64| vec![uv(lo, lo), uv(hi, lo), uv(hi, hi), uv(lo, hi)];
+    /// let plane = Arc::new(Plane::new(Domain { u: side, v: side }));
+    /// let plate = TrimmedSurface::new(plane.clone(), &[square(0.0, 40.0), square(10.0, 30.0)], Side::Along)?;
+    /// assert!((plate.area_mm2() - 1200.0).abs() < 1e-6 && !plate.contains(uv(20.0, 20.0)));
+    /// // A line through the hole is in two pieces.
+    /// assert_eq!(plate.spans(Axis::U, 20.0).len(), 2);
+    /// let line = vec![uv(0.0, 0.0), uv(40.0, 0.0)];
+    /// assert!(matches!(TrimmedSurface::new(plane, &[line], Side::Along), Err(TrimError::TooFewPoints { got: 2, .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`TrimError`] for a loop that is none and for loops that enclose nothing.

@@ -22,6 +22,26 @@ pub struct ClMove {
 }
 
 /// A whole tool path in the part's frame.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_tools::cl::{ClMove, ClPath, Motion};
+/// use osculate_tools::{CutterSpec, Pose};
+/// // Down to the part and one pass along x at 1200 mm/min: 40 mm, two seconds.
+/// let at = |x: f64, z: f64| Pose { tip: Point3::new(x, 0.0, z), axis: Vec3::z_axis() };
+/// let path = ClPath {
+///     cutter: Some(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 }),
+///     spindle_rpm: Some(8000.0),
+///     moves: vec![
+///         ClMove { pose: at(0.0, 50.0), motion: Motion::Rapid },
+///         ClMove { pose: at(0.0, 0.0), motion: Motion::Feed(300.0) },
+///         ClMove { pose: at(40.0, 0.0), motion: Motion::Feed(1200.0) },
+///     ],
+///     ..Default::default()
+/// };
+/// let pass_mm = (path.moves[2].pose.tip - path.moves[1].pose.tip).norm();
+/// assert_eq!(path.moves[2].motion, Motion::Feed(pass_mm / (2.0 / 60.0)));
+/// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct ClPath {
     /// The cutter, where known.

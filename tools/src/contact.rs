@@ -84,6 +84,14 @@ impl From<Degenerate> for ContactError {
 impl Lean {
     /// The lean when it is usable.
     ///
+    /// ```
+    /// use osculate_tools::{ContactError, Lean};
+    /// // Not given, the axis is the normal. A lead of a right angle would lay the tool on its side.
+    /// assert_eq!(Lean::default(), Lean { lead_rad: 0.0, tilt_rad: 0.0 });
+    /// let lying = Lean { lead_rad: 90f64.to_radians(), tilt_rad: 0.0 };
+    /// assert!(matches!(lying.checked(), Err(ContactError::Lean { .. })));
+    /// ```
+    ///
     /// # Errors
     /// [`ContactError::Lean`].
     pub fn checked(self) -> Result<Self, ContactError> {
@@ -164,6 +172,19 @@ impl Lean {
     }
 
     /// The lean of an axis against a frame: lead zero or more, tilt what remains; upright where the axis is the normal.
+    ///
+    /// ```
+    /// use osculate_geom::{Darboux, Interval, Surface, Unit3, Vec3, analytic::Cylinder, uv};
+    /// use osculate_tools::Lean;
+    /// // On top of a shaft at x = 25, fed along z: the axis leans by 20 degrees to the left of the feed, a tilt of 90 degrees.
+    /// let jet = Cylinder::new(25.0, Interval::new(0.0, 80.0))?.jet2(uv(0.0, 40.0));
+    /// let frame = Darboux::new(&jet, &Vec3::z(), 0.0)?;
+    /// let angle = 20f64.to_radians();
+    /// let axis = Unit3::new_normalize(frame.normal.into_inner() * angle.cos() + frame.left.into_inner() * angle.sin());
+    /// let lean = Lean::of(&axis, &frame);
+    /// assert!((lean.lead_rad - angle).abs() < 1e-12 && (lean.tilt_rad - 90f64.to_radians()).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn of(axis: &Unit3, frame: &Darboux) -> Self {
         let [up, ahead, left] = [&frame.normal, &frame.tangent, &frame.left].map(|e| axis.dot(e));
@@ -173,6 +194,21 @@ impl Lean {
     }
 
     /// Principal curvatures of the tool at the contact.
+    ///
+    /// ```
+    /// use osculate_geom::{Axis, Domain, Interval, analytic::Plane, uv};
+    /// use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean};
+    /// // Corner radius r, lead l: across the feed it is as round as a ball of radius r + (R - r) / sin l.
+    /// let range = Interval::new(0.0, 50.0);
+    /// let plane = Plane::new(Domain { u: range, v: range });
+    /// let bull = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 2.0, length_mm: 60.0 };
+    /// let cutter = Cutter::try_from(bull)?;
+    /// let lean = Lean { lead_rad: 30f64.to_radians(), tilt_rad: 0.0 };
+    /// let contact = Contact::new(&plane, uv(25.0, 25.0), &cutter, FeedLine::Iso(Axis::U), lean)?;
+    /// let tool = lean.tool_curvature(&cutter, &contact.frame);
+    /// assert!((tool.along - 1.0 / 2.0).abs() < 1e-12 && (tool.across - 1.0 / (2.0 + 8.0 / 0.5)).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn tool_curvature(self, cutter: &Cutter, frame: &Darboux) -> ToolCurvature {
         let s = self.lead_rad.sin().abs();
@@ -217,6 +253,17 @@ pub fn moving_with_axis(
 
 /// The pose of a cutter that touches a point with outward normal `normal` and has a given axis. One that does not lean off the
 /// normal touches with its whole bottom, and stands with its tip over the point.
+///
+/// ```
+/// use osculate_geom::{Point3, Unit3, Vec3};
+/// use osculate_tools::{Cutter, CutterSpec, pose_with_axis};
+/// // A ball touches with its centre a radius above the point, whatever the axis; the tip is a radius below that along the axis.
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+/// let axis = Unit3::new_normalize(Vec3::new(0.6, 0.0, 0.8));
+/// let pose = pose_with_axis(&ball, &Point3::new(7.0, 0.0, 0.0), &Vec3::z_axis(), &axis);
+/// assert!((pose.tip - Point3::new(7.0 - 3.0, 0.0, 5.0 - 4.0)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn pose_with_axis(cutter: &Cutter, point: &Point3, normal: &Unit3, axis: &Unit3) -> Pose {
     let (n, a) = (normal.into_inner(), axis.into_inner());
@@ -228,6 +275,21 @@ pub fn pose_with_axis(cutter: &Cutter, point: &Point3, normal: &Unit3, axis: &Un
 }
 
 /// A cutter driven along a line on a surface at constant lead, tilt and lift: the exact motion, pose by pose.
+///
+/// ```
+/// use osculate_geom::{Axis, Domain, Interval, analytic::Plane, line::IsoLine};
+/// use osculate_tools::sweep::SweptMotion;
+/// use osculate_tools::{ContactMotion, Cutter, CutterSpec, Lean};
+/// // Along a line on a plane the tool moves straight and does not turn.
+/// let range = Interval::new(0.0, 50.0);
+/// let plane = Plane::new(Domain { u: range, v: range });
+/// let line = IsoLine { surface: &plane, along: Axis::U, fixed: 20.0, reversed: false };
+/// let cutter = Cutter::try_from(CutterSpec::Flat { diameter_mm: 12.0, length_mm: 40.0 })?;
+/// let lean = Lean { lead_rad: 0.1, tilt_rad: 0.0 };
+/// let moving = ContactMotion { line: &line, cutter: &cutter, lean, lift_mm: 0.0 }.at(10.0).ok_or("it ends")?;
+/// assert!((moving.tip_rate.x - 1.0).abs() < 1e-12 && moving.turn.norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct ContactMotion<'a> {
     /// The line of CC points.

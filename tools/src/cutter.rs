@@ -15,6 +15,15 @@ use crate::pose::Pose;
 use osculate_geom::{Point3, Unit3, Vec3};
 
 /// A validated cutter, made from a [`CutterSpec`](crate::CutterSpec).
+///
+/// ```
+/// use osculate_tools::{Cutter, CutterSpec};
+/// let spec = CutterSpec::Toroidal { diameter_mm: 20.0, corner_radius_mm: 2.0, length_mm: 60.0 };
+/// let cutter = Cutter::try_from(spec)?;
+/// assert_eq!((cutter.radius_mm(), cutter.corner_mm(), cutter.core_mm()), (10.0, 2.0, 8.0));
+/// assert!(cutter.is_end_mill() && !cutter.is_ball() && cutter.length_mm() == 60.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cutter {
     pub(crate) radius: f64,
@@ -129,6 +138,15 @@ impl Cutter {
 
     /// The lower part of the cutter, up to `length_mm`.
     ///
+    /// ```
+    /// use osculate_tools::{Cutter, CutterError};
+    /// // Of 60 mm the lower 25 cut. Nothing of a cutter reaches beyond its length.
+    /// let whole = Cutter::cylinder(10.0, 60.0)?;
+    /// assert_eq!(whole.shortened(25.0)?.length_mm(), 25.0);
+    /// assert!(matches!(whole.shortened(61.0), Err(CutterError::ShapeLength { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CutterError::Length`] where that is not above the corner, [`CutterError::ShapeLength`] where it is longer.
     pub fn shortened(&self, length_mm: f64) -> Result<Self, CutterError> {
@@ -197,6 +215,22 @@ impl Cutter {
     }
 
     /// Points of the meridian from the tip to the length, (rho, z), mm, turning by at most `turn_rad` on arcs.
+    ///
+    /// ```
+    /// use osculate_tools::{Cutter, CutterSpec};
+    /// // A cone of 45 degrees with a ball of radius 1: points on the ball are 1 mm from its centre, the last is the upper end.
+    /// let spec = CutterSpec::Cone {
+    ///     diameter_mm: 10.0,
+    ///     taper_deg: 45.0,
+    ///     corner_radius_mm: 1.0,
+    ///     tip_diameter_mm: None,
+    ///     length_mm: 30.0,
+    /// };
+    /// let outline = Cutter::try_from(spec)?.outline_mm(0.1);
+    /// assert!(outline.iter().take(3).all(|[rho, z]| (rho.hypot(z - 1.0) - 1.0).abs() < 1e-12));
+    /// assert_eq!(outline.last(), Some(&[5.0, 30.0]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn outline_mm(&self, turn_rad: f64) -> Vec<[f64; 2]> {
         let own = || Meridian::end_mill(self.radius, end_mill_corner(self.core_mm(), self.corner));
@@ -209,7 +243,7 @@ impl Cutter {
         self.meridian.is_none() && self.core_mm() == 0.0
     }
 
-    /// Signed distance of a local point to the cutter, negative inside. Exact but for points above the top end,
+    /// Signed distance of a local point to the cutter, mm, negative inside. Exact but for points above the top end,
     /// where it is a lower bound.
     #[must_use]
     #[inline]
@@ -228,7 +262,19 @@ impl Cutter {
         (if x > 0.0 && y > 0.0 { (x * x + y * y).sqrt() } else { x.max(y) }) - self.corner
     }
 
-    /// Signed distance of a point to the cutter in a pose, see [`Cutter::local_distance`].
+    /// Signed distance of a point to the cutter in a pose, mm, see [`Cutter::local_distance`].
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Vec3};
+    /// use osculate_tools::{Cutter, CutterSpec, Pose};
+    /// // A ball of radius 5 with its tip at the origin has its centre at z = 5.
+    /// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+    /// let pose = Pose { tip: Point3::origin(), axis: Vec3::z_axis() };
+    /// assert!((ball.distance(&pose, &Point3::new(3.0, 0.0, 1.0))).abs() < 1e-12);
+    /// assert!((ball.distance(&pose, &Point3::new(0.0, 0.0, -2.0)) - 2.0).abs() < 1e-12);
+    /// assert!((ball.distance(&pose, &Point3::new(4.0, 0.0, 20.0)) + 1.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn distance(&self, pose: &Pose, p: &Point3) -> f64 {
         let (rho, z) = local(pose, p);
@@ -424,75 +470,4 @@ impl Cutter {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn cutter(d: f64, r: f64) -> Cutter {
-        Cutter::new(d, r, 60.0).unwrap()
-    }
-
-    #[test]
-    fn refuses_impossible_cutters() {
-        assert!(matches!(Cutter::new(-1.0, 0.0, 10.0), Err(CutterError::Size { .. })));
-        assert!(matches!(Cutter::new(f64::NAN, 0.0, 10.0), Err(CutterError::Size { .. })));
-        assert!(matches!(Cutter::new(10.0, 5.1, 10.0), Err(CutterError::Corner { .. })));
-        assert!(matches!(Cutter::new(10.0, -0.1, 10.0), Err(CutterError::Corner { .. })));
-        assert!(matches!(Cutter::new(10.0, f64::NAN, 10.0), Err(CutterError::Corner { .. })));
-        assert!(matches!(Cutter::new(10.0, 5.0, 4.0), Err(CutterError::Length { .. })));
-    }
-
-    #[test]
-    fn closed_forms() {
-        let upright = Pose { tip: Point3::origin(), axis: Vec3::z_axis() };
-        let up = |x: f64| Line { origin: Point3::new(x, 0.0, -3.0), direction: Vec3::z_axis() };
-        // Straight up below the flat, the corner and outside.
-        let t = cutter(20.0, 2.0);
-        assert_eq!(t.entry(&upright, &up(7.0)).unwrap().at_mm, 3.0);
-        let corner = t.entry(&upright, &up(9.0)).unwrap();
-        assert!((corner.at_mm - (3.0 + 2.0 - 3f64.sqrt())).abs() < 1e-14, "{corner:?}");
-        assert!(t.entry(&upright, &up(10.01)).is_none());
-        // A ball: 2 - sqrt(4 - x^2).
-        let b = cutter(4.0, 2.0);
-        let e = b.entry(&upright, &up(1.2)).unwrap().at_mm;
-        assert!((e - (3.0 + 2.0 - (4f64 - 1.44).sqrt())).abs() < 1e-14);
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(4000))]
-        /// Wherever a line enters, the distance is zero, negative just behind and positive before; where it misses,
-        /// no sampled point of the line is inside.
-        #[test]
-        fn entry_is_the_first_zero_of_the_distance(
-            kind in 0usize..5, r in 0.0..=1.0f64, o in prop::array::uniform3(-30.0..30.0f64), d in prop::array::uniform3(-1.0..1.0f64),
-            a in prop::array::uniform3(-1.0..1.0f64)
-        ) {
-            let c = if kind == 0 { cutter(20.0, 10.0 * r) } else { crate::make::tests::shaped()[kind - 1] };
-            let (Some(direction), Some(axis)) = (Unit3::try_new(Vec3::from(d), 0.1), Unit3::try_new(Vec3::from(a), 0.1))
-            else { return Ok(()) };
-            let pose = Pose { tip: Point3::new(0.3, -0.2, 0.1), axis };
-            let line = Line { origin: Point3::from(o), direction };
-            match c.entry(&pose, &line) {
-                Some(e) => {
-                    prop_assert!(c.distance(&pose, &line.point(e.at_mm)).abs() < 1e-9);
-                    prop_assert!(c.distance(&pose, &line.point(e.at_mm - 0.5)) > 0.0);
-                    prop_assert!(e.at_mm > Cutter::least_entry_mm(&pose, &line) - 1e-9);
-                    prop_assert!(!c.enters_above(&pose, &line, e.at_mm + 1e-6));
-                    // The body of this question has no top.
-                    if kind == 0 && e.part != Part::Top {
-                        prop_assert!(c.enters_above(&pose, &line, e.at_mm - 1e-3));
-                    }
-                    // The normal points against the line.
-                    let n = c.normal_at(&pose, &line.point(e.at_mm), e.part);
-                    prop_assert!(n.dot(&direction) <= 1e-6, "{n:?}");
-                }
-                None => {
-                    for k in -400..400 {
-                        // A grazing line within rounding of the boundary counts as a miss.
-                        prop_assert!(c.distance(&pose, &line.point(0.3 * f64::from(k))) > -1e-9);
-                    }
-                }
-            }
-        }
-    }
-}
+mod tests;

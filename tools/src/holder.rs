@@ -72,6 +72,17 @@ impl HolderSpec {
 impl Holder {
     /// A holder of sections from the nose upwards.
     ///
+    /// ```
+    /// use osculate_tools::{Holder, HolderError, HolderSpec};
+    /// // A nose that widens from 20 to 40 mm over 30 mm, and a body above it.
+    /// let nose = HolderSpec { diameter_mm: 20.0, length_mm: 30.0, upper_diameter_mm: Some(40.0) };
+    /// let body = HolderSpec { diameter_mm: 40.0, length_mm: 50.0, upper_diameter_mm: None };
+    /// let holder = Holder::new(&[nose, body])?;
+    /// assert_eq!((holder.length_mm(), holder.sections()[1].above_mm), (80.0, 30.0));
+    /// assert!(matches!(Holder::new(&[]), Err(HolderError::Count { got: 0, .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`HolderError`].
     pub fn new(sections: &[HolderSpec]) -> Result<Self, HolderError> {
@@ -109,6 +120,18 @@ impl Holder {
     }
 
     /// The sections with the poses that they have above a cutter in a pose.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Vec3};
+    /// use osculate_tools::{Cutter, CutterSpec, Holder, Pose};
+    /// // The nose sits where the cutter ends.
+    /// let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 25.0 })?;
+    /// let holder = Holder::cylinder(30.0, 50.0)?;
+    /// let pose = Pose { tip: Point3::origin(), axis: Vec3::z_axis() };
+    /// let noses: Vec<Point3> = holder.posed(&cutter, &pose).map(|(_, pose)| pose.tip).collect();
+    /// assert_eq!(noses, [Point3::new(0.0, 0.0, 25.0)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn posed<'a>(
         &'a self,
         cutter: &Cutter,

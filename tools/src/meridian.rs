@@ -14,6 +14,22 @@
 use std::f64::consts::FRAC_PI_2;
 
 /// An arc of a meridian; radius 0 is a corner.
+///
+/// ```
+/// use osculate_tools::{Cutter, CutterSpec};
+/// // Leaned by 10 degrees a barrel of radius 100 and diameter 20 touches a floor with its tip; leaned by 85 with its large arc.
+/// let spec = CutterSpec::Barrel {
+///     diameter_mm: 20.0,
+///     barrel_radius_mm: 100.0,
+///     corner_radius_mm: 3.0,
+///     length_mm: 60.0,
+/// };
+/// let barrel = Cutter::try_from(spec)?;
+/// assert_eq!(barrel.touching(10f64.to_radians()).radius_mm, 3.0);
+/// let large = barrel.touching(85f64.to_radians());
+/// assert_eq!((large.radius_mm, large.centre_rho_mm), (100.0, 10.0 - 100.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     /// Distance of the centre from the axis, mm; negative for barrels.

@@ -14,6 +14,14 @@ pub struct Pose {
 
 impl Pose {
     /// The pose with the tip moved by `distance_mm` along the axis.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Unit3, Vec3};
+    /// use osculate_tools::Pose;
+    /// let pose = Pose { tip: Point3::origin(), axis: Unit3::new_normalize(Vec3::new(3.0, 0.0, 4.0)) };
+    /// let away = pose.retracted(10.0);
+    /// assert!((away.tip - Point3::new(6.0, 0.0, 8.0)).norm() < 1e-12 && away.axis == pose.axis);
+    /// ```
     #[must_use]
     pub fn retracted(&self, distance_mm: f64) -> Self {
         Self { tip: self.tip + self.axis.into_inner() * distance_mm, axis: self.axis }

@@ -95,6 +95,13 @@ pub enum CutterSpec {
 }
 
 /// A section of a tool holder: a cylinder, or a cone.
+///
+/// ```
+/// use osculate_tools::{Holder, HolderSpec};
+/// let sleeve = HolderSpec { diameter_mm: 30.0, length_mm: 50.0, upper_diameter_mm: None };
+/// assert_eq!(Holder::new(&[sleeve])?, Holder::cylinder(30.0, 50.0)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HolderSpec {

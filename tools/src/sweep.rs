@@ -28,6 +28,21 @@ pub trait SweptMotion {
 }
 
 /// The motion between two poses: tip and axis interpolated linearly (the axis renormalised), t from 0 to 1.
+///
+/// ```
+/// use osculate_geom::{Point3, Unit3, Vec3};
+/// use osculate_tools::{Pose, sweep::{LinearMotion, SweptMotion}};
+/// // Over 20 mm along x the axis turns from upright towards the feed: half way both are half way.
+/// let from = Pose { tip: Point3::origin(), axis: Vec3::z_axis() };
+/// let to = Pose { tip: Point3::new(20.0, 0.0, 0.0), axis: Unit3::new_normalize(Vec3::new(0.6, 0.0, 0.8)) };
+/// let half = LinearMotion { from, to }.at(0.5).ok_or("it is defined")?;
+/// assert!((half.pose.tip.x - 10.0).abs() < 1e-12 && (half.tip_rate.x - 20.0).abs() < 1e-12);
+/// let wanted = Unit3::new_normalize(Vec3::new(0.3, 0.0, 0.9));
+/// assert!((half.pose.axis.into_inner() - wanted.into_inner()).norm() < 1e-12);
+/// // The turn is about y, right-handed: from z to x.
+/// assert!(half.turn.y > 0.0 && half.turn.x.abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct LinearMotion {
     /// Pose at t = 0.
@@ -197,6 +212,20 @@ fn on_sharp_edge(
 ///
 /// The search stays within [`REACH_STEPS`] first steps of the guess: on a thin part the tool comes by again on the far
 /// side. None where the line misses at every instant looked at.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_tools::sweep::{LinearMotion, reach_from};
+/// use osculate_tools::{Cutter, CutterSpec, Line, Pose};
+/// // A ball of radius 5 passes 3 mm beside a line along z: the deepest entry is at 5 - sqrt(5^2 - 3^2), half way.
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+/// let at = |x: f64| Pose { tip: Point3::new(x, 3.0, 0.0), axis: Vec3::z_axis() };
+/// let motion = LinearMotion { from: at(-10.0), to: at(10.0) };
+/// let line = Line { origin: Point3::origin(), direction: Vec3::z_axis() };
+/// let deepest = reach_from(&ball, &line, &motion, 0.4, 0.05).ok_or("the tool misses the line")?;
+/// assert!((deepest.at_mm - 1.0).abs() < 1e-12 && (deepest.t - 0.5).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn reach_from(
     cutter: &Cutter,
     line: &Line,

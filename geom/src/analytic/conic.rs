@@ -47,6 +47,14 @@ impl Line {
 
     /// The segment from `a` at 0 to `b` at 1.
     ///
+    /// ```
+    /// use osculate_geom::{Curve, Point3, analytic::Line};
+    /// let edge = Line::segment(Point3::new(0.0, 0.0, 5.0), Point3::new(30.0, 40.0, 5.0))?;
+    /// assert_eq!(edge.point(0.5), Point3::new(15.0, 20.0, 5.0));
+    /// assert_eq!(edge.jet(0.5).first.norm(), 50.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`BadSize`] where the points are one or not finite.
     pub fn segment(a: Point3, b: Point3) -> Result<Self, BadSize> {
@@ -97,6 +105,17 @@ pub struct Conic {
 
 impl Conic {
     /// The conic over a parameter range. An ellipse over a full turn is periodic.
+    ///
+    /// ```
+    /// use osculate_geom::{Curve, Interval, analytic::{Conic, ConicKind, Placement}};
+    /// // At its vertex on the x axis an ellipse bends by a / b^2, at that on the y axis by b / a^2.
+    /// let kind = ConicKind::Ellipse { semi_axes_mm: [40.0, 20.0] };
+    /// let ellipse = Conic::new(kind, Placement::identity(), Interval::new(0.0, std::f64::consts::TAU))?;
+    /// assert!((ellipse.jet(0.0).curvature_per_mm()? - 40.0 / 400.0).abs() < 1e-15);
+    /// assert!((ellipse.jet(std::f64::consts::FRAC_PI_2).curvature_per_mm()? - 20.0 / 1600.0).abs() < 1e-15);
+    /// assert!(ellipse.domain().periodic);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`BadSize`] for a size that is not positive, a range that is not ascending, and more than a turn of an ellipse.

@@ -27,6 +27,15 @@ impl Placement {
     }
 
     /// The frame with the given `z`, and `x` as near to `x_hint` as being perpendicular allows.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Vec3, analytic::Placement};
+    /// // A fixture turned about z by 90 degrees: its x is the machine's y.
+    /// let fixture = Placement::new(Point3::new(10.0, 0.0, 0.0), Vec3::z_axis(), Some(Vec3::y()));
+    /// let p = Point3::new(3.0, 2.0, 1.0);
+    /// assert!((fixture.point(&p) - Point3::new(8.0, 3.0, 1.0)).norm() < 1e-15);
+    /// assert!((fixture.local(&fixture.point(&p)) - p).norm() < 1e-15);
+    /// ```
     #[must_use]
     pub fn new(origin: Point3, z: Unit3, x_hint: Option<Vec3>) -> Self {
         let x = x_hint

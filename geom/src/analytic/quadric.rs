@@ -18,6 +18,16 @@ pub struct Ellipsoid {
 impl Ellipsoid {
     /// The ellipsoid with the given semi-axes along x, y, z, mm.
     ///
+    /// ```
+    /// use osculate_geom::{Surface, analytic::Ellipsoid, uv};
+    /// // At its end on the x axis an ellipsoid bends by a / b^2 along y and by a / c^2 along z.
+    /// let egg = Ellipsoid::new([30.0, 20.0, 10.0])?;
+    /// let k = egg.jet2(uv(0.0, 0.0)).forms()?.principal();
+    /// assert!((k.k_max - 30.0 / 100.0).abs() < 1e-14 && (k.k_min - 30.0 / 400.0).abs() < 1e-14);
+    /// assert!(k.d_max.z.abs() > 1.0 - 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`BadSize`] for a semi-axis that is not positive.
     pub fn new(semi_axes_mm: [f64; 3]) -> Result<Self, BadSize> {
@@ -75,6 +85,16 @@ pub struct Paraboloid {
 
 impl Paraboloid {
     /// The paraboloid with coefficients `ab_per_mm` over `|x|, |y| <= half_size_mm`.
+    ///
+    /// ```
+    /// use osculate_geom::{Flipped, Surface, analytic::Paraboloid, uv};
+    /// // A bowl z = 0.01 (x^2 + y^2) has radius 50 mm at its bottom: hollow with the material below, round with it above.
+    /// let bowl = Paraboloid::new([0.01, 0.01], 20.0)?;
+    /// assert!((bowl.jet2(uv(0.0, 0.0)).forms()?.mean() + 1.0 / 50.0).abs() < 1e-15);
+    /// let bump = Flipped(bowl);
+    /// assert!((bump.jet2(uv(0.0, 0.0)).forms()?.mean() - 1.0 / 50.0).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`BadSize`] for coefficients that are not finite or a size that is not positive.

@@ -84,6 +84,14 @@ pub struct Plane {
 
 impl Plane {
     /// The rectangle `[u.lo, u.hi] x [v.lo, v.hi]` of the plane.
+    ///
+    /// ```
+    /// use osculate_geom::{Domain, Interval, Point3, Surface, analytic::Plane, uv};
+    /// let plane = Plane::new(Domain { u: Interval::new(0.0, 80.0), v: Interval::new(0.0, 50.0) });
+    /// assert_eq!(plane.point(uv(10.0, 20.0)), Point3::new(10.0, 20.0, 0.0));
+    /// assert_eq!(plane.jet2(uv(10.0, 20.0)).normal()?.z, 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub const fn new(domain: Domain) -> Self {
         Self { domain }
@@ -153,6 +161,16 @@ pub struct Cone {
 
 impl Cone {
     /// The cone whose radius at z = 0 is `radius_mm` and grows with z at `half_angle_rad`.
+    ///
+    /// ```
+    /// use osculate_geom::{Interval, Surface, analytic::Cone, uv};
+    /// // A draft of 30 degrees: 10 mm along the generator the radius is 5 mm larger. Straight along it, r / cos 30 deg across.
+    /// let cone = Cone::new(20.0, 30f64.to_radians(), Interval::new(0.0, 10.0))?;
+    /// assert!((cone.point(uv(0.0, 10.0)).x - 25.0).abs() < 1e-12);
+    /// let k = cone.jet2(uv(0.0, 10.0)).forms()?.principal();
+    /// assert!(k.k_min.abs() < 1e-15 && (k.k_max - 30f64.to_radians().cos() / 25.0).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`BadSize`] for a negative radius, a half angle that is not strictly between -90 and 90 degrees, and a range that is
@@ -256,6 +274,16 @@ impl Torus {
 
     /// One part of the torus whose tube is not narrower than its circle, from apex to apex. The outward normal points
     /// out of the tube on both; on the lemon that is against `S_u x S_v`.
+    ///
+    /// ```
+    /// use osculate_geom::{Surface, analytic::{Spindle, Torus}};
+    /// // A tube of radius 5 about a circle of radius 3: the apexes lie on the axis, 4 mm above and below.
+    /// let apple = Torus::new(3.0, 5.0)?.spindle(Spindle::Apple)?;
+    /// let top = apple.point(apple.domain().at(0.0, 1.0));
+    /// assert!(top.x.abs() < 1e-12 && (top.z - 4.0).abs() < 1e-12);
+    /// assert!(Torus::new(5.0, 3.0)?.spindle(Spindle::Apple).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`BadSize`] for radii that are not positive, a tube narrower than its circle, and the lemon of equal radii,

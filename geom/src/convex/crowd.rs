@@ -78,6 +78,18 @@ impl Crowd {
 
     /// How far another crowd is away that stands at `place` in the frame of this one. The bounds are within about `share` of each other,
     /// or the lower one is above `enough_mm`.
+    ///
+    /// ```
+    /// use osculate_geom::{Box3, Point3, convex::{Convex, Crowd}, nalgebra::Isometry3};
+    /// let cube = |x: f64| {
+    ///     Convex::cuboid(&Box3::around(&[Point3::new(x, 0.0, 0.0), Point3::new(x + 10.0, 10.0, 10.0)]))
+    /// };
+    /// // Two cubes with 20 mm between them, and one 3 mm above the second.
+    /// let (two, one) = (Crowd::new(vec![cube(0.0), cube(30.0)])?, Crowd::new(vec![cube(0.0)])?);
+    /// let d = two.apart(&one, &Isometry3::translation(30.0, 0.0, 13.0), 1e-6, f64::INFINITY);
+    /// assert!((d.least_mm - 3.0).abs() < 1e-5 && (d.most_mm - 3.0).abs() < 1e-5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn apart(&self, other: &Self, place: &Isometry3<f64>, share: f64, enough_mm: f64) -> Apart {
         let mut search = Search {

@@ -17,13 +17,13 @@ use nearest::Simplex;
 /// A convex body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Convex {
-    /// A flat triangle.
+    /// A flat triangle, mm.
     Triangle([Point3; 3]),
-    /// All points between these.
+    /// All points between these, mm.
     Hull(Vec<Point3>),
     /// A cylinder or a cone, cut off square to its axis.
     Frustum {
-        /// The centres of its ends.
+        /// The centres of its ends, mm.
         ends: [Point3; 2],
         /// The radii at its ends, mm.
         radii_mm: [f64; 2],
@@ -110,6 +110,14 @@ impl Convex {
 
     /// How far another body is away that stands at `place` in the frame of this one. The search ends when the bounds are within `share`
     /// of each other, or the lower one is above `enough_mm`.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, convex::Convex, nalgebra::Isometry3};
+    /// // A rod of radius 5 mm along z, and the same beside it at (30, 40): 50 mm between the axes, 40 mm between the sides.
+    /// let rod = Convex::Frustum { ends: [Point3::origin(), Point3::new(0.0, 0.0, 80.0)], radii_mm: [5.0, 5.0] };
+    /// let d = rod.apart(&rod, &Isometry3::translation(30.0, 40.0, 0.0), 1e-6, f64::INFINITY);
+    /// assert!(d.least_mm <= 40.0 + 1e-9 && 40.0 <= d.most_mm + 1e-9 && d.most_mm - d.least_mm < 1e-3);
+    /// ```
     #[must_use]
     pub fn apart(&self, other: &Self, place: &Isometry3<f64>, share: f64, enough_mm: f64) -> Apart {
         let difference = |along: &Vec3| -> Vec3 {

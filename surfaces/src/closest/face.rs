@@ -54,6 +54,20 @@ struct Patch {
 
 /// What the search for nearest points of one trimmed face needs. A query costs a pass over the boundary's pieces
 /// and, where the carrier's nearest point is cut away, over the cells.
+///
+/// ```
+/// use osculate_geom::{Domain, Interval, Point3, Side, analytic::Plane, uv};
+/// use osculate_surfaces::{FaceSearch, FootKind, TrimmedSurface};
+/// use std::sync::Arc;
+/// // A plate with a square hole: over the hole the nearest place is the hole's side.
+/// let side = Interval::new(0.0, 40.0);
+/// let square = |lo: f64, hi: f64| vec![uv(lo, lo), uv(hi, lo), uv(hi, hi), uv(lo, hi)];
+/// let plane = Arc::new(Plane::new(Domain { u: side, v: side }));
+/// let plate = TrimmedSurface::new(plane, &[square(0.0, 40.0), square(10.0, 30.0)], Side::Along)?;
+/// let foot = FaceSearch::new(&plate, None).closest(&Point3::new(13.0, 20.0, 4.0), None)?;
+/// assert!((foot.distance_mm - 5.0).abs() < 1e-9 && foot.kind == FootKind::Edge);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct FaceSearch<'a> {
     face: &'a TrimmedSurface,

@@ -41,6 +41,19 @@ pub struct MeshPart {
 
 /// Makes a part of triangles, in mm. Those that turn by more than `sharp_rad` ([`SHARP_RAD`]) at a common side belong to different faces.
 ///
+/// ```
+/// use osculate_geom::Point3;
+/// use osculate_surfaces::facets::{SHARP_RAD, mesh_part};
+/// // A corner cut off a cube of 6 mm: four triangles, a face each, closed.
+/// let p = [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]].map(Point3::from);
+/// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t| t.map(|k| p[k]));
+/// let part = mesh_part(&triangles, SHARP_RAD)?;
+/// assert!(part.closed && part.faces.len() == 4);
+/// let area: f64 = part.faces.iter().map(|f| f.facets.area_mm2()).sum();
+/// assert!((area - (54.0 + 18.0 * 3f64.sqrt())).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`FacetsError`] where no triangle has an area, and where one is not finite or too far away.
 pub fn mesh_part(triangles: &[[Point3; 3]], sharp_rad: f64) -> Result<MeshPart, FacetsError> {

@@ -89,6 +89,18 @@ pub fn mesh_format(bytes: &[u8]) -> Option<MeshFormat> {
 
 /// Reads a mesh of any format that [`mesh_format`] knows.
 ///
+/// ```
+/// use osculate_surfaces::facets::{MeshFileError, MeshFormat, read};
+/// let text = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 3 0 0\nvertex 0 4 0\n\
+///             endloop\nendfacet\nendsolid one\n";
+/// let mesh = read(text.as_bytes())?;
+/// assert_eq!((mesh.format, mesh.triangles.len()), (MeshFormat::Stl, 1));
+/// // STL says no unit.
+/// assert_eq!(mesh.unit_mm, None);
+/// assert!(matches!(read(b"ISO-10303-21;"), Err(MeshFileError::Unknown)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`MeshFileError`].
 pub fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileError> {

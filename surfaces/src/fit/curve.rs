@@ -114,6 +114,17 @@ pub(super) fn right<const D: usize>(points: &[Point<f64, D>]) -> DMatrix<f64> {
 ///
 /// A closed row does not repeat its first point.
 ///
+/// ```
+/// use osculate_geom::Point3;
+/// use osculate_surfaces::fit::{Ends, Spacing, interpolate};
+/// // Through five points of a parabola at even steps: a cubic can be that parabola, and is.
+/// let points: Vec<Point3> = (0..5).map(f64::from).map(|x| Point3::new(x, x * x, 0.0)).collect();
+/// let fit = interpolate(&points, 3, Spacing::Uniform, &Ends::Free)?;
+/// assert!(fit.misfit.max_mm < 1e-12);
+/// assert!((fit.curve.point(0.375) - Point3::new(1.5, 2.25, 0.0)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`FitError`].
 pub fn interpolate<const D: usize>(
@@ -261,6 +272,19 @@ pub fn approximate<const D: usize>(
 
 /// The curve of [`approximate`] with few poles whose misfit is within the tolerance: a third more poles until
 /// it holds.
+///
+/// ```
+/// use osculate_geom::Point3;
+/// use osculate_surfaces::fit::{FitError, Spacing, approximate_within};
+/// // A hundred points of a sine: a few poles do within a hundredth of a millimetre, none within zero.
+/// let points: Vec<Point3> =
+///     (0..100).map(|k| 0.1 * f64::from(k)).map(|x| Point3::new(x, x.sin(), 0.0)).collect();
+/// let fit = approximate_within(&points, 3, 0.01, Spacing::Chord, false)?;
+/// assert!(fit.misfit.max_mm <= 0.01 && fit.curve.poles().len() < 30);
+/// let none = approximate_within(&points, 3, 0.0, Spacing::Chord, false);
+/// assert!(matches!(none, Err(FitError::Tolerance { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`FitError::Tolerance`] where as many poles as points less one miss it; otherwise as [`approximate`].

@@ -69,6 +69,17 @@ impl Grid {
 /// The surface of the given degrees through all points of a grid. A line closed along an axis does not repeat
 /// its first point.
 ///
+/// ```
+/// use osculate_geom::{Point3, Surface, uv};
+/// use osculate_surfaces::fit::{Grid, Spacing, interpolate_grid};
+/// // 4 x 5 points of z = x y: the surface between them is that too.
+/// let at = |x: f64, y: f64| Point3::new(x, y, x * y);
+/// let points = (0..4).flat_map(|i| (0..5).map(move |j| at(f64::from(i), f64::from(j)))).collect();
+/// let fit = interpolate_grid(&Grid { count: [4, 5], points }, [3, 3], Spacing::Uniform, [false; 2])?;
+/// assert!((fit.surface.point(uv(0.5, 0.5)) - at(1.5, 2.0)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`FitError`].
 pub fn interpolate_grid(

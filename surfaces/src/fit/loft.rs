@@ -144,6 +144,20 @@ fn common(
 /// The surface through curves: u along the curves, v from the first to the last. Curves of different degrees
 /// and knots are made [`compatible`] first.
 ///
+/// ```
+/// use osculate_geom::{Point3, Surface, uv};
+/// use osculate_surfaces::NurbsCurve3;
+/// use osculate_surfaces::fit::{Spacing, skin};
+/// // Three parallel edges, the middle one higher: a parabola across.
+/// let edge = |y: f64, z: f64| {
+///     let ends = vec![Point3::new(0.0, y, z), Point3::new(50.0, y, z)];
+///     NurbsCurve3::new(1, vec![0.0, 0.0, 1.0, 1.0], ends, None)
+/// };
+/// let sheet = skin(&[edge(0.0, 0.0)?, edge(10.0, 4.0)?, edge(20.0, 0.0)?], 2, Spacing::Uniform)?;
+/// assert!((sheet.point(uv(0.5, 0.25)) - Point3::new(25.0, 5.0, 3.0)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`FitError`].
 pub fn skin(curves: &[NurbsCurve3], degree: usize, spacing: Spacing) -> Result<NurbsSurface, FitError> {

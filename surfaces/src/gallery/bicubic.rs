@@ -38,6 +38,16 @@ pub fn m86(number: usize) -> NurbsSurface {
 }
 
 /// The monkey saddle z = (x^3 - 3 x y^2) / 2000 over the square of half side 20 mm: u = x, v = y.
+///
+/// ```
+/// use osculate_geom::{Point3, Surface, uv};
+/// use osculate_surfaces::gallery;
+/// // 120 degrees on, the saddle is the same: z depends on the third power of x + i y.
+/// let saddle = gallery::monkey_saddle();
+/// assert!((saddle.point(uv(10.0, 0.0)) - Point3::new(10.0, 0.0, 0.5)).norm() < 1e-12);
+/// let (x, y) = (-5.0, 10.0 * 0.75f64.sqrt());
+/// assert!((saddle.point(uv(x, y)).z - 0.5).abs() < 1e-12);
+/// ```
 #[must_use]
 pub fn monkey_saddle() -> NurbsSurface {
     through([-20.0, 20.0], |x, y| Point3::new(x, y, (x * x * x - 3.0 * x * y * y) / 2000.0))
@@ -45,6 +55,15 @@ pub fn monkey_saddle() -> NurbsSurface {
 
 /// Enneper's minimal surface, ten times (u - u^3/3 + u v^2, v^3/3 - v - v u^2, u^2 - v^2), over |u|, |v| <= 1, turned so
 /// that its outward normal is +z at the origin.
+///
+/// ```
+/// use osculate_geom::{Surface, uv};
+/// use osculate_surfaces::gallery;
+/// // Minimal: the mean curvature vanishes everywhere.
+/// let forms = gallery::enneper().jet2(uv(0.3, -0.6)).forms()?;
+/// assert!(forms.mean().abs() < 1e-12 && forms.gauss() < 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn enneper() -> NurbsSurface {
     through([-1.0, 1.0], |u, v| {

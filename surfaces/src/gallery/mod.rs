@@ -32,6 +32,11 @@ pub struct Entry {
 }
 
 /// All surfaces with a name, in the order in which they are listed.
+///
+/// ```
+/// use osculate_surfaces::gallery;
+/// assert!(gallery::ENTRIES.iter().any(|e| e.name == "m86-3" && e.source == "M86, surface 3"));
+/// ```
 pub const ENTRIES: [Entry; 12] = [
     Entry {
         name: "m86-1",

@@ -88,6 +88,19 @@ pub struct HyperbolicSize {
 /// rule, u = 1/2, the rule has the length h and the normals at its ends enclose `alpha_rad`. The directrices are h long and lie
 /// across the rule, turned by half the angle each.
 ///
+/// ```
+/// use osculate_geom::{Surface, uv};
+/// use osculate_surfaces::gallery;
+/// // The middle rule is h long, and the normals at its ends are as far apart as asked for.
+/// let s = gallery::d98_hyperbolic(80.0, 30f64.to_radians())?;
+/// let [low, high] = [uv(0.5, 0.0), uv(0.5, 1.0)].map(|at| s.jet2(at));
+/// assert!(((high.point - low.point).norm() - 80.0).abs() < 1e-12);
+/// let (low, high) = (low.normal()?, high.normal()?);
+/// assert!((low.dot(&high) - 30f64.to_radians().cos()).abs() < 1e-12);
+/// assert!(gallery::d98_hyperbolic(-80.0, 0.5).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`HyperbolicSize`] unless h is positive and the angle between 0 and a half turn, both excluded.
 pub fn d98_hyperbolic(h_mm: f64, alpha_rad: f64) -> Result<NurbsSurface, HyperbolicSize> {

@@ -55,6 +55,16 @@ pub enum JsonWriteError {
 
 /// Writes faces.
 ///
+/// ```
+/// use osculate_surfaces::{json, patches};
+/// let part = patches::read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 0.1\n")?;
+/// let text = json::write(&part.faces)?;
+/// // Numbers come back to the bit: what is written again is the same text.
+/// assert_eq!(json::write(&json::read(text.as_bytes())?)?, text);
+/// assert!(matches!(json::read(b"{\"format\": 2, \"faces\": []}"), Err(json::JsonError::Format { got: 2 })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`JsonWriteError`].
 pub fn write(faces: &[Face]) -> Result<String, JsonWriteError> {

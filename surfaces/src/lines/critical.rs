@@ -66,6 +66,18 @@ impl CriticalPoints {
 const FLAT: f64 = 1e-9;
 
 /// All critical points of a field whose gradient is known; without a gradient there are none.
+///
+/// ```
+/// use osculate_geom::{Vec3, analytic::Paraboloid};
+/// use osculate_surfaces::lines::{Chart, CriticalKind, Height, LineTolerance, critical_points};
+/// // The bottom of a bowl is its only critical height.
+/// let bowl = Paraboloid::new([0.01, 0.02], 20.0)?;
+/// let chart = Chart::new(&bowl, LineTolerance::for_size(60.0))?;
+/// let found = critical_points(&chart, &Height { axis: Vec3::z_axis() });
+/// let lowest: Vec<_> = found.inside(CriticalKind::Minimum).collect();
+/// assert!(found.points.len() == 1 && lowest.len() == 1 && lowest[0].point.coords.norm() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn critical_points(chart: &Chart, field: &dyn ScalarField) -> CriticalPoints {
     let surface = chart.surface();

@@ -84,6 +84,18 @@ pub struct TraceStops {
 /// The line of curvature of a family through a point, both ways. Without stops it goes on past umbilics, unless it
 /// meets one.
 ///
+/// ```
+/// use osculate_geom::{analytic::Torus, uv};
+/// use osculate_surfaces::lines::{Family, LineTolerance, curvature_line};
+/// // On a ring the lines of the most convex curvature are the circles of its tube.
+/// let ring = Torus::new(50.0, 10.0)?;
+/// let line = curvature_line(&ring, uv(0.3, 0.0), Family::Most, &LineTolerance::for_size(120.0))?;
+/// assert!(line.is_closed());
+/// assert!((line.length_mm() / (std::f64::consts::TAU * 10.0) - 1.0).abs() < 1e-2);
+/// assert!(line.points.iter().all(|p| (p.at.u - 0.3).abs() < 1e-9));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ChartError`] for tolerances that are not positive and for surfaces without a finite extent.
 pub fn curvature_line(

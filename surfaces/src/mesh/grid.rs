@@ -33,6 +33,20 @@ const SAME: f64 = 1e-10;
 /// Triangulates the inside of a surface. `chord_mm` is the largest distance between mesh and surface aimed at,
 /// `max_edge_mm` the longest side of a cell. Tolerances that are not positive count as one part in a thousand of the
 /// surface's size. Of a surface that is made of triangles these are the mesh, as they are.
+///
+/// ```
+/// use osculate_geom::{Side, analytic::Sphere};
+/// use osculate_surfaces::{TrimmedSurface, tessellate};
+/// use std::sync::Arc;
+/// // Vertices lie on the ball; the middles of triangles are as far inside as the chord at most.
+/// let ball = TrimmedSurface::new(Arc::new(Sphere::new(10.0)?), &[], Side::Along)?;
+/// let mesh = tessellate(&ball, 0.05, None);
+/// let r = |p: [f64; 3]| p.iter().map(|c| c * c).sum::<f64>().sqrt();
+/// assert!(mesh.positions.iter().all(|p| (r(*p) - 10.0).abs() < 1e-9));
+/// let middle = |t: &[u32; 3]| [0, 1, 2].map(|c| t.iter().map(|k| mesh.positions[*k as usize][c] / 3.0).sum());
+/// assert!(mesh.triangles.iter().all(|t| r(middle(t)) > 10.0 - 0.1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn tessellate(surface: &TrimmedSurface, chord_mm: f64, max_edge_mm: Option<f64>) -> Mesh {
     if let Some(facets) = surface.facets() {

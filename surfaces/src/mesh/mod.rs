@@ -72,6 +72,19 @@ const ROUNDS: usize = 5;
 
 /// Meshes faces together. The same faces give the same mesh whatever the number of threads.
 ///
+/// ```
+/// use osculate_surfaces::{MeshOptions, mesh_faces, patches};
+/// // A cube of 10 mm as six patches: common edges have common vertices, so that the mesh is closed.
+/// let corner = |k: usize| format!("{} {} {}\n", 10 * (k / 4), 10 * (k / 2 % 2), 10 * (k % 2));
+/// let sides = [[0, 2, 1, 3], [4, 5, 6, 7], [0, 1, 4, 5], [2, 6, 3, 7], [0, 4, 2, 6], [1, 3, 5, 7]];
+/// let text: String = sides.iter().map(|s| format!("1 1\n{}", s.map(corner).concat())).collect();
+/// let cube = patches::read(format!("6\n{text}").as_bytes())?;
+/// let mesh = mesh_faces(&cube.faces, &MeshOptions::chord(0.01))?;
+/// assert!(mesh.report.watertight() && (mesh.volume_mm3() - 1000.0).abs() < 1e-9);
+/// assert!((mesh.area_mm2() - 600.0).abs() < 1e-9 && mesh.positions.len() == 8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`MeshError`] for limits that are none.
 pub fn mesh_faces(faces: &[Face], options: &MeshOptions) -> Result<PartMesh, MeshError> {

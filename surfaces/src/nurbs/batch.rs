@@ -51,6 +51,20 @@ impl NurbsSurface {
 
     /// Principal curvatures and directions at many parameters in blocks of [`LANES`], replacing what `out`
     /// held: [`JetBlock::curvatures`] of [`NurbsSurface::jets_into`].
+    ///
+    /// ```
+    /// use osculate_geom::{Surface, lanes::LANES, uv};
+    /// use osculate_surfaces::gallery;
+    /// // Ten places are two blocks of eight: the ninth is the first of the second block.
+    /// let s = gallery::m86(4);
+    /// let places: Vec<_> = (0..10).map(|k| uv(0.05 + 0.1 * f64::from(k), 0.4)).collect();
+    /// let mut blocks = Vec::new();
+    /// s.curvatures_into(&places, &mut blocks);
+    /// assert_eq!(blocks.len(), 2);
+    /// let (ninth, alone) = (blocks[8 / LANES].get(8 % LANES)?, s.jet2(places[8]).forms()?.principal());
+    /// assert!((ninth.k_max - alone.k_max).abs() < 1e-12 && (ninth.k_min - alone.k_min).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn curvatures_into(&self, at: &[Uv], out: &mut Vec<CurvatureBlock>) {
         out.resize(block_count(at.len()), CurvatureBlock::default());
         let mut jets = Vec::new();

@@ -86,6 +86,18 @@ impl<const D: usize> NurbsCurve<D> {
     /// The curve of the given degree, knots (multiple ones written out), poles and positive weights, `None`
     /// for a polynomial curve.
     ///
+    /// ```
+    /// use osculate_geom::Point3;
+    /// use osculate_surfaces::{CurveError, NurbsCurve3};
+    /// // A quarter of a circle of radius 10: the middle weight is cos 45 deg.
+    /// let poles = [[10.0, 0.0, 0.0], [10.0, 10.0, 0.0], [0.0, 10.0, 0.0]].map(Point3::from).to_vec();
+    /// let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    /// let arc = NurbsCurve3::new(2, knots.clone(), poles.clone(), Some(vec![1.0, 0.5f64.sqrt(), 1.0]))?;
+    /// assert!((arc.point(0.3).coords.norm() - 10.0).abs() < 1e-12);
+    /// assert!(matches!(NurbsCurve3::new(2, knots, poles, Some(vec![1.0])), Err(CurveError::WeightCount { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CurveError`] says which number is wrong.
     pub fn new(
@@ -252,6 +264,19 @@ impl<const D: usize> NurbsCurve<D> {
 
     /// The two pieces below and above `t`.
     ///
+    /// ```
+    /// use osculate_geom::nalgebra::Point2;
+    /// use osculate_surfaces::{EditError, NurbsCurve2};
+    /// // A parabola cut in the middle: both halves have its points.
+    /// let poles = vec![Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(2.0, 4.0)];
+    /// let parabola = NurbsCurve2::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], poles, None)?;
+    /// let [low, high] = parabola.split(0.5)?;
+    /// assert!((low.point(0.25) - parabola.point(0.25)).norm() < 1e-15);
+    /// assert_eq!(low.poles().last(), high.poles().first());
+    /// assert!(matches!(parabola.split(1.0), Err(EditError::Outside { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`EditError::Outside`] unless `t` is inside the domain.
     pub fn split(&self, t: f64) -> Result<[Self; 2], EditError> {
@@ -286,6 +311,16 @@ impl<const D: usize> NurbsCurve<D> {
     ///
     /// Certain, not sampled: a piece is halved until its Bezier poles are within `chord` of its chord, and
     /// the curve is within the hull of these. On a cubic that asks for about a sixth more points than needed.
+    ///
+    /// ```
+    /// use osculate_geom::nalgebra::Point2;
+    /// use osculate_surfaces::NurbsCurve2;
+    /// let poles = vec![Point2::new(0.0, 0.0), Point2::new(50.0, 40.0), Point2::new(100.0, 0.0)];
+    /// let arc = NurbsCurve2::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], poles, None)?;
+    /// // The middle pole is 40 mm off the chord. Every halving leaves a quarter of that: five come below 0.1.
+    /// assert_eq!(arc.polyline(0.1)?.len(), 33);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`CurveError::Chord`] where `chord` is not positive or would take more than 2^20 pieces between two

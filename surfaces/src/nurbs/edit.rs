@@ -59,6 +59,20 @@ impl NurbsSurface {
 
     /// The piece over a parameter rectangle, with clamped knots.
     ///
+    /// ```
+    /// use osculate_geom::{Domain, Interval, Surface, uv};
+    /// use osculate_surfaces::gallery;
+    /// // Parameters stay, and so do the points.
+    /// let whole = gallery::m86(1);
+    /// let part = Domain { u: Interval::new(0.2, 0.6), v: Interval::new(0.1, 0.9) };
+    /// let piece = whole.restricted(&part)?;
+    /// assert_eq!(piece.domain(), part);
+    /// assert!((piece.point(uv(0.3, 0.7)) - whole.point(uv(0.3, 0.7))).norm() < 1e-12);
+    /// // A rectangle that reaches outside is none.
+    /// assert!(whole.restricted(&Domain { u: Interval::new(0.2, 1.6), ..part }).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`EditError::Interval`] where the rectangle is empty or reaches outside.
     pub fn restricted(&self, domain: &Domain) -> Result<Self, EditError> {
@@ -123,6 +137,17 @@ impl NurbsSurface {
     }
 
     /// The same surface with u and v exchanged.
+    ///
+    /// ```
+    /// use osculate_geom::{Surface, uv};
+    /// use osculate_surfaces::gallery;
+    /// // Exchanging the parameters turns S_u x S_v round, and the side with it: the material stays where it is.
+    /// let (s, swapped) = (gallery::m86(2), gallery::m86(2).swapped());
+    /// assert!((swapped.point(uv(0.7, 0.3)) - s.point(uv(0.3, 0.7))).norm() < 1e-12);
+    /// let normals = [swapped.jet2(uv(0.7, 0.3)).normal()?, s.jet2(uv(0.3, 0.7)).normal()?];
+    /// assert!(normals[0].dot(&normals[1]) > 1.0 - 1e-12 && swapped.side() != s.side());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn swapped(&self) -> Self {
         let [u, v] = self.both_knots().clone();

@@ -165,6 +165,22 @@ impl NurbsSurface {
     /// The surface of the given degrees, knots (multiple ones written out) and control net; `[u, v]`
     /// throughout. The outward normal is along `S_u x S_v`.
     ///
+    /// ```
+    /// use osculate_geom::{Point3, Surface, Vec3, uv};
+    /// use osculate_surfaces::{Net, NurbsError, NurbsSurface};
+    /// // A plane of 20 x 30 mm as one bilinear patch; its normal is S_u x S_v.
+    /// let points = vec![[0.0, 0.0], [0.0, 30.0], [20.0, 0.0], [20.0, 30.0]];
+    /// let points = points.into_iter().map(|[x, y]| Point3::new(x, y, 0.0)).collect();
+    /// let (flat, net) = (vec![0.0, 0.0, 1.0, 1.0], Net { count: [2, 2], points, weights: None });
+    /// let plane = NurbsSurface::new([1, 1], [flat.clone(), flat.clone()], net.clone())?;
+    /// assert_eq!(plane.point(uv(0.5, 0.1)), Point3::new(10.0, 3.0, 0.0));
+    /// assert_eq!(plane.jet2(uv(0.5, 0.1)).normal()?, Vec3::z_axis());
+    /// // Two poles do not carry degree two.
+    /// let refused = NurbsSurface::new([2, 1], [flat.clone(), flat], net);
+    /// assert!(matches!(refused, Err(NurbsError::Degree { degree: 2, poles: 2, .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`NurbsError`] says which number is wrong and where.
     pub fn new(degree: [usize; 2], knots: [Vec<f64>; 2], net: Net) -> Result<Self, NurbsError> {

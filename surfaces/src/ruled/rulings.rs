@@ -140,6 +140,16 @@ fn ruled_band(surface: &dyn Surface, band: Band, how: &RulingOptions) -> Result<
 /// Trims are not looked at: the rules are those of the carrier's rectangle. Straight parameter lines are found first, in
 /// either direction; then rules between opposite borders, those of less error.
 ///
+/// ```
+/// use osculate_geom::{Axis, Interval, analytic::Cylinder};
+/// use osculate_surfaces::{Ruling, RulingOptions, gallery, ruling};
+/// // A shaft is ruled along its axis: its directrices are the circles, along u. A bowl is not ruled.
+/// let shaft = Cylinder::new(10.0, Interval::new(0.0, 50.0))?;
+/// assert!(matches!(ruling(&shaft, &RulingOptions::default())?, Ruling::Straight { along: Axis::U, .. }));
+/// assert!(matches!(ruling(&gallery::m86(3), &RulingOptions::default())?, Ruling::NotRuled(_)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`RulingError`].
 pub fn ruling(surface: &dyn Surface, how: &RulingOptions) -> Result<Ruling, RulingError> {

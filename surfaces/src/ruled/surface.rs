@@ -34,6 +34,20 @@ pub enum RuledError {
 /// The ruled surface with `at_zero` at v = 0 and `at_one` at v = 1, over the curves' parameter u. The outward
 /// normal is along `S_u x S_v`.
 ///
+/// ```
+/// use osculate_geom::{Point3, Surface, uv};
+/// use osculate_surfaces::{NurbsCurve3, RuledError, ruled};
+/// let edge = |y: f64, rise: f64| {
+///     let ends = vec![Point3::new(0.0, y, 0.0), Point3::new(10.0, y, rise)];
+///     NurbsCurve3::new(1, vec![0.0, 0.0, 1.0, 1.0], ends, None)
+/// };
+/// let saddle = ruled(&edge(0.0, 0.0)?, &edge(10.0, 10.0)?)?;
+/// assert_eq!(saddle.point(uv(0.5, 0.5)), Point3::new(5.0, 5.0, 2.5));
+/// // Curves of different degrees are raised to one first.
+/// assert!(matches!(ruled(&edge(0.0, 0.0)?, &edge(1.0, 0.0)?.elevated(1)?), Err(RuledError::Degree { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`RuledError`] where degrees, numbers of poles or knots differ.
 pub fn ruled(at_zero: &NurbsCurve3, at_one: &NurbsCurve3) -> Result<NurbsSurface, RuledError> {

@@ -41,6 +41,16 @@ pub(crate) fn looks_like(bytes: &[u8]) -> bool {
 
 /// Reads sections in the unit that the file names, else in millimetres, which is told.
 ///
+/// ```
+/// use osculate_surfaces::sections;
+/// // Three straight sections of three points, 10 mm apart in z: a plane of 20 x 20 mm.
+/// let text = "x,y,z\n0,0,0\n10,0,0\n20,0,0\n0,0,10\n10,0,10\n20,0,10\n0,0,20\n10,0,20\n20,0,20\n";
+/// let part = sections::read(text.as_bytes())?;
+/// assert_eq!(part.faces.len(), 1);
+/// assert!((part.faces[0].area_mm2() - 400.0).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`SectionsError`].
 pub fn read(bytes: &[u8]) -> Result<Part, SectionsError> {

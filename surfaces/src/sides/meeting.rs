@@ -37,6 +37,18 @@ fn bend_rad(of: &Bit, other: &Bit, same: bool) -> f64 {
 
 /// The common edges of faces, by the numbers of the faces. `uncertainty_mm` is what the file says of its own exactness. The sides of
 /// the faces are taken as they are: what bends outwards on one side bends inwards on the other.
+///
+/// ```
+/// use osculate_surfaces::{patches, sides};
+/// // A step down at a right angle: an outer edge 10 mm long, the second normal to +x.
+/// let text = "2\n1 1\n0 0 0\n0 10 0\n10 0 0\n10 10 0\n1 1\n10 0 -10\n10 0 0\n10 10 -10\n10 10 0\n";
+/// let part = patches::read(text.as_bytes())?;
+/// let found = sides::meetings(&part.faces.iter().collect::<Vec<_>>(), None);
+/// assert_eq!((found.len(), found[0].faces, found[0].smooth), (1, [0, 1], false));
+/// assert!((found[0].length_mm - 10.0).abs() < 1e-6);
+/// assert!((found[0].bend_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn meetings(faces: &[&Face], uncertainty_mm: Option<f64>) -> Vec<Meeting> {
     let Some((_, size_mm)) = super::sized(faces) else { return Vec::new() };

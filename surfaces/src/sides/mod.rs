@@ -108,6 +108,19 @@ pub struct Before<'a> {
 }
 
 /// Finds the side of the material of every face. The answer is the same for any number of threads.
+///
+/// ```
+/// use osculate_geom::Side;
+/// use osculate_surfaces::{patches, sides};
+/// // Two sheets at a right angle, of which the first is known: the other follows, turned round where it does not go with it.
+/// let text = "2\n1 1\n0 0 0\n0 10 0\n10 0 0\n10 10 0\n1 1\n10 0 0\n10 0 -10\n10 10 0\n10 10 -10\n";
+/// let part = patches::read(text.as_bytes())?;
+/// let faces: Vec<_> = part.faces.iter().collect();
+/// let known = [Some(Side::Along)];
+/// let found = sides::settle(&faces, &sides::Before { sides: &known, ..Default::default() });
+/// assert_eq!(found.of, [Some(Side::Along), Some(Side::Against)]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn settle(faces: &[&Face], before: &Before<'_>) -> Sides {
     let mut solids: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();

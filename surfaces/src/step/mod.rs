@@ -69,6 +69,15 @@ fn start(bytes: &[u8]) -> Option<usize> {
 /// Reads a STEP file. Damage is reported in [`Part::diagnostics`] and what cannot become a face in
 /// [`Part::not_used`]; a part without faces is no error.
 ///
+/// ```
+/// use osculate_surfaces::step::{StepError, read};
+/// // A file without shapes is a part without faces; anything else is no STEP file.
+/// let text = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=CARTESIAN_POINT('',(0.,0.,0.));\nENDSEC;\nEND-ISO-10303-21;\n";
+/// assert!(read(text)?.faces.is_empty());
+/// assert!(matches!(read(b"solid cube"), Err(StepError::NotStep { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`StepError`] for bytes that are no STEP file or hold no readable record.
 pub fn read(bytes: &[u8]) -> Result<Part, StepError> {

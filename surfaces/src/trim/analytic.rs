@@ -68,6 +68,20 @@ impl Analytic {
     /// The surface on its widest rectangle; unlimited directions have an infinite range until
     /// [`Analytic::limited`] narrows it.
     ///
+    /// ```
+    /// use osculate_geom::analytic::Placement;
+    /// use osculate_geom::{Point3, Surface, Vec3, uv};
+    /// use osculate_surfaces::{Analytic, Shape};
+    /// // A shaft of radius 25 about the x axis, its angle from +z on: the place next to a point, and the surface 5 mm further out.
+    /// let placement = Placement::new(Point3::origin(), Vec3::x_axis(), Some(Vec3::z()));
+    /// let shaft = Analytic::new(Shape::Cylinder { radius_mm: 25.0 }, placement)?;
+    /// let at = shaft.locate(&Point3::new(7.0, 0.0, 30.0), uv(0.0, 0.0));
+    /// assert!(at.u.abs() < 1e-12 && (at.v - 7.0).abs() < 1e-12);
+    /// assert_eq!(shaft.offset(5.0)?.shape(), Shape::Cylinder { radius_mm: 30.0 });
+    /// assert!((shaft.point(at) - Point3::new(7.0, 0.0, 25.0)).norm() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`BadSize`] for a size that makes no surface.
     pub fn new(shape: Shape, placement: Placement) -> Result<Self, BadSize> {

@@ -115,6 +115,20 @@ impl AxisSurface {
     /// It is off by about the fourth power of the step times the fourth derivative, over 36 at the positions themselves: with
     /// 181 positions of a smooth motion below 1e-6 of its size. Positions that follow a cubic are met exactly.
     ///
+    /// ```
+    /// use osculate_geom::{Interval, Point3};
+    /// use osculate_tools::flank::axes::{AxisPoints, AxisSurface};
+    /// // Positions that move on evenly are met exactly, and between them too.
+    /// let at = |k: f64| AxisPoints { lower: Point3::new(k, 0.0, 0.0), upper: Point3::new(k, 0.0, 50.0) };
+    /// let positions: Vec<AxisPoints> = (0..=4).map(|k| at(f64::from(k))).collect();
+    /// let axes = AxisSurface::along(Interval::new(0.0, 4.0), &positions)?;
+    /// assert!((axes.line(2.5).lower - Point3::new(2.5, 0.0, 0.0)).norm() < 1e-12);
+    /// let pose = axes.pose(1.0, -20.0);
+    /// assert!((pose.tip - Point3::new(1.0, 0.0, -20.0)).norm() < 1e-12 && (pose.axis.z - 1.0).abs() < 1e-12);
+    /// assert!(AxisSurface::along(Interval::new(0.0, 4.0), &positions[..2]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`AxesError`].
     pub fn along(range: Interval, positions: &[AxisPoints]) -> Result<Self, AxesError> {

@@ -3,6 +3,15 @@
 use osculate_geom::{Point3, Unit3, Vec3};
 
 /// A straight line with a sense: the axis of a cutter, from the tip to the spindle.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_tools::flank::AxisLine;
+/// let axis = AxisLine { point: Point3::new(0.0, 0.0, 10.0), direction: Vec3::z_axis() };
+/// let p = Point3::new(3.0, 4.0, 25.0);
+/// assert_eq!((axis.along_mm(&p), axis.distance_mm(&p)), (15.0, 5.0));
+/// assert_eq!(axis.at(axis.along_mm(&p)) + axis.across(&p), p);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisLine {
     /// A point of it, mm.

@@ -16,6 +16,24 @@ pub(crate) struct Near {
 }
 
 /// The side of a cutter.
+///
+/// ```
+/// use osculate_tools::flank::cutter_side::CutterSide;
+/// use osculate_tools::{Cutter, CutterSpec};
+/// // A cone with a ball of radius 2 and a half angle of 5 degrees, its tip at the point from which heights count.
+/// let spec = CutterSpec::Cone {
+///     diameter_mm: 16.0,
+///     taper_deg: 5.0,
+///     corner_radius_mm: 2.0,
+///     tip_diameter_mm: None,
+///     length_mm: 80.0,
+/// };
+/// let side = CutterSide::of(&Cutter::try_from(spec)?, 0.0);
+/// let taper = 5f64.to_radians();
+/// assert!((side.taper_at_rad(30.0) - taper).abs() < 1e-12 && !side.is_cylinder());
+/// assert!((side.radius_at_mm(40.0) - side.radius_at_mm(30.0) - 10.0 * taper.tan()).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutterSide {
     radius: f64,

@@ -74,6 +74,27 @@ impl Deviation {
 ///
 /// Extremes of the grid are followed between its places until the step is 1e-5 of the grid's: they are exact for
 /// deviations that the grid resolves.
+///
+/// ```
+/// use osculate_geom::{Interval, Point3, Side, analytic::Line};
+/// use osculate_tools::Cutter;
+/// use osculate_tools::flank::RuledStrip;
+/// use osculate_tools::flank::axes::{AxisPoints, AxisSurface};
+/// use osculate_tools::flank::cutter_side::CutterSide;
+/// use osculate_tools::flank::deviation::{Patch, deviation};
+/// use osculate_tools::flank::envelope::Envelope;
+/// // A cylinder of radius 8 along a plane wall, 0.1 mm off it: that is left everywhere.
+/// let edge = |z: f64| Line::segment(Point3::new(0.0, 0.0, z), Point3::new(50.0, 0.0, z));
+/// let wall = RuledStrip::new(edge(0.0)?, edge(30.0)?, Side::Along, 1.0)?;
+/// let at = |x: f64| AxisPoints { lower: Point3::new(x, -8.1, 0.0), upper: Point3::new(x, -8.1, 30.0) };
+/// let positions: Vec<AxisPoints> = (-1..=6).map(|k| at(10.0 * f64::from(k))).collect();
+/// let pieces = [AxisSurface::along(Interval::new(-0.2, 1.2), &positions)?];
+/// let envelope = Envelope::new(CutterSide::of(&Cutter::cylinder(16.0, 60.0)?, -5.0), &pieces);
+/// let patch = Patch { u: Interval::new(0.0, 1.0), v: Interval::new(0.0, 1.0), count: [9, 5] };
+/// let found = deviation(&envelope, &wall, patch);
+/// assert!((found.min.value_mm - 0.1).abs() < 1e-9 && (found.worst_mm() - 0.1).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn deviation(envelope: &Envelope<'_>, surface: &dyn Surface, patch: Patch) -> Deviation {
     let at = patch.parameters();

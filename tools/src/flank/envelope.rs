@@ -103,6 +103,24 @@ fn at(axes: &AxisSurface, side: &CutterSide, p: &Point3, tau: f64) -> At {
 }
 
 /// The moving flank of a cutter: one or more pieces of motion.
+///
+/// ```
+/// use osculate_geom::{Interval, Point3};
+/// use osculate_tools::Cutter;
+/// use osculate_tools::flank::axes::{AxisPoints, AxisSurface};
+/// use osculate_tools::flank::cutter_side::CutterSide;
+/// use osculate_tools::flank::envelope::{Envelope, Scratch};
+/// // A cylinder of radius 8 moved along x: its side leaves a wall at y = 8.
+/// let at = |k: f64| AxisPoints { lower: Point3::new(k, 0.0, 0.0), upper: Point3::new(k, 0.0, 50.0) };
+/// let positions: Vec<AxisPoints> = (0..=10).map(|k| at(f64::from(k))).collect();
+/// let pieces = [AxisSurface::along(Interval::new(0.0, 10.0), &positions)?];
+/// let envelope = Envelope::new(CutterSide::of(&Cutter::cylinder(16.0, 60.0)?, -5.0), &pieces);
+/// let mut scratch = Scratch::default();
+/// assert!((envelope.distance_mm(&Point3::new(4.3, 10.0, 20.0), &mut scratch) - 2.0).abs() < 1e-9);
+/// let nearest = envelope.nearest(&Point3::new(4.3, 10.0, 20.0), &mut scratch).ok_or("it has no pieces")?;
+/// assert!((nearest.tau - 4.3).abs() < 1e-6 && (nearest.normal.y - 1.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Envelope<'a> {
     side: CutterSide,

@@ -105,6 +105,23 @@ fn fails(
 
 /// The largest radius of a cylinder that holds a tolerance at all the given rules.
 ///
+/// ```
+/// use osculate_geom::{Point3, Side, analytic::Line};
+/// use osculate_tools::flank::{RadiusLimit, RadiusSearch, RuledStrip, Setting, Stations, largest_radius};
+/// // Along a rule with an angle of 60 degrees between its end normals a cylinder gouges by R (1 - cos 30 deg).
+/// let line = |z: f64, turn: f64| {
+///     let (s, c) = turn.to_radians().sin_cos();
+///     Line::segment(Point3::new(-40.0 * c, -40.0 * s, z), Point3::new(40.0 * c, 40.0 * s, z))
+/// };
+/// let strip = RuledStrip::new(line(0.0, 30.0)?, line(80.0, -30.0)?, Side::Along, 1.0)?;
+/// let how = RadiusSearch { tolerance_mm: 0.1, least_mm: 0.1, most_mm: 10.0, relative: 1e-9, samples: 65 };
+/// let found = largest_radius(&strip, &Stations::new(&strip, 48), &[0.5], Setting::Distributed, &how)?;
+/// let want = 0.1 / (1.0 - 30f64.to_radians().cos());
+/// assert!((found.radius_mm.ok_or("none fits")? - want).abs() < 1e-6);
+/// assert!(matches!(found.limit, RadiusLimit::Tolerance { .. }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`RadiusSearchError`].
 pub fn largest_radius(

@@ -55,6 +55,20 @@ const LOOKS: usize = 48;
 ///
 /// u is the parameter of the first directrix; that of the second one runs proportionally over its own domain. Beyond the
 /// ends in u the strip goes on as the Taylor polynomials of its directrices do.
+///
+/// ```
+/// use osculate_geom::{Point3, Side, Vec3, analytic::Line};
+/// use osculate_tools::flank::{RuledError, RuledStrip};
+/// let edge = |z: f64| Line::segment(Point3::new(0.0, 0.0, z), Point3::new(50.0, 0.0, z));
+/// let wall = RuledStrip::new(edge(0.0)?, edge(30.0)?, Side::Along, 1.0)?;
+/// let rule = wall.rule(0.5)?;
+/// assert_eq!((rule.length_mm, rule.frame.z), (30.0, Vec3::z()));
+/// // The tool is on the side of S_u x S_v, here x cross z: towards -y.
+/// assert_eq!(rule.frame.y, -Vec3::y());
+/// // Directrices that meet make no strip.
+/// assert!(matches!(RuledStrip::new(edge(0.0)?, edge(0.0)?, Side::Along, 1.0), Err(RuledError::Crossing { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct RuledStrip<'a> {
     directrices: [Directrix<'a>; 2],
     domain: Interval,

@@ -17,6 +17,19 @@ use nalgebra::Matrix3;
 use osculate_geom::{Point3, Vec3};
 
 /// A side without ends.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_tools::flank::{AxisLine, SideTool};
+/// // Along z: a cylinder of radius 10, and a cone that is as thick at the height 0 and opens by 45 degrees upwards.
+/// let axis = AxisLine { point: Point3::origin(), direction: Vec3::z_axis() };
+/// let p = Point3::new(12.0, 0.0, 1.0);
+/// assert!((SideTool::cylinder(10.0)?.deviation_mm(&axis, &p) - 2.0).abs() < 1e-12);
+/// let cone = SideTool::cone(10.0, 45f64.to_radians())?;
+/// assert!((cone.deviation_mm(&axis, &p) - 1.0 / 2f64.sqrt()).abs() < 1e-12);
+/// assert!(SideTool::cylinder(-10.0).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SideTool {
     radius_mm: f64,

@@ -1,6 +1,15 @@
 //! Sets of directions as bits, 64 to a word.
 
 /// A set of indices below a fixed number, as a rule directions of a [`super::Directions`].
+///
+/// ```
+/// use osculate_tools::reach::Bits;
+/// // What the machine allows and what the part allows, together.
+/// let (machine, part) = (Bits::of(10, |k| k < 6), Bits::of(10, |k| k % 2 == 1));
+/// let both = machine.and(&part);
+/// assert_eq!(both.iter().collect::<Vec<_>>(), [1, 3, 5]);
+/// assert!(both.count() == 3 && both.contains(5) && !both.contains(7) && !both.contains(99));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {
     words: Vec<u64>,

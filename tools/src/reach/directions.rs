@@ -126,6 +126,16 @@ impl Directions {
     }
 
     /// The direction nearest to an axis; of several equally near ones any.
+    ///
+    /// ```
+    /// use osculate_geom::{Unit3, Vec3};
+    /// use osculate_tools::reach::Directions;
+    /// let directions = Directions::icosphere(3)?;
+    /// let axis = Unit3::new_normalize(Vec3::new(1.0, 2.0, 3.0));
+    /// let nearest = &directions.all()[directions.nearest(&axis)];
+    /// assert!(nearest.angle(&axis) < 0.6 * directions.spacing_rad());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn nearest(&self, axis: &Unit3) -> usize {
         let closer = |(best, most): (usize, f64), k: usize| {

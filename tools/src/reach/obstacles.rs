@@ -175,6 +175,19 @@ impl Obstacles {
     }
 
     /// Whether a point is nearer to a body at a pose than so much, whatever its kind.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Vec3};
+    /// use osculate_tools::reach::{ObstacleKind, ObstaclePoint, Obstacles};
+    /// use osculate_tools::{Cutter, CutterSpec, Pose};
+    /// // A screw head 8 mm beside the axis of a tool of radius 3: 5 mm are left.
+    /// let screw = ObstaclePoint { point: Point3::new(8.0, 0.0, 10.0), owner: 0, kind: ObstacleKind::Surroundings };
+    /// let obstacles = Obstacles::new([screw])?;
+    /// let tool = Cutter::try_from(CutterSpec::Flat { diameter_mm: 6.0, length_mm: 40.0 })?;
+    /// let pose = Pose { tip: Point3::origin(), axis: Vec3::z_axis() };
+    /// assert!(obstacles.is_within(&tool, &pose, 5.01) && !obstacles.is_within(&tool, &pose, 4.99));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn is_within(&self, body: &Cutter, pose: &Pose, limit_mm: f64) -> bool {
         self.roots().any(|root| self.any_within(root, (body, pose), limit_mm, None))

@@ -62,6 +62,17 @@ impl Tool {
 
     /// The tool with one more body above its cutter.
     ///
+    /// ```
+    /// use osculate_tools::reach::{Mounted, Tool};
+    /// use osculate_tools::{Cutter, CutterSpec};
+    /// // A shank that is thicker than the cutter, from 20 mm above the tip on.
+    /// let cutter = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 20.0 })?;
+    /// let shank = Mounted { body: Cutter::cylinder(10.0, 40.0)?, height_mm: 20.0 };
+    /// let tool = Tool::new(cutter, None).with(shank)?;
+    /// assert_eq!(tool.mounted().len(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`ToolError`] for a height that is negative or not finite, and for more than 31 bodies.
     pub fn with(mut self, body: Mounted) -> Result<Self, ToolError> {

@@ -62,6 +62,16 @@ pub fn sample_boundary(surface: &dyn Surface, outline: &[Uv], face: u32, spacing
 /// Samples on triangles that carry no material and are not to be touched, such as those of a fixture: their corners and
 /// places in between at most `spacing_mm` apart, the normal to the side from which they run counter-clockwise.
 /// Triangles without area have none.
+///
+/// ```
+/// use osculate_geom::Point3;
+/// use osculate_tools::removal::sample_triangles;
+/// // One side of a clamp, 3 x 4 mm, seen from +z: nothing may be taken from it.
+/// let p = |x: f64, y: f64| Point3::new(x, y, 0.0);
+/// let samples = sample_triangles(&[[p(0.0, 0.0), p(3.0, 0.0), p(0.0, 4.0)]], 7, 1.0);
+/// assert!(samples.iter().all(|s| s.check_only && s.face == 7 && s.normal.z == 1.0));
+/// assert!(samples.iter().any(|s| s.point == p(0.0, 4.0)));
+/// ```
 #[must_use]
 pub fn sample_triangles(triangles: &[[Point3; 3]], face: u32, spacing_mm: f64) -> Vec<Sample> {
     let mut out = Vec::new();

@@ -36,6 +36,15 @@ impl Density {
     /// The bounds for a tool of effective radius `tool_radius_mm` (the radius of the ball, or for leaned
     /// toroidal and flat ends the inverse of [`crate::Lean::tool_curvature`] across the feed) where the
     /// highest standoff seen is `scallop_mm`.
+    ///
+    /// ```
+    /// use osculate_tools::removal::Density;
+    /// // On a plane, with a ball of radius 5: where nothing is left at the samples, half a diagonal away r^2 / 2 R may be.
+    /// let density = Density { spacing_mm: 0.2, convex_per_mm: 0.0 };
+    /// let hidden = density.bound(5.0, 0.0);
+    /// let r = 0.1 * 2f64.sqrt();
+    /// assert!((hidden.scallop_mm - r * r / 10.0).abs() < 1e-15 && hidden.gouge_mm == hidden.scallop_mm);
+    /// ```
     #[must_use]
     pub fn bound(&self, tool_radius_mm: f64, scallop_mm: f64) -> Hidden {
         let relative = 1.0 / tool_radius_mm + self.convex_per_mm;

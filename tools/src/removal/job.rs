@@ -39,6 +39,22 @@ pub struct Swept {
 impl Swept {
     /// The motions of a path, each with the index of the CL point at which it ends as its block. The first
     /// point is reached from an unknown place and makes no motion.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Vec3};
+    /// use osculate_tools::Pose;
+    /// use osculate_tools::cl::{ClMove, ClPath, Motion};
+    /// use osculate_tools::removal::Swept;
+    /// // Three points make two motions; the first point is come to from nobody knows where.
+    /// let to = |x: f64, motion| {
+    ///     let pose = Pose { tip: Point3::new(x, 0.0, 0.0), axis: Vec3::z_axis() };
+    ///     ClMove { pose, motion }
+    /// };
+    /// let moves = vec![to(0.0, Motion::Rapid), to(5.0, Motion::Rapid), to(40.0, Motion::Feed(900.0))];
+    /// let motions = Swept::along(&ClPath { moves, ..Default::default() });
+    /// assert_eq!(motions.len(), 2);
+    /// assert!(motions[0].rapid && !motions[1].rapid && motions[1].from == motions[0].to);
+    /// ```
     #[must_use]
     pub fn along(path: &ClPath) -> Vec<Self> {
         path.moves

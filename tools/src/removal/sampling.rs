@@ -170,6 +170,19 @@ const MOST_ROWS: f64 = 1e5;
 /// where that is too few, or where the rectangle of a trimmed face would take more than ten million cells, the spacing is increased,
 /// and the one used is reported in [`Sampling::density`].
 ///
+/// ```
+/// use osculate_geom::{Interval, analytic::Cylinder};
+/// use osculate_tools::removal::{SamplingError, sample_surface};
+/// // A shaft of radius 10 and length 20: its samples stand for all of its area, none far from the next.
+/// let shaft = Cylinder::new(10.0, Interval::new(0.0, 20.0))?;
+/// let sampling = sample_surface(&shaft, 0, 2.0, 10_000)?;
+/// let sum: f64 = sampling.samples.iter().map(|s| s.area_mm2).sum();
+/// let area = std::f64::consts::TAU * 10.0 * 20.0;
+/// assert!((sum / area - 1.0).abs() < 1e-9 && sampling.density.spacing_mm <= 2.0);
+/// assert!(matches!(sample_surface(&shaft, 0, 0.0, 10_000), Err(SamplingError::Spacing { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`SamplingError`].
 pub fn sample_surface(

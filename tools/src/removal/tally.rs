@@ -28,6 +28,13 @@ pub struct Limits {
 impl Limits {
     /// Limits for a scallop and a gouge tolerance: uncut above five times the scallop (a stepover more than
     /// doubled), collisions from the gouge tolerance on, ten places of each kind.
+    ///
+    /// ```
+    /// use osculate_tools::removal::Limits;
+    /// let limits = Limits::new(0.01, 0.005);
+    /// assert_eq!((limits.scallop_mm, limits.gouge_mm, limits.collision_mm), (0.01, 0.005, 0.005));
+    /// assert_eq!((limits.uncut_mm, limits.worst), (0.05, 10));
+    /// ```
     #[must_use]
     pub const fn new(scallop_mm: f64, gouge_mm: f64) -> Self {
         Self { scallop_mm, gouge_mm, uncut_mm: 5.0 * scallop_mm, collision_mm: gouge_mm, worst: 10 }

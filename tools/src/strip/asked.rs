@@ -23,6 +23,20 @@ pub struct Strip {
 }
 
 /// Why there is no strip.
+///
+/// ```
+/// use osculate_geom::{Axis, Domain, Interval, analytic::Plane, uv};
+/// use osculate_tools::strip::{StripError, exact};
+/// use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean};
+/// // Lifted by 0.02 mm the tool leaves more than a tolerance of 0.01 mm right at the contact.
+/// let range = Interval::new(0.0, 50.0);
+/// let plane = Plane::new(Domain { u: range, v: range });
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+/// let contact = Contact::new(&plane, uv(25.0, 25.0), &ball, FeedLine::Iso(Axis::U), Lean::default())?;
+/// assert!(matches!(exact(&contact.lifted(0.02), 0.01), Err(StripError::AboveTolerance { .. })));
+/// assert!(matches!(exact(&contact, 0.0), Err(StripError::Tolerance { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StripError {
     /// The contact itself is not possible.

@@ -74,6 +74,20 @@ pub fn exact(contact: &Contact<'_>, scallop_mm: f64) -> Result<Strip, StripError
 
 /// As [`exact`], only as far and as well as is asked for.
 ///
+/// ```
+/// use osculate_geom::{Axis, Domain, Interval, analytic::Plane, uv};
+/// use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean, strip};
+/// // To a thousandth of the width, which is that of a ball on a plane.
+/// let range = Interval::new(0.0, 50.0);
+/// let plane = Plane::new(Domain { u: range, v: range });
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+/// let contact = Contact::new(&plane, uv(25.0, 25.0), &ball, FeedLine::Iso(Axis::V), Lean::default())?;
+/// let demand = strip::Demand { deepest_mm: f64::INFINITY, relative: 1e-3 };
+/// let (h, width_mm) = (0.01_f64, strip::exact_to(&contact, 0.01, demand)?.width_mm);
+/// assert!((width_mm / (2.0 * (h * (10.0 - h)).sqrt()) - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`StripError`], with [`StripError::TooDeep`] at once where the demand says so.
 pub fn exact_to(contact: &Contact<'_>, scallop_mm: f64, demand: Demand) -> Result<Strip, StripError> {

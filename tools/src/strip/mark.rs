@@ -41,6 +41,20 @@ const MAX_STEPS: u32 = 2000;
 
 /// The mark that one tooth leaves within `height_mm` of the part along the feed line.
 ///
+/// ```
+/// use osculate_geom::{Axis, Domain, Interval, analytic::Plane, uv};
+/// use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean, strip};
+/// // Standing still on a plane a ball leaves a round dent: as long as its strip is wide.
+/// let range = Interval::new(0.0, 50.0);
+/// let plane = Plane::new(Domain { u: range, v: range });
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+/// let contact = Contact::new(&plane, uv(25.0, 25.0), &ball, FeedLine::Iso(Axis::U), Lean::default())?;
+/// let h = 0.001_f64;
+/// let mark = strip::mark(&contact, h)?;
+/// assert!((mark.length_mm() - 2.0 * (h * (10.0 - h)).sqrt()).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`StripError`].
 pub fn mark(contact: &Contact<'_>, height_mm: f64) -> Result<Mark, StripError> {

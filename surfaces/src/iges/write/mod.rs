@@ -23,6 +23,18 @@ use osculate_geom::{Axis, Side};
 
 /// Faces as an IGES file, lengths in millimetres.
 ///
+/// ```
+/// use osculate_surfaces::iges::{self, IgesOptions};
+/// use osculate_surfaces::patches;
+/// let part = patches::read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 5\n")?;
+/// let text = iges::write(&part.faces, &IgesOptions::default())?;
+/// // Cards of 80 columns, the letter of their section in the 73rd.
+/// assert!(text.lines().all(|card| card.len() == 80) && text.as_bytes()[72] == b'S');
+/// let back = iges::read(text.as_bytes())?;
+/// assert!((back.faces[0].area_mm2() - part.faces[0].area_mm2()).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`IgesWriteError`].
 pub fn write(faces: &[Face], options: &IgesOptions) -> Result<String, IgesWriteError> {

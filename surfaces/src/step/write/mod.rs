@@ -26,6 +26,17 @@ const ACCURACY: f64 = 1e-7;
 
 /// Faces as a STEP file, lengths in millimetres.
 ///
+/// ```
+/// use osculate_surfaces::step::{self, StepOptions, StepWriteError};
+/// use osculate_surfaces::{FaceKind, patches};
+/// let part = patches::read(b"1\n1 1\n0 0 0\n0 20 0\n10 0 0\n10 20 5\n")?;
+/// let text = step::write(&part.faces, &StepOptions { name: "twisted".to_owned(), ..Default::default() })?;
+/// assert!(text.starts_with("ISO-10303-21;") && text.contains("twisted"));
+/// assert_eq!(step::read(text.as_bytes())?.faces[0].kind, FaceKind::Bspline);
+/// assert!(matches!(step::write(&[], &StepOptions::default()), Err(StepWriteError::NoFaces)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`StepWriteError`].
 pub fn write(faces: &[Face], options: &StepOptions) -> Result<String, StepWriteError> {

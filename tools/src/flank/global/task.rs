@@ -16,6 +16,13 @@ pub enum Goal {
 }
 
 /// How the optimum is looked for.
+///
+/// ```
+/// use osculate_tools::flank::global::{Goal, Options};
+/// // The greatest deviation, gouges and material left alike. Here a gouge counts a hundredfold.
+/// let careful = Options { gouge_weight: 100.0, ..Default::default() };
+/// assert_eq!((careful.goal, Options::default().gouge_weight), (Goal::Minimax, 1.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// What is made small.

@@ -89,6 +89,16 @@ pub struct Resolution {
 impl Stock {
     /// Stock filled with raw material.
     ///
+    /// ```
+    /// use osculate_geom::{Box3, Point3};
+    /// use osculate_tools::removal::stock::{Blank, Resolution, Stock};
+    /// let block = Blank::Box(Box3::around(&[Point3::origin(), Point3::new(30.0, 20.0, 10.0)]));
+    /// let stock = Stock::fill(&block, &Resolution { cell_mm: 1.0, tri: true, budget_bytes: 1 << 24 })?.stock;
+    /// assert!((stock.volume().mm3 - 6000.0).abs() < 1e-6);
+    /// assert!(stock.is_material(&Point3::new(15.0, 10.0, 5.0)) && !stock.is_material(&Point3::new(15.0, 10.0, 15.0)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`BlankError`].
     pub fn fill(blank: &Blank<'_>, resolution: &Resolution) -> Result<Made, BlankError> {

@@ -18,6 +18,25 @@ impl Stock {
     /// Moves the tool through the whole path. `progress` gets the fraction done. The result does not depend on the
     /// number of threads.
     ///
+    /// ```
+    /// use osculate_geom::{Box3, Point3, Vec3};
+    /// use osculate_tools::removal::stock::{Blank, Resolution, Stock, StockJob};
+    /// use osculate_tools::removal::Swept;
+    /// use osculate_tools::{Cutter, Pose};
+    /// // A slot 10 mm wide and 2 mm deep through a block 30 mm long: 600 mm3, to the place of its walls between the rays.
+    /// let block = Blank::Box(Box3::around(&[Point3::origin(), Point3::new(30.0, 20.0, 10.0)]));
+    /// let resolution = Resolution { cell_mm: 0.5, tri: true, budget_bytes: 1 << 24 };
+    /// let mut stock = Stock::fill(&block, &resolution)?.stock;
+    /// let cutter = Cutter::cylinder(10.0, 40.0)?;
+    /// let at = |x: f64| Pose { tip: Point3::new(x, 10.0, 8.0), axis: Vec3::z_axis() };
+    /// let motions = [Swept { from: at(-10.0), to: at(40.0), rapid: false, block: 1 }];
+    /// let job = StockJob { cutter: &cutter, uppers: &[], motions: &motions, touch_mm: 0.01 };
+    /// let carved = stock.carve(&job, &|_| ())?;
+    /// assert!((carved.volume_mm3() - 600.0).abs() < 10.0 && carved.collisions.is_empty());
+    /// assert!((stock.volume().mm3 + carved.volume_mm3() - 6000.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`JobError`] for numbers that are not finite and axes that turn over.
     pub fn carve(&mut self, job: &StockJob<'_>, progress: &(dyn Fn(f64) + Sync)) -> Result<Carved, JobError> {

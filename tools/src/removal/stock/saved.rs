@@ -69,6 +69,20 @@ impl<'a> Reader<'a> {
 
 impl Stock {
     /// The bytes of a file, with what it is stock of: one line, by which it is known again.
+    ///
+    /// ```
+    /// use osculate_geom::{Box3, Point3};
+    /// use osculate_tools::removal::stock::{Blank, Resolution, SavedError, Stock};
+    /// let block = Blank::Box(Box3::around(&[Point3::origin(), Point3::new(30.0, 20.0, 10.0)]));
+    /// let stock = Stock::fill(&block, &Resolution { cell_mm: 2.0, tri: false, budget_bytes: 1 << 24 })?.stock;
+    /// let bytes = stock.saved("block 1");
+    /// assert!(Stock::is_saved(&bytes));
+    /// let (back, of) = Stock::read(&bytes)?;
+    /// assert!(back.volume() == stock.volume() && of == "block 1");
+    /// // Half a file is none.
+    /// assert!(matches!(Stock::read(&bytes[..bytes.len() / 2]), Err(SavedError::Damaged { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn saved(&self, of: &str) -> Vec<u8> {
         let mut out = HEAD.to_vec();

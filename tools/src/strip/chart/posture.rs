@@ -76,6 +76,22 @@ impl Chart<'_> {
 
     /// The strip of a posture, its feed at `angle_rad` from S_u towards S_v.
     ///
+    /// ```
+    /// use osculate_geom::{Interval, analytic::Cylinder, uv};
+    /// use osculate_tools::strip::{Chart, Within};
+    /// use osculate_tools::{Cutter, CutterSpec, Lean};
+    /// // A ball of radius 5 on a shaft of radius 20, one chart for both feeds: around the shaft the strip lies along
+    /// // it, where the shaft is straight, and is wider by the root of (1/5 + 1/20) / (1/5).
+    /// let shaft = Cylinder::new(20.0, Interval::new(0.0, 80.0))?;
+    /// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 })?;
+    /// let chart = Chart::new(&shaft, uv(0.0, 40.0), 2.0, 1e-6)?;
+    /// let within = Within { scallop_mm: 0.001, gouge_mm: 0.0 };
+    /// let width = |angle: f64| chart.strip(&ball, angle, Lean::default(), within).map(|found| found.width_mm);
+    /// let ratio = width(0.0)? / width(std::f64::consts::FRAC_PI_2)?;
+    /// assert!((ratio - 1.25f64.sqrt()).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`ChartError`].
     pub fn strip(
