@@ -35,29 +35,14 @@ pub struct Proved {
 ///
 /// ```
 /// use osculate_geom::{Domain, Interval, Point3, Vec3, analytic::Plane};
-/// use osculate_tools::removal::{
-///     Answer, Goal, GoalControl, GoalFace, GoalLimits, GoalStock, GoalTool, Looks, Program, Swept, prove,
-/// };
+/// use osculate_tools::removal::{Answer, Goal, GoalFace, GoalLimits, GoalStock, GoalTool, Program, Swept, prove};
 /// use osculate_tools::{Cutter, Pose};
 /// // A flat end of 10 mm along the middle of a plane that is 4 mm wide: once on it, once 0.1 mm too deep.
 /// let side = Interval::new(0.0, 4.0);
 /// let plane = Plane::new(Domain { u: side, v: side });
 /// let cutter = Cutter::cylinder(10.0, 40.0)?;
-/// let face = GoalFace { name: "top", surface: &plane, outlines: vec![], part_of_it: None, open_rims: &[] };
-/// let (shank, holder, teeth, spindle_rpm) = (None, None, None, None);
-/// let tool = GoalTool { cutter: &cutter, flutes: &cutter, shank, holder, teeth, spindle_rpm };
-/// let goal = Goal {
-///     machined: vec![face],
-///     checked: Vec::new(),
-///     unseen: Vec::new(),
-///     fixtures: Vec::new(),
-///     tools: vec![tool],
-///     stock: GoalStock::Assumed { layer_mm: 0.5 },
-///     limits: GoalLimits { scallop_mm: 0.01, gouge_mm: 0.01, unreached_mm2: 0.0, at_samples: false },
-///     looks: Looks { spacing_mm: Some(0.5), max_samples: 100_000, between: true },
-///     roughing_mm: None,
-///     control: GoalControl::default(),
-/// };
+/// let (faces, tools) = (vec![GoalFace::new("top", &plane)], vec![GoalTool::new(&cutter)]);
+/// let goal = Goal::new(faces, tools, GoalStock::Assumed { layer_mm: 0.5 }, GoalLimits::new(0.01, 0.01));
 /// let answer = |z: f64| {
 ///     let at = |x: f64| Pose { tip: Point3::new(x, 2.0, z), axis: Vec3::z_axis() };
 ///     let motions = [Swept { from: at(-6.0), to: at(10.0), rapid: false, block: 1 }];
