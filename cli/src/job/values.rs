@@ -1,7 +1,9 @@
 //! What a job says, value by value: its tools, its tolerances, how to cut, for which machine.
 
 use super::cutting::feed_per_tooth_mm;
-use super::{Contact, Control, Fixture, Flank, Job, Part, Setup, Stock, Strategy, Tool, Verification, control};
+use super::{
+    Contact, Control, Fixture, Flank, Job, Part, Setup, Stock, Strategy, Tool, Verification, control,
+};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
 use osculate_productivity::plan::Tolerance;
