@@ -67,7 +67,7 @@ pub struct Rate {
 }
 
 impl Caps {
-    /// A feed alone: teeth so many that their marks need no share of the tolerance.
+    /// A feed alone, mm/min: teeth so many that their marks need next to no share of the tolerance.
     #[must_use]
     pub const fn of_feed(feed_mm_min: f64) -> Self {
         /// Passages of teeth a minute.
