@@ -10,6 +10,16 @@ use std::path::{Path, PathBuf};
 const SHOWN_IDS: usize = 12;
 
 /// A command that cannot be done, with the message for the user.
+///
+/// ```
+/// use osculate::Failure;
+///
+/// let wrong = Failure::unknown("machine.name", "machine", "trunion-ac", &["3-axis", "trunnion-ac"]);
+/// assert_eq!(wrong.problem().nearest, "trunnion-ac");
+/// assert!(wrong.message().starts_with("machine.name: there is no machine"));
+/// // Programs end with this code, and with 2 where they are called wrongly.
+/// assert_eq!((wrong.code(), Failure::Usage("--faces is missing".into()).code()), (1, 2));
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// Exit code 1: the job cannot be done as asked.

@@ -12,6 +12,19 @@ use tempfile::NamedTempFile;
 
 /// Writes a file with these bytes. Folders on the way to it are made.
 ///
+/// ```
+/// use osculate::files;
+///
+/// let folder = std::env::temp_dir().join(format!("osculate-files-{}", std::process::id()));
+/// let file = folder.join("new").join("program.nc");
+/// files::write(&file, b"M30\n", &())?;
+/// assert_eq!(std::fs::read(&file)?, b"M30\n");
+/// // A folder is not replaced by a file.
+/// assert!(files::write(&folder, b"M30\n", &()).is_err());
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Where the folder cannot be made or the file not be written. Then nothing appears, and a file that was there before stays.
 pub fn write(path: &Path, bytes: &[u8], watch: &dyn Watch) -> Result<(), Failure> {

@@ -24,6 +24,15 @@ pub fn triangles(path: &Path) -> Result<Vec<[Point3; 3]>, Failure> {
 }
 
 /// Triangles in mm, of whose unit so many go into one.
+///
+/// ```
+/// use osculate::triangles::scaled;
+/// use osculate_geom::Point3;
+///
+/// // A mesh in inches.
+/// let inch = [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)];
+/// assert_eq!(scaled(vec![inch], 25.4)[0][1], Point3::new(25.4, 0.0, 0.0));
+/// ```
 #[must_use]
 pub fn scaled(mut triangles: Vec<[Point3; 3]>, scale: f64) -> Vec<[Point3; 3]> {
     if scale != 1.0 {

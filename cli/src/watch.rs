@@ -10,6 +10,27 @@ use std::time::Instant;
 pub type PartialText = Box<dyn FnOnce() -> Result<String, String> + Send>;
 
 /// Hears how work goes on, from whichever thread does it.
+///
+/// ```
+/// use osculate::{Watch, watch::Stage};
+/// use std::sync::Mutex;
+///
+/// /// Keeps the names of stages.
+/// #[derive(Default)]
+/// struct Names(Mutex<Vec<&'static str>>);
+///
+/// impl Watch for Names {
+///     fn begin(&self, stage: &'static str) {
+///         self.0.lock().expect("nobody panics").push(stage);
+///     }
+/// }
+///
+/// let names = Names::default();
+/// let stage = Stage::begin(&names, "import");
+/// let seconds = stage.end();
+/// assert!(seconds >= 0.0);
+/// assert_eq!(*names.0.lock().expect("nobody panics"), ["import"]);
+/// ```
 pub trait Watch: Sync {
     /// A stage begins.
     fn begin(&self, _stage: &'static str) {}

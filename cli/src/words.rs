@@ -31,6 +31,13 @@ fn escaped(text: &str, which: impl Fn(char) -> bool) -> Cow<'_, str> {
 }
 
 /// Words as a sentence lists them, the first `most` of them.
+///
+/// ```
+/// use osculate::words::listed;
+///
+/// assert_eq!(listed(&["F1", "F2", "F3", "F4"], 2), "F1, F2 and 2 more");
+/// assert_eq!(listed(&["F1", "F2"], 2), "F1, F2");
+/// ```
 #[must_use]
 pub fn listed<T: AsRef<str>>(all: &[T], most: usize) -> String {
     let some: Vec<&str> = all.iter().take(most).map(AsRef::as_ref).collect();
@@ -39,6 +46,14 @@ pub fn listed<T: AsRef<str>>(all: &[T], most: usize) -> String {
 }
 
 /// A table with right-aligned columns but the first.
+///
+/// ```
+/// use osculate::words::{Table, number};
+///
+/// let mut table = Table::new(["tool", "width mm"]);
+/// table.row(["ball 6".into(), number(0.77421, 3)]);
+/// assert_eq!(table.render(), "  tool    width mm\n  ----------------\n  ball 6     0.774\n");
+/// ```
 pub struct Table {
     rows: Vec<Vec<String>>,
     left: bool,
@@ -117,6 +132,13 @@ pub fn findings(all: &[Diagnostic]) -> String {
 }
 
 /// A number with `digits` significant digits, plain where it is neither huge nor tiny.
+///
+/// ```
+/// use osculate::words::number;
+///
+/// assert_eq!((number(0.0123456, 3), number(123_456.0, 3)), ("0.0123".into(), "123456".into()));
+/// assert_eq!((number(-0.0, 3), number(1.5e-9, 3)), ("0".into(), "1.50e-9".into()));
+/// ```
 pub fn number(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         // No minus before a zero.

@@ -1,10 +1,9 @@
 //! From cutter location data to NC programs and back.
 //!
+//! ## From CL data to NC
+//!
 //! - [`cldata`] reads and writes APT cutter location files.
-//! - [`machine`] describes machine tools as chains of joints; [`machine::Machine::solve`] finds the joints of a path:
-//!   branch and turn over the whole path, poles, limits, linearisation.
-//! - [`Orienting`] says which tool axes the rotary joints reach with a part as it is set up, and what turning costs.
-//! - [`feed`] writes F so that every block takes the time it should, [`motion`] says how long the axes need.
+//! - [`feed`] writes F so that every block takes the time it should.
 //! - [`nc`] words programs in the dialects of controls and reads them back to the tool's way; [`post()`] does it all.
 //! - [`conduct`] says whether a program makes its moves in the state of the control that the job means.
 //!
@@ -29,6 +28,44 @@
 //! assert_eq!(conduct.worst(), Some(conduct::Grade::Warning));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! ## From a pose to joints
+//!
+//! - [`machine`] describes machine tools as chains of joints; [`machine::Machine::solve`] finds the joints of a path:
+//!   branch and turn over the whole path, poles, limits, linearisation.
+//! - [`Orienting`] says which tool axes the rotary joints reach with a part as it is set up, and what turning costs.
+//! - [`suggest()`], [`axis_turns`], [`into_travel`] find where a part may stand.
+//!
+//! ```
+//! use osculate_geom::{Point3, Unit3, Vec3};
+//! use osculate_postproc::{Machine, Setup};
+//! use osculate_tools::Pose;
+//!
+//! let machine = Machine::built_in("trunnion-bc")?;
+//! let pose = Pose { tip: Point3::new(3.0, 4.0, 5.0), axis: Unit3::new_normalize(Vec3::new(0.2, 0.1, 1.0)) };
+//! for joints in machine.inverse(&pose, &Setup::default())? {
+//!     assert!((machine.forward(&joints, &Setup::default()).tip - pose.tip).norm() < 1e-9);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! ## From NC to a time
+//!
+//! - [`motion`] says how long the axes need, [`nc::timing`] how long a control takes over a text.
+//!
+//! ```
+//! use osculate_postproc::{Dialect, Machine, Setup, nc::timing};
+//!
+//! let machine = Machine::built_in("3-axis")?;
+//! // 50 mm at 500 mm a minute: a tenth of a minute, and what starting and stopping costs.
+//! let text = "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X50 F500\nM30\n";
+//! let timed = timing::time(text, Dialect::Fanuc, &machine, &Setup::default(), true)?;
+//! assert!((0.1..0.102).contains(&timed.time.cutting_min));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Lengths are millimetres, angles radians, times minutes, feeds mm/min. The tool axis points from the tip to the spindle; CL
+//! data are in the part's frame.
 
 mod auxiliary;
 mod choices;

@@ -29,6 +29,18 @@ const VERTICAL_SINE: f64 = 1e-9;
 /// The part as it stands is best where nothing looks further down than [`crate::suggest`] leaves standing. Then come those that have the
 /// lowest direction highest; of the four with one direction up the least turned first. A machine of three or four axes has no choice where
 /// its tool looks from: there those come first with which the direction furthest from all of its axes is nearest to them.
+///
+/// ```
+/// use osculate_geom::Vec3;
+/// use osculate_postproc::{Machine, axis_turns};
+///
+/// let machine = Machine::built_in("trunnion-ac")?;
+/// let turns = axis_turns(&machine, &[-Vec3::z_axis()]);
+/// assert_eq!(turns.len(), 24);
+/// // The first brings what looks down to look up.
+/// assert!(((turns[0] * -Vec3::z_axis()).z - 1.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn axis_turns(machine: &Machine, looks: &[Unit3]) -> Vec<UnitQuaternion<f64>> {
     // How high the lowest one looks; a part that stands well is above all others.
@@ -79,6 +91,15 @@ fn ups() -> [Unit3; 6] {
 
 /// Turns that bring each axis of a part up, and from there by steps of 15 degrees about the vertical. A table whose first joint turns about
 /// the vertical without end turns these together, and has only one of them.
+///
+/// ```
+/// use osculate_postproc::{Machine, clamped_turns};
+///
+/// // Six sides up; where no table turns about the vertical, each in 24 steps of 15 degrees.
+/// assert_eq!(clamped_turns(&Machine::built_in("trunnion-ac")?).len(), 6);
+/// assert_eq!(clamped_turns(&Machine::built_in("3-axis")?).len(), 6 * 24);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn clamped_turns(machine: &Machine) -> Vec<UnitQuaternion<f64>> {
     let turntable = machine.rotary().first().is_some_and(|&place| {
@@ -125,6 +146,18 @@ pub fn tilts(turned: &UnitQuaternion<f64>) -> Vec<UnitQuaternion<f64>> {
 }
 
 /// The first of some turns of a part with which the rotary joints reach all tool axes of a path within their limits.
+///
+/// ```
+/// use osculate_geom::Vec3;
+/// use osculate_postproc::{Machine, axis_turns, cldata, first_in_range};
+///
+/// let machine = Machine::built_in("3-axis")?;
+/// let path = cldata::read("GOTO/0,0,0,1,0,0\nFINI\n")?.path;
+/// let turns = axis_turns(&machine, &[]);
+/// let turn = first_in_range(&path, &machine, &turns).expect("one of them brings x up");
+/// assert!((turn * Vec3::x() - Vec3::z()).norm() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn first_in_range(
     path: &ClPath,

@@ -63,6 +63,21 @@ pub struct PostReport {
 
 /// Posts a path: kinematics, feed, words.
 ///
+/// ```
+/// use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, cldata, post};
+///
+/// // A machine of three axes needs no kinematics: the joints are the tip's coordinates.
+/// let path = cldata::read("SPINDL/5000,CLW\nRAPID\nGOTO/0,0,5\nFEDRAT/600\nGOTO/60,0,5\nFINI\n")?.path;
+/// let machine = Machine::built_in("3-axis")?;
+/// let options = PostOptions::new(Dialect::LinuxCnc, FeedMode::InverseTime);
+/// let posted = post(&path, &machine, &Setup::default(), &options)?;
+/// // 60 mm at 600 mm/min take a tenth of a minute, which G93 writes as 10 per minute.
+/// assert!(posted.text.lines().any(|line| line.contains("X60") && line.contains("F10")));
+/// assert!(posted.text.contains("S5000"));
+/// assert!(posted.diagnostics.is_empty() && posted.summary.tip_error_mm == 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Where the machine cannot run the path or the dialect cannot say it.
 pub fn post(
@@ -79,6 +94,21 @@ pub fn post(
 
 /// As [`post()`], with the text going to `sink` in pieces of some ten kilobytes. Beside the path, what is held does not
 /// grow with its length, except in [`FeedMode::Fastest`], whose feed at the start depends on the end: 120 bytes a block.
+///
+/// ```
+/// use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, cldata, post, post_to};
+///
+/// let path = cldata::read("RAPID\nGOTO/0,0,5\nFEDRAT/600\nGOTO/60,0,5\nFINI\n")?.path;
+/// let (machine, setup) = (Machine::built_in("3-axis")?, Setup::default());
+/// let options = PostOptions::new(Dialect::Fanuc, FeedMode::InverseTime);
+/// // Whatever can be written to takes the text: a file, a socket, or here a vector of bytes.
+/// let mut bytes = Vec::new();
+/// let report = post_to(&path, &machine, &setup, &options, &mut bytes)?;
+/// let whole = post(&path, &machine, &setup, &options)?;
+/// assert_eq!(bytes, whole.text.as_bytes());
+/// assert_eq!(report.summary, whole.summary);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// As [`post()`], and where the sink takes no more. What the sink has then is a part of a program and must not be run.

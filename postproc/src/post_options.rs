@@ -46,6 +46,20 @@ pub struct PostOptions {
 
 impl PostOptions {
     /// Default tolerances, tool 1, the path's own speed.
+    ///
+    /// ```
+    /// use osculate_postproc::{Dialect, FeedMode, PostOptions};
+    ///
+    /// let options = PostOptions {
+    ///     tool_number: 12,
+    ///     spindle_rpm: Some(9000.0),
+    ///     ..PostOptions::new(Dialect::Heidenhain, FeedMode::Tcp)
+    /// };
+    /// // Tip within 2 um of its line, axis within 0.02 deg; no word about the work offset: the active preset.
+    /// assert_eq!(options.solve.tip_tol_mm, 0.002);
+    /// assert!((options.solve.axis_tol_rad.to_degrees() - 0.02).abs() < 1e-12);
+    /// assert_eq!(options.work_offset, None);
+    /// ```
     #[must_use]
     pub fn new(dialect: Dialect, feed: FeedMode) -> Self {
         Self {

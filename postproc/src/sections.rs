@@ -41,6 +41,25 @@ pub struct PostedSections {
 /// tool is called with its length, speed and coolant, and every word is said again, whether the tool is another or not. The head of the
 /// program lists tools and sections, and each section is named where it begins, one alone too.
 ///
+/// ```
+/// use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Section, Setup, cldata, post_sections};
+///
+/// let face = cldata::read("SPINDL/3000,CLW\nRAPID\nGOTO/0,0,5\nFEDRAT/800\nGOTO/50,0,0\nFINI\n")?.path;
+/// let edge = cldata::read("SPINDL/9000,CLW\nRAPID\nGOTO/0,9,5\nFEDRAT/300\nGOTO/50,9,0\nFINI\n")?.path;
+/// let with = |name: &str, path, tool_number, gauge_length_mm| Section {
+///     name: name.to_owned(),
+///     path,
+///     gauge_length_mm,
+///     options: PostOptions { tool_number, ..PostOptions::new(Dialect::Fanuc, FeedMode::InverseTime) },
+/// };
+/// let sections = [with("face", &face, 1, 120.0), with("edge", &edge, 2, 80.0)];
+/// let posted = post_sections(&sections, &Machine::built_in("3-axis")?, &Setup::default())?;
+/// assert_eq!(posted.sections.len(), 2);
+/// // Each tool is called with its own length offset.
+/// assert!(["T1", "H1", "T2", "H2", "S3000", "S9000"].iter().all(|word| posted.text.contains(word)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`post()`](crate::post()), and where there is no section or sections differ in what a program has once.
 pub fn post_sections(

@@ -11,6 +11,20 @@ use osculate_geom::{Point3, Unit3, Vec3};
 use osculate_tools::Pose;
 
 /// Part and tool on the machine.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_postproc::Setup;
+/// use osculate_tools::Pose;
+///
+/// // The part's origin is 100 mm along X and 20 mm above the table's reference point; the tool is 150 mm long.
+/// let setup = Setup::at(Vec3::new(100.0, 0.0, 20.0), 150.0);
+/// let pose = Pose { tip: Point3::new(1.0, 2.0, 3.0), axis: Vec3::z_axis() };
+/// let on_table = setup.to_table(&pose);
+/// assert_eq!(on_table.tip, Point3::new(101.0, 2.0, 23.0));
+/// // And back.
+/// assert_eq!(setup.to_part(&on_table), pose);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
     /// From the part's frame to the frame of the table's reference point, all rotary joints at zero; mm.
@@ -59,6 +73,17 @@ impl Setup {
 
     /// The turn of the part about x, then y, then z of the machine, rad, the one about y from -pi/2 to pi/2; where that is a quarter of a
     /// turn, which leaves only the sum of the others, the one about x is zero.
+    ///
+    /// ```
+    /// use osculate_geom::{Vec3, nalgebra::UnitQuaternion};
+    /// use osculate_postproc::Setup;
+    /// use std::f64::consts::FRAC_PI_2;
+    ///
+    /// let mut setup = Setup::default();
+    /// setup.part_zero.rotation = UnitQuaternion::from_axis_angle(&Vec3::z_axis(), FRAC_PI_2);
+    /// let [x, y, z] = setup.turn_rad();
+    /// assert!(x.abs() < 1e-12 && y.abs() < 1e-12 && (z - FRAC_PI_2).abs() < 1e-12);
+    /// ```
     #[must_use]
     pub fn turn_rad(&self) -> [f64; 3] {
         let rotation = self.part_zero.rotation.to_rotation_matrix();
@@ -70,6 +95,17 @@ impl Setup {
         [m[(2, 1)].atan2(m[(2, 2)]), about_y, m[(1, 0)].atan2(m[(0, 0)])]
     }
 
+    /// Whether its numbers can be used; whatever takes a setup asks this first.
+    ///
+    /// ```
+    /// use osculate_geom::Vec3;
+    /// use osculate_postproc::{Setup, SetupError};
+    ///
+    /// assert_eq!(Setup::default().check(), Ok(()));
+    /// let inside = Setup::at(Vec3::zeros(), -5.0);
+    /// assert_eq!(inside.check(), Err(SetupError::GaugeLength { gauge_length_mm: -5.0 }));
+    /// ```
+    ///
     /// # Errors
     /// Where a number is not finite or the gauge length is negative.
     pub fn check(&self) -> Result<(), SetupError> {
@@ -102,6 +138,18 @@ impl Setup {
     }
 
     /// Programmed X Y Z with tool-centre-point control, for a tip in the part's frame.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Vec3, nalgebra::UnitQuaternion};
+    /// use osculate_postproc::Setup;
+    ///
+    /// // Turned by a quarter about Z the part's x lies along the machine's Y; where the part stands is in the work offset.
+    /// let mut setup = Setup::at(Vec3::new(300.0, 200.0, 50.0), 0.0);
+    /// setup.part_zero.rotation = UnitQuaternion::from_axis_angle(&Vec3::z_axis(), std::f64::consts::FRAC_PI_2);
+    /// let xyz = setup.to_program(&Point3::new(7.0, 0.0, 0.0));
+    /// assert!((xyz - Vec3::new(0.0, 7.0, 0.0)).norm() < 1e-12);
+    /// assert!((setup.from_program(&xyz) - Point3::new(7.0, 0.0, 0.0)).norm() < 1e-12);
+    /// ```
     #[must_use]
     pub fn to_program(&self, tip: &Point3) -> Vec3 {
         self.part_zero.rotation * tip.coords

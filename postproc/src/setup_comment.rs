@@ -83,6 +83,19 @@ impl Setup {
     /// The setup that the head of a program says it was posted for, with the bits that the post had; None where it says
     /// none, as programs of other hands.
     ///
+    /// ```
+    /// use osculate_geom::Vec3;
+    /// use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, cldata, post};
+    ///
+    /// let setup = Setup::at(Vec3::new(0.1, -0.2, 1.0 / 3.0), 123.456);
+    /// let path = cldata::read("RAPID\nGOTO/0,0,5\nFEDRAT/600\nGOTO/8,0,5\nFINI\n")?.path;
+    /// let machine = Machine::built_in("trunnion-ac")?;
+    /// let posted = post(&path, &machine, &setup, &PostOptions::new(Dialect::Sinumerik, FeedMode::Tcp))?;
+    /// assert_eq!(Setup::of_program(&posted.text, Dialect::Sinumerik)?, Some(setup));
+    /// assert_eq!(Setup::of_program("G0 X0\n", Dialect::Fanuc)?, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Where the comments have a part of a setup, or one that is changed so that it is none.
     pub fn of_program(text: &str, dialect: Dialect) -> Result<Option<Self>, SetupCommentError> {

@@ -32,6 +32,26 @@ const PIECE: usize = 8 * SHARE;
 impl Machine {
     /// The path in joints.
     ///
+    /// ```
+    /// use osculate_postproc::{Machine, Setup, SolveError, SolveOptions, cldata};
+    ///
+    /// // The axis turns by 45 deg about X while the tip goes along X, 50 mm off the axis of A: A has to turn as much.
+    /// let path = cldata::read("FEDRAT/600\nGOTO/0,50,0,0,0,1\nGOTO/10,50,0,0,-1,1\nFINI\n")?.path;
+    /// let machine = Machine::built_in("trunnion-ac")?;
+    /// let options = SolveOptions { tip_tol_mm: 0.01, ..SolveOptions::default() };
+    /// let joints = machine.solve(&path, &Setup::default(), &options)?;
+    /// let a = machine.joint_named("A").expect("it has one");
+    /// let last = joints.blocks.last().expect("it moves").joints;
+    /// assert!((last[a].abs().to_degrees() - 45.0).abs() < 1e-9);
+    /// // Points are put in so that the tip keeps to its line.
+    /// assert!(joints.summary.inserted_points > 0 && joints.summary.tip_error_mm <= 0.01);
+    /// // A tool that comes from below is out of reach.
+    /// let below = cldata::read("GOTO/0,0,0,0,0,-1\nFINI\n")?.path;
+    /// let refused = machine.solve(&below, &Setup::default(), &SolveOptions::default());
+    /// assert!(matches!(refused, Err(SolveError::Unreachable { index: 0, .. } | SolveError::Limit { index: 0, .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Where the input is no path, or the machine cannot run it; the error names the CL move and what to change.
     pub fn solve(

@@ -6,6 +6,20 @@ use std::ops::ControlFlow;
 use osculate_tools::cl::{ClMove, ClPath};
 
 /// Moves that can be gone over more than once.
+///
+/// ```
+/// use osculate_postproc::{MoveSource, cldata};
+/// use std::ops::ControlFlow;
+///
+/// let path = cldata::read("RAPID\nGOTO/0,0,5\nFEDRAT/600\nGOTO/1,0,5\nGOTO/2,0,5\nFINI\n")?.path;
+/// let mut lengths = Vec::new();
+/// path.pieces(2, &mut |piece| {
+///     lengths.push(piece.len());
+///     ControlFlow::Continue(())
+/// })?;
+/// assert_eq!(lengths, [2, 1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait MoveSource {
     /// Why they cannot be had.
     type Error;

@@ -23,6 +23,21 @@ pub struct Suggestion {
 /// all sides; else it is turned so that the axis direction nearest to the mean normal points up, or the mean normal itself,
 /// where that leaves none further, or else the direction that is nearest to all of them. Where nothing is better than how
 /// it stands, it stays.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_postproc::suggest;
+///
+/// let corners = [Point3::new(0.0, 0.0, 0.0), Point3::new(40.0, 20.0, 10.0)];
+/// // Faces that look up: the part stays as it is, its middle over the reference point and its foot on the table.
+/// let upright = suggest(&[Vec3::z_axis()], &corners, 0.0);
+/// assert!(!upright.turned);
+/// assert_eq!(upright.setup.part_zero.translation.vector, Vec3::new(-20.0, -10.0, 0.0));
+/// // Faces that look down: it is turned over.
+/// let over = suggest(&[-Vec3::z_axis()], &corners, 0.0);
+/// assert!(over.turned);
+/// assert!(((over.setup.part_zero.rotation * -Vec3::z_axis()).z - 1.0).abs() < 1e-12);
+/// ```
 #[must_use]
 pub fn suggest(normals: &[Unit3], points: &[Point3], gauge_length_mm: f64) -> Suggestion {
     let rotation = turn(normals);

@@ -46,6 +46,24 @@ impl Stance {
 }
 
 /// Whether joints of a machine take the tool to a pose of the part of a setup, linear and rotary ones within their limits.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_postproc::{Machine, Setup, in_travel, into_travel};
+/// use osculate_tools::Pose;
+///
+/// // X of this machine ends 3 m from the table's reference point.
+/// let machine = Machine::built_in("trunnion-ac")?;
+/// let pose = Pose { tip: Point3::new(10.0, 0.0, 0.0), axis: Vec3::z_axis() };
+/// assert!(in_travel(&pose, &machine, &Setup::default()));
+/// let aside = Setup::at(Vec3::new(5000.0, 0.0, 0.0), 0.0);
+/// // At 5 m no turn of C brings the place within 3 m along X and along Y.
+/// assert!(!in_travel(&pose, &machine, &aside));
+/// let moved = into_travel(&[pose], &machine, &aside).expect("there is room nearer the middle");
+/// let nearer = Setup::at(Vec3::new(5000.0, 0.0, 0.0) + moved, 0.0);
+/// assert!(in_travel(&pose, &machine, &nearer));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn in_travel(pose: &Pose, machine: &Machine, setup: &Setup) -> bool {
     let pose = setup.to_table(pose);

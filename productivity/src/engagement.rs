@@ -38,6 +38,23 @@ pub struct Engagement {
 }
 
 /// A cutter's outline cut into steps, ready for many instants.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3};
+/// use osculate_productivity::engagement::{Fineness, Outline};
+/// use osculate_tools::{Cutter, CutterSpec, Pose, sweep::Moving};
+///
+/// // A flat end of 10 mm, 3 mm deep in material below z = 3, at 200 mm a minute: 10 x 3 x 200 mm3 a minute of a slot.
+/// let end = Cutter::try_from(CutterSpec::Flat { diameter_mm: 10.0, length_mm: 30.0 })?;
+/// let outline = Outline::new(&end, Fineness { meridians: 360, step_mm: 0.05 });
+/// let pose = Pose { tip: Point3::origin(), axis: Vec3::z_axis() };
+/// let moving = Moving { pose, tip_rate: Vec3::new(200.0, 0.0, 0.0), turn: Vec3::zeros() };
+/// let slot = outline.engaged(&moving, |p| 3.0 - p.z);
+/// assert!((slot.rate() / 6000.0 - 1.0).abs() < 1e-3);
+/// // Its front half is in cut.
+/// assert!((slot.arc_rad() - std::f64::consts::PI).abs() < 0.02);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// (rho, z) from the tip upwards, mm.

@@ -35,6 +35,23 @@ pub struct Field {
 
 /// The best postures over a face with `count` nodes in u and v.
 ///
+/// ```
+/// use osculate_geom::{Domain, Interval, analytic::Plane};
+/// use osculate_productivity::{field::best_postures, optimum::{Limits, Range}, rate::Caps};
+/// use osculate_tools::{Cutter, CutterSpec};
+///
+/// let plane = Plane::new(Domain { u: Interval::new(0.0, 40.0), v: Interval::new(0.0, 40.0) });
+/// let tools = [Cutter::try_from(CutterSpec::Ball { diameter_mm: 8.0, length_mm: 40.0 })?];
+/// let (lead, tilt) = (Range { least_rad: 0.1, most_rad: 0.4 }, Range::only(0.0));
+/// let limits = Limits { scallop_mm: 0.01, gouge_mm: 0.001, lead, tilt, axis: None, caps: Caps::of_feed(1000.0) };
+/// let field = best_postures(&plane, &tools, &limits, [2, 1])?;
+/// // All places of a plane are alike, and half a step from the border: at a fourth and three fourths of it.
+/// assert_eq!((field.nodes[0].at.u, field.nodes[1].at.u), (10.0, 30.0));
+/// let widths_mm = field.widths_mm();
+/// assert!((widths_mm[0] - widths_mm[1]).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`OptimumError`] of limits or tools that no node could be answered with; what fails at a node stays there.
 pub fn best_postures(

@@ -64,6 +64,18 @@ pub enum RateError {
 
 /// `E_F(t)`, mm2/min: `line` is the change of parameters at the fixed time, as a function of w.
 ///
+/// ```
+/// use osculate_geom::{Domain, Interval, analytic::Plane, uv};
+/// use osculate_productivity::finish::{Across, Place, area_rate_mm2_min};
+///
+/// // A line of 8 mm across the feed goes along u at 600 mm a minute.
+/// let plane = Plane::new(Domain { u: Interval::new(0.0, 100.0), v: Interval::new(0.0, 8.0) });
+/// let line = |w: f64| Place { at: uv(50.0, w), by_time: uv(600.0, 0.0), by_across: uv(0.0, 1.0) };
+/// let rate = area_rate_mm2_min(&plane, Across { from: 0.0, to: 8.0, panels: 2 }, line)?;
+/// assert!((rate - 4800.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`RateError`].
 pub fn area_rate_mm2_min(

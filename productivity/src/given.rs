@@ -6,6 +6,20 @@
 use osculate_geom::Uv;
 
 /// A positive quantity over the parameters of a face.
+///
+/// ```
+/// use osculate_geom::uv;
+/// use osculate_productivity::given::Given;
+///
+/// // 0.1 mm of stock at u = 0, 0.3 mm at u = 1, the same all along v.
+/// let stock = Given::grid(vec![0.0, 1.0], vec![0.0, 1.0], vec![0.1, 0.1, 0.3, 0.3])?;
+/// assert!((stock.at(uv(0.5, 0.7)) - 0.2).abs() < 1e-15);
+/// // Beyond the grid its border's.
+/// assert_eq!(stock.at(uv(5.0, 0.7)), 0.3);
+/// // No stock at all is none.
+/// assert!(Given::uniform(0.0).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given {
     nodes: [Vec<f64>; 2],

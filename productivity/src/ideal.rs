@@ -149,6 +149,25 @@ pub struct Search {
 
 /// The bound over faces.
 ///
+/// ```
+/// use osculate_geom::{Domain, Interval, analytic::Plane};
+/// use osculate_productivity::ideal::{Feeding, Patch, Search, ideal};
+/// use osculate_productivity::{optimum::Range, plan::Tolerance};
+/// use osculate_tools::{Cutter, CutterSpec};
+///
+/// let plane = Plane::new(Domain { u: Interval::new(0.0, 40.0), v: Interval::new(0.0, 40.0) });
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
+/// let tolerance = Tolerance { scallop_mm: 0.02, gouge_mm: 0.005, chord_mm: 0.005 };
+/// let faces = [Patch { surface: &plane, area_mm2: 1600.0 }];
+/// let tools = [Feeding { cutter: &ball, feed_mm_min: 2000.0 }];
+/// let bound = ideal(&faces, &tools, &tolerance, Search { places: 4, tilt: Range::only(0.0) })?;
+/// // Area over feed times strip, 2 sqrt(h (2 R - h)).
+/// let width_mm = 2.0 * f64::sqrt(0.02 * (10.0 - 0.02));
+/// assert!((bound.time_min * 2000.0 * width_mm / 1600.0 - 1.0).abs() < 1e-3);
+/// assert_eq!(bound.unreached_mm2, 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`OptimumError`] of limits that are none and of an empty list of tools.
 pub fn ideal(

@@ -31,6 +31,23 @@ pub struct Totals {
 /// Productivity of passes cut at a tip feed of `feed_mm_min`.
 ///
 /// Places without a computed strip width count neither way.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3, uv};
+/// use osculate_productivity::{levels::{Totals, levels}, plan::{CcPoint, Pass}};
+/// use osculate_tools::Pose;
+///
+/// // One pass of 50 mm with a strip of 2 mm, at 1000 mm a minute.
+/// let at = |x: f64| {
+///     let point = Point3::new(x, 0.0, 0.0);
+///     CcPoint { uv: uv(x, 0.0), point, normal: Vec3::z_axis(), pose: Pose { tip: point, axis: Vec3::z_axis() }, width_mm: 2.0 }
+/// };
+/// let pass = Pass { points: vec![at(0.0), at(50.0)], closed: false };
+/// // It takes 0.05 min, and as much again is spent in the air.
+/// let found = levels(&[pass], 1000.0, Totals { area_mm2: 100.0, time_min: 0.1 });
+/// assert!((found.instantaneous_max - 2000.0).abs() < 1e-9 && (found.regional[0] - 2000.0).abs() < 1e-9);
+/// assert!((found.global - 1000.0).abs() < 1e-9);
+/// ```
 #[must_use]
 pub fn levels(passes: &[Pass], feed_mm_min: f64, totals: Totals) -> Levels {
     let (mut least, mut greatest) = (f64::INFINITY, 0.0f64);

@@ -25,6 +25,32 @@ use std::f64::consts::TAU;
 
 /// The best posture of the best tool at a point.
 ///
+/// ```
+/// use osculate_geom::{Domain, Interval, analytic::Plane, uv};
+/// use osculate_productivity::{optimum::{self, Limits, Range}, rate::Caps};
+/// use osculate_tools::{Cutter, CutterSpec};
+///
+/// let plane = Plane::new(Domain { u: Interval::new(-30.0, 30.0), v: Interval::new(-30.0, 30.0) });
+/// let ball = |diameter_mm| Cutter::try_from(CutterSpec::Ball { diameter_mm, length_mm: 50.0 });
+/// let tools = [ball(6.0)?, ball(10.0)?];
+/// let limits = Limits {
+///     scallop_mm: 0.01,
+///     gouge_mm: 0.001,
+///     lead: Range { least_rad: 0.1, most_rad: 0.5 },
+///     tilt: Range::only(0.0),
+///     axis: None,
+///     caps: Caps::of_feed(2000.0),
+/// };
+/// // On a plane the larger ball, whichever way it goes: a strip of 2 sqrt(h (2 R - h)) at 2 m a minute, less the ten thousandth
+/// // of h that tooth marks get at least.
+/// let best = optimum::at(&plane, uv(0.0, 0.0), &tools, &limits)?;
+/// let width_mm = 2.0 * f64::sqrt(0.01 * (10.0 - 0.01));
+/// assert_eq!(best.tool, 1);
+/// let ratio = best.rate.area_mm2_min / (2000.0 * width_mm);
+/// assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`OptimumError`].
 pub fn at(surface: &dyn Surface, at: Uv, tools: &[Cutter], limits: &Limits) -> Result<Optimum, OptimumError> {

@@ -6,6 +6,18 @@
 //! cutter's cap and the machine's feed.
 
 /// What limits the feed, apart from the part.
+///
+/// ```
+/// use osculate_productivity::rate::{Caps, FeedLimit};
+///
+/// // Two teeth at 10 000 rpm: 20 000 cuts a minute of 0.1 mm at most, which is slower than the machine's 3 m a minute.
+/// let caps = Caps { spindle_rpm: 10_000.0, teeth: 2, feed_mm_min: 3000.0, feed_per_tooth_mm: 0.1 }.checked()?;
+/// assert_eq!(caps.passages_per_min(), 20_000.0);
+/// assert_eq!(caps.greatest_per_tooth(), (0.1, FeedLimit::FeedPerTooth));
+/// // A spindle that stands is refused.
+/// assert!(Caps { spindle_rpm: 0.0, ..caps }.checked().is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Caps {
     /// Spindle speed, 1/min.
@@ -55,7 +67,7 @@ pub struct Rate {
 }
 
 impl Caps {
-    /// A feed alone: teeth so many that their marks need no share of the tolerance.
+    /// A feed alone, mm/min: teeth so many that their marks need next to no share of the tolerance.
     #[must_use]
     pub const fn of_feed(feed_mm_min: f64) -> Self {
         /// Passages of teeth a minute.
@@ -103,6 +115,20 @@ impl Caps {
     }
 
     /// Productivity of a strip of `width_mm` where the tooth marks allow `mark_mm` per tooth.
+    ///
+    /// ```
+    /// use osculate_productivity::rate::{Caps, FeedLimit};
+    ///
+    /// let caps = Caps { spindle_rpm: 10_000.0, teeth: 2, feed_mm_min: 3000.0, feed_per_tooth_mm: 0.2 };
+    /// // The machine's 3000 mm/min are less than 0.2 mm a tooth: a strip of 0.5 mm makes 1500 mm2 a minute.
+    /// let fast = caps.rate(0.5, 1.0);
+    /// assert_eq!((fast.limit, fast.feed_mm_min), (FeedLimit::Feed, 3000.0));
+    /// assert!((fast.area_mm2_min - 1500.0).abs() < 1e-9);
+    /// // Ridges between tooth marks bind where they allow less: 0.05 mm, 1000 mm/min.
+    /// let marked = caps.rate(0.5, 0.05);
+    /// assert_eq!(marked.limit, FeedLimit::ToothMark);
+    /// assert!((marked.feed_mm_min - 1000.0).abs() < 1e-9);
+    /// ```
     #[must_use]
     pub fn rate(&self, width_mm: f64, mark_mm: f64) -> Rate {
         let (cap, why) = self.greatest_per_tooth();

@@ -53,6 +53,21 @@ fn depth(jet: &Jet2, thickness_mm: f64, crossed: &Cell<Option<LayerError>>) -> f
 /// The exact volume of the layer over the surface's whole parameter rectangle, mm3, to the `relative` accuracy of its
 /// quadrature.
 ///
+/// ```
+/// use osculate_geom::{Interval, analytic::Cylinder};
+/// use osculate_productivity::{given::Given, rough::{flat_volume, layer_volume}};
+/// use std::f64::consts::PI;
+///
+/// // 2 mm of stock around a cylinder of radius 20 mm, 30 mm high: a tube.
+/// let cylinder = Cylinder::new(20.0, Interval::new(0.0, 30.0))?;
+/// let stock = Given::uniform(2.0)?;
+/// let volume = layer_volume(&cylinder, &stock, 1e-9)?;
+/// assert!((volume.value - PI * (22.0f64.powi(2) - 20.0f64.powi(2)) * 30.0).abs() < 1e-6);
+/// // Thickness times area leaves out that the tube is longer outside.
+/// assert!((flat_volume(&cylinder, &stock, 1e-9).value - 2.0 * PI * 20.0 * 30.0 * 2.0).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`LayerError::Crosses`].
 pub fn layer_volume(surface: &dyn Surface, thickness: &Given, relative: f64) -> Result<Integral, LayerError> {

@@ -11,6 +11,14 @@ use osculate_geom::roots::try_minimum;
 ///
 /// `along_per_mm` is q(d) of the relative form along the feed: `S_L = 2 sqrt(2 h_L / q)`. Its relative error in the area per
 /// tooth is of first order in h.
+///
+/// ```
+/// use osculate_productivity::split::leading_share;
+///
+/// // A half each, unless the feed per tooth is capped first: S_L = 2 sqrt(2 h_L / q) is 0.4 mm at h_L = 0.002 mm here.
+/// assert_eq!(leading_share(0.1, f64::INFINITY, 0.01), 0.5);
+/// assert!((leading_share(0.1, 0.4, 0.01) - 0.2).abs() < 1e-12);
+/// ```
 #[must_use]
 pub fn leading_share(along_per_mm: f64, cap_mm: f64, tolerance_mm: f64) -> f64 {
     let enough = cap_mm * cap_mm * along_per_mm / (8.0 * tolerance_mm);
@@ -36,6 +44,18 @@ const STEPS: u32 = 40;
 const SHARE: f64 = 3e-5;
 
 /// The share that makes `min(S_L, cap) S_C` greatest, for any two widths that grow with their part of the tolerance.
+///
+/// ```
+/// use osculate_productivity::split::best_share;
+/// use std::convert::Infallible;
+///
+/// // Both widths grow with the root of their part of the tolerance: the product is greatest at a half each.
+/// let width = |h_mm: f64| Ok::<_, Infallible>(h_mm.sqrt());
+/// let best = best_share(0.02, f64::INFINITY, width, width)?;
+/// assert!((best.share.chi - 0.5).abs() < 1e-3 && !best.capped);
+/// assert!((best.share.along_mm() + best.share.across_mm() - 0.02).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// The first error of either width.

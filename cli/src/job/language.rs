@@ -28,6 +28,17 @@ impl Language {
 
     /// The language of this name.
     ///
+    /// ```
+    /// use osculate::job::language::Language;
+    /// use osculate_postproc::Dialect;
+    ///
+    /// // Haas is Fanuc in words of its own.
+    /// assert_eq!(Language::named("haas")?.engine, Dialect::Fanuc);
+    /// let message = Language::named("hass").expect_err("a slip").to_string();
+    /// assert!(message.contains("is haas meant?"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// With the names there are.
     pub fn named(name: &str) -> Result<Self, Failure> {

@@ -98,6 +98,39 @@ impl Operations {
 
     /// The operations of a text. Files that it names are looked for beside `path`.
     ///
+    /// ```
+    /// use osculate::job::{Operations, OperationWord};
+    /// use std::path::Path;
+    ///
+    /// let text = r#"
+    /// format = 2
+    /// part = { builtin = { kind = "paraboloid", a_per_mm = 0.01, b_per_mm = 0.02, half_size_mm = 6 } }
+    /// stock = { box_mm = [-6, -6, -5, 6, 6, 4] }
+    /// tolerance = { scallop_mm = 0.04 }
+    /// machine = { name = "trunnion-ac", dialect = "linuxcnc" }
+    /// tool = [
+    ///     { number = 4, kind = "flat", diameter_mm = 6, length_mm = 30 },
+    ///     { number = 7, kind = "ball", diameter_mm = 6, length_mm = 40 },
+    /// ]
+    /// [[operation]]
+    /// name = "rough"
+    /// kind = "rough"
+    /// tools = [4]
+    /// allowance_mm = 0.4
+    /// [[operation]]
+    /// name = "finish"
+    /// kind = "finish"
+    /// tools = [7]
+    /// "#;
+    /// assert!(Operations::are_in(text));
+    /// let list = Operations::from_toml(text, Path::new("list.toml"))?;
+    /// let kinds: Vec<OperationWord> = list.all().iter().map(|o| o.kind).collect();
+    /// assert_eq!(kinds, [OperationWord::Rough, OperationWord::Finish]);
+    /// // Each is a job of its own, with its tool.
+    /// assert_eq!(list.all()[1].judged()?.tool().number(), 7);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Names line, key, value and what was expected; everything that can be told without the part is.
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {

@@ -15,6 +15,14 @@ pub struct Range {
 
 impl Range {
     /// Whether a number is in it; what is not finite never is.
+    ///
+    /// ```
+    /// use osculate::job::schema::Range;
+    ///
+    /// // Above zero, and 90 at most.
+    /// let lean_deg = Range { least: 0.0, most: 90.0, open: [true, false] };
+    /// assert!(lean_deg.holds(90.0) && lean_deg.holds(0.1) && !lean_deg.holds(0.0));
+    /// ```
     #[must_use]
     pub fn holds(&self, x: f64) -> bool {
         let above = if self.open[0] { x > self.least } else { x >= self.least };

@@ -156,7 +156,19 @@ pub fn open(path: &Path) -> Result<Loaded, Failure> {
     from_file(path, None)
 }
 
-/// A built-in surface as a part, by its keys as TOML.
+/// A built-in surface as a part, by its keys as an inline table of TOML has them, without the braces.
+///
+/// ```
+/// use osculate::part;
+///
+/// let plane = part::built_in("kind = \"plane\", half_size_mm = 5")?;
+/// assert_eq!((plane.faces.len(), plane.faces[0].id.as_str()), (1, "F1"));
+/// // 10 x 10 mm, at z = 0.
+/// assert!((part::area(&plane.faces[0]) - 100.0).abs() < 1e-9);
+/// let bounds = part::bounds(&plane.faces[0]);
+/// assert!((bounds.max - bounds.min - osculate_geom::Vec3::new(10.0, 10.0, 0.0)).norm() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn built_in(keys: &str) -> Result<Loaded, Failure> {
     from_builtin(builtin::parse(keys).map_err(Failure::Usage)?)
 }
@@ -417,6 +429,16 @@ pub fn grid(surface: &dyn Surface, n: usize) -> Vec<(Uv, Point3, Unit3)> {
 }
 
 /// Range of the principal curvatures over a face, 1/mm, from a grid of its inside.
+///
+/// ```
+/// use osculate::part;
+///
+/// // A sphere of 20 mm is as round everywhere, and convex.
+/// let sphere = part::built_in("kind = \"sphere\", radius_mm = 20")?;
+/// let [least, greatest] = part::curvature_range(&*sphere.faces[0].surface).expect("it has an inside");
+/// assert!((least.abs() - 0.05).abs() < 1e-9 && (greatest - least).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn curvature_range(surface: &dyn Surface) -> Option<[f64; 2]> {
     let mut range: Option<[f64; 2]> = None;
     for (at, ..) in grid(surface, 24) {

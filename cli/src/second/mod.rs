@@ -99,6 +99,8 @@ impl Options {
 /// Looks at a program: what it does to points of the part.
 ///
 /// `setup` counts where it is given; otherwise what the program's head says it was posted for.
+/// Lengths are mm; points are in the part's frame, their normals out of the material. A point in the tool is deep by a positive
+/// number.
 ///
 /// # Errors
 /// Where anything is not known for certain: no opinion is given then.

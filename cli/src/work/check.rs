@@ -55,6 +55,31 @@ pub fn check(part: &Part, job: &Job, source: &Source<'_>, watch: &dyn Watch) -> 
 /// The text alone counts, whoever wrote it. The program of a [`Plan`](crate::work::plan::Plan) gets the verdict of that plan
 /// again, byte for byte.
 ///
+/// ```
+/// use osculate::{Answer, Job, Part};
+/// use std::path::Path;
+///
+/// let text = r#"
+/// format = 1
+/// part = { builtin = { kind = "plane", half_size_mm = 1 } }
+/// tool = { kind = "ball", diameter_mm = 6, length_mm = 40 }
+/// tolerance = { scallop_mm = 0.2 }
+/// cutting = { spindle_rpm = 8000, feed_mm_min = 500 }
+/// machine = { name = "3-axis", dialect = "linuxcnc", feed = "none" }
+/// "#;
+/// let job = Job::from_toml(text, Path::new("strip.toml"))?;
+/// let part = Part::of(&job)?;
+/// // One pass along the middle of a strip 2 mm wide, written by hand. The ball leaves R - sqrt(R^2 - 1) beside it.
+/// let pass = "G21 G90 G94 G54 G61\nT1 M6\nS8000 M3\nG43 H1\nG0 X-4 Y0\nG0 Z5\nG1 Z0 F500\nG1 X4\nG0 Z50\nM30\n";
+/// let verified = osculate::verify(&part, &job, pass)?;
+/// assert!((verified.summary.scallop_max_mm - (3.0 - 8f64.sqrt())).abs() < 1e-6);
+/// // Half a millimetre too deep.
+/// let deep = osculate::verify(&part, &job, &pass.replace("Z0", "Z-0.5"))?;
+/// assert_eq!(deep.verdict.answer(), Answer::NotHeld);
+/// assert!((deep.summary.gouge_max_mm - 0.5).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`check()`].
 pub fn verify(part: &Part, job: &Job, program: &str) -> Result<Verified, Failure> {

@@ -48,6 +48,25 @@ pub struct IdealTime {
 }
 
 /// The bound over the faces of a job with all its tools.
+///
+/// ```
+/// use osculate::{Job, Part, work::ideal};
+/// use std::path::Path;
+///
+/// let text = r#"
+/// format = 1
+/// part = { builtin = { kind = "plane", half_size_mm = 5 } }
+/// tool = { kind = "ball", diameter_mm = 6, length_mm = 40 }
+/// tolerance = { scallop_mm = 0.1 }
+/// cutting = { feed_mm_min = 1000 }
+/// "#;
+/// let job = Job::from_toml(text, Path::new("plane.toml"))?;
+/// let bound = ideal::of_job(&job, &Part::of(&job)?)?;
+/// // 100 mm2 at 1000 mm a minute with strips of 2 sqrt(h (2 R - h)): no plan with a ball that does not tilt is faster.
+/// let least_min = 100.0 / (1000.0 * 2.0 * f64::sqrt(0.1 * (6.0 - 0.1)));
+/// assert!((bound.time_min / least_min - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn of_job(job: &Job, faces: &Part) -> Result<Bound, Failure> {
     let jobs = job.each_tool();
     let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();

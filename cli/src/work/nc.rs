@@ -21,6 +21,15 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The machine of a command line: a built-in name or a file.
+///
+/// ```
+/// use osculate::work::nc;
+///
+/// assert_eq!(nc::machine("trunnion-ac")?.rotary().len(), 2);
+/// // Neither a built-in one nor a file.
+/// assert!(nc::machine("no-such-machine").is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn machine(word: &str) -> Result<Machine, Failure> {
     let file = Path::new(word);
     if !built_in_names().contains(&word) && (word.ends_with(".toml") || file.exists()) {

@@ -25,6 +25,13 @@ use osculate_tools::removal::Verdict;
 use std::path::Path;
 
 /// A file of a plan, by its name.
+///
+/// ```
+/// use osculate::PlanFile;
+///
+/// let file = PlanFile::of_text("notes.txt", "two passes".into());
+/// assert_eq!((file.name.as_str(), file.text()), ("notes.txt", Some("two passes")));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlanFile {
     /// Name, without a folder.
@@ -128,6 +135,29 @@ fn not_planned(job: &Job) -> Failure {
 }
 
 /// Plans a job on its part, posts the path, verifies the program and makes the report.
+///
+/// ```
+/// use osculate::{Job, Part};
+/// use std::path::Path;
+///
+/// let text = r#"
+/// format = 1
+/// part = { builtin = { kind = "plane", half_size_mm = 2 } }
+/// tool = { kind = "ball", diameter_mm = 6, length_mm = 40, teeth = 2 }
+/// tolerance = { scallop_mm = 0.1 }
+/// strategy = { kind = "isoparametric", lead_deg = 10 }
+/// cutting = { spindle_rpm = 8000 }
+/// machine = { name = "trunnion-ac", dialect = "heidenhain", feed = "tcp" }
+/// "#;
+/// let job = Job::from_toml(text, Path::new("plane.toml"))?;
+/// let plan = osculate::plan(&Part::of(&job)?, &job, &())?;
+/// // What was proved of it is what the figures say.
+/// assert_eq!(plan.summary.verification.within_tolerance, plan.verdict().is_held());
+/// assert!(plan.program().starts_with("BEGIN PGM") || plan.program().starts_with("0 BEGIN PGM"));
+/// // CL data stands beside the program.
+/// assert!(plan.file("path.cl").is_some_and(|cl| cl.contains("GOTO/")));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// Where no path can be planned or posted. A plan that does not hold is none: its verdict says so.

@@ -144,6 +144,25 @@ fn unset(job: &Job) -> Vec<String> {
 
 /// Looks what the tools of a job of one operation reach.
 ///
+/// ```
+/// use osculate::{Job, Part, work::reached};
+/// use std::path::Path;
+///
+/// let text = r#"
+/// format = 1
+/// part = { builtin = { kind = "plane", half_size_mm = 5 } }
+/// tool = { kind = "ball", diameter_mm = 6, length_mm = 40 }
+/// tolerance = { scallop_mm = 0.1 }
+/// machine = { name = "3-axis" }
+/// "#;
+/// let job = Job::from_toml(text, Path::new("plane.toml"))?;
+/// let checked = reached::of_job(&job, &Part::of(&job)?)?;
+/// // A ball from above reaches all of a plane.
+/// assert!(checked.fits() && checked.unreached_mm2 == 0.0);
+/// assert!((checked.reached[0].area_mm2 - 100.0).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Where the part cannot be read or sampled.
 pub fn of_job(job: &Job, part: &Part) -> Result<Checked, Failure> {

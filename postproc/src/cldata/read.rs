@@ -89,6 +89,25 @@ const LISTED_LINES: usize = 5;
 pub(super) const LEAST_RADIUS_MM: f64 = 1.0;
 
 /// How a text is to be read.
+///
+/// ```
+/// use osculate_postproc::cldata::{ClReadOptions, ClReader};
+///
+/// // Half around a circle of 10 mm about Z, from (10, 0) to (-10, 0).
+/// let text = "RAPID\nGOTO/10,0,0\nFEDRAT/100\nMOVARC/0,0,0,0,0,1,10\nGOTO/-10,0,0\n";
+/// let mut reader = ClReader::new(ClReadOptions { arc_tol_mm: 0.1, ..ClReadOptions::default() });
+/// for line in text.lines() {
+///     reader.line(line)?;
+/// }
+/// reader.end()?;
+/// let points: Vec<_> = reader.take_moves().map(|m| m.pose.tip.coords).collect();
+/// // Chords stray from the arc by 0.1 mm at most, in their middle.
+/// for pair in points.windows(2) {
+///     let middle = (pair[0] + pair[1]) / 2.0;
+///     assert!((9.9 - 1e-9..=10.0).contains(&middle.norm()) && middle.y > 0.0);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClReadOptions {
     /// How far the chords of an arc may stray from it, mm.
@@ -184,6 +203,18 @@ impl Default for ClReader {
 }
 
 /// The path of an APT text.
+///
+/// ```
+/// use osculate_postproc::cldata::{ClReadError, read};
+///
+/// let path = read("UNITS/INCHES\nRAPID\nGOTO/0,0,1\nFEDRAT/10,IPM\nGOTO/1,0,0,0,0.6,0.8\nFINI\n")?.path;
+/// // An inch is 25.4 mm.
+/// assert!((path.moves[1].pose.tip.x - 25.4).abs() < 1e-12);
+/// assert_eq!(path.moves[1].motion, osculate_tools::cl::Motion::Feed(254.0));
+/// // No feed before the first cut: refused with its line.
+/// assert_eq!(read("RAPID\nGOTO/0,0,5\nGOTO/0,0,0\n").err(), Some(ClReadError::NoFeed { line: 3 }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// Where a number or axis cannot be read, a feed is unknown, or there is no point at all.

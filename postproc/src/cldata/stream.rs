@@ -35,6 +35,22 @@ impl From<io::Error> for ClStreamError {
 }
 
 /// A text that can be opened as often as needed.
+///
+/// ```
+/// use osculate_postproc::cldata::{ClReadOptions, ClStream};
+/// use std::io::Cursor;
+///
+/// // Two tools; whatever can be opened again is a source, a file as well as this text.
+/// let text = "LOADTL/1\nRAPID\nGOTO/0,0,5\nFEDRAT/600\nGOTO/9,0,5\nLOADTL/2\nRAPID\nGOTO/0,0,5\nFINI\n";
+/// let stream = ClStream::new(|| Ok(Cursor::new(text)), ClReadOptions::default());
+/// let outline = stream.outline()?;
+/// let tools: Vec<_> = outline.sections.iter().map(|s| (s.tool.number, s.moves)).collect();
+/// assert_eq!(tools, [(Some(1), 2), (Some(2), 1)]);
+/// // Move 1 stands in line 5, 9 mm along the way.
+/// let place = stream.locate(&[1])?[0];
+/// assert_eq!((place.line, place.length_mm), (5, 9.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct ClStream<O> {
     open: O,
     options: ClReadOptions,

@@ -42,6 +42,17 @@ pub enum ClWriteError {
 
 /// The path as APT text.
 ///
+/// ```
+/// use osculate_postproc::cldata::{ClWriteOptions, read, write};
+///
+/// let path = read("SPINDL/8000,CLW\nRAPID\nGOTO/0,0,5\nFEDRAT/600\nGOTO/1.5,-2,0,0,0.6,0.8\nFINI\n")?.path;
+/// let text = write(&path, &ClWriteOptions { part_name: "BRACKET".into(), ..ClWriteOptions::default() })?;
+/// assert!(text.starts_with("PARTNO BRACKET\n"));
+/// // And read again it is the same path, speed of the spindle included.
+/// assert_eq!(read(&text)?.path, path);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Where a number is not finite.
 pub fn write(path: &ClPath, options: &ClWriteOptions) -> Result<String, ClWriteError> {

@@ -10,6 +10,20 @@
 use crate::machine::spec::FeedReading;
 
 /// How F is written.
+///
+/// ```
+/// use osculate_postproc::{FeedMode, PathMetric, feed::{Step, duration_min}};
+///
+/// // The tip shall take 2.5 mm at 500 mm/min, 0.005 min; the axes move by 5 mm and 12 degrees meanwhile.
+/// let (step, time_min) = (Step { linear_mm: 5.0, rotary_rad: [12f64.to_radians(), 0.0] }, duration_min(2.5, 500.0));
+/// let f = |mode: FeedMode| mode.metric(PathMetric::Linear).map(|over| over.length(&step) / time_min);
+/// // Over 5 mm, over hypot(5, 12) = 13 with a degree as 1 mm, and over 12 degrees.
+/// assert!((f(FeedMode::Kf).unwrap_or_default() - 1000.0).abs() < 1e-9);
+/// assert!((f(FeedMode::Kv { fgref_mm: None }).unwrap_or_default() - 2600.0).abs() < 1e-9);
+/// assert!((f(FeedMode::RotaryOnly).unwrap_or_default() - 2400.0).abs() < 1e-9);
+/// // In inverse time there is no path to read F over.
+/// assert_eq!(f(FeedMode::InverseTime), None);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FeedMode {
     /// Tool-centre-point control: F is the tip's feed.
@@ -110,6 +124,18 @@ impl PathMetric {
     }
 
     /// The length of the step, in mm, or in degrees where only rotary axes count.
+    ///
+    /// ```
+    /// use osculate_postproc::{PathMetric, feed::Step};
+    ///
+    /// // 3 mm straight on, and 1 rad at a radius of 4 mm.
+    /// let step = Step { linear_mm: 3.0, rotary_rad: [1.0, 0.0] };
+    /// assert_eq!(PathMetric::Arc { radius_mm: 4.0 }.length(&step), 5.0);
+    /// assert_eq!(PathMetric::Linear.length(&step), 3.0);
+    /// // Rotary axes alone count in degrees.
+    /// let turn = Step { linear_mm: 0.0, rotary_rad: [0.0, std::f64::consts::PI] };
+    /// assert_eq!(PathMetric::Linear.length(&turn), 180.0);
+    /// ```
     #[must_use]
     pub fn length(&self, step: &Step) -> f64 {
         let rotary = step.rotary();
@@ -123,6 +149,13 @@ impl PathMetric {
 }
 
 /// K_Z: `z_i = min(k_i, z_(i-1) + step)`, the first one as it is. Falls are not limited.
+///
+/// ```
+/// use osculate_postproc::feed::limited_rise;
+///
+/// // It may fall at once and rises by 200 at most.
+/// assert_eq!(limited_rise(&[500.0, 100.0, 350.0, 350.0], 200.0), [500.0, 100.0, 300.0, 350.0]);
+/// ```
 #[must_use]
 pub fn limited_rise(feeds: &[f64], step: f64) -> Vec<f64> {
     let limit = |before: &mut Option<f64>, k: &f64| {

@@ -12,6 +12,22 @@ pub struct Capped {
 }
 
 /// The wanted duration, or that of the slowest joint at full speed where it is longer.
+///
+/// ```
+/// use osculate_postproc::{Machine, feed::capped_duration};
+///
+/// // C turns by 360 degrees a second: half a turn takes half a second, whatever F asks.
+/// let machine = Machine::built_in("trunnion-ac")?;
+/// let c = machine.joint_named("C").expect("it has one");
+/// let (from, mut to) = ([0.0; 5], [0.0; 5]);
+/// to[c] = std::f64::consts::PI;
+/// let capped = capped_duration(&machine, &from, &to, 0.001);
+/// assert!((60.0 * capped.duration_min - 0.5).abs() < 1e-12);
+/// assert_eq!(capped.joint, Some(c));
+/// // What is asked for is longer: it stays.
+/// assert_eq!(capped_duration(&machine, &from, &to, 1.0).duration_min, 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn capped_duration(machine: &Machine, from: &JointValues, to: &JointValues, wanted_min: f64) -> Capped {
     let mut capped = Capped { duration_min: wanted_min, joint: None };

@@ -86,6 +86,17 @@ impl Joint {
 
     /// What the joint itself reads where a program's word for it is `value` and the tool in hand has this gauge length, mm: the control
     /// adds the length to the word of a slide along the tool.
+    ///
+    /// ```
+    /// use osculate_postproc::Machine;
+    ///
+    /// // A program's Z is of the tip; the slide carries the nose, 100 mm above it. X is the same for both.
+    /// let machine = Machine::built_in("trunnion-ac")?;
+    /// let [x, _, z] = machine.linear().map(|place| &machine.joints()[place]);
+    /// assert_eq!((x.at_nose(5.0, 100.0), z.at_nose(5.0, 100.0)), (5.0, 105.0));
+    /// assert_eq!(z.word_at(105.0, 100.0), 5.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn at_nose(&self, value: f64, gauge_length_mm: f64) -> f64 {
         value + self.nose_per_mm * gauge_length_mm

@@ -13,6 +13,16 @@ pub struct Gap {
 
 impl Machine {
     /// What its file leaves open.
+    ///
+    /// ```
+    /// use osculate_postproc::Machine;
+    ///
+    /// // C of a trunnion turns without end; nothing says where G28 leads.
+    /// let gaps = Machine::built_in("trunnion-ac")?.gaps();
+    /// assert!(gaps.iter().any(|gap| gap.key == "min_deg and max_deg of C"));
+    /// assert!(gaps.iter().any(|gap| gap.key == "home_mm of X"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn gaps(&self) -> Vec<Gap> {
         let mut gaps = Vec::new();

@@ -49,6 +49,20 @@ pub struct Machine {
 impl Machine {
     /// A machine from the text of a TOML file.
     ///
+    /// ```
+    /// use osculate_postproc::{Machine, MachineError, built_in_text};
+    ///
+    /// // A machine of one's own begins as a copy of a file that comes with the library; here A ends at 30 deg to either side.
+    /// let text = built_in_text("trunnion-ac").expect("it comes with the library");
+    /// let machine = Machine::from_toml(&text.replace("120", "30"))?;
+    /// let a = &machine.joints()[machine.rotary()[1]];
+    /// assert!(a.letter == "A" && (a.shown(a.max.expect("it is limited")) - 30.0).abs() < 1e-12);
+    /// // Another version of the format is not read.
+    /// let other = Machine::from_toml(&text.replace("format = 1", "format = 2"));
+    /// assert!(matches!(other, Err(MachineError::Format { got: 2 })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// Where the file is malformed or describes no machine, and where a body is a mesh: see [`Self::from_toml_with`].
     pub fn from_toml(text: &str) -> Result<Self, MachineError> {
@@ -64,6 +78,16 @@ impl Machine {
     }
 
     /// A machine by the name of a file that comes with the library; see [`built_in_names`].
+    ///
+    /// ```
+    /// use osculate_postproc::{Machine, MachineError, built_in_names};
+    ///
+    /// for name in built_in_names() {
+    ///     assert_eq!(Machine::built_in(name)?.name(), name);
+    /// }
+    /// assert!(matches!(Machine::built_in("hexapod"), Err(MachineError::Unknown { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`MachineError::Unknown`] with the names there are.
@@ -191,6 +215,14 @@ impl Machine {
     /// Where the joint called Z is out of the way, in the control's own coordinate, mm: where the machine file says so, or else the end of
     /// its travel away from the part, which is zero where the file says nothing of the control's zero. None: there is no Z, or a zero
     /// of its own without the end of the travel.
+    ///
+    /// ```
+    /// use osculate_postproc::Machine;
+    ///
+    /// // Nothing is said of the control's zero: it is the top of Z, where programs retract.
+    /// assert_eq!(Machine::built_in("trunnion-ac")?.retract_mm(), Some(0.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn retract_mm(&self) -> Option<f64> {
         let z = &self.joints[self.joint_named("Z").filter(|z| self.linear.contains(z))?];
@@ -202,6 +234,19 @@ impl Machine {
     }
 
     /// Forward kinematics: the pose of the tool in the **part's** frame.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Vec3};
+    /// use osculate_postproc::{Machine, Setup};
+    ///
+    /// // Joints from the part to the tool: C, A, X, Y, Z. With A at a quarter the part looks along -Y, seen from the tool.
+    /// let machine = Machine::built_in("trunnion-ac")?;
+    /// let pose = machine.forward(&[0.0, std::f64::consts::FRAC_PI_2, 5.0, 0.0, 0.0], &Setup::default());
+    /// assert!((pose.axis.into_inner() - Vec3::new(0.0, -1.0, 0.0)).norm() < 1e-12);
+    /// // X lies along the axis of A.
+    /// assert!((pose.tip - Point3::new(5.0, 0.0, 0.0)).norm() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn forward(&self, values: &JointValues, setup: &Setup) -> Pose {
         let pose = chain::forward(&self.joints, &self.tool_axis, setup.gauge_length_mm, values);

@@ -73,6 +73,21 @@ pub(crate) fn nearest_turn(angle: f64, near: f64) -> f64 {
 impl Machine {
     /// All ways to point the tool along `axis` (in the **table's** frame).
     ///
+    /// ```
+    /// use osculate_geom::{Unit3, Vec3};
+    /// use osculate_postproc::Machine;
+    ///
+    /// let machine = Machine::built_in("trunnion-ac")?;
+    /// let leaning = Unit3::new_normalize(Vec3::new(1.0, 0.0, 1.0));
+    /// let found = machine.orientations(&leaning)?;
+    /// // A leans by 45 degrees to one side or to the other, with C half a turn on.
+    /// let a: Vec<f64> = found.candidates().iter().map(|c| c.rotary_rad[1].to_degrees()).collect();
+    /// assert!((a[0] + a[1]).abs() < 1e-9 && (a[0].abs() - 45.0).abs() < 1e-9);
+    /// // So far it is from where C has no say.
+    /// assert!((found.pole_rad.to_degrees() - 45.0).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`AxisUnreachable`] where the rotary joints cannot.
     pub fn orientations(&self, axis: &Unit3) -> Result<Orientations, AxisUnreachable> {
@@ -137,6 +152,23 @@ impl Machine {
     }
 
     /// All joint values that put the tool at `pose` (part's frame), rotary angles in (-pi, pi], limits not applied.
+    ///
+    /// ```
+    /// use osculate_geom::{Point3, Unit3, Vec3};
+    /// use osculate_postproc::{Machine, Setup};
+    /// use osculate_tools::Pose;
+    ///
+    /// let (machine, setup) = (Machine::built_in("head-b-table-c")?, Setup::at(Vec3::new(10.0, 0.0, 80.0), 120.0));
+    /// let pose = Pose { tip: Point3::new(3.0, -4.0, 5.0), axis: Unit3::new_normalize(Vec3::new(0.3, 0.2, 1.0)) };
+    /// let ways = machine.inverse(&pose, &setup)?;
+    /// // Both branches bring the tool to the same pose.
+    /// assert_eq!(ways.len(), 2);
+    /// for joints in &ways {
+    ///     let back = machine.forward(joints, &setup);
+    ///     assert!((back.tip - pose.tip).norm() < 1e-9 && back.axis.angle(&pose.axis) < 1e-7);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`AxisUnreachable`] where the rotary joints cannot point the tool so.

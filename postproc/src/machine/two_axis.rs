@@ -82,6 +82,18 @@ pub struct TwoAxis {
 }
 
 impl TwoAxis {
+    /// A mechanism of these unit directions, all three in one frame, with both angles at zero.
+    ///
+    /// ```
+    /// use osculate_geom::Vec3;
+    /// use osculate_postproc::machine::{TwoAxis, TwoAxisError};
+    ///
+    /// let (x, z) = (Vec3::x_axis(), Vec3::z_axis());
+    /// assert!(TwoAxis::new(z, x, z).is_ok());
+    /// // A rotation about the tool itself does not turn its axis.
+    /// assert!(matches!(TwoAxis::new(x, z, z), Err(TwoAxisError::AlongTool { .. })));
+    /// ```
+    ///
     /// # Errors
     /// Where the axes are parallel to each other, or the inner one to the tool.
     pub fn new(outer: Unit3, inner: Unit3, tool: Unit3) -> Result<Self, TwoAxisError> {
@@ -107,6 +119,23 @@ impl TwoAxis {
     }
 
     /// Both branches for the wanted axis.
+    ///
+    /// ```
+    /// use osculate_geom::{Unit3, Vec3};
+    /// use osculate_postproc::machine::TwoAxis;
+    ///
+    /// // A nutated head: the inner axis lies 45 deg between the outer one and the tool, which thus reaches a half sphere.
+    /// let inner = Unit3::new_normalize(Vec3::new(0.0, 1.0, 1.0));
+    /// let head = TwoAxis::new(Vec3::z_axis(), inner, Vec3::z_axis())?;
+    /// let wanted = Unit3::new_normalize(Vec3::new(0.6, 0.0, 0.8));
+    /// for branch in head.solve(&wanted)?.branches {
+    ///     assert!((head.axis(&branch).into_inner() - wanted.into_inner()).norm() < 1e-12);
+    /// }
+    /// // By so much a tool from below is out of reach.
+    /// let below = head.solve(&-Vec3::z_axis()).expect_err("it reaches the upper half");
+    /// assert!((below.off_rad.to_degrees() - 90.0).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`AxisUnreachable`] with the angle by which the wanted axis is out of reach.

@@ -71,6 +71,27 @@ pub struct Stretch {
 
 /// Time of every block of a path, s, as fast as the joints' speeds and accelerations and the corners allow, or as
 /// slow as `wanted_s` of a block asks; `None` is a stop without a block. A block that rests takes what it asks.
+///
+/// ```
+/// use osculate_postproc::{Machine, motion::{LookAhead, block_times_s}};
+///
+/// // A line of 100 mm as one block, and cut into four: the same time from rest to rest, but for the jerk of a single move.
+/// let machine = Machine::built_in("3-axis")?;
+/// let x = machine.linear()[0];
+/// let at = |mm: f64| {
+///     let mut joints = [0.0; 5];
+///     joints[x] = mm;
+///     joints
+/// };
+/// let control = LookAhead { block_s: 0.0, ..LookAhead::default() };
+/// // F asks for 10 s in all.
+/// let whole = block_times_s(&machine, &control, [Some((at(0.0), at(100.0), 10.0))]);
+/// let piece = |k: u32| Some((at(25.0 * f64::from(k)), at(25.0 * f64::from(k + 1)), 2.5));
+/// let cut = block_times_s(&machine, &control, (0..4).map(piece));
+/// assert_eq!((whole.len(), cut.len()), (1, 4));
+/// assert!((whole[0] - cut.iter().sum::<f64>()).abs() < 0.1 && whole[0] >= 10.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn block_times_s(
     machine: &Machine,

@@ -23,6 +23,20 @@ use crate::feed::capped_duration;
 use crate::machine::{Drive, JointValues, Machine};
 
 /// Time to cover `distance` (mm or rad, the sign does not matter) from rest to rest, s.
+///
+/// ```
+/// use osculate_postproc::machine::Drive;
+/// use osculate_postproc::motion::move_time_s;
+///
+/// let drive = Drive { velocity_per_s: 100.0, acceleration_per_s2: 1000.0, jerk_per_s3: None };
+/// // A tenth of a second to speed up, one to slow down: s / v + v / a.
+/// assert!((move_time_s(100.0, &drive) - 1.1).abs() < 1e-12);
+/// // Too short for full speed: 2 sqrt(s / a).
+/// assert!((move_time_s(-2.5, &drive) - 0.1).abs() < 1e-12);
+/// // Limited jerk costs a / j more.
+/// let smooth = Drive { jerk_per_s3: Some(20_000.0), ..drive };
+/// assert!((move_time_s(100.0, &smooth) - 1.15).abs() < 1e-12);
+/// ```
 #[must_use]
 pub fn move_time_s(distance: f64, drive: &Drive) -> f64 {
     let s = distance.abs();
@@ -114,6 +128,20 @@ impl TooLong {
 
 /// Time of a program: feed moves at their F or at the slowest joint's greatest speed, without ramps between them;
 /// rapid moves from rest to rest.
+///
+/// ```
+/// use osculate_postproc::{Machine, motion::{TimedMove, program_time}};
+///
+/// // C turns half around; F asks for a second, and the drive, 360 deg/s, would do it in half of that.
+/// let machine = Machine::built_in("trunnion-ac")?;
+/// let turn = TimedMove { from: [0.0; 5], to: [std::f64::consts::PI, 0.0, 0.0, 0.0, 0.0], rapid: false, time_min: 1.0 / 60.0 };
+/// assert!((60.0 * program_time(&machine, [turn]).time_min() - 1.0).abs() < 1e-12);
+/// // Asked for in a tenth of a second it takes half a second, and C is named for it.
+/// let time = program_time(&machine, [TimedMove { time_min: 0.1 / 60.0, ..turn }]);
+/// assert!((60.0 * time.cutting_min - 0.5).abs() < 1e-12);
+/// assert_eq!(time.limited_by["C"], 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn program_time(machine: &Machine, moves: impl IntoIterator<Item = TimedMove>) -> ProgramTime {
     let mut total = ProgramTime::default();

@@ -26,6 +26,22 @@ pub struct ExpectedTool {
 
 impl ExpectedTool {
     /// A tool with the speed and coolant of the whole program.
+    ///
+    /// ```
+    /// use osculate_postproc::{Dialect, Machine, Setup, conduct::{Expected, ExpectedTool, Grade}, readback};
+    ///
+    /// let read = |text: &str| {
+    ///     let (machine, setup) = (Machine::built_in("3-axis")?, Setup::default());
+    ///     let back = readback::read(text, Dialect::LinuxCnc, &machine, &setup, &readback::ReadOptions::default())?;
+    ///     // Tool 1, 80 mm long, at 8000 rpm.
+    ///     Ok::<_, Box<dyn std::error::Error>>(back.conduct(&Expected::new(ExpectedTool::new(1, 80.0), Some(8000.0), 0.01)))
+    /// };
+    /// let head = "G21 G90 G94 G54 G64 P0.01\nT1 M6\nS8000 M3\nG0 X0 Y0\n";
+    /// assert_eq!(read(&format!("{head}G43 H1 Z5\nG1 X60 F600\nM30\n"))?.worst(), None);
+    /// // The length of another tool: it would crash.
+    /// assert_eq!(read(&format!("{head}G43 H2 Z5\nG1 X60 F600\nM30\n"))?.worst(), Some(Grade::Breaks));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub const fn new(number: u32, length_mm: f64) -> Self {
         Self { number, length_mm, spindle_rpm: None, coolant: None }

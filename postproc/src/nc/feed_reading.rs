@@ -19,6 +19,16 @@ use crate::machine::Machine;
 
 impl Dialect {
     /// Over what F is read without tool-centre-point control, where the program does not say it.
+    ///
+    /// ```
+    /// use osculate_postproc::{Dialect, Machine, PathMetric};
+    ///
+    /// // This machine's control counts a degree as 1 mm, unless it is LinuxCNC, which feeds along X Y Z.
+    /// let machine = Machine::built_in("trunnion-ac")?;
+    /// assert!((Dialect::Fanuc.feed_metric(&machine).radius_mm() - 1f64.to_degrees()).abs() < 1e-12);
+    /// assert_eq!(Dialect::LinuxCnc.feed_metric(&machine), PathMetric::Linear);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn feed_metric(self, machine: &Machine) -> PathMetric {
         match self {

@@ -45,6 +45,17 @@ pub use orientation::Orientation;
 pub use work_offset::{UnknownWorkOffset, WorkOffset};
 
 /// The language of a control.
+///
+/// ```
+/// use osculate_postproc::Dialect;
+///
+/// for dialect in Dialect::ALL {
+///     assert_eq!(dialect.name().parse(), Ok(dialect));
+/// }
+/// assert_eq!(Dialect::Heidenhain.extension(), "h");
+/// let unknown = "klartext".parse::<Dialect>().expect_err("it is called otherwise");
+/// assert!(unknown.to_string().contains("heidenhain"));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialect {
     /// Siemens Sinumerik 840D.

@@ -11,6 +11,16 @@ pub const DECIMALS: usize = 4;
 pub const COUNTS_PER_UNIT: f64 = 10_000.0;
 
 /// A position in counts, or `None` where it is not finite or beyond what an axis word can hold.
+///
+/// ```
+/// use osculate_postproc::nc::number::{counts, plain, value};
+///
+/// let twelve = counts(-12.5).expect("no axis is that long");
+/// assert_eq!((twelve, value(twelve), plain(twelve)), (-125_000, -12.5, "-12.5".to_owned()));
+/// // What is below the resolution is gone, the sign with it.
+/// assert_eq!(counts(-0.00004).map(plain).as_deref(), Some("0"));
+/// assert_eq!(counts(f64::NAN), None);
+/// ```
 #[must_use]
 pub fn counts(value: f64) -> Option<i64> {
     // 10^9 mm or deg in counts: far beyond any machine, far within the exact integers of f64.
@@ -106,6 +116,15 @@ pub fn push_whole(text: &mut String, value: u64) {
 const FEED_DIGITS: i32 = 7;
 
 /// F with seven digits, without trailing zeros. A positive feed never becomes zero.
+///
+/// ```
+/// use osculate_postproc::nc::number::feed;
+///
+/// assert_eq!((feed(600.0), feed(1.0 / 3.0)), ("600".to_owned(), "0.3333333".to_owned()));
+/// // However slow, it is not zero.
+/// assert!(feed(1e-9).parse::<f64>()? > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn feed(value: f64) -> String {
     let mut text = String::new();

@@ -107,6 +107,18 @@ impl ReadBack {
     }
 
     /// The tool's way as a CL path; cutter and holder are not in an NC text.
+    ///
+    /// ```
+    /// use osculate_postproc::{Dialect, Machine, Setup, cldata, readback::{ReadOptions, read}};
+    ///
+    /// // NC to CL data: a program of three axes as APT text.
+    /// let (machine, setup) = (Machine::built_in("3-axis")?, Setup::default());
+    /// let program = "G21 G90\nG0 X0 Y0 Z5\nG1 X60 F600\nM30\n";
+    /// let back = read(program, Dialect::LinuxCnc, &machine, &setup, &ReadOptions::default())?;
+    /// let text = cldata::write(&back.cl_path(), &cldata::ClWriteOptions::default())?;
+    /// assert!(text.contains("GOTO/60."));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn cl_path(&self) -> ClPath {
         let moves = self.moves.iter().map(|m| ClMove { pose: m.pose, motion: m.motion }).collect();
@@ -139,6 +151,22 @@ impl ReadBack {
 
 /// Reads a whole text.
 ///
+/// ```
+/// use osculate_postproc::{Dialect, Machine, Setup, readback::{ReadError, ReadOptions, read}};
+///
+/// let (machine, setup) = (Machine::built_in("3-axis")?, Setup::default());
+/// let text = "G21 G90 G94 G54\nT1 M6\nS8000 M3\nG43 H1\nG0 X0 Y0 Z5\nG1 X60 F600\nM30\n";
+/// let back = read(text, Dialect::LinuxCnc, &machine, &setup, &ReadOptions::default())?;
+/// let cut = back.moves.last().expect("it moves");
+/// // 60 mm at 600 mm/min, in line 6.
+/// assert!((cut.pose.tip.x - 60.0).abs() < 1e-12 && (cut.time_min - 0.1).abs() < 1e-12);
+/// assert_eq!((cut.line, back.spindle_rpm), (6, Some(8000.0)));
+/// // A word that is not understood is refused with its line.
+/// let strange = read("G1 X0 Y0 Z0 F100\nG777\n", Dialect::LinuxCnc, &machine, &setup, &ReadOptions::default());
+/// assert!(matches!(strange, Err(ReadError::Word { line: 2, .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Where the text cannot be read, or (with `strict`) says something that is not understood.
 pub fn read(
@@ -153,6 +181,23 @@ pub fn read(
 
 /// As [`read()`], of a program with several tools: the gauge lengths of those that have a number in the list are theirs, mm, and the setup's
 /// that of all others.
+///
+/// ```
+/// use osculate_postproc::{Dialect, Machine, Setup, readback::{ReadOptions, read_tools}};
+///
+/// // Both tools end at Z10: the spindle nose stands higher with the longer one.
+/// let (machine, setup) = (Machine::built_in("3-axis")?, Setup::default());
+/// let text = "G21 G90 G54\nT1 M6\nG43 H1\nG0 X0 Y0 Z10\nT2 M6\nG43 H2\nG0 X0 Y0 Z10\nM30\n";
+/// let lengths_mm = [(1, 80.0), (2, 120.0)];
+/// let back = read_tools(text, Dialect::LinuxCnc, &machine, (&setup, &lengths_mm), &ReadOptions::default())?;
+/// let z = machine.joint_named("Z").expect("it has one");
+/// for (tool, length_mm) in lengths_mm {
+///     let end = back.moves.iter().rfind(|m| m.tool == Some(tool)).expect("it moves");
+///     assert!((end.pose.tip.z - 10.0).abs() < 1e-12);
+///     assert!((end.at_nose.expect("it is known")[z] - 10.0 - length_mm).abs() < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// As [`read()`].

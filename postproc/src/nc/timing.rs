@@ -106,6 +106,18 @@ impl<'a> Clock<'a> {
 
 /// The time of a whole text.
 ///
+/// ```
+/// use osculate_postproc::{Dialect, Machine, Setup, nc::timing::time};
+///
+/// let machine = Machine::built_in("3-axis")?;
+/// let text = "G21 G90 G94\nG0 X0 Y0 Z5\nG1 X60 F600\nG4 P30\nM30\n";
+/// let timed = time(text, Dialect::LinuxCnc, &machine, &Setup::default(), true)?.time;
+/// // A tenth of a minute for 60 mm at 600 mm/min and a little for starting and stopping; half a minute of dwell.
+/// assert!((0.1..0.102).contains(&timed.cutting_min));
+/// assert_eq!(timed.dwell_min, 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`super::readback::read`].
 pub fn time(

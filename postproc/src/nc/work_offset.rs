@@ -10,6 +10,18 @@ use std::str::FromStr;
 use super::Dialect;
 
 /// A work offset.
+///
+/// ```
+/// use osculate_postproc::{Dialect, WorkOffset};
+///
+/// let offset: WorkOffset = "G54.1 P12".parse()?;
+/// assert_eq!(offset, WorkOffset::Extended(12));
+/// // Only Fanuc has it.
+/// assert_eq!(offset.words(Dialect::Fanuc).as_deref(), Some("G54.1 P12"));
+/// assert_eq!(offset.words(Dialect::LinuxCnc), None);
+/// assert_eq!(WorkOffset::usual(Dialect::LinuxCnc), Some(WorkOffset::Standard(54)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum WorkOffset {
     /// `G54` to `G59`, by the number behind the G.

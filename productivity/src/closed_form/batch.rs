@@ -96,6 +96,21 @@ impl Sections<'_> {
 
     /// Widths of (37), mm; NaN where the section is outside the domain of [`super::width_37`].
     ///
+    /// ```
+    /// use osculate_productivity::closed_form::{Section, Sections, width_37};
+    ///
+    /// let (part, tool, scallop) = ([0.0, 0.01, -0.2], [0.1, 0.1, 0.1], [0.02; 3]);
+    /// let mut widths_mm = [0.0; 3];
+    /// Sections { part_per_mm: &part, tool_per_mm: &tool, scallop_mm: &scallop }.widths_37(&mut widths_mm)?;
+    /// for k in 0..2 {
+    ///     let one = width_37(Section { part_per_mm: part[k], tool_per_mm: tool[k], scallop_mm: scallop[k] })?;
+    ///     assert!((widths_mm[k] / one - 1.0).abs() < 1e-14);
+    /// }
+    /// // The tool does not fit into the last one.
+    /// assert!(widths_mm[2].is_nan());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`LengthError`].
     pub fn widths_37(&self, out: &mut [f64]) -> Result<(), LengthError> {

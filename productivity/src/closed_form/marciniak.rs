@@ -26,6 +26,18 @@ pub fn two_axis_ball(radius_mm: f64, scallop_mm: f64) -> Result<f64, DomainError
 /// 3C: a flat end of radius R whose axis leans by `lead_rad` (the angle between normal and axis) leaves
 /// `2 sqrt(2 h R / (sin lead + k R))`, `across_per_mm` = k the part's curvature across the feed. Leading order.
 ///
+/// ```
+/// use osculate_productivity::closed_form::{three_axis_flat, two_axis_ball};
+///
+/// // Leaning by a quarter of a turn on a flat part, a flat end cuts with its rim as a ball of the same radius does.
+/// let ball_mm = two_axis_ball(8.0, 0.01)?;
+/// assert!((three_axis_flat(8.0, std::f64::consts::FRAC_PI_2, 0.0, 0.01)? - ball_mm).abs() < 1e-12);
+/// // The less it leans the wider it cuts: sin 30 deg = 1/2, and the strip grows with the root of its inverse.
+/// let wider_mm = three_axis_flat(8.0, 30f64.to_radians(), 0.0, 0.01)?;
+/// assert!((wider_mm / ball_mm - 2f64.sqrt()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`DomainError`]; [`DomainError::DoesNotFit`] where the place is undercut.
 pub fn three_axis_flat(
@@ -73,6 +85,15 @@ pub fn three_axis_toroidal(
 /// A flat end of radius R cannot machine the place in 3C where this is below `-1 / R`: where a hollow contour line's
 /// *radius* of curvature is smaller than the tool's ([`three_axis_flat`] then says [`DomainError::DoesNotFit`]). M86 prints
 /// 'curvature smaller than 1/r'.
+///
+/// ```
+/// use osculate_productivity::closed_form::contour_per_mm;
+///
+/// // A sphere of 50 mm: a contour line at 30 deg from its pole is a circle of 25 mm.
+/// assert!((contour_per_mm(1.0 / 50.0, 30f64.to_radians())? - 1.0 / 25.0).abs() < 1e-15);
+/// assert!(contour_per_mm(1.0 / 50.0, 0.0).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`DomainError::Value`] without a lead: there is no contour line at a place that is level.

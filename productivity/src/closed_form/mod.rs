@@ -16,6 +16,14 @@ pub use marciniak::{
 pub use radzevich::{Section, acos_37, chord_38, leading_order, leading_order_swept, linear_40, width_37};
 
 /// Why a closed form has no value.
+///
+/// ```
+/// use osculate_productivity::closed_form::{DomainError, Section, width_37};
+///
+/// // A ball of 10 mm does not go into a hollow of 8 mm.
+/// let section = Section { part_per_mm: -1.0 / 8.0, tool_per_mm: 1.0 / 10.0, scallop_mm: 0.01 };
+/// assert!(matches!(width_37(section), Err(DomainError::DoesNotFit { .. })));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum DomainError {
     /// The tolerance is not positive and finite.

@@ -64,6 +64,16 @@ fn asinc(y: f64) -> f64 {
 ///
 /// Against the exact strip of a general contact the relative error is of first order in h.
 ///
+/// ```
+/// use osculate_productivity::closed_form::{Section, width_37};
+///
+/// // On a flat part the strip is the chord of the ball's circle at the height of the scallop: 2 sqrt(h (2 R - h)).
+/// let (radius_mm, scallop_mm) = (10.0, 0.05);
+/// let width_mm = width_37(Section { part_per_mm: 0.0, tool_per_mm: 1.0 / radius_mm, scallop_mm })?;
+/// assert!((width_mm - 2.0 * f64::sqrt(scallop_mm * (2.0 * radius_mm - scallop_mm))).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`DomainError`].
 pub fn width_37(section: Section) -> Result<f64, DomainError> {
@@ -101,6 +111,18 @@ pub fn linear_40(section: Section) -> Result<f64, DomainError> {
 }
 
 /// `2 sqrt(2 h / (k_P + k_T))`: what all the forms above tend to as h -> 0.
+///
+/// ```
+/// use osculate_productivity::closed_form::{Section, leading_order};
+///
+/// // Four times the tolerance, or a fourth of the curvatures: twice the width.
+/// let section = Section { part_per_mm: 0.02, tool_per_mm: 0.1, scallop_mm: 0.01 };
+/// let width_mm = leading_order(section)?;
+/// let coarser = leading_order(Section { scallop_mm: 0.04, ..section })?;
+/// let flatter = leading_order(Section { part_per_mm: 0.005, tool_per_mm: 0.025, ..section })?;
+/// assert!((coarser - 2.0 * width_mm).abs() < 1e-12 && (flatter - 2.0 * width_mm).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`DomainError`].

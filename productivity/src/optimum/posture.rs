@@ -164,6 +164,26 @@ pub struct Posture {
 /// The exact productivity of one posture within the limits; the lift makes the undercut acceptable. A contact from which the
 /// tool would have to be lifted by more than the tolerance is none.
 ///
+/// ```
+/// use osculate_geom::{analytic::Sphere, uv};
+/// use osculate_productivity::{optimum::{Limits, Posture, Range, measure}, rate::Caps};
+/// use osculate_tools::{Cutter, CutterSpec, Lean};
+///
+/// let sphere = Sphere::new(40.0)?;
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
+/// let caps = Caps::of_feed(1000.0);
+/// let (lead, tilt) = (Range { least_rad: 0.0, most_rad: 1.0 }, Range::only(0.0));
+/// let limits = Limits { scallop_mm: 0.01, gouge_mm: 0.001, lead, tilt, axis: None, caps };
+/// // A ball on a sphere leaves the same strip whichever way it goes and leans.
+/// let width = |direction_deg: f64, lead_deg: f64| {
+///     let lean = Lean { lead_rad: lead_deg.to_radians(), tilt_rad: 0.0 };
+///     let posture = Posture { direction_rad: direction_deg.to_radians(), lean };
+///     measure(&sphere, uv(0.3, 0.2), &ball, posture, &limits).map(|m| m.rate.width_mm)
+/// };
+/// assert!((width(0.0, 10.0)? - width(75.0, 25.0)?).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`StripError`] where the posture leaves no strip within the tolerance.
 pub fn measure(

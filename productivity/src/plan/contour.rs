@@ -84,6 +84,24 @@ impl Field<'_> {
 
 /// Plans passes at constant height along `axis` with a ball whose axis stays on it.
 ///
+/// ```
+/// use osculate_geom::{Vec3, analytic::Paraboloid};
+/// use osculate_productivity::plan::{Task, Tolerance, contour_2cl};
+/// use osculate_tools::{Cutter, CutterSpec, Lean};
+///
+/// // A shallow bowl: the ball keeps its height along each pass, to a thousandth of the chord tolerance.
+/// let bowl = Paraboloid::new([0.01, 0.01], 10.0)?;
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
+/// let lean = Lean { lead_rad: 0.0, tilt_rad: 0.0 };
+/// let tolerance = Tolerance { scallop_mm: 0.1, gouge_mm: 0.01, chord_mm: 0.01 };
+/// let task = Task { surface: &bowl, face: "bowl", cutter: &ball, lean: lean.into(), tolerance, progress: &|_| {} };
+/// for pass in contour_2cl(&task, Vec3::z_axis())?.passes {
+///     let z = pass.points[0].pose.tip.z;
+///     assert!(pass.points.iter().all(|p| (p.pose.tip.z - z).abs() <= 2e-3 * tolerance.chord_mm));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`PlanError::Tool`] for a cutter that is not a ball; [`PlanError::Nothing`] where no place faces the axis.
 pub fn contour_2cl(task: &Task<'_>, axis: Unit3) -> Result<Passes, PlanError> {

@@ -30,6 +30,22 @@ const LOOKS: usize = 10;
 /// A quick estimate of the length of isoparametric passes over a face: its area over the exact strip width, at a grid of
 /// places, for the better of the two directions. Infinite where the tool does not fit, or digs in with its heel or side,
 /// at a tenth of the places.
+///
+/// ```
+/// use osculate_geom::{Domain, Interval, analytic::Plane};
+/// use osculate_productivity::plan::{Task, Tolerance, predicted_length_mm};
+/// use osculate_tools::{Cutter, CutterSpec, Lean};
+///
+/// let plane = Plane::new(Domain { u: Interval::new(0.0, 50.0), v: Interval::new(0.0, 40.0) });
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
+/// let lean = Lean { lead_rad: 0.2, tilt_rad: 0.0 };
+/// let tolerance = Tolerance { scallop_mm: 0.05, gouge_mm: 0.01, chord_mm: 0.005 };
+/// let task = Task { surface: &plane, face: "top", cutter: &ball, lean: lean.into(), tolerance, progress: &|_| {} };
+/// // Area over the strip's width, which on a plane is 2 sqrt(h (2 R - h)).
+/// let expected_mm = 50.0 * 40.0 / (2.0 * f64::sqrt(0.05 * (10.0 - 0.05)));
+/// assert!((predicted_length_mm(&task) / expected_mm - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn predicted_length_mm(task: &Task<'_>) -> f64 {
     let d = task.surface.domain();

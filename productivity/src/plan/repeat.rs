@@ -9,6 +9,22 @@ use osculate_geom::Unit3;
 use osculate_tools::Pose;
 
 /// The images of passes under each of the motions, in the order of the motions and within each in that of the passes.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3, nalgebra::Isometry3, uv};
+/// use osculate_productivity::plan::{CcPoint, Pass, Stretches, repeated};
+/// use osculate_tools::Pose;
+///
+/// let at = |x: f64| {
+///     let point = Point3::new(x, 0.0, 0.0);
+///     CcPoint { uv: uv(x, 0.0), point, normal: Vec3::z_axis(), pose: Pose { tip: point, axis: Vec3::z_axis() }, width_mm: 1.0 }
+/// };
+/// let one = Stretches::from(vec![Pass { points: vec![at(0.0), at(5.0)], closed: false }]);
+/// // The same pocket again, 30 mm on along y.
+/// let both = repeated(&one, &[Isometry3::identity(), Isometry3::translation(0.0, 30.0, 0.0)]);
+/// assert_eq!(both.passes.len(), 2);
+/// assert_eq!(both.passes[1].points[1].pose.tip, Point3::new(5.0, 30.0, 0.0));
+/// ```
 #[must_use]
 pub fn repeated(stretches: &Stretches, motions: &[Isometry3<f64>]) -> Stretches {
     let image = |motion| Stretches {

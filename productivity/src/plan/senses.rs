@@ -63,6 +63,23 @@ fn right_of(passes: &[Pass], k: usize) -> Option<f64> {
 }
 
 /// Runs passes in the senses wished for. Passes that stand alone stay as they are where the wish is about chips.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3, uv};
+/// use osculate_productivity::plan::{CcPoint, Milling, Pass, Senses, run_in};
+/// use osculate_tools::Pose;
+///
+/// let at = |x: f64, y: f64| {
+///     let point = Point3::new(x, y, 0.0);
+///     CcPoint { uv: uv(x, y), point, normal: Vec3::z_axis(), pose: Pose { tip: point, axis: Vec3::z_axis() }, width_mm: 1.0 }
+/// };
+/// let pass = |y: f64, from: f64, to: f64| Pass { points: vec![at(from, y), at(to, y)], closed: false };
+/// // To and fro, then all the same way.
+/// let mut passes = [pass(0.0, 0.0, 10.0), pass(1.0, 10.0, 0.0), pass(2.0, 0.0, 10.0)];
+/// run_in(&mut passes, Senses { one_way: true, milling: Milling::Any });
+/// let forward = |p: &Pass| p.points[1].point.x > p.points[0].point.x;
+/// assert!(passes.iter().all(|p| forward(p) == forward(&passes[0])));
+/// ```
 pub fn run_in(passes: &mut [Pass], senses: Senses) {
     match senses.milling {
         Milling::Any if senses.one_way => {

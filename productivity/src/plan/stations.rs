@@ -34,6 +34,26 @@ pub(super) fn stations(pass: &Pass, step_mm: f64) -> Vec<Station> {
 }
 
 /// Passes in the order of cutting, with what was taken out between those that were one.
+///
+/// ```
+/// use osculate_geom::{Point3, Vec3, uv};
+/// use osculate_productivity::plan::{CcPoint, Pass, Rest, Stretches, rest_of};
+/// use osculate_tools::Pose;
+///
+/// // A pass of 100 mm along x with a strip of 1 mm.
+/// let at = |x: f64| {
+///     let point = Point3::new(x, 0.0, 0.0);
+///     CcPoint { uv: uv(x, 0.0), point, normal: Vec3::z_axis(), pose: Pose { tip: point, axis: Vec3::z_axis() }, width_mm: 1.0 }
+/// };
+/// let pass = Pass { points: vec![at(0.0), at(100.0)], closed: false };
+/// assert_eq!((pass.length_mm(), pass.mean_width_mm()), (100.0, 1.0));
+/// // Material is left at x = 20 and x = 70 only: two short passes go 2.5 mm to either side.
+/// let places = [Point3::new(20.0, 0.0, 0.0), Point3::new(70.0, 0.0, 0.0)];
+/// let rest: Stretches = rest_of(&[pass], &Rest { places: &places, overlap_mm: 2.0, hop_mm: 1.0 })?;
+/// assert_eq!(rest.passes.len(), 2);
+/// assert!(rest.passes.iter().all(|p| (p.length_mm() - 5.0).abs() < 0.6));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Stretches {
     /// The passes.

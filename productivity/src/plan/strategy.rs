@@ -69,6 +69,25 @@ impl Strategy {
 
 /// Plans passes over a face by a strategy.
 ///
+/// ```
+/// use osculate_geom::{Domain, Interval, Vec3, analytic::Plane};
+/// use osculate_productivity::plan::{Strategy, Task, Tolerance, run};
+/// use osculate_tools::{Cutter, CutterSpec, Lean};
+///
+/// let plane = Plane::new(Domain { u: Interval::new(0.0, 12.0), v: Interval::new(0.0, 12.0) });
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
+/// let lean = Lean { lead_rad: 0.2, tilt_rad: 0.0 };
+/// let tolerance = Tolerance { scallop_mm: 0.05, gouge_mm: 0.01, chord_mm: 0.005 };
+/// let task = Task { surface: &plane, face: "top", cutter: &ball, lean: lean.into(), tolerance, progress: &|_| {} };
+/// // Planes across x: every pass keeps its x.
+/// let strategy = Strategy::Isoplanar { normal: Vec3::x_axis() };
+/// for pass in run(&task, &strategy)?.passes {
+///     assert!(pass.points.iter().all(|p| (p.point.x - pass.points[0].point.x).abs() < 1e-6));
+/// }
+/// assert_eq!(strategy.name(), "isoplanar");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`PlanError`], as the strategy's own function has it.
 pub fn run(task: &Task<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {

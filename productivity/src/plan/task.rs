@@ -27,6 +27,26 @@ pub enum Along {
 }
 
 /// What to plan: [`Task::new`].
+///
+/// ```
+/// use osculate_geom::{Axis, Domain, Interval, analytic::Plane};
+/// use osculate_productivity::plan::{Along, PlanError, Task, Tolerance, isoparametric};
+/// use osculate_tools::{Cutter, CutterSpec, Lean};
+///
+/// let plane = Plane::new(Domain { u: Interval::new(0.0, 20.0), v: Interval::new(0.0, 10.0) });
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
+/// let lean = Lean { lead_rad: 0.2, tilt_rad: 0.0 };
+/// let tolerance = Tolerance { scallop_mm: 0.02, gouge_mm: 0.01, chord_mm: 0.005 };
+/// let mut task = Task::new("top", &plane, &ball, lean, tolerance);
+/// let passes = isoparametric(&task, Along::Fixed(Axis::U))?;
+/// // The tool leans by as much as was asked, everywhere.
+/// let [least, _, greatest] = passes.inclination_rad().expect("there are points");
+/// assert!((least - 0.2).abs() < 1e-6 && (greatest - 0.2).abs() < 1e-6);
+/// // A tolerance of nothing is refused by its name.
+/// task.tolerance.scallop_mm = 0.0;
+/// assert!(matches!(isoparametric(&task, Along::Auto), Err(PlanError::Tolerance { got: 0.0, .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct Task<'a> {

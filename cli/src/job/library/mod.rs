@@ -258,6 +258,21 @@ impl Library {
 
     /// The library of a text of ours.
     ///
+    /// ```
+    /// use osculate::job::library::{Library, toml};
+    /// use std::path::Path;
+    ///
+    /// let text = "format = 1\n[[tool]]\nnumber = 5\nkind = \"ball\"\ndiameter_mm = 6\nlength_mm = 40\n";
+    /// let library = Library::from_toml(text, Path::new("shop.toml"))?;
+    /// assert_eq!(library.tools[0].cutter().radius_mm(), 3.0);
+    /// // Written again it is the same tool.
+    /// let again = format!("format = 1\n{}", toml(&library.tools[0], 5));
+    /// assert_eq!(Library::from_toml(&again, Path::new("shop.toml"))?.tools[0].spec(), library.tools[0].spec());
+    /// // A library comes with the program.
+    /// assert!(!Library::shipped()?.tools.is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Library::load`].
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {

@@ -75,6 +75,31 @@ impl Sweep {
 
     /// The sweep of a text; its job is looked for beside `path`.
     ///
+    /// ```
+    /// use osculate::work::sweep::{Sweep, rows::Shard};
+    ///
+    /// # let folder = std::env::temp_dir().join(format!("osculate-sweep-doc-{}", std::process::id()));
+    /// # std::fs::create_dir_all(&folder)?;
+    /// std::fs::write(folder.join("job.toml"), "format = 1\n[tool]\nkind = \"ball\"\ndiameter_mm = 6\n")?;
+    /// let text = r#"
+    /// format = 1
+    /// job = "job.toml"
+    /// [[vary]]
+    /// key = "tool.diameter_mm"
+    /// values = [4, 6, 8]
+    /// [[vary]]
+    /// key = "tolerance.scallop_mm"
+    /// values = [0.02, 0.1]
+    /// "#;
+    /// let sweep = Sweep::from_toml(text, &folder.join("sweep.toml"))?;
+    /// // Three diameters by two tolerances; the second of two machines takes every other case.
+    /// assert_eq!(sweep.cases(), 6);
+    /// assert_eq!(Shard { which: 2, of: 2 }.numbers(6).collect::<Vec<_>>(), [2, 4, 6]);
+    /// assert_eq!(sweep.labels_of(6), ["8", "0.1"]);
+    /// # std::fs::remove_dir_all(&folder)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Sweep::load`].
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, Failure> {

@@ -68,6 +68,27 @@ pub fn shipped_dialect_text(name: &str) -> Option<&'static str> {
 }
 
 /// A dialect made of an engine and a file of its own words.
+///
+/// ```
+/// use osculate_postproc::{Dialect, DialectFile};
+///
+/// let text = r#"
+///     format = 1
+///     name = "shop"
+///     description = "Coolant through the tool instead of over it"
+///     engine = "fanuc"
+///     [[rule]]
+///     engine = "M8"
+///     words = ["M88"]
+/// "#;
+/// let shop = DialectFile::from_toml(text)?;
+/// assert_eq!((shop.engine(), shop.extension()), (Dialect::Fanuc, "nc"));
+/// let out = shop.out("S5000 M3\nM8\n")?;
+/// assert_eq!(out, "S5000 M3\nM88\n");
+/// // What went out comes back, line by line.
+/// assert_eq!(shop.back_text(&out), "S5000 M3\nM8\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct DialectFile {
     description: String,
@@ -119,6 +140,14 @@ impl DialectFile {
     }
 
     /// A dialect that comes with the library.
+    ///
+    /// ```
+    /// use osculate_postproc::{DialectFile, shipped_dialects};
+    ///
+    /// for name in shipped_dialects() {
+    ///     assert_eq!(DialectFile::shipped(name).as_ref().map(DialectFile::name), Some(name));
+    /// }
+    /// ```
     #[must_use]
     pub fn shipped(name: &str) -> Option<Self> {
         let text = shipped_dialect_text(name)?;

@@ -7,6 +7,26 @@ use osculate_geom::Box3;
 use osculate_tools::{Cutter, Holder};
 
 /// How passes are linked: [`Links::new`]. Lengths mm, feeds mm/min.
+///
+/// ```
+/// use osculate_geom::{Box3, Point3, Vec3, uv};
+/// use osculate_productivity::plan::{CcPoint, Links, Pass, Walls, link};
+/// use osculate_tools::{Cutter, CutterSpec, Pose, cl::Motion};
+///
+/// let at = |x: f64, y: f64| {
+///     let point = Point3::new(x, y, 0.0);
+///     CcPoint { uv: uv(x, y), point, normal: Vec3::z_axis(), pose: Pose { tip: point, axis: Vec3::z_axis() }, width_mm: 1.0 }
+/// };
+/// let pass = |y: f64, from: f64, to: f64| Pass { points: vec![at(from, y), at(to, y)], closed: false };
+/// let obstacles = Box3 { min: Point3::new(0.0, 0.0, -10.0), max: Point3::new(20.0, 1.0, 0.0) };
+/// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 6.0, length_mm: 30.0 })?;
+/// let links = Links::new(obstacles, ball, 1000.0);
+/// // Two passes of 20 mm beside each other: what is cut is 40 mm, and the first move comes in rapid.
+/// let linked = link(&[pass(0.0, 0.0, 20.0), pass(1.0, 20.0, 0.0)], &links, &Walls::default());
+/// assert!((linked.cutting_length_mm - 40.0).abs() < 1e-9);
+/// assert_eq!(linked.path.moves[0].motion, Motion::Rapid);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Links {

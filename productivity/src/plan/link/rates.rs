@@ -6,6 +6,15 @@ use osculate_tools::cl::{ClMove, ClPath, Motion};
 ///
 /// A rapid move goes from rest to rest: it takes `d / v + v / a`, or `2 sqrt(d / a)` where it is too short to get up to its speed. Of a
 /// way and a turn the longer counts.
+///
+/// ```
+/// use osculate_productivity::plan::Rates;
+///
+/// let rates = Rates::default();
+/// assert_eq!(rates.rapid_mm_min, 30_000.0);
+/// // 4 m/s2 in mm and minutes.
+/// assert!((rates.rapid_mm_min2 / 3600.0 - 4000.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rates {
     /// Speed of rapid moves, mm/min.
