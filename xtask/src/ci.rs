@@ -11,9 +11,10 @@ struct Step {
 }
 
 /// The steps in the order in which they run.
-const STEPS: [Step; 6] = [
+const STEPS: [Step; 7] = [
     Step { name: "format", action: |root| run_command(cargo(root, &["fmt", "--all", "--check"])) },
     Step { name: "tidy", action: |_| crate::tidy::run() },
+    Step { name: "public items", action: |_| crate::api::run(crate::api::Action::Compare) },
     Step { name: "clippy", action: clippy },
     Step { name: "documentation", action: documentation },
     Step { name: "test", action: |_| crate::test::run(&[]) },
