@@ -22,6 +22,9 @@ pub enum Target {
 /// A target, and whether those outside of the module may take it.
 type Found = (Target, bool);
 
+/// What is being looked for: a module, the place of one of its `use`s, and the name that is asked of it.
+type Seen = BTreeSet<(usize, usize, String)>;
+
 /// A path of users: names from the root of the crate on.
 pub type Names = Vec<String>;
 
@@ -39,7 +42,7 @@ impl Crate {
     /// What a path leads to that is written in a module; nothing where it cannot be told.
     pub fn resolve(&self, module: usize, path: &[String]) -> Vec<Target> {
         let mut out: Vec<Target> =
-            self.path(module, path, &mut BTreeSet::new()).into_iter().map(|f| f.0).collect();
+            self.path(module, path, &mut Seen::new()).into_iter().map(|f| f.0).collect();
         out.sort();
         out.dedup();
         out
@@ -54,7 +57,7 @@ impl Crate {
         }
     }
 
-    fn path(&self, module: usize, path: &[String], seen: &mut BTreeSet<(usize, String)>) -> Vec<Found> {
+    fn path(&self, module: usize, path: &[String], seen: &mut Seen) -> Vec<Found> {
         let Some((first, rest)) = path.split_first() else { return vec![(Target::Module(module), true)] };
         let above = self.modules[module].parent;
         let mut found = match (first.as_str(), above) {
@@ -94,39 +97,35 @@ impl Crate {
     }
 
     /// What a name stands for in a module: by a definition, else by `use`, else by a glob, in each of the spaces of names.
-    fn name(&self, module: usize, name: &str, seen: &mut BTreeSet<(usize, String)>) -> Vec<Found> {
-        // A circle of globs or of uses leads nowhere new.
-        if !seen.insert((module, name.to_owned())) {
-            return Vec::new();
-        }
+    fn name(&self, module: usize, name: &str, seen: &mut Seen) -> Vec<Found> {
         let own = &self.modules[module];
         let mut out: Vec<Found> = Vec::new();
         for (place, defined) in own.defined.iter().enumerate().filter(|(_, d)| d.name == name) {
             out.push((target(&defined.what, module, place), defined.public));
         }
-        for brought in own.uses.iter().filter(|u| u.name.as_deref() == Some(name)) {
-            self.brought(module, brought, &brought.path, seen, &mut out);
-        }
-        for glob in own.uses.iter().filter(|u| u.name.is_none()) {
-            let path = [glob.path.as_slice(), &[name.to_owned()]].concat();
-            // What a glob may bring of another crate is not known; a path that leads there is asked for by name.
-            if !matches!(self.path(module, &glob.path, seen).as_slice(), [(Target::Foreign(_), _)]) {
-                self.brought(module, glob, &path, seen, &mut out);
+        let named = own.uses.iter().enumerate().filter(|(_, u)| u.name.as_deref() == Some(name));
+        let globs = own.uses.iter().enumerate().filter(|(_, u)| u.name.is_none());
+        for (k, brought) in named.chain(globs) {
+            // A `use` that is asked for the name while it looks for it leads nowhere new; another one of the module may.
+            let asked = (module, k, name.to_owned());
+            if !seen.insert(asked.clone()) {
+                continue;
             }
+            if brought.name.is_some() {
+                self.brought(module, brought, &brought.path, seen, &mut out);
+            } else if !matches!(self.path(module, &brought.path, seen).as_slice(), [(Target::Foreign(_), _)])
+            {
+                // What a glob may bring of another crate is not known; a path that leads there is asked for by name.
+                let path = [brought.path.as_slice(), &[name.to_owned()]].concat();
+                self.brought(module, brought, &path, seen, &mut out);
+            }
+            seen.remove(&asked);
         }
-        seen.remove(&(module, name.to_owned()));
         out
     }
 
     /// Adds what a `use` brings, but for what stands for the name in the same space already.
-    fn brought(
-        &self,
-        module: usize,
-        brought: &Use,
-        path: &[String],
-        seen: &mut BTreeSet<(usize, String)>,
-        out: &mut Vec<Found>,
-    ) {
+    fn brought(&self, module: usize, brought: &Use, path: &[String], seen: &mut Seen, out: &mut Vec<Found>) {
         for (target, public) in self.path(module, path, seen) {
             let space = self.space(&target);
             if !out.iter().any(|(other, _)| self.space(other) == space) {
@@ -160,7 +159,7 @@ impl Crate {
             out.insert((defined.name.clone(), target(&defined.what, module, place)));
         }
         for brought in own.uses.iter().filter(|u| u.public) {
-            let found = self.path(module, &brought.path, &mut BTreeSet::new());
+            let found = self.path(module, &brought.path, &mut Seen::new());
             if found.is_empty() {
                 // Macros of the crate stand at its root whoever hands them on.
                 if brought.path.last().is_some_and(|n| self.macros.iter().any(|m| m.name == *n)) {

@@ -188,6 +188,13 @@ fn circles_of_globs_and_items_under_conditions_end() {
 }
 
 #[test]
+fn a_function_in_modules_of_its_name_is_found() {
+    let text = "mod a { mod same { mod same { pub fn same() {} } pub use same::same; } pub use same::same; } pub use a::same;
+                mod b { use super::c::d; pub use d::d; } mod c { pub mod d { pub fn d() {} } } pub use b::d;";
+    assert_eq!(lines(&[("lib.rs", text)]).unwrap(), ["pub fn small::d()", "pub fn small::same()"]);
+}
+
+#[test]
 fn items_are_counted() {
     let counts = Counts::of(&lines(&FILES).unwrap());
     let expected = Counts { lines: 34, modules: 2, structs: 5, enums: 1, open: 1, traits: 1, functions: 9 };
