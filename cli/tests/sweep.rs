@@ -79,6 +79,44 @@ fn shards_in_any_order_and_runs_that_go_on_make_the_same_table() {
     let run = sweep(&file, &whole, &["--shard", "1/4", "--json"]);
     assert_eq!(run.json()["planned"], 3, "{}", run.err);
     assert!(run.err.contains("12 rows are of another job"), "{}", run.err);
+    // No table is made of rows of the job as it was.
+    let before = std::fs::read(whole.join("table.csv")).unwrap();
+    sweep(&file, &whole, &["--merge"]).refused(&[
+        "9 of 12 cases have rows of another job, other files or another version only (2, 3, 4, 6, 7, 8, 10, 11, ...)",
+        "run the sweep without --merge",
+        "--print 2",
+    ]);
+    assert_eq!(std::fs::read(whole.join("table.csv")).unwrap(), before);
+}
+
+#[test]
+fn a_table_of_a_job_that_changed_since_is_refused_and_names_what_to_run_again() {
+    let s = Scratch::new();
+    s.write("job.toml", JOB);
+    let text = |values: &str| {
+        format!("format = 1\njob = \"job.toml\"\n[[vary]]\nkey = \"tool.diameter_mm\"\nvalues = [{values}]\n")
+    };
+    let file = s.write("sweep.toml", &text("4, 6, 8"));
+    let out = s.path("out");
+    sweep(&file, &out, &["--merge"]).refused(&["is no folder with rows", "then --merge"]);
+    for shard in ["1/3", "2/3", "3/3"] {
+        assert_eq!(sweep(&file, &out, &["--shard", shard]).code, 0);
+    }
+    let run = sweep(&file, &out, &["--merge"]);
+    assert!(run.code == 0 && run.err.is_empty(), "{}", run.err);
+    // One value is another: its case alone is of another job.
+    s.write("sweep.toml", &text("4, 7, 8, 9"));
+    sweep(&file, &out, &["--merge"]).refused(&[
+        "1 of 4 cases have rows of another job, other files or another version only (2), and 1 have none",
+        "run --shard 2/3 again, or the sweep without --merge",
+        "--print 2 shows",
+    ]);
+    s.write("sweep.toml", &text("4, 7, 8"));
+    assert_eq!(sweep(&file, &out, &["--shard", "2/3", "--json"]).json()["planned"], 1);
+    // What is left of the old job is told and does no harm.
+    let run = sweep(&file, &out, &["--merge"]);
+    assert!(run.code == 0 && run.err.contains("1 rows are of another job"), "{}", run.err);
+    assert_eq!(table(&out)[2][..2], ["2", "7"]);
 }
 
 #[test]
@@ -136,6 +174,7 @@ fn a_sweep_that_cannot_be_meant_is_refused_before_the_work() {
     for (text, words) in cases {
         let file = s.write("bad.toml", &format!("{head}{text}\n"));
         sweep(&file, &out, &[]).refused(words);
+        assert!(!out.exists(), "what is refused leaves no folder: {text}");
     }
     let many = format!(
         "{head}{}",

@@ -11,10 +11,12 @@ struct Step {
 }
 
 /// The steps in the order in which they run.
-const STEPS: [Step; 6] = [
+const STEPS: [Step; 8] = [
     Step { name: "format", action: |root| run_command(cargo(root, &["fmt", "--all", "--check"])) },
     Step { name: "tidy", action: |_| crate::tidy::run() },
+    Step { name: "public items", action: |_| crate::api::run(crate::api::Action::Compare) },
     Step { name: "clippy", action: clippy },
+    Step { name: "wasm", action: wasm },
     Step { name: "documentation", action: documentation },
     Step { name: "test", action: |_| crate::test::run(&[]) },
     Step { name: "examples", action: crate::test::examples },
@@ -48,6 +50,17 @@ fn run_steps(steps: &[Step], root: &Path) -> Result<(), Failure> {
 
 fn clippy(root: &Path) -> Result<(), Failure> {
     run_command(cargo(root, &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"]))
+}
+
+/// The target of what runs in a browser.
+const WASM: &str = "wasm32-unknown-unknown";
+
+/// What computes alone is built for a target without files, clock and threads.
+fn wasm(root: &Path) -> Result<(), Failure> {
+    let build = ["build", "--locked", "--target", WASM, "-p", "osculate-geom", "-p", "osculate-tools"];
+    run_command(cargo(root, &build)).inspect_err(|_| {
+        println!("ci: where `core` is not found above the target is missing: rustup target add {WASM}");
+    })
 }
 
 fn documentation(root: &Path) -> Result<(), Failure> {

@@ -55,6 +55,15 @@ pub enum Failure {
     },
     /// Comparisons with another program that came out differently.
     Differs(usize),
+    /// What a source file says cannot be told.
+    Source {
+        /// The file, relative to the root.
+        path: PathBuf,
+        /// What is wrong.
+        why: String,
+    },
+    /// Packages whose public items are not those that are kept.
+    Interface(usize),
     /// What is wrong with pages in a browser.
     Pages(usize),
     /// Packages whose tests do not pass outside the repository.
@@ -78,6 +87,12 @@ impl std::fmt::Display for Failure {
             Self::Answer { line, why } => write!(f, "`{line}` answered what cannot be used: {why}"),
             Self::Read { path, why } => write!(f, "cannot read {}: {why}", path.display()),
             Self::Write { path, why } => write!(f, "cannot write {}: {why}", path.display()),
+            Self::Source { path, why } => write!(f, "{}: {why}", path.display()),
+            Self::Interface(count) => write!(
+                f,
+                "the public items of {count} packages are not those in api, see above: where that is meant, run `cargo xtask api --bless` and \
+                 let CHANGELOG.md name what breaks callers"
+            ),
             Self::NoWorkspace(from) => {
                 write!(f, "no Cargo.toml with a [workspace] at or above {}", from.display())
             }

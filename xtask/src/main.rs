@@ -1,4 +1,4 @@
-//! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask ci`,
+//! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask api`, `cargo xtask ci`,
 //! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask first-hour`, `cargo xtask browser`, `cargo xtask plans`,
 //! `cargo xtask mutate`, `cargo xtask fuzz`, `cargo xtask package`, `cargo xtask truth` and `cargo xtask sides`.
 //!
@@ -7,6 +7,7 @@
 // A command of developers talks to its terminal; the ban on printing is for the libraries.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod api;
 mod bench;
 mod browser;
 mod ci;
@@ -41,7 +42,9 @@ usage: cargo xtask COMMAND
                 LinuxCNC itself alone: a program with three tools, limits on, to the end
   interop roundtrip
                 CL to NC and back on a real blade, for every machine, dialect and feed mode: a table of what is off
-  ci            formatting, tidy, clippy, documentation and tests; stops at the first failure
+  ci            formatting, tidy, public items, clippy, WebAssembly, documentation and tests; stops at the first failure
+  api [--bless | --count]
+                the public items of each package, from the sources, compared with those in api; --bless keeps them, --count counts them
   package [--allow-dirty] [--only PACKAGE]
                 the packages as a registry would get them: packed, built, unpacked elsewhere and their tests run there; a table
   bench [--peers]
@@ -82,6 +85,10 @@ fn main() -> ExitCode {
         ["test", rest @ ..] => test::run(rest),
         ["tidy"] => tidy::run(),
         ["ci"] => ci::run(),
+        ["api", rest @ ..] => match api::Action::of(rest) {
+            Some(action) => api::run(action),
+            None => return wrong_usage("api takes nothing, --bless or --count"),
+        },
         ["interop", "linuxcnc"] => interop::linuxcnc(),
         ["interop", "simulation"] => interop::simulation(),
         ["interop", "roundtrip"] => postproc_example("roundtrip", &[]),

@@ -17,7 +17,7 @@ const TABLE: &str = "table.csv";
 const PAGE: &str = "sweep.html";
 /// Folder of the plans that are kept.
 const PLANS: &str = "plans";
-/// Cases that a message lists at most.
+/// Cases or shards that a message lists at most.
 const LISTED: usize = 8;
 /// Lines of the table on a screen.
 const SHOWN: usize = 20;
@@ -52,32 +52,21 @@ pub fn run(args: &SweepArgs, json: bool) -> Outcome {
         render::text(&(head + &case.text))?;
         return Ok(Done::Yes);
     }
-    let Some(out) = &args.out else {
-        return Err(Failure::Usage(
-            "sweep needs --out FOLDER for its rows and its table, or --print CASE".to_owned(),
-        ));
-    };
+    let out = args.out.as_deref().expect("clap asks for --out where there is no --print");
     output::folder(out)?;
     let sweep = Sweep::load(&args.sweep)?;
     let shard = args.shard.unwrap_or(Shard::WHOLE);
-    std::fs::create_dir_all(out)
-        .map_err(|e| Failure::file(out, format!("the folder cannot be made: {e}")))?;
     let planned = if args.merge { 0 } else { plan_all(&sweep, shard, (out, args))? };
-    let rows = read(&sweep, out)?;
-    let complete = rows.count() == sweep.cases();
-    if args.merge && !complete {
-        let lacking: Vec<String> =
-            (1..=sweep.cases()).filter(|n| !rows.has(*n)).take(LISTED).map(|n| n.to_string()).collect();
-        let count = sweep.cases() - rows.count();
-        let more = if count > LISTED { ", ..." } else { "" };
-        let what = format!(
-            "{count} of {} cases have no row here ({}{more}): run their shards, or the sweep without --merge",
-            sweep.cases(),
-            lacking.join(", ")
-        );
+    if args.merge && !out.is_dir() {
+        let what = "is no folder with rows: run the sweep or its shards with this --out first, then --merge";
         return Err(Failure::file(out, what));
     }
-    // Every shard that ends last finds all rows; the table is the same whoever makes it.
+    let rows = read(&sweep, out)?;
+    let complete = rows.count() == sweep.cases();
+    if args.merge {
+        mergeable(&sweep, &rows, out)?;
+    }
+    // The table is of all cases: made by a run that has them all, or by --merge from the rows of every shard, the same whoever made these.
     let whole = complete && (args.merge || shard == Shard::WHOLE);
     let all: Vec<&Row> = rows.all().collect();
     if whole {
@@ -112,6 +101,62 @@ fn read(sweep: &Sweep, out: &Path) -> Result<Rows, Failure> {
     Rows::read(out, &key)
 }
 
+/// Refuses a table while cases have no row of the job as it stands; says which of them have one of another.
+fn mergeable(sweep: &Sweep, rows: &Rows, out: &Path) -> Result<(), Failure> {
+    let lacking: Vec<usize> = (1..=sweep.cases()).filter(|n| !rows.has(*n)).collect();
+    if lacking.is_empty() {
+        tell_stale(rows, out);
+        return Ok(());
+    }
+    let of = sweep.cases();
+    let stale: Vec<usize> = lacking.iter().copied().filter(|n| rows.of_another(*n).is_some()).collect();
+    let what = if let Some(first) = stale.first() {
+        let mut shards: Vec<Shard> = stale.iter().filter_map(|n| rows.of_another(*n)).collect();
+        shards.sort_by_key(|shard| (shard.of, shard.which));
+        shards.dedup();
+        let again: Vec<String> =
+            shards.iter().filter(|s| **s != Shard::WHOLE).map(Shard::to_string).collect();
+        let again = if again.is_empty() {
+            String::new()
+        } else {
+            let more = if again.len() > LISTED { ", ..." } else { "" };
+            format!("--shard {}{more} again, or ", again[..again.len().min(LISTED)].join(", --shard "))
+        };
+        let never = lacking.len() - stale.len();
+        let never = if never == 0 { String::new() } else { format!(", and {never} have none") };
+        format!(
+            "{} of {of} cases have rows of another job, other files or another version only ({}){never}: run {again}the sweep \
+             without --merge; sweep --print {first} shows the job of a case as it is now",
+            stale.len(),
+            listed(&stale)
+        )
+    } else {
+        format!(
+            "{} of {of} cases have no row here ({}): run their shards, or the sweep without --merge",
+            lacking.len(),
+            listed(&lacking)
+        )
+    };
+    Err(Failure::file(out, what))
+}
+
+/// The first of some cases.
+fn listed(cases: &[usize]) -> String {
+    let first: Vec<String> = cases.iter().take(LISTED).map(ToString::to_string).collect();
+    first.join(", ") + if cases.len() > LISTED { ", ..." } else { "" }
+}
+
+/// Says how many rows do not count.
+fn tell_stale(rows: &Rows, out: &Path) {
+    if rows.stale() > 0 {
+        render::complaint(&format!(
+            "{}: {} rows are of another job, other files or another version, and do not count",
+            out.display(),
+            rows.stale()
+        ));
+    }
+}
+
 /// Plans the cases of a shard that have no row yet; how many there were.
 fn plan_all(sweep: &Sweep, shard: Shard, (out, args): (&Path, &SweepArgs)) -> Result<usize, Failure> {
     let own: Vec<usize> = shard.numbers(sweep.cases()).collect();
@@ -128,15 +173,12 @@ fn plan_all(sweep: &Sweep, shard: Shard, (out, args): (&Path, &SweepArgs)) -> Re
             sweep.words_of(*number)
         ));
     }
+    // Not before: what cannot be planned leaves no folder.
+    std::fs::create_dir_all(out)
+        .map_err(|e| Failure::file(out, format!("the folder cannot be made: {e}")))?;
     let writer = Writer::open(shard, out)?;
     let rows = read(sweep, out)?;
-    if rows.stale() > 0 {
-        render::complaint(&format!(
-            "{}: {} rows are of another job, other files or another version, and do not count",
-            out.display(),
-            rows.stale()
-        ));
-    }
+    tell_stale(&rows, out);
     let left: Vec<usize> = own.iter().copied().filter(|n| !rows.has(*n)).collect();
     let file = shard.file(out).display().to_string();
     cancel::keep(Box::new(move || {

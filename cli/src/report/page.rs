@@ -10,7 +10,7 @@ use super::legend::{Limits, Scale, UNKNOWN};
 use super::mesh::{Clean, clean};
 use super::opening::opening;
 use super::pack::pack;
-use super::text::{base64, count, escape, figure, fixed, script_json, short};
+use super::text::{STYLE, base64, count, escape, figure, fixed, script_json, short};
 use super::tool_body::{Piece, outlines};
 use super::viewer::{LEGEND_PX, Scales, viewer};
 use miniz_oxide::deflate::compress_to_vec_zlib;
@@ -23,7 +23,6 @@ const PACKED: u8 = 6;
 
 const THREE: &str = include_str!("../../assets/three.bundle.min.js");
 const VIEWER: &str = include_str!("../../assets/viewer.js");
-const STYLE: &str = include_str!("../../assets/report.css");
 
 /// Tables with more columns than this stand below the picture and not beside it.
 const NARROW_COLUMNS: usize = 3;

@@ -1,10 +1,9 @@
 //! The page of a sweep: charts of a figure over what was varied, grids of the least time, and the table.
 
 use super::chart::{Axis, BOTTOM, HEIGHT, LEFT, RIGHT, TOP, WIDTH, base_line, frame};
-use super::text::{coordinate, count, escape, figure};
+use super::text::{STYLE, coordinate, count, escape, figure};
 use std::fmt::Write;
 
-const STYLE: &str = include_str!("../../assets/report.css");
 /// Cells are one line, but the last of a row, which says why.
 const CELLS: &str = "td:not(:last-child), th { white-space: nowrap; }\n";
 

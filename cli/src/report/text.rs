@@ -1,4 +1,7 @@
-//! Text for the page: escaping, numbers with sensible digits, base64.
+//! Text for the page: its style sheet, escaping, numbers with sensible digits, base64.
+
+/// How all pages look.
+pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
 /// `text` with the five characters escaped that mean something to HTML and XML, in content and in quoted
 /// attributes. Control characters that XML forbids become U+FFFD, so that the picture stays well-formed.

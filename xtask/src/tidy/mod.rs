@@ -21,13 +21,14 @@ mod shape;
 mod source;
 mod tree;
 mod words;
+mod workflows;
 
 use crate::cmd::{Failure, cargo, output, root};
 use finding::Finding;
 use tree::Tree;
 
 /// The rules that read files.
-const RULES: [fn(&Tree) -> Vec<Finding>; 17] = [
+const RULES: [fn(&Tree) -> Vec<Finding>; 18] = [
     circles::no_module_circles,
     effects::quiet_libraries,
     floating::no_bare_mul_add,
@@ -45,6 +46,7 @@ const RULES: [fn(&Tree) -> Vec<Finding>; 17] = [
     docs::readme_commands,
     docs::named_files,
     notation::code_names,
+    workflows::workflows,
 ];
 
 /// Runs every rule and prints the findings.

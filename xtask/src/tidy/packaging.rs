@@ -70,7 +70,7 @@ pub fn published(tree: &Tree) -> Vec<Finding> {
             }
             continue;
         }
-        for name in ["description", "keywords", "categories", "documentation", "readme"] {
+        for name in ["description", "keywords", "categories", "readme"] {
             if of(name).is_none_or(str::is_empty) {
                 findings.push(Finding::whole(&path, format!("no {name} under `[package]`")));
             }
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn packages_that_a_registry_would_show_badly_are_found() {
-        let good = "[package]\ndescription = \"a\"\nkeywords = [\"a\"]\ncategories = [\"a\"]\ndocumentation = \"a\"\n\
+        let good = "[package]\ndescription = \"a\"\nkeywords = [\"a\"]\ncategories = [\"a\"]\n\
                     readme = \"README.md\"\nexclude = [\"/tests/repository\"]\n";
         // Everything is in order but for one file.
         let found = |changed: &str, text: Option<&str>| {

@@ -34,6 +34,19 @@ impl Shard {
     pub fn file(self, folder: &Path) -> PathBuf {
         folder.join(format!("{BEGINS}{}-of-{}{ENDS}", self.which, self.of))
     }
+
+    /// That of a file of rows; None where it is named otherwise.
+    fn of_file(file: &Path) -> Option<Self> {
+        let name = file.file_name()?.to_str()?;
+        let (which, of) = name.strip_prefix(BEGINS)?.strip_suffix(ENDS)?.split_once("-of-")?;
+        Some(Self { which: which.parse().ok()?, of: of.parse().ok()? })
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.which, self.of)
+    }
 }
 
 /// Rows of all files in a folder, by the numbers of their cases.
@@ -42,6 +55,8 @@ pub struct Rows {
     rows: BTreeMap<usize, Row>,
     /// Rows of other jobs, files or versions of the program.
     stale: usize,
+    /// Cases that have such rows, with the shard of the last.
+    of_another: BTreeMap<usize, Shard>,
 }
 
 impl Rows {
@@ -67,6 +82,7 @@ impl Rows {
                     out.rows.entry(row.case).or_insert(row);
                 } else {
                     out.stale += 1;
+                    out.of_another.insert(row.case, Shard::of_file(&file).unwrap_or(Shard::WHOLE));
                 }
             }
         }
@@ -94,6 +110,12 @@ impl Rows {
     #[must_use]
     pub const fn stale(&self) -> usize {
         self.stale
+    }
+
+    /// The shard that made a row of a case that was not taken: of another job, other files or another version of the program.
+    #[must_use]
+    pub fn of_another(&self, case: usize) -> Option<Shard> {
+        self.of_another.get(&case).copied()
     }
 }
 
