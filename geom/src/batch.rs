@@ -17,6 +17,7 @@ pub type Lane = Lanes<LANES>;
 
 /// Eight jets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct JetBlock {
     /// Parameters u and v.
     pub uv: [Lane; 2],
@@ -140,6 +141,7 @@ impl JetBlock {
 
 /// Principal curvatures of eight places; all of a lane is NaN where there is no tangent plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CurvatureBlock {
     /// Parameters u and v.
     pub uv: [Lane; 2],

@@ -170,6 +170,7 @@ pub struct CurveJet3 {
 
 /// Why a curve has no Frenet frame at a point.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FrenetError {
     /// C' vanishes or is no number: a cusp, or a parameter that stands still.
     #[error("the curve stands still at t = {t}: |C'| = {speed_mm:.3e} mm per unit of the parameter")]
@@ -195,6 +196,7 @@ pub enum FrenetError {
 
 /// The Frenet frame of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Frenet {
     /// Unit tangent.
     pub tangent: Unit3,
@@ -262,6 +264,7 @@ impl CurveJet3 {
 
 /// Why there is no point at an arc length.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LengthError {
     /// The curve ends before.
     #[error("{length_mm} mm along the curve are asked for; it is {whole_mm} mm long")]

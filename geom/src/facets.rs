@@ -26,6 +26,7 @@ const FAR_MM: f64 = 1e12;
 
 /// Triangles that make no surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FacetsError {
     /// None at all.
     #[error("there is no triangle")]

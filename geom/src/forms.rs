@@ -59,6 +59,7 @@ impl Jet2 {
 
 /// Both fundamental forms at a point, in the parameter basis and in an orthonormal tangent frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Forms {
     /// `[E, F, G]`.
     pub first: [f64; 3],
@@ -181,6 +182,7 @@ impl Forms {
 
 /// Principal curvatures, convex positive, with `k_max >= k_min`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Principal {
     /// The most convex normal curvature, 1/mm.
     pub k_max: f64,
@@ -212,6 +214,7 @@ impl Principal {
 
 /// Eigenvalues and unit eigenvectors of a symmetric 2x2 matrix, without cancellation near equal eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SymEigen {
     /// Larger eigenvalue.
     pub max: f64,

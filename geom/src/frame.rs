@@ -91,6 +91,7 @@ pub fn geodesic_curvature(jet: &Jet2, rate: Uv, acceleration: Uv) -> Result<f64,
 /// The line's own curvature and torsion in space follow: `k^2 = normal^2 + geodesic^2`, and its torsion is
 /// `d theta / ds - torsion`, theta the angle that its principal normal turns about the tangent against the surface's.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LineCurvature {
     /// Normal curvature along the line, 1/mm, convex positive.
     pub normal_per_mm: f64,

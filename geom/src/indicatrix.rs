@@ -33,6 +33,7 @@ use crate::roots::{FLAT, minimum};
 
 /// The shape of Dupin's indicatrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum DupinKind {
     /// Both curvatures of one sign: an ellipse (K > 0).
     Ellipse,
@@ -89,6 +90,7 @@ pub struct Conformity {
 
 /// The direction that R97 claims, beside the one that the strip width has.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Claim {
     /// Tangent along which |r| of the indicatrix is smallest: the widest strip lies along it, by the claim.
     pub across: Unit3,

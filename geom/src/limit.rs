@@ -39,6 +39,7 @@ impl Tolerance {
 
 /// Why there is no limit.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LimitError {
     /// A point with a cone of tangents: normals at different sides of it differ.
     #[error("an apex at u = {}, v = {}: the normals around it differ by {spread_rad:.3e} rad", at.u, at.v)]
@@ -435,6 +436,7 @@ fn curvature(view: View, n: &Normal) -> Result<Matrix3<f64>, LimitError> {
 
 /// The normal on one side of a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SideNormal {
     /// Signs of the steps of u and v that lead to that side.
     pub toward: [f64; 2],

@@ -10,6 +10,7 @@ use crate::surface::Surface;
 
 /// Why a line has no frame at a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LineError {
     /// The surface has no tangent plane there, or the line stands still.
     #[error(transparent)]

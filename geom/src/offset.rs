@@ -28,6 +28,7 @@ use crate::taylor::{Taylor, cross};
 
 /// Why there is no offset, or none without a cusp at a place.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum OffsetError {
     /// A distance that is no number.
     #[error("an offset by {got} mm: the distance must be finite")]
@@ -231,6 +232,7 @@ fn sum(a: &Vec3, b: &Vec3) -> Vec3 {
 
 /// The distances by which a surface can be offset without a cusp.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ClearRange {
     /// Offsets must lie above this, mm; minus infinity where nothing is convex.
     pub inward_mm: f64,

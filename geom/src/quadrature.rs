@@ -15,6 +15,7 @@ pub const GAUSS5: [(f64, f64); 5] = [
 
 /// An integral and an estimate of its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Integral {
     /// The value.
     pub value: f64,

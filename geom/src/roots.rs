@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 /// A root found by [`bracketed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Root {
     /// The abscissa.
     pub x: f64,
@@ -17,6 +18,7 @@ pub struct Root {
 
 /// Why there is no root.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RootError {
     /// The function has the same sign at both ends.
     #[error("no change of sign: f({lo}) = {f_lo}, f({hi}) = {f_hi}")]
@@ -120,6 +122,7 @@ pub fn bracketed(a: End, b: End, x_tol: f64, mut f: impl FnMut(f64) -> f64) -> R
 
 /// The least value found by [`minimum`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Minimum {
     /// The abscissa.
     pub x: f64,

@@ -21,6 +21,7 @@ use std::f64::consts::TAU;
 
 /// Why a curve sweeps no surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SweepError {
     /// The axis has no place.
     #[error("the axis goes through ({}, {}, {}), which is no point", origin.x, origin.y, origin.z)]

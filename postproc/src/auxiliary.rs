@@ -14,6 +14,7 @@ use crate::nc::Coolant;
 /// assert_eq!((tap.rpm(), Spindle::Off.rpm()), (Some(500.0), None));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Spindle {
     /// M5.
     Off,
@@ -52,6 +53,7 @@ impl Spindle {
 
 /// What is done between two moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum AuxiliaryWord {
     /// The spindle turns so from here on.
     Spindle(Spindle),

@@ -7,6 +7,7 @@ use crate::machine::JointValues;
 
 /// Why a block is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum BlockKind {
     /// It ends at a CL point.
     Point,
@@ -18,6 +19,7 @@ pub enum BlockKind {
 
 /// One move, from where the block before ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct JointBlock {
     /// Where the joints end, mm and rad in chain order. Endless rotary joints count on through whole turns.
     pub joints: JointValues,
@@ -35,6 +37,7 @@ pub struct JointBlock {
 
 /// What solving a path took.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct SolveSummary {
     /// Blocks of kind [`BlockKind::Inserted`].
     pub inserted_points: usize,
@@ -50,6 +53,7 @@ pub struct SolveSummary {
 
 /// A whole path in joints. The first block leads from an unknown place.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct JointPath {
     /// The blocks.
     pub blocks: Vec<JointBlock>,

@@ -43,6 +43,7 @@ pub struct PostSummary {
 
 /// NC text with its summary.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Posted {
     /// The program.
     pub text: String,
@@ -54,6 +55,7 @@ pub struct Posted {
 
 /// What became of a path whose text went into a sink.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PostReport {
     /// Figures.
     pub summary: PostSummary,

@@ -9,6 +9,7 @@ use crate::solve_error::SolveError;
 
 /// Why a path cannot be posted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PostError {
     /// The machine cannot run the path.
     #[error(transparent)]

@@ -28,6 +28,7 @@ pub struct Section<'a, S = ClPath> {
 
 /// A program of several sections.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PostedSections {
     /// The program.
     pub text: String,
@@ -92,6 +93,7 @@ pub fn post_sections(
 /// Why sections cannot be posted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{error}")]
+#[non_exhaustive]
 pub struct SectionError {
     /// Which one is at fault, from 0.
     pub section: usize,

@@ -35,6 +35,7 @@ pub struct Setup {
 
 /// Why a setup is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SetupError {
     /// NaN or infinite.
     #[error(

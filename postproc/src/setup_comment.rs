@@ -27,6 +27,7 @@ const UNIT_TOLERANCE: f64 = 1e-9;
 
 /// A setup in a program's comments that is none.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SetupCommentError {
     /// A line that begins as the post writes it and does not go on so.
     #[error("line {line}: the setup in '{text}' is not understood")]

@@ -8,6 +8,7 @@ use crate::setup::SetupError;
 
 /// Why a path cannot be run on a machine. `index` counts CL moves from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SolveError {
     /// Nothing to do.
     #[error("the path has no moves")]

@@ -10,6 +10,7 @@ const STANDS: f64 = 1.75;
 
 /// A suggested setup.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Suggestion {
     /// The setup.
     pub setup: Setup,

@@ -28,6 +28,7 @@ const WORTH: f64 = 2e-3;
 
 /// Where it is looked.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub enum At<'a> {
     /// About so many places all over the faces to machine.
     About(usize),
@@ -52,6 +53,7 @@ pub struct Asked<'a> {
 
 /// Why nothing is found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AccessError {
     /// A face that cannot be sampled.
     #[error("face {face}: {why}")]

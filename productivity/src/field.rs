@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 /// What is known at a node.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Node {
     /// Parameters.
     pub at: Uv,
@@ -26,6 +27,7 @@ pub struct Node {
 
 /// Nodes over a face, in rows of v for each u.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Field {
     /// Counts in u and v.
     pub count: [usize; 2],

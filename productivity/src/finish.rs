@@ -45,6 +45,7 @@ pub struct Across {
 
 /// Why an instant has no productivity.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RateError {
     /// The change of parameters folds: parts of the line move forwards, others backwards.
     #[error("the Jacobian of (t, w) -> (u, v) changes its sign at w = {across}, u = {}, v = {}", at.u, at.v)]

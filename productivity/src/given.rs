@@ -29,6 +29,7 @@ pub struct Given {
 
 /// Values that make no field.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GivenError {
     /// The count of values is not that of the nodes.
     #[error("{u} nodes in u and {v} in v need {} values, got {got}", u * v)]

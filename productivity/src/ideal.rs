@@ -63,6 +63,7 @@ pub struct Patch<'a> {
 
 /// The bound over faces.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ideal {
     /// Least time, min.
     pub time_min: f64,

@@ -8,6 +8,7 @@ use crate::plan::Pass;
 
 /// Productivity of a plan, mm2/min.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Levels {
     /// Least instantaneous productivity on any pass.
     pub instantaneous_min: f64,

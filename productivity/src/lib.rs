@@ -31,7 +31,7 @@
 //! let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
 //! let lean = Lean { lead_rad: 0.2, tilt_rad: 0.0 };
 //! let tolerance = Tolerance { scallop_mm: 0.02, gouge_mm: 0.01, chord_mm: 0.005 };
-//! let task = Task { surface: &plane, face: "top", cutter: &ball, lean: lean.into(), tolerance, progress: &|_| {} };
+//! let task = Task::new("top", &plane, &ball, lean, tolerance);
 //! let passes = isoparametric(&task, Along::Fixed(Axis::U))?.passes;
 //! // No two neighbours are further apart than a strip, 2 sqrt(h (2 R - h)).
 //! let widest_mm = 2.0 * f64::sqrt(0.02 * (10.0 - 0.02));

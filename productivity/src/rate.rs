@@ -33,6 +33,7 @@ pub struct Caps {
 /// Caps that are none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} must be positive and finite, got {got}")]
+#[non_exhaustive]
 pub struct CapsError {
     /// Which cap.
     pub what: &'static str,
@@ -42,6 +43,7 @@ pub struct CapsError {
 
 /// What holds the feed down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FeedLimit {
     /// The ridges between tooth marks.
     ToothMark,
@@ -53,6 +55,7 @@ pub enum FeedLimit {
 
 /// Instantaneous productivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Rate {
     /// Feed per tooth S_L, mm.
     pub feed_per_tooth_mm: f64,
@@ -177,6 +180,7 @@ pub fn leading_area_per_tooth_mm2(
 
 /// A tolerance and the share of it that tooth marks get.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Share {
     /// The whole tolerance h, mm.
     pub tolerance_mm: f64,

@@ -19,6 +19,7 @@ use std::cell::Cell;
 
 /// Why a layer has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LayerError {
     /// The layer is thicker than the part is hollow: its normals cross.
     #[error(

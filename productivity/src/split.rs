@@ -27,6 +27,7 @@ pub fn leading_share(along_per_mm: f64, cap_mm: f64, tolerance_mm: f64) -> f64 {
 
 /// A share and the area per tooth that it gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Best {
     /// The share.
     pub share: Share,

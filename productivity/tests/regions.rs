@@ -20,7 +20,6 @@ fn cone() -> Patch<Cone> {
 
 fn plan(lean: Lean, strategy: &Strategy) -> Passes {
     let (surface, cutter) = (&cone(), &cutter());
-    let lean = lean.into();
     run(&Task::new("F1", surface, cutter, lean, TOLERANCE), strategy).unwrap()
 }
 

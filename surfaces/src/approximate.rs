@@ -14,6 +14,7 @@ use osculate_geom::{Axis, Domain, Interval, Point3, Surface, Uv, Vec3, uv};
 
 /// A surface near another one.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Approximation {
     /// The bicubic surface, over the rectangle asked for.
     pub surface: NurbsSurface,
@@ -25,6 +26,7 @@ pub struct Approximation {
 
 /// Why no surface within the tolerance was made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ApproximateError {
     /// A rectangle without end or empty.
     #[error("the range [{lo}, {hi}] along {axis:?} must be finite and not empty")]

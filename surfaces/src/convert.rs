@@ -19,6 +19,7 @@ use osculate_geom::{
 
 /// Why a curve or surface is not written as NURBS.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConvertError {
     /// The part asked for is empty, has no ends, or does not lie on the curve or surface.
     #[error("the part from {from} to {to} is not within [{lo}, {hi}], or has no two ends")]

@@ -20,6 +20,7 @@ const PLACES: usize = 5;
 
 /// A place where a surface folds over itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Fold {
     /// Where: the middle of the piece.
     pub at: Uv,
@@ -33,6 +34,7 @@ pub struct Fold {
 
 /// What a search for folds found.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Folds {
     /// The places, in the order of the patches, of each patch one.
     pub found: Vec<Fold>,

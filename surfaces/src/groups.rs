@@ -56,6 +56,7 @@ impl fmt::Display for Look {
 
 /// Faces that look alike and go on smoothly into each other.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FaceGroup {
     /// What it looks like.
     pub look: Look,

@@ -5,6 +5,7 @@ use crate::{iges, json, patches, sections, step};
 
 /// Why bytes are no part.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImportError {
     /// Nothing to read.
     #[error("the file is empty")]

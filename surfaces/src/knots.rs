@@ -11,6 +11,7 @@ pub const MAX_DEGREE: usize = 25;
 
 /// Why numbers are no knot vector.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum KnotError {
     /// Degree zero, above [`MAX_DEGREE`], or not below the number of poles.
     #[error("degree {degree} over {poles} poles: it must be 1 to {MAX_DEGREE} and below the number of poles")]

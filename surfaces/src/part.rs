@@ -41,6 +41,7 @@ impl fmt::Display for Format {
 
 /// An imported part.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Part {
     /// The format it came from.
     pub format: Format,
@@ -64,6 +65,7 @@ pub struct Part {
 
 /// Entities of one kind that became no face.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct NotUsed {
     /// The file's own name of the kind.
     pub kind: String,
@@ -88,6 +90,7 @@ pub struct Colour {
 
 /// The kind of surface that a file gave for a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum FaceKind {
     /// Plane.
     Plane,
@@ -161,6 +164,7 @@ pub struct Face {
 
 /// Range of the principal curvatures over a face, 1/mm, convex positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CurvatureRange {
     /// The most concave curvature found.
     pub k_min_per_mm: f64,

@@ -21,6 +21,7 @@ use std::sync::Arc;
 
 /// Why a text is no set of patches.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PatchesError {
     /// The first line is no count.
     #[error("line {line}: {got:?}; the number of patches is due there")]

@@ -81,6 +81,7 @@ pub struct PatternFace<'a> {
 
 /// Why faces do not lie on the part again when they are turned.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PatternError {
     /// One turn is none.
     #[error("a pattern has two places or more, got {got}")]

@@ -8,6 +8,7 @@ use std::fmt;
 
 /// What a body is in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum BodyKind {
     /// A solid: its shells enclose material.
     Solid,
@@ -29,6 +30,7 @@ impl fmt::Display for BodyKind {
 
 /// Connected faces of a body.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Shell {
     /// Its number in the file.
     pub entity: u64,
@@ -66,6 +68,7 @@ impl Body {
 
 /// Faces that a file has put together under a name to show or to hide.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Layer {
     /// Its name or number.
     pub name: String,
@@ -85,6 +88,7 @@ impl Structure {
 
 /// What a file says of how its faces hang together.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Structure {
     /// The bodies; faces that belong to none are in none.
     pub bodies: Vec<Body>,

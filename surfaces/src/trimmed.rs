@@ -44,6 +44,7 @@ impl Loop {
 
 /// Why loops limit no surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TrimError {
     /// A loop has too few points.
     #[error("loop {index} has {got} points; a closed polyline needs three")]

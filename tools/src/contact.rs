@@ -24,6 +24,7 @@ pub struct Lean {
 
 /// The direction of feed at a CC point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FeedLine {
     /// Along the isoparametric line on which this parameter grows.
     Iso(Axis),
@@ -35,6 +36,7 @@ pub enum FeedLine {
 
 /// Why a contact cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ContactError {
     /// No tangent plane, or the line leaves the surface.
     #[error(transparent)]
@@ -330,6 +332,7 @@ pub struct Contact<'a> {
 }
 
 /// The feed line of a contact.
+#[non_exhaustive]
 pub enum ContactLine<'a> {
     /// An isoparametric line.
     Iso(IsoLine<'a>),

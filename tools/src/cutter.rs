@@ -35,6 +35,7 @@ pub struct Cutter {
 
 /// The part of the cutter's boundary that a line meets first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Part {
     /// The flat bottom.
     Bottom,
@@ -48,6 +49,7 @@ pub enum Part {
 
 /// A line enters a cutter.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Entry {
     /// Line parameter of the entry, mm.
     pub at_mm: f64,

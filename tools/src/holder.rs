@@ -27,6 +27,7 @@ pub struct Holder {
 
 /// Sections that make no holder.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum HolderError {
     /// None, or too many of them.
     #[error("a holder has 1 to {most} sections, not {got}")]

@@ -66,6 +66,7 @@ impl SweptMotion for LinearMotion {
 
 /// The deepest entry of a motion on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Reach {
     /// Line parameter of the entry, mm.
     pub at_mm: f64,

@@ -22,6 +22,7 @@ const INK: &str = "#222";
 
 /// Corners of cells over the parameters of a face: how many along u and along v, v growing first. Rows have the same u, columns the
 /// same v.
+#[non_exhaustive]
 pub struct Corners {
     /// How many.
     pub count: [usize; 2],
@@ -56,6 +57,7 @@ impl Corners {
 }
 
 /// The field for one direction of passes.
+#[non_exhaustive]
 pub struct Shown {
     /// The direction in words.
     pub passes: String,
@@ -66,6 +68,7 @@ pub struct Shown {
 }
 
 /// What no axis reaches.
+#[non_exhaustive]
 pub struct Unreached {
     /// Places.
     pub places: Vec<Point3>,

@@ -54,6 +54,7 @@ pub struct Named {
 }
 
 /// What is drawn.
+#[non_exhaustive]
 pub struct Map<'a> {
     /// The heading.
     pub title: String,

@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 /// How a line looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Pen {
     /// Colour.
     pub colour: &'static str,
@@ -22,6 +23,7 @@ pub const fn pen(colour: &'static str, width: f64) -> Pen {
 
 /// Where a text is anchored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Anchor {
     /// At its start.
     Start,
@@ -31,6 +33,7 @@ pub enum Anchor {
 
 /// How a text is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Type {
     /// Size, px.
     pub size: f64,
@@ -53,6 +56,7 @@ pub const fn letters(size: f64) -> Type {
 
 /// Marks of special points, in the manner of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Mark {
     /// Umbilic of index +1/2 with one line of each family: a disc.
     Lemon,

@@ -10,6 +10,7 @@ use osculate_surfaces::lines::{Contour, CriticalKind, Family, SurfacePolyline, U
 
 /// The figures, a to f as in the paper, and one more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Panel {
     /// a: lines of constant parameter.
     ParameterNet,

@@ -22,6 +22,7 @@ pub struct Wanted {
 
 /// Why a face has no figures.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StudyError {
     /// No lines can be drawn on it.
     #[error(transparent)]
@@ -30,6 +31,7 @@ pub enum StudyError {
 
 /// A field with its lines.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Levels {
     /// Values of the lines, ascending.
     pub values: Vec<f64>,

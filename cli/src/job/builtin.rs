@@ -134,6 +134,7 @@ impl Material {
 
 /// A built-in surface with its name.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct Builtin {
     /// The kind.
     pub kind: &'static str,

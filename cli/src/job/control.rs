@@ -30,6 +30,7 @@ const TABLE: &str = "machine";
 
 /// A machine with the control's language and feed mode.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Control {
     /// The machine.
     pub machine: Machine,

@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 /// How a ruled face is milled with the side of a cutter.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Flank {
     /// The rule at which the settings are compared; the middle one where not given.
     pub at_u: Option<f64>,

@@ -1,7 +1,6 @@
 //! A job of several operations: one after the other on the same part, each from the material that the one before left.
 //!
-//! Every operation is a job of its own, made of the tables that all have in common and of its own table, so that whatever
-//! plans or judges one job does an operation as well.
+//! Each is a job of its own, made of the tables that all have in common and of its own: what plans or judges a job does an operation too.
 
 use crate::failure::{Failure, beside, read_text};
 use crate::job::problem::Places;
@@ -17,6 +16,7 @@ const OVERLAP: f64 = 0.1;
 
 /// How the part is held for some of the operations.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Clamping {
     /// As operations name it.
     pub name: String,

@@ -11,6 +11,7 @@ use serde::Deserialize;
 /// A whole file.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Raw {
     #[allow(dead_code)]
     pub format: u32,
@@ -39,6 +40,7 @@ pub struct Raw {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Part {
     pub file: Option<String>,
     pub unit_mm: Option<f64>,
@@ -55,6 +57,7 @@ pub struct Part {
 /// Sides of faces: of some, or several such.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum Sides {
     One(SideKey),
     Several(Vec<SideKey>),
@@ -62,6 +65,7 @@ pub enum Sides {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SideKey {
     pub faces: Ids,
     pub material: MaterialWord,
@@ -70,6 +74,7 @@ pub struct SideKey {
 /// An id, or several.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum Ids {
     One(String),
     Several(Vec<String>),
@@ -93,6 +98,7 @@ impl Sides {
 /// A choice of faces.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum FaceChoice {
     /// `"all"` or one id.
     Word(String),
@@ -113,6 +119,7 @@ impl FaceChoice {
 /// `{ largest = n }`
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Largest {
     /// How many of the largest faces.
     pub largest: usize,
@@ -120,6 +127,7 @@ pub struct Largest {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Ruled {
     pub c0: Curve,
     pub c1: Curve,
@@ -127,6 +135,7 @@ pub struct Ruled {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Curve {
     pub degree: Option<usize>,
     pub knots: Option<Vec<f64>>,
@@ -161,6 +170,7 @@ pub struct Tool {
 /// A holder: one section, or several from the nose upwards.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum Holder {
     One(HolderSpec),
     Several(Vec<HolderSpec>),
@@ -187,6 +197,7 @@ pub struct Tolerance {
 
 #[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct Strategy {
     pub kind: StrategyWord,
     pub lead_deg: LeadKey,
@@ -215,6 +226,7 @@ pub struct Strategy {
 
 #[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Cutting {
     pub spindle_rpm: Option<f64>,
     pub feed_mm_min: Option<f64>,
@@ -224,6 +236,7 @@ pub struct Cutting {
 
 #[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Machine {
     pub name: Option<String>,
     pub file: Option<String>,
@@ -253,6 +266,7 @@ pub struct Setup {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Contact {
     pub at: [f64; 2],
     #[serde(default)]
@@ -263,6 +277,7 @@ pub struct Contact {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Stock {
     pub box_mm: Option<[f64; 6]>,
     pub file: Option<String>,
@@ -274,6 +289,7 @@ pub struct Stock {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Cylinder {
     pub axis: Option<[f64; 3]>,
     pub diameter_mm: f64,
@@ -282,6 +298,7 @@ pub struct Cylinder {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Fixture {
     pub files: Vec<String>,
     pub spacing_mm: Option<f64>,
@@ -289,6 +306,7 @@ pub struct Fixture {
 
 #[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Flank {
     pub at_u: Option<f64>,
     pub side: Option<i32>,
@@ -309,6 +327,7 @@ pub struct Flank {
 
 #[derive(Debug, Default, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Verification {
     pub spacing_mm: Option<f64>,
     pub max_samples: Option<usize>,
@@ -318,6 +337,7 @@ pub struct Verification {
 /// A whole file of operations.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RawList {
     #[allow(dead_code)]
     pub format: u32,
@@ -340,6 +360,7 @@ pub struct RawList {
 /// Equal places in a circle: a number of them, or with the axis.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum Repeat {
     Count(usize),
     Circle(Circle),
@@ -355,6 +376,7 @@ pub struct Circle {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Operation {
     pub name: Option<String>,
     pub setup: Option<String>,

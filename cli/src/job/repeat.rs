@@ -5,6 +5,7 @@ use osculate_geom::{Point3, TurnAxis, Unit3, Vec3};
 
 /// Equal places in a circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Repeat {
     /// The axis, where the job says it.
     pub axis: Option<TurnAxis>,

@@ -26,6 +26,7 @@ const TABLE: &str = "strategy";
 
 /// The sizes of a roughing.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Layers {
     /// Deepest cut along the axis.
     pub stepdown_mm: f64,

@@ -151,6 +151,7 @@ impl Kind {
 
 /// A key.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Key {
     /// Its name.
     pub name: &'static str,
@@ -193,6 +194,7 @@ pub const ONE_OR_MORE: [&str; 2] = ["tool.holder", "part.side"];
 
 /// What a kind of job file may hold: its tables, and which of them stand in lists.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Schema {
     /// The format of the files that it is of.
     pub format: i64,

@@ -28,6 +28,7 @@ const ZIP: &[u8] = b"PK\x03\x04";
 
 /// What raw material is.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Blank {
     /// A box in the part's frame.
     Box(Box3),
@@ -55,6 +56,7 @@ pub enum Blank {
 
 /// Raw material.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Stock {
     /// Its shape.
     pub blank: Blank,
@@ -66,6 +68,7 @@ pub struct Stock {
 
 /// What holds the part.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Fixture {
     /// Meshes in the part's frame.
     pub files: Vec<PathBuf>,

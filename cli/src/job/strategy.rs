@@ -34,6 +34,7 @@ pub enum Kind {
 
 /// Passes by dropping the cutter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Drop {
     /// In parallel planes.
     Planes,

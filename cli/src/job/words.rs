@@ -289,6 +289,7 @@ words! {
 
 /// A lead in degrees, "auto" or "local".
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum LeadKey {
     /// The program chooses one for the whole path.
     #[default]
@@ -325,6 +326,7 @@ impl<'de> Deserialize<'de> for LeadKey {
 
 /// The tool's axis: a direction that it keeps, or how it goes along.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum AxisKey {
     /// It leans against the feed of every pass.
     Feed,
@@ -360,6 +362,7 @@ impl<'de> Deserialize<'de> for AxisKey {
 
 /// From how many directions a part is roughed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum DirectionsKey {
     /// As many as are worth it.
     Auto,

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 /// A face ready for work.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct LoadedFace {
     /// `F1`, `F2`, ...
     pub id: String,
@@ -29,6 +30,7 @@ pub struct LoadedFace {
 
 /// A face of which something is hidden.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct InBodies {
     /// Its id.
     pub id: String,
@@ -55,6 +57,7 @@ impl InBodies {
 
 /// A part ready for work.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct Loaded {
     /// `step`, `iges`, `patches`, `sections`, `json`, `stl`, `ply`, `3mf` or `builtin`.
     pub format: &'static str,

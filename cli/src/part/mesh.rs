@@ -17,6 +17,7 @@ pub const USES: &str = "a mesh can be held against programs and CL data (verify)
 
 /// What a part that is a mesh is known by.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MeshFacts {
     /// Triangles in all.
     pub triangles: usize,

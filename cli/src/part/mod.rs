@@ -175,6 +175,7 @@ pub fn built_in(keys: &str) -> Result<Loaded, Failure> {
 
 /// Raw material that operations before have left.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct LeftMaterial {
     /// Points of its surface.
     pub points: Arc<[Point3]>,
@@ -183,6 +184,7 @@ pub struct LeftMaterial {
 }
 
 /// The part of a job: its faces, and which of them the job works on.
+#[non_exhaustive]
 pub struct Part {
     /// The whole part.
     pub part: Loaded,

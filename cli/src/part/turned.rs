@@ -9,6 +9,7 @@ use osculate_surfaces::pattern::{Circle, Pattern, PatternError, PatternFace, sam
 const ONE_PLACE: f64 = 1e-5;
 
 /// Where faces lie again.
+#[non_exhaustive]
 pub struct TurnedFaces {
     /// The turns.
     pub circle: Circle,

@@ -147,6 +147,7 @@ pub fn histogram(data: &Histogram, scale: &Scale) -> Option<String> {
 
 /// Strip widths of one pass: least, mean and greatest of the known ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Widths {
     /// Least, mm.
     pub min_mm: f64,

@@ -10,6 +10,7 @@ use osculate_postproc::machine::MAX_JOINTS;
 
 /// Everything on the page.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Report {
     /// The heading: part and strategy, for example.
     pub title: String,
@@ -49,6 +50,7 @@ pub struct Report {
 
 /// The verdict in one word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// Measured, and inside every tolerance.
     Within,
@@ -114,6 +116,7 @@ impl Default for Verdict {
 
 /// A place worth looking at.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Worst {
     /// Deviation there, mm, signed.
     pub deviation_mm: f64,
@@ -127,6 +130,7 @@ pub struct Worst {
 
 /// One face as triangles. Vertices that are shared are stored once; the three per-vertex lists go with `positions`.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct FaceMesh {
     /// The face's name as `inspect` prints it.
     pub id: String,
@@ -164,6 +168,7 @@ pub struct Pass {
 
 /// Which point of the tool the passes follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PathPoints {
     /// Where the tool touches the part.
     #[default]
@@ -174,6 +179,7 @@ pub enum PathPoints {
 
 /// A way of the tool tip between passes.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Link {
     /// Points along it, mm.
     pub points_mm: Vec<[f32; 3]>,
@@ -203,6 +209,7 @@ pub struct Tool {
 
 /// A section of a holder, standing on what is below it.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Holder {
     /// Diameters at its lower and its upper end, mm.
     pub diameters_mm: [f64; 2],
@@ -212,6 +219,7 @@ pub struct Holder {
 
 /// Where the tool is at one moment.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct ToolPose {
     /// Tool tip, mm.
     pub tip_mm: [f32; 3],
@@ -233,6 +241,7 @@ pub struct ToolPose {
 
 /// How the deviation is spread: bin `i` reaches from `edges_mm[i]` to `edges_mm[i + 1]`.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Histogram {
     /// Bin borders, mm, ascending; one more than `weights`.
     pub edges_mm: Vec<f64>,
@@ -244,6 +253,7 @@ pub struct Histogram {
 
 /// How fast the tip goes, over the time.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Pace {
     /// Feed moves and rapids in order.
     pub steps: Vec<PaceStep>,
@@ -253,6 +263,7 @@ pub struct Pace {
 
 /// A stretch of the program.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct PaceStep {
     /// When it ends, min.
     pub end_min: f64,
@@ -284,6 +295,7 @@ pub struct Column {
 
 /// A stage of the computation.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Stage {
     /// Its name.
     pub name: String,

@@ -31,6 +31,7 @@ const POSES: usize = 6000;
 const PATH_POINTS: usize = 120_000;
 
 /// Everything that a report tells.
+#[non_exhaustive]
 pub struct Story<'a> {
     /// The job's name.
     pub title: &'a str,
@@ -61,6 +62,7 @@ pub struct Story<'a> {
 }
 
 /// The report's pages.
+#[non_exhaustive]
 pub struct Pages {
     /// `report.html`.
     pub html: String,

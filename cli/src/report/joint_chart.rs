@@ -17,6 +17,7 @@ const KEY_LINE: f64 = 16.0;
 
 /// Which joints of a machine a chart shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Moved {
     /// Those that turn, in degrees.
     Turning,

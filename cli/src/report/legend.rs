@@ -33,6 +33,7 @@ pub fn hex([r, g, b]: Rgb) -> String {
 
 /// A value and the colour it has; between two stops the colour goes linearly, two stops at one value are a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Stop {
     /// The value, in the scale's unit.
     pub value: f64,
@@ -42,6 +43,7 @@ pub struct Stop {
 
 /// A colour scale: stops in ascending order, at least one.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Scale {
     /// What is shown.
     pub name: String,

@@ -13,6 +13,7 @@ const TRIANGLES: usize = 40_000;
 
 /// The machine that a program runs on.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Machine {
     /// Its name.
     pub name: String,
@@ -28,6 +29,7 @@ pub struct Machine {
 
 /// A joint.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Joint {
     /// Its letter.
     pub letter: String,
@@ -56,6 +58,7 @@ pub struct Body {
 
 /// A shape that a view can draw.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Piece {
     /// A cylinder or a cone: the centres of its ends, mm, and the radii there.
     Round {

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 
 /// A face whose indices are valid, whose vertices are finite and distinct, and whose lists have one length.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Clean {
     /// Vertices, mm.
     pub positions: Vec<[f32; 3]>,

@@ -17,6 +17,7 @@ const PATH_POINTS: usize = 120_000;
 const POSE_NUMBERS: usize = 11;
 
 /// The block and its head.
+#[non_exhaustive]
 pub struct Packed {
     /// The bytes.
     pub bytes: Vec<u8>,
@@ -28,6 +29,7 @@ pub struct Packed {
 
 /// Axis-aligned box of the points that are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bounds {
     /// Least coordinates, mm.
     pub lo: [f32; 3],

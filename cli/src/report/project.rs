@@ -23,6 +23,7 @@ impl Direction {
 
 /// A rectangle of the picture, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Frame {
     /// Left edge.
     pub x: f64,

@@ -14,6 +14,7 @@ use std::collections::{BTreeSet, HashMap};
 
 /// A triangle of vertices of the face, with its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Facet {
     /// Indices into the face's vertices.
     pub corners: [u32; 3],

@@ -17,6 +17,7 @@ const LABELS: usize = 12;
 const LETTERS: usize = 80;
 
 /// A page of a sweep.
+#[non_exhaustive]
 pub struct Page {
     /// Of the page.
     pub title: String,
@@ -35,6 +36,7 @@ pub struct Page {
 }
 
 /// A figure over the values of one thing.
+#[non_exhaustive]
 pub struct Chart {
     /// What was varied.
     pub x: String,
@@ -47,6 +49,7 @@ pub struct Chart {
 }
 
 /// A case in a chart.
+#[non_exhaustive]
 pub struct Dot {
     /// Which value it has.
     pub at: usize,

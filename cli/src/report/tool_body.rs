@@ -7,6 +7,7 @@ use super::data::Tool;
 
 /// A part of the tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Piece {
     /// What cuts.
     Cutter,

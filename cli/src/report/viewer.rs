@@ -14,6 +14,7 @@ use std::fmt::Write;
 pub const LEGEND_PX: f64 = 190.0;
 
 /// The colour scales of a page.
+#[non_exhaustive]
 pub struct Scales {
     /// Of the deviation.
     pub deviation: Scale,

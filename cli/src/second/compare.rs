@@ -26,6 +26,7 @@ pub struct Accepted {
 
 /// Which figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Which {
     /// The deepest gouge.
     Gouge,
@@ -35,6 +36,7 @@ pub enum Which {
 
 /// What both come to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Agreement {
     /// As far as both can tell they say the same.
     Agrees {

@@ -189,6 +189,7 @@ fn shop(program: &str, machine_toml: &str, setup: Option<Setup>) -> Result<Shop,
 
 /// Where a tool stands: its tip, mm, and the unit vector from there to the spindle, in the part's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Station {
     /// The program's line, from 1.
     pub line: usize,

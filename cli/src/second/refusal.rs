@@ -2,6 +2,7 @@
 
 /// What stands in the way of a second opinion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoOpinion {
     /// A dialect of another control.
     #[error("there is no second opinion on programs in the dialect '{name}'")]
@@ -55,6 +56,7 @@ pub enum NoOpinion {
 
 /// What is the matter with a word of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Unread {
     /// Not one that the reader knows.
     #[error("not known")]

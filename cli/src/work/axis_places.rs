@@ -23,6 +23,7 @@ const OTHERS: [Rgb; 2] = [[0x3a, 0x3a, 0x3a], [0x8a, 0x5a, 0x33]];
 
 /// The directions at a place.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct PlaceFigures {
     /// Its parameters.
     pub uv: [f64; 2],
@@ -49,6 +50,7 @@ pub struct PlaceFigures {
 
 /// A share of the directions.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct Share {
     /// What keeps the tool from them, in words.
     pub what: String,
@@ -58,6 +60,7 @@ pub struct Share {
 
 /// An axis of a field at a place.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct AxisFigures {
     /// The parameter that passes run along, or `field` where there is one field.
     pub passes: String,

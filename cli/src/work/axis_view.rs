@@ -40,6 +40,7 @@ pub struct Asked<'a> {
 
 /// The axes over the faces of a job.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct AxesOverFaces {
     /// 1.
     pub format: u32,
@@ -64,6 +65,7 @@ fn in_words<S: Serializer>(all: &[Diagnostic], to: S) -> Result<S::Ok, S::Error>
 
 /// The axes over a face.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct FaceFigures {
     /// Its id.
     pub face: String,
@@ -84,6 +86,7 @@ pub struct FaceFigures {
 
 /// A reason with the area that it is the reason of.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct Why {
     /// In words.
     pub what: String,
@@ -93,6 +96,7 @@ pub struct Why {
 
 /// A field over a face.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct FieldFigures {
     /// The parameter that passes run along; absent where the strategy has another direction.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -113,6 +117,7 @@ pub struct FieldFigures {
 
 /// The largest turn of a joint.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct Turn {
     /// The joint.
     pub joint: String,

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// The area of a face that is left out.
 #[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
 pub struct FaceLeftOut {
     /// The face.
     pub face: String,

@@ -16,6 +16,7 @@ const PLACES: usize = 16;
 
 /// The bound.
 #[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
 pub struct Bound {
     /// Least time, min.
     pub time_min: f64,
@@ -38,6 +39,7 @@ impl Bound {
 
 /// The bound and the plan's share of it, keys of `summary.json`.
 #[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
 pub struct IdealTime {
     /// The bound.
     pub ideal: Bound,

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 ///
 /// A block is slowed where a joint at its greatest speed is slower than the feed of the job, or of `time` than the program's F.
 #[derive(Debug, Serialize, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct JointFigures {
     /// How far each rotary joint turns in one block at most.
     pub largest_step_deg: BTreeMap<String, f64>,

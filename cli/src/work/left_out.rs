@@ -33,6 +33,7 @@ pub fn of(job: &Job, faces: &Part, passes: &Passes) -> Result<LeftOut, Failure> 
 }
 
 /// Passes in their order, joined.
+#[non_exhaustive]
 pub struct Joined {
     /// The passes.
     pub passes: Passes,

@@ -92,6 +92,7 @@ impl Look {
 }
 
 /// Why a path cannot be within tolerance.
+#[non_exhaustive]
 pub struct Objection {
     /// Whether the cutter goes too deep, which a smaller lead does not make better.
     pub digs_in: bool,

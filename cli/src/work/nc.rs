@@ -102,6 +102,7 @@ pub fn job_options(job: &Job, control: &Control, name: &str) -> PostOptions {
 
 /// What an NC program does, in the part's frame.
 #[derive(Default)]
+#[non_exhaustive]
 pub struct Motions {
     /// Straight pieces with the line of the program that makes them.
     pub motions: Vec<Swept>,
@@ -129,6 +130,7 @@ pub struct Motions {
 
 /// A tool that takes over in a program.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Call {
     /// Its first motion.
     pub first: usize,

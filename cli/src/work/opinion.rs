@@ -26,6 +26,7 @@ const SLACK: f64 = 0.1;
 
 /// The `second_opinion` object of `verify --json`.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct SecondOpinion {
     /// Whether the two agree; absent where there is no second opinion.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -39,6 +40,7 @@ pub struct SecondOpinion {
 
 /// What the second opinion measured.
 #[derive(Debug, Serialize, Clone, Copy)]
+#[non_exhaustive]
 pub struct OpinionFigures {
     /// Deepest point of the part in the cutter, in feed.
     pub gouge_max_mm: f64,

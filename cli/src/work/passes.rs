@@ -179,6 +179,7 @@ pub fn each_direction(strategy: Strategy) -> Vec<Strategy> {
 }
 
 /// How passes are to be placed, and who hears of those that are finished.
+#[non_exhaustive]
 pub struct Way<'a> {
     /// The strategy.
     pub strategy: &'a Strategy,
@@ -335,7 +336,7 @@ fn ranked(job: &Job, faces: &Part, cutter: &Cutter, leads: &[f64]) -> Vec<f64> {
     let tolerance = job.tolerance();
     let mut out = Vec::with_capacity(leads.len());
     for deg in leads {
-        let lean = job.lean(deg.to_radians()).into();
+        let lean = job.lean(deg.to_radians());
         let length: f64 = faces
             .faces
             .iter()

@@ -33,6 +33,7 @@ use std::path::Path;
 /// assert_eq!((file.name.as_str(), file.text()), ("notes.txt", Some("two passes")));
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PlanFile {
     /// Name, without a folder.
     pub name: String,
@@ -55,6 +56,7 @@ impl PlanFile {
 }
 
 /// A plan with its program, what was proved of it, and the pages that a person looks at.
+#[non_exhaustive]
 pub struct Plan {
     /// The job, with the tool in hand that the plan is for.
     pub job: Job,
@@ -290,6 +292,7 @@ pub fn pages(story: &Story<'_>, watch: &dyn Watch, progress: &(dyn Fn(f64) + Syn
 }
 
 /// How long a program takes, and what it asks of the joints.
+#[non_exhaustive]
 pub struct Times {
     /// All of it, min.
     pub time_min: f64,
@@ -368,6 +371,7 @@ pub fn summary_of(
 }
 
 /// Passes before they are joined.
+#[non_exhaustive]
 pub struct Laid {
     /// The passes.
     pub passes: Passes,

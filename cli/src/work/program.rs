@@ -19,6 +19,7 @@ use serde::Serialize;
 
 /// Seconds of wall time by stage.
 #[derive(Debug, Default, Serialize, Clone, Copy)]
+#[non_exhaustive]
 pub struct WallS {
     /// Reading the part, and telling what of the job cannot be meant for it.
     pub import: f64,
@@ -59,6 +60,7 @@ pub struct Planned<'a> {
 }
 
 /// A plan posted and read back.
+#[non_exhaustive]
 pub struct Posted {
     /// CL data.
     pub cl_text: String,

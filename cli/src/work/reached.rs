@@ -28,6 +28,7 @@ const LEAST_RAD: f64 = 0.0175;
 
 /// What a tool reaches of the faces of an operation.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct Reached {
     /// The operation; empty for a job of one.
     pub operation: String,

@@ -14,6 +14,7 @@ use osculate_tools::removal::Swept;
 use std::path::Path;
 
 /// A text that was read.
+#[non_exhaustive]
 pub struct Read {
     /// `nc` or `cl`.
     pub source: &'static str,

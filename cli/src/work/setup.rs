@@ -16,6 +16,7 @@ use osculate_tools::cl::ClPath;
 
 /// A path for which a setup is sought.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub struct Along<'a> {
     /// All of it: its tool axes are to be in the range of the joints.
     pub path: &'a ClPath,

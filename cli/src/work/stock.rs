@@ -21,6 +21,7 @@ const LISTED: usize = 10;
 
 /// The `stock` object of `verify --json`.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct StockSummary {
     /// Sides of cells.
     pub cell_mm: f64,
@@ -57,6 +58,7 @@ impl StockSummary {
 
 /// What one block took.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct StockBlock {
     /// NC line or CL move.
     pub block: u32,
@@ -72,6 +74,7 @@ pub struct StockBlock {
 
 /// Something that ran into material.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct StockCollision {
     /// `cutter` (in rapid), `shank` or `holder`.
     pub body: &'static str,

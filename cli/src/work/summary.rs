@@ -14,6 +14,7 @@ use serde::Serialize;
 
 /// Productivity at three levels, mm2/min.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct Productivity {
     /// Least at a place of a pass.
     pub instantaneous_min: f64,
@@ -27,6 +28,7 @@ pub struct Productivity {
 
 /// `summary.json`.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct Summary {
     /// Of this file.
     pub format: u32,
@@ -102,6 +104,7 @@ pub struct Summary {
 
 /// A setup of a list of operations.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct SetupSummary {
     /// As operations name it.
     pub name: String,
@@ -131,6 +134,7 @@ impl SetupSummary {
 
 /// An operation of a list, with the keys that a plan of it alone has.
 #[derive(Debug, Serialize)]
+#[non_exhaustive]
 pub struct OperationSummary {
     /// As people name it.
     pub name: String,

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 /// The `verification` object of `summary.json` and of `verify --json`.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct Verification {
     /// `nc` or `cl`.
     pub source: &'static str,
@@ -61,6 +62,7 @@ pub struct Verification {
 
 /// A bin of the histogram: area by what stands on it.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct HistogramBin {
     /// From here, negative is below the part; absent in the first.
     pub from_mm: Option<f64>,
@@ -100,6 +102,7 @@ impl Verification {
 
 /// A worst place.
 #[derive(Debug, Serialize, Clone)]
+#[non_exhaustive]
 pub struct WorstPlace {
     /// `scallop`, `gouge`, `uncut`, `holder` or `rapid`.
     pub kind: String,
@@ -137,6 +140,7 @@ impl WorstPlace {
 
 /// The `verdict` object of `summary.json` and of `verify --json`.
 #[derive(Debug, Serialize, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct VerdictKeys {
     /// `held`, `not_held` or `not_shown`.
     pub answer: &'static str,
@@ -165,6 +169,7 @@ impl VerdictKeys {
 }
 
 /// What was read of a program or of CL data.
+#[non_exhaustive]
 pub struct Reading<'a> {
     /// `nc` or `cl`.
     pub source: &'static str,
@@ -177,6 +182,7 @@ pub struct Reading<'a> {
 }
 
 /// A verification with what the report needs.
+#[non_exhaustive]
 pub struct Verified {
     /// The figures.
     pub summary: Verification,

@@ -36,6 +36,7 @@ pub use round::{Cone, Cylinder, Plane, Sphere, Spindle, Torus};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} must be {need}, got {got}")]
+#[non_exhaustive]
 pub struct BadSize {
     /// Which size.
     pub what: &'static str,

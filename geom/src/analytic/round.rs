@@ -241,6 +241,7 @@ revolved!(Sphere, angle_v: true, |_s| Side::Along);
 
 /// The parts of a spindle torus, whose tube is wider than its circle: the two meet in apexes on the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Spindle {
     /// The outer part.
     Apple,

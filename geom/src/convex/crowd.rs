@@ -16,6 +16,7 @@ pub struct Crowd {
 
 /// No bodies, or one that is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CrowdError {
     /// There is no body.
     #[error("there is no body")]

@@ -2,6 +2,7 @@
 
 /// Why a text is no cutter location data. Lines count from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ClReadError {
     /// A field that should be a number.
     #[error("line {line}: '{field}' in {word}/ is not a finite number")]

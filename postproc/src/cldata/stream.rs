@@ -16,6 +16,7 @@ use crate::source::MoveSource;
 
 /// Why moves cannot be had from a text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ClStreamError {
     /// The text ends in the middle.
     #[error("cannot be read: {kind}")]
@@ -59,6 +60,7 @@ pub struct ClStream<O> {
 
 /// Where a move stands in a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ClPlace {
     /// The line on which its statement ends, from 1.
     pub line: usize,

@@ -29,6 +29,7 @@ impl Default for ClWriteOptions {
 
 /// Why a path cannot be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ClWriteError {
     /// NaN, infinite, or a feed that is not above zero.
     #[error(

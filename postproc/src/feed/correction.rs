@@ -25,6 +25,7 @@ use crate::machine::spec::FeedReading;
 /// assert_eq!(f(FeedMode::InverseTime), None);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FeedMode {
     /// Tool-centre-point control: F is the tip's feed.
     Tcp,
@@ -76,6 +77,7 @@ pub(crate) const DEGREE_AS_MM: f64 = 180.0 / std::f64::consts::PI;
 
 /// How a control measures the path that F is fed along.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum PathMetric {
     /// Linear axes; rotary axes alone in degrees.
     Linear,

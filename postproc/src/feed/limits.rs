@@ -4,6 +4,7 @@ use crate::machine::{JointValues, Machine};
 
 /// A block's duration and what bounded it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Capped {
     /// Duration, min.
     pub duration_min: f64,

@@ -47,6 +47,7 @@ pub struct Drive {
 
 /// A joint of a checked machine.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Joint {
     /// Name in NC programs.
     pub letter: String,

@@ -7,6 +7,7 @@ pub(super) const FORMAT: u32 = 1;
 
 /// Why a machine file is no machine.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MachineError {
     /// Not TOML, an unknown key or a missing one.
     #[error("the machine file cannot be read: {0}")]

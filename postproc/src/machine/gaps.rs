@@ -4,6 +4,7 @@ use super::{Joint, JointKind, Machine};
 
 /// Something that a machine file does not say.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Gap {
     /// The key, of which joint.
     pub key: String,

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 /// Which body a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum CarriedSide {
     /// The joint moves the part.
     Table,
@@ -27,6 +28,7 @@ pub enum CarriedSide {
 /// How the sign of a joint is to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Sense {
     /// Positive moves the tool, relative to the part, along or right-handed about the direction.
     #[default]
@@ -38,6 +40,7 @@ pub enum Sense {
 /// One joint of a machine file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum JointSpec {
     /// A slide.
     Linear {
@@ -125,6 +128,7 @@ pub enum FeedReading {
 /// The words by which a program turns the control's tool-centre-point kinematics on and off.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct TcpWords {
     /// On, for example `M428`.
     pub on: String,
@@ -161,6 +165,7 @@ const fn default_largest_feed() -> f64 {
 /// A body of the machine that could run into something: a piece of its head, its table or its bed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum BodySpec {
     /// A box along the machine's axes, all joints at zero.
     Box {

@@ -24,6 +24,7 @@ pub(crate) const REACH_TOLERANCE_RAD: f64 = 1e-7;
 
 /// One solution: the angles in (-pi, pi].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Angles {
     /// About the outer axis, rad.
     pub outer_rad: f64,
@@ -33,6 +34,7 @@ pub struct Angles {
 
 /// Both solutions for one tool axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Solutions {
     /// The branches with z > 0 and z < 0, in this order; equal where they meet.
     pub branches: [Angles; 2],
@@ -44,6 +46,7 @@ pub struct Solutions {
 /// The wanted tool axis lies outside of what the two axes reach.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the tool axis is {:.4} deg outside of what the rotary axes reach", off_rad.to_degrees())]
+#[non_exhaustive]
 pub struct AxisUnreachable {
     /// Angle to the nearest axis that can be reached, rad.
     pub off_rad: f64,
@@ -51,6 +54,7 @@ pub struct AxisUnreachable {
 
 /// Why two directions do not orient a tool.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TwoAxisError {
     /// The rotary axes are parallel.
     #[error(

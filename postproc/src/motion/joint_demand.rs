@@ -13,6 +13,7 @@ const SLOWED_RATIO: f64 = 1.01;
 
 /// A feed move of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FeedBlock {
     /// Line of the text, from 1.
     pub line: usize,

@@ -86,6 +86,7 @@ pub struct TimedMove {
 
 /// How long a program takes.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ProgramTime {
     /// Feed moves, min.
     pub cutting_min: f64,
@@ -113,6 +114,7 @@ pub const LONGEST_MIN: f64 = 10.0 * 365.0 * 24.0 * 60.0;
 #[error(
     "the program runs for {time_min:.1e} min, longer than ten years: is a feed, a dwell or a speed of the machine in another unit?"
 )]
+#[non_exhaustive]
 pub struct TooLong {
     /// How long it runs, min.
     pub time_min: f64,

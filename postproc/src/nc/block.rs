@@ -8,6 +8,7 @@ use crate::machine::spec::TcpWords;
 
 /// How F is written in a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FeedWord {
     /// G94: mm/min (or deg/min) over a metric that the program declares where its dialect can; `None`: the control's own.
     PerMinute(Option<PathMetric>),
@@ -17,6 +18,7 @@ pub enum FeedWord {
 
 /// One move, from where the one before ended. Positions in counts of [`super::number`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NcMove {
     /// G0.
     pub rapid: bool,
@@ -33,6 +35,7 @@ pub struct NcMove {
 
 /// A rotary axis as a program names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RotaryName {
     /// The axis letter.
     pub letter: String,
@@ -110,6 +113,7 @@ pub struct Program {
 
 /// Why a dialect cannot say a program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// A feed word that the control does not have.
     #[error("{dialect} has no {what}: choose another feed mode")]

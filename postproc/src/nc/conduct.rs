@@ -84,6 +84,7 @@ pub enum Grade {
 
 /// Something in the state of the control that is not as the job means it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct StateFinding {
     /// Line of the text, from 1; 0 where it is no line's.
     pub line: usize,
@@ -95,6 +96,7 @@ pub struct StateFinding {
 
 /// How a program conducts itself.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Conduct {
     /// What is not as the job means it, by line.
     pub findings: Vec<StateFinding>,

@@ -54,6 +54,7 @@ pub struct InSpindle {
 
 /// Two bodies that come too near to each other.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Meeting {
     /// The body of the head, or the tool.
     pub mover: String,
@@ -71,6 +72,7 @@ pub struct Meeting {
 
 /// What came of a look at a text.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Meetings {
     /// Every pair that comes too near, by line.
     pub found: Vec<Meeting>,

@@ -71,6 +71,7 @@ pub enum Dialect {
 /// No dialect of this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no dialect is called '{name}'; there are sinumerik, heidenhain, fanuc, linuxcnc")]
+#[non_exhaustive]
 pub struct UnknownDialect {
     /// The name asked for.
     pub name: String,

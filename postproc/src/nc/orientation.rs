@@ -23,6 +23,7 @@ use super::{Dialect, number};
 
 /// Where the tool points, in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Orientation {
     /// Rotary joints.
     #[default]

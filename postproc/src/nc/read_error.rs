@@ -5,6 +5,7 @@ use crate::setup::SetupError;
 
 /// Why a text cannot be read. Lines count from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// Text that is no word of the dialect.
     #[error("line {line}: '{text}' is no word that can be read")]

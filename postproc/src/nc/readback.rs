@@ -43,6 +43,7 @@ impl Default for ReadOptions {
 
 /// A straight piece of the tool's way.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ReadMove {
     /// Where it ends, in the part's frame.
     pub pose: Pose,
@@ -63,6 +64,7 @@ pub struct ReadMove {
 
 /// One block of the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ReadBlock {
     /// Line of the text, from 1.
     pub line: usize,

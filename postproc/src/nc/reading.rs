@@ -7,6 +7,7 @@ use super::Dialect;
 
 /// One reading of F.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct FeedRow {
     /// The words with which F is read so.
     pub words: &'static str,

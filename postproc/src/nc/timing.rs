@@ -19,6 +19,7 @@ use osculate_geom::Diagnostic;
 
 /// What a text takes.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Timed {
     /// The time.
     pub time: ProgramTime,

@@ -23,6 +23,7 @@ use super::Dialect;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum WorkOffset {
     /// `G54` to `G59`, by the number behind the G.
     Standard(u32),
@@ -44,6 +45,7 @@ pub enum WorkOffset {
     "no work offset is called '{name}'; there are G54 to G59, G59.1 to G59.3, G54.1 P1 and on, G505 to G599, G500 and \
      'preset 1' and on"
 )]
+#[non_exhaustive]
 pub struct UnknownWorkOffset {
     /// The name asked for.
     pub name: String,

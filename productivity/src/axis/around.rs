@@ -66,6 +66,7 @@ impl Left<'_> {
 
 /// Points of faces, and what the tool keeps from those that are not next to what it machines.
 #[derive(Default)]
+#[non_exhaustive]
 pub struct Surroundings {
     /// The points, each with the place of its face among those to machine and then all others. Those that the tool may touch are sunk
     /// into their faces.

@@ -49,6 +49,7 @@ pub struct Wish<'a> {
 
 /// A place of the face with no possible axis.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Unreached {
     /// Its parameters.
     pub at: Uv,
@@ -62,6 +63,7 @@ pub struct Unreached {
 
 /// A field as found.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Found {
     /// The field.
     pub field: AxisField,
@@ -75,6 +77,7 @@ pub struct Found {
 
 /// Why there is no field.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoField {
     /// Leans that are none.
     #[error(transparent)]

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 /// The directions of the tool's axis at a place of a face.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct PlaceAxes {
     /// The parameters of the place.
     pub at: Uv,

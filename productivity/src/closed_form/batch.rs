@@ -24,6 +24,7 @@ pub struct Sections<'a> {
 #[error(
     "the arrays must have one length, got {part} of the part, {tool} of the tool, {scallop} tolerances and {out} places for widths"
 )]
+#[non_exhaustive]
 pub struct LengthError {
     /// Of `part_per_mm`.
     pub part: usize,

@@ -103,6 +103,7 @@ pub fn contour_per_mm(across_per_mm: f64, lead_rad: f64) -> Result<f64, DomainEr
 
 /// A two-contact posture of a flat or toroidal end on a hollow place.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FiveAxis {
     /// Strip width between the outer zeros of the standoff, mm: after the lift the edges of the band [0, h].
     pub width_mm: f64,

@@ -25,6 +25,7 @@ pub use radzevich::{Section, acos_37, chord_38, leading_order, leading_order_swe
 /// assert!(matches!(width_37(section), Err(DomainError::DoesNotFit { .. })));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DomainError {
     /// The tolerance is not positive and finite.
     #[error("the tolerance must be positive and finite, got {got} mm")]

@@ -57,6 +57,7 @@ pub enum Axes {
 
 /// What screening says of a candidate.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Screened {
     /// Time by strips at places, min.
     pub pointwise_min: f64,
@@ -70,6 +71,7 @@ pub struct Screened {
 
 /// Why a candidate is not possible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Reason {
     /// The tool digs in next to the contact.
     #[error("too large for {percent:.0} % of the area{}", largest(*largest_mm))]

@@ -64,6 +64,7 @@ pub struct Limits {
 
 /// What keeps the best posture from being better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Binding {
     /// Nothing but the surface and the tool: the maximum lies inside all ranges.
     Inside,
@@ -81,6 +82,7 @@ pub enum Binding {
 
 /// The best posture found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Optimum {
     /// Index of the tool in the list.
     pub tool: usize,
@@ -106,6 +108,7 @@ pub struct Optimum {
 
 /// Why there is no posture.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum OptimumError {
     /// No tools to choose from.
     #[error("the list of tools is empty")]

@@ -94,7 +94,7 @@ impl Field<'_> {
 /// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
 /// let lean = Lean { lead_rad: 0.0, tilt_rad: 0.0 };
 /// let tolerance = Tolerance { scallop_mm: 0.1, gouge_mm: 0.01, chord_mm: 0.01 };
-/// let task = Task { surface: &bowl, face: "bowl", cutter: &ball, lean: lean.into(), tolerance, progress: &|_| {} };
+/// let task = Task::new("bowl", &bowl, &ball, lean, tolerance);
 /// for pass in contour_2cl(&task, Vec3::z_axis())?.passes {
 ///     let z = pass.points[0].pose.tip.z;
 ///     assert!(pass.points.iter().all(|p| (p.pose.tip.z - z).abs() <= 2e-3 * tolerance.chord_mm));

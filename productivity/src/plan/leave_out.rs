@@ -83,6 +83,7 @@ pub struct LeftOut {
 
 /// Why nothing can be said about passes.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LeaveOutError {
     /// A distance that is none.
     #[error("what the tool keeps off must be finite and not negative, got {got} mm")]

@@ -40,7 +40,7 @@ const LOOKS: usize = 10;
 /// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
 /// let lean = Lean { lead_rad: 0.2, tilt_rad: 0.0 };
 /// let tolerance = Tolerance { scallop_mm: 0.05, gouge_mm: 0.01, chord_mm: 0.005 };
-/// let task = Task { surface: &plane, face: "top", cutter: &ball, lean: lean.into(), tolerance, progress: &|_| {} };
+/// let task = Task::new("top", &plane, &ball, lean, tolerance);
 /// // Area over the strip's width, which on a plane is 2 sqrt(h (2 R - h)).
 /// let expected_mm = 50.0 * 40.0 / (2.0 * f64::sqrt(0.05 * (10.0 - 0.05)));
 /// assert!((predicted_length_mm(&task) / expected_mm - 1.0).abs() < 1e-3);

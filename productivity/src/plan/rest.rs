@@ -28,6 +28,7 @@ pub struct Rest<'a> {
 
 /// Why places say nothing about passes.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RestError {
     /// An overlap or a hop that is none.
     #[error("{what} must be positive and finite, got {got} mm")]

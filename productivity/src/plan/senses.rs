@@ -9,6 +9,7 @@ use osculate_geom::Vec3;
 
 /// How chips are cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Milling {
     /// As it comes.
     #[default]

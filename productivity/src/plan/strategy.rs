@@ -8,6 +8,7 @@ use osculate_geom::Unit3;
 
 /// How passes are placed on a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Strategy {
     /// Along lines of constant parameter (5C).
     Isoparametric {
@@ -78,7 +79,7 @@ impl Strategy {
 /// let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 50.0 })?;
 /// let lean = Lean { lead_rad: 0.2, tilt_rad: 0.0 };
 /// let tolerance = Tolerance { scallop_mm: 0.05, gouge_mm: 0.01, chord_mm: 0.005 };
-/// let task = Task { surface: &plane, face: "top", cutter: &ball, lean: lean.into(), tolerance, progress: &|_| {} };
+/// let task = Task::new("top", &plane, &ball, lean, tolerance);
 /// // Planes across x: every pass keeps its x.
 /// let strategy = Strategy::Isoplanar { normal: Vec3::x_axis() };
 /// for pass in run(&task, &strategy)?.passes {

@@ -18,6 +18,7 @@ pub struct Tolerance {
 
 /// Which way isoparametric passes run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Along {
     /// The direction with the shorter path.
     #[default]
@@ -156,6 +157,7 @@ impl Passes {
 
 /// Why there is no plan.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanError {
     /// A tolerance that is not positive and finite.
     #[error("{what} must be positive and finite, got {got}")]

@@ -5,6 +5,7 @@ use osculate_geom::{Axis, Domain, Point3, Uv};
 
 /// Where on the surface a nearest point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FootKind {
     /// Both parameters are free: the offset is along the normal.
     Interior,
@@ -18,6 +19,7 @@ pub enum FootKind {
 
 /// The nearest point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Foot {
     /// Its parameters, inside the domain.
     pub uv: Uv,
@@ -37,6 +39,7 @@ pub struct Foot {
 
 /// Why there is no nearest point.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ClosestError {
     /// A query or a hint that is not finite.
     #[error("the query ({}, {}, {}) or the hint is not finite", query.x, query.y, query.z)]

@@ -16,6 +16,7 @@ const MOST_SIDES: f64 = 0.95;
 
 /// A face of a mesh.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MeshFace {
     /// Its triangles, outward.
     pub facets: Facets,
@@ -25,6 +26,7 @@ pub struct MeshFace {
 
 /// A mesh as a part.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MeshPart {
     /// The faces, in the order of their first triangles in the file.
     pub faces: Vec<MeshFace>,

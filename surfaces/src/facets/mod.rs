@@ -47,6 +47,7 @@ impl fmt::Display for MeshFormat {
 
 /// Triangles as a file has them.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MeshFile {
     /// The format.
     pub format: MeshFormat,
@@ -58,6 +59,7 @@ pub struct MeshFile {
 
 /// Why a file is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshFileError {
     /// None of the formats.
     #[error("no mesh that is read: STL, PLY and 3MF are")]

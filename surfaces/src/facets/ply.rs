@@ -9,6 +9,7 @@ use std::str::SplitAsciiWhitespace;
 
 /// A file that is no PLY mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlyError {
     /// The head says something that is not known.
     #[error("line {line} of its head is not understood{}", .what.map_or_else(String::new, |w| format!(": {w}")))]

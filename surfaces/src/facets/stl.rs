@@ -4,6 +4,7 @@ use osculate_geom::Point3;
 
 /// A file that is no STL.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StlError {
     /// A binary file whose size does not go with its count of triangles.
     #[error(

@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 /// A file that is no 3MF mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ThreeMfError {
     /// Not an archive that is read.
     #[error(transparent)]

@@ -5,6 +5,7 @@
 
 /// An archive that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ZipError {
     /// No directory at the end.
     #[error("the archive has no directory at its end: it is truncated")]

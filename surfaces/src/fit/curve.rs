@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, Point, SVector};
 
 /// What holds at the ends of an interpolating curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Ends<const D: usize> {
     /// Nothing: as many poles as points, any degree.
     Free,
@@ -23,6 +24,7 @@ pub enum Ends<const D: usize> {
 
 /// A curve, the parameters of the points and how far off they are.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CurveFit<const D: usize> {
     /// The curve over [0, 1]; over [h, 1 + h] for a closed one of even degree.
     pub curve: NurbsCurve<D>,

@@ -21,6 +21,7 @@ pub struct Grid {
 
 /// A surface, the parameters of the grid's lines and how far off the points are.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SurfaceFit {
     /// The surface over [0, 1] x [0, 1] (shifted along a closed axis of even degree).
     pub surface: NurbsSurface,

@@ -2,6 +2,7 @@
 
 /// How far points are from what was fitted to them, at their own parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Misfit {
     /// Of the worst point, in the unit of the points (mm).
     pub max_mm: f64,
@@ -23,6 +24,7 @@ impl Misfit {
 
 /// Why points give no curve or surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// Too few points for the degree, or a degree that is zero or too high.
     #[error(

@@ -5,6 +5,7 @@ use nalgebra::Point;
 
 /// How the parameter runs from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Spacing {
     /// Equal steps, whatever the distances: for points that are spaced evenly.
     Uniform,

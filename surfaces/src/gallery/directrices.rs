@@ -12,6 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// A curve whose coordinates are cubics with a square root and a sine, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FormulaCurve {
     /// c_0 to c_3.
     pub powers: [Vec3; 4],

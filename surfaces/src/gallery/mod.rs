@@ -20,6 +20,7 @@ pub use ruled::{Eq18, HyperbolicSize, d98_eq18, d98_hyperbolic, d98_liu};
 
 /// What is special about a surface of the gallery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Entry {
     /// Its name.
     pub name: &'static str,

@@ -75,6 +75,7 @@ pub fn d98_liu() -> NurbsSurface {
 /// Sizes that make no hyperbolic paraboloid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} is {got}; it must be {need}")]
+#[non_exhaustive]
 pub struct HyperbolicSize {
     /// Which size.
     pub what: &'static str,

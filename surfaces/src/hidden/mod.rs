@@ -34,6 +34,7 @@ use std::sync::Arc;
 
 /// A face of which something is hidden.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct HiddenFace {
     /// Its number.
     pub face: usize,
@@ -47,6 +48,7 @@ pub struct HiddenFace {
 
 /// A face that may be hidden in part and stays whole, since the lines in which it meets another one were not found.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct HiddenUnknown {
     /// Numbers of the face and of the other one.
     pub faces: [usize; 2],
@@ -56,6 +58,7 @@ pub struct HiddenUnknown {
 
 /// What bodies hide of each other's faces.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Hidden {
     /// Faces of which something is hidden, ascending.
     pub faces: Vec<HiddenFace>,

@@ -38,6 +38,7 @@ use cards::{CardFault, Cards};
 
 /// Why bytes are no IGES part.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IgesError {
     /// No cards.
     #[error(

@@ -8,6 +8,7 @@ use osculate_geom::uv;
 
 /// What is wrong with a face.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FaceFault {
     /// A kind that is not known.
     #[error(

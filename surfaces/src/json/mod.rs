@@ -18,6 +18,7 @@ pub const FORMAT: u32 = 1;
 
 /// Why a text is no faces.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum JsonError {
     /// Not the JSON of the form.
     #[error("not the JSON of faces: {what}")]
@@ -47,6 +48,7 @@ pub enum JsonError {
 
 /// Why faces cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum JsonWriteError {
     /// A number that JSON cannot hold, or a text that cannot be made.
     #[error("the faces cannot be written as JSON: {0}")]

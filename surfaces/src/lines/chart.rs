@@ -60,6 +60,7 @@ pub enum ChartError {
 
 /// A side of the parameter rectangle that is one point of space.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Pole {
     /// The parameter that is constant along the side.
     pub axis: Axis,

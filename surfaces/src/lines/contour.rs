@@ -32,6 +32,7 @@ pub struct Contour {
 
 /// The lines of a field at several levels.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Contours {
     /// The components, level by level.
     pub lines: Vec<Contour>,

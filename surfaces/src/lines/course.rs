@@ -31,6 +31,7 @@ impl Family {
 
 /// A field of tangent directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Course {
     /// A principal direction.
     Curvature(Family),

@@ -30,6 +30,7 @@ pub struct Cover {
 
 /// Lines spread over a face.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Covered {
     /// The lines.
     pub lines: Vec<SurfacePolyline>,

@@ -24,6 +24,7 @@ pub enum CriticalKind {
 
 /// A critical point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Critical {
     /// Where.
     pub at: Uv,
@@ -41,6 +42,7 @@ pub struct Critical {
 
 /// All critical points of a field.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CriticalPoints {
     /// Isolated ones, of the whole parameter rectangle.
     pub points: Vec<Critical>,

@@ -17,6 +17,7 @@ pub struct FieldSample {
 
 /// How large a face and its curvatures are.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Scale {
     /// The face's size, mm.
     pub size_mm: f64,
@@ -100,6 +101,7 @@ impl ScalarField for Gauss {
 /// The derivative of a principal curvature along its own line of curvature, 1/mm2; zero on ridges. Its sign turns
 /// over with the direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Extremality {
     /// Which principal curvature.
     pub family: Family,

@@ -13,6 +13,7 @@ use osculate_geom::{Axis, Uv, uv};
 
 /// A ridge.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ridge {
     /// Which principal curvature is extreme.
     pub family: Family,
@@ -29,6 +30,7 @@ const AT_UMBILIC: f64 = 1.0;
 
 /// The ridges of a face.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Ridges {
     /// The lines, those of k_1 first.
     pub lines: Vec<Ridge>,

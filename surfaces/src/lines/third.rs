@@ -16,6 +16,7 @@ use osculate_geom::{Axis, Degenerate, Forms, Surface, Uv};
 
 /// Both fundamental forms in the parameter basis and their derivatives by u and v.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FormsRate {
     /// The forms at the point.
     pub forms: Forms,

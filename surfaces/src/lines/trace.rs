@@ -47,6 +47,7 @@ pub enum LineEnd {
 
 /// A line on a surface as straight pieces within the chord tolerance.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SurfacePolyline {
     /// Its points, at least one.
     pub points: Vec<LinePoint>,

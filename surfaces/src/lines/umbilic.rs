@@ -34,6 +34,7 @@ pub enum UmbilicKind {
 
 /// An umbilic.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Umbilic {
     /// Where; at a pole of the parametrisation the middle of its side.
     pub at: Uv,
@@ -55,6 +56,7 @@ pub struct Umbilic {
 
 /// A line all of whose points are umbilics, as on some surfaces of revolution.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct UmbilicLine {
     /// Places along it, not in order.
     pub places: Vec<Uv>,
@@ -62,6 +64,7 @@ pub struct UmbilicLine {
 
 /// All umbilics of a face.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Umbilics {
     /// Isolated umbilics of the whole parameter rectangle, those outside the trims too.
     pub points: Vec<Umbilic>,

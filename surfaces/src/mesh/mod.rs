@@ -28,6 +28,7 @@ use std::ops::Range;
 
 /// Why there is no mesh.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// A length or angle that is no limit.
     #[error("{what} is {got}: it must be positive and finite")]
@@ -53,6 +54,7 @@ pub enum MeshError {
 
 /// The triangles of several faces with common vertices along common edges.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct PartMesh {
     /// Vertices, mm.
     pub positions: Vec<Point3>,

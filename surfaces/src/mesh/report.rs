@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 /// Findings about a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct MeshReport {
     /// Largest distance found between a triangle and its face at the middles of sides and triangles, mm.
     pub chord_error_mm: f64,

@@ -14,6 +14,7 @@ use osculate_geom::Interval;
 
 /// Why data are no NURBS curve, or a curve cannot be sampled as asked.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CurveError {
     /// The knots are out of order.
     #[error(transparent)]
@@ -56,6 +57,7 @@ pub enum CurveError {
 
 /// A point of a curve with two derivatives by its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CurveJet<const D: usize> {
     /// C.
     pub point: Point<f64, D>,

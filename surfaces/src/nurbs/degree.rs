@@ -25,6 +25,7 @@ use osculate_geom::{Axis, Point3};
 
 /// A curve with fewer knots, and how far it may have moved.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RemovedCurve<const D: usize> {
     /// The curve.
     pub curve: NurbsCurve<D>,
@@ -34,6 +35,7 @@ pub struct RemovedCurve<const D: usize> {
 
 /// A surface with fewer knots, and how far it may have moved.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RemovedSurface {
     /// The surface.
     pub surface: NurbsSurface,

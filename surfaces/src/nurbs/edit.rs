@@ -15,6 +15,7 @@ use osculate_geom::{Axis, Domain, Interval, Point3};
 
 /// A polynomial or rational piece of a surface between neighbouring knots, as a Bezier net.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BezierPatch {
     /// The rectangle of the surface that it covers.
     pub domain: Domain,

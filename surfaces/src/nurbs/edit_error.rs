@@ -4,6 +4,7 @@ use crate::knots::Knots;
 
 /// Why a surface or curve cannot be changed as asked.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EditError {
     /// A parameter outside the domain, at its end where that makes no sense, or NaN.
     #[error("parameter {got} is not inside ({lo}, {hi})")]

@@ -20,6 +20,7 @@ use std::sync::OnceLock;
 
 /// Why data are no NURBS surface.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NurbsError {
     /// Degree zero, above [`MAX_DEGREE`], or not below the number of poles.
     #[error(

@@ -17,6 +17,7 @@ use osculate_geom::{Point3, Surface, Uv};
 
 /// One rule: where it begins and ends on the borders of a band, and how far it strays from the face.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Mate {
     /// Parameter of the face along the border at the low end of the band.
     pub at_low: f64,

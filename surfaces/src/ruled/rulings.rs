@@ -29,6 +29,7 @@ pub enum Ruling {
 
 /// A band with rules and the ruled surface over it.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RuledBand {
     /// Which part of the face.
     pub band: Band,

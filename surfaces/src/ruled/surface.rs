@@ -6,6 +6,7 @@ use osculate_geom::Side;
 
 /// Why two curves span no ruled surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RuledError {
     /// The degrees differ.
     #[error("the curves have degrees {} and {}: raise the lower one first", degrees[0], degrees[1])]

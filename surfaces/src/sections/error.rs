@@ -5,6 +5,7 @@ use crate::trimmed::TrimError;
 
 /// Why a text gives no surface through sections.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SectionsError {
     /// No line of numbers.
     #[error("no line of two or more numbers: rows of points are due, x y z in each")]

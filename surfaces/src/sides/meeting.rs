@@ -17,6 +17,7 @@ const MOST_OF_IT: f64 = 0.9;
 
 /// Two faces with a common edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Meeting {
     /// Their numbers, the smaller one first.
     pub faces: [usize; 2],

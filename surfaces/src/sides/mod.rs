@@ -60,6 +60,7 @@ pub enum Settled {
 
 /// Faces that hang together, with the side of each.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SideGroup {
     /// Numbers of the faces, ascending.
     pub faces: Vec<usize>,
@@ -75,6 +76,7 @@ pub struct SideGroup {
 
 /// Two neighbours that do not fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SideConflict {
     /// Their numbers.
     pub faces: [usize; 2],
@@ -86,6 +88,7 @@ pub struct SideConflict {
 
 /// The sides of all faces.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Sides {
     /// The outward side of each face relative to its present normal; none where it is open. Known faces are as they were told.
     pub of: Vec<Option<Side>>,

@@ -13,6 +13,7 @@ const LOOSE: f64 = 0.02;
 
 /// A piece of a face's open rim.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct OpenRim {
     /// The face's number.
     pub face: usize,

@@ -30,6 +30,7 @@ use crate::part::Part;
 
 /// Why bytes are no STEP part.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// No exchange structure.
     #[error("no STEP file: ISO-10303-21 does not stand within its first {searched} bytes")]

@@ -21,6 +21,7 @@ use osculate_geom::{Axis, Point3, Surface, Uv, Vec3, uv};
 
 /// A face whose area does not fit its boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Imbalance {
     /// Area as seen along a direction by the face's loops, mm2.
     pub loops_mm2: f64,

@@ -31,6 +31,7 @@ pub(crate) enum PlaceError {
 
 /// The untrimmed surface of a face.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum FaceSurface {
     /// A spline surface.
     Nurbs(Arc<NurbsSurface>),

@@ -2,6 +2,7 @@
 
 /// A cutter that cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CutterError {
     /// A length that is not positive and finite.
     #[error("the cutter's {what} must be positive and finite, got {got}")]

@@ -39,6 +39,7 @@ impl MovingAxis {
 
 /// Axis surfaces that cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AxesError {
     /// Too few places to run a cubic through.
     #[error("an axis surface needs at least {need} positions, got {got}")]

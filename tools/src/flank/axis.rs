@@ -50,6 +50,7 @@ impl AxisLine {
 
 /// An axis with its exact derivative by the parameter u of the strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AxisJet {
     /// The parameter.
     pub u: f64,

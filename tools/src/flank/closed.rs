@@ -66,6 +66,7 @@ pub struct MiddleRule {
 
 /// Three tangencies at the middle rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MiddleThree {
     /// |gamma|, rad.
     pub turn_rad: f64,

@@ -40,6 +40,7 @@ impl Patch {
 
 /// A value and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Extreme {
     /// Deviation, mm.
     pub value_mm: f64,
@@ -49,6 +50,7 @@ pub struct Extreme {
 
 /// Deviations over a patch.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Deviation {
     /// The patch.
     pub patch: Patch,

@@ -7,6 +7,7 @@ use osculate_geom::{Axis, Curve, CurveTaylor, Interval, MAX_ORDER, Point3, Surfa
 
 /// Point and two derivatives of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CurveJet2 {
     /// C, mm.
     pub point: Point3,

@@ -25,6 +25,7 @@ const MAX_HEIGHT_STEPS: usize = 12;
 
 /// The place of a motion that comes nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Nearest {
     /// Signed distance of the point to the moving cutter's side, mm.
     pub distance_mm: f64,

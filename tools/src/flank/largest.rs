@@ -55,6 +55,7 @@ pub enum RadiusLimit {
 
 /// The largest radius.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LargestRadius {
     /// The radius, mm; None where the least one asked for fails already.
     pub radius_mm: Option<f64>,
@@ -67,6 +68,7 @@ pub struct LargestRadius {
 #[error(
     "radii from {least_mm} to {most_mm} mm within {tolerance_mm} mm: all must be positive and finite, and ascending"
 )]
+#[non_exhaustive]
 pub struct RadiusSearchError {
     /// Least radius, mm.
     pub least_mm: f64,

@@ -40,6 +40,7 @@ pub struct MinimaxSearch {
 
 /// What keeps an axis at its rule: without anything it drifts along the strip to where the rules are less twisted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Hold {
     /// The tool touches the straight line of the rule.
     Tangent,
@@ -60,6 +61,7 @@ impl Default for MinimaxSearch {
 
 /// A minimax axis.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MinimaxAxis {
     /// The axis.
     pub axis: AxisLine,

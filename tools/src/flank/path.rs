@@ -19,6 +19,7 @@ const RULES: usize = 200;
 
 /// Heights on the axis, from Q0, between which the cutter touches a face, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Reach {
     /// The lowest contact.
     pub lowest_mm: f64,

@@ -50,6 +50,7 @@ pub enum RuleError {
 /// The frame of a rule, or its derivative by u: the vectors x, y, z of [D98, section 2.1] with unit normals in the
 /// bisector.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RuleFrame {
     /// Along the directrices: `y x z`.
     pub x: Vec3,
@@ -61,6 +62,7 @@ pub struct RuleFrame {
 
 /// A rule with its frame and their derivatives by u.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Rule {
     /// The parameter.
     pub u: f64,

@@ -9,6 +9,7 @@ use osculate_geom::{
 
 /// Why two directrices make no strip.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RuledError {
     /// A directrix without ends.
     #[error("directrix {end} over [{lo}, {hi}] has no two ends")]

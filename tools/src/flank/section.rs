@@ -23,6 +23,7 @@ pub struct Stations {
 
 /// A least deviation over u.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Least {
     /// Where, along the directrices.
     pub u: f64,
@@ -170,6 +171,7 @@ pub(super) fn end_deviation(
 
 /// The static deviation along a whole rule.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Profile {
     /// delta at evenly spread v, ends included.
     pub samples: Vec<Least>,

@@ -28,6 +28,7 @@ use osculate_geom::{Unit3, Vec3};
 
 /// A root of the four equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ThreeTangent {
     /// Parameters of the contacts on the directrices: u0 and u1.
     pub contacts: [f64; 2],

@@ -42,6 +42,7 @@ pub struct SideTool {
 /// Numbers that make no side.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} is {got}; it must be {need}")]
+#[non_exhaustive]
 pub struct SideToolError {
     /// Which number.
     pub what: &'static str,
@@ -53,6 +54,7 @@ pub struct SideToolError {
 
 /// Distance from a side and its derivative by a step of the point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SideNear {
     /// Signed distance, mm: negative inside the tool.
     pub deviation_mm: f64,

@@ -5,6 +5,7 @@ use osculate_geom::Point3;
 
 /// Why a tool cannot be put against a rule in this way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlaceError {
     /// The rule has no frame.
     #[error(transparent)]

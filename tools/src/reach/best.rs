@@ -13,6 +13,7 @@ use std::collections::BinaryHeap;
 
 /// The axis with the greatest spare at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Best {
     /// Its index in the set of directions.
     pub direction: usize,

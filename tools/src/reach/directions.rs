@@ -16,6 +16,7 @@ const COARSE: usize = 42;
 
 /// Why there are no such directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DirectionsError {
     /// The level is too high.
     #[error("a sphere of level {level} is too fine: the highest level is {most}")]

@@ -12,6 +12,7 @@ use osculate_geom::Unit3;
 
 /// What is nearest to a pose, measured from its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Met {
     /// The point.
     pub obstacle: ObstaclePoint,
@@ -21,6 +22,7 @@ pub struct Met {
 
 /// How far a pose is from its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Gap {
     /// The least distance less its limit, mm: negative where the pose is not clear, infinite without obstacles. Above the
     /// upper end of a body distances are lower bounds, see [`crate::Cutter::local_distance`].

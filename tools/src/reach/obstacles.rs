@@ -38,6 +38,7 @@ pub struct ObstaclePoint {
 
 /// Why points are no obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ObstaclesError {
     /// A coordinate is not finite.
     #[error("obstacle point {index} has a coordinate that is not finite")]

@@ -34,6 +34,7 @@ pub struct Place {
 
 /// Why a reach cannot be found.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReachError {
     /// A length that is negative or not finite.
     #[error("{what} must be finite and not negative, got {got_mm} mm")]

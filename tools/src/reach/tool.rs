@@ -17,6 +17,7 @@ pub struct Mounted {
 
 /// A body of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Member {
     /// The cutter.
     Cutter,
@@ -26,6 +27,7 @@ pub enum Member {
 
 /// Why there is no such tool.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ToolError {
     /// A body hangs below the tip, or nowhere.
     #[error(

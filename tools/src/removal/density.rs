@@ -25,6 +25,7 @@ pub struct Density {
 
 /// Bounds on what lies between samples, to leading order in the spacing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Hidden {
     /// By how much a scallop may be higher than the highest seen, mm.
     pub scallop_mm: f64,

@@ -38,6 +38,7 @@ impl<'a> GoalFace<'a> {
 
 /// Why faces of the part are not looked at.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Unseen {
     /// The job says that they may be hit.
     MayBeHit(Vec<String>),
@@ -85,6 +86,7 @@ impl<'a> GoalTool<'a> {
 
 /// Raw material.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub enum GoalStock<'a> {
     /// None is declared: a layer of this thickness on the faces to machine stands for it.
     Assumed {
@@ -165,6 +167,7 @@ impl Looks {
 
 /// How grave a remark on the state of the control is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Gravity {
     /// To be told.
     Told,

@@ -125,6 +125,7 @@ impl Job<'_> {
 
 /// A job that cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum JobError {
     /// The stock is negative or not finite.
     #[error("stock_mm must be finite and not negative, got {got}")]

@@ -22,6 +22,7 @@ const OF_STEPS: f64 = 4e5;
 const SHARES: [f64; 4] = [0.15, 0.2, 0.75, 0.9];
 
 /// What was found of a program and of its operations.
+#[non_exhaustive]
 pub struct Proved {
     /// The verdict on the whole.
     pub whole: Verdict,

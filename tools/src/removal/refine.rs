@@ -31,6 +31,7 @@ pub struct Measured {
 
 /// What [`refine`] came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Refined {
     /// What may still hide between the samples, those added among them.
     pub hidden: Hidden,

@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 /// The samples of a face.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Sampling {
     /// The samples, row by row.
     pub samples: Vec<Sample>,
@@ -110,6 +111,7 @@ impl Patch {
 
 /// A sampling that cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SamplingError {
     /// A spacing that is not positive and finite.
     #[error("the sample spacing must be positive and finite, got {got} mm")]

@@ -58,6 +58,7 @@ pub enum Kind {
 
 /// A place that stands out.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Worst {
     /// Of which kind.
     pub kind: Kind,
@@ -77,6 +78,7 @@ pub struct Worst {
 
 /// A bin of the histogram of standoffs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bin {
     /// Lower end, mm; the first bin begins at minus infinity.
     pub from_mm: f64,
@@ -88,6 +90,7 @@ pub struct Bin {
 
 /// What a path left at all samples.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Tally {
     /// Whether all limits are kept.
     pub within: bool,
@@ -123,6 +126,7 @@ pub struct Tally {
 
 /// Input that cannot be judged.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TallyError {
     /// Not one result for each sample.
     #[error("{samples} samples but {cuts} results: tally what cut() returned for the same samples")]

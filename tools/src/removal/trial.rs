@@ -33,6 +33,7 @@ const FINER: usize = 4;
 
 /// Why motions cannot be judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProveError {
     /// No face to machine.
     #[error("there is no face to judge")]

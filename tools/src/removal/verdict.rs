@@ -34,6 +34,7 @@ impl Answer {
 
 /// What a part of the scope is.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ScopeRow {
     /// Which part.
     pub what: &'static str,
@@ -43,6 +44,7 @@ pub struct ScopeRow {
 
 /// What became of declared raw material.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct StockFound {
     /// Sides of cells, mm.
     pub cell_mm: f64,

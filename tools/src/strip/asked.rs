@@ -6,6 +6,7 @@ use osculate_geom::roots::RootError;
 
 /// The strip left at a contact. Lengths are arc lengths on the part across the feed, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Strip {
     /// `left_mm + right_mm`.
     pub width_mm: f64,
@@ -38,6 +39,7 @@ pub struct Strip {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StripError {
     /// The contact itself is not possible.
     #[error(transparent)]

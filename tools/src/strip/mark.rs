@@ -15,6 +15,7 @@ use osculate_geom::roots::{End, bracketed};
 
 /// The mark of a tooth along the feed line; arc lengths on the part, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Mark {
     /// From the contact forward.
     pub ahead_mm: f64,

@@ -26,6 +26,7 @@ const SHIPPED: &str = include_str!("../../../data/tools.toml");
 
 /// Tools with what was found on reading them.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Library {
     /// As tables name it.
     pub format: &'static str,
@@ -40,6 +41,7 @@ pub type Files = Vec<(PathBuf, String)>;
 
 /// A unit of length that a table may be in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Unit {
     /// mm.
     Millimetre,

@@ -24,6 +24,7 @@ const CLASSES: usize = 10;
 type Run = (usize, Vec<[f64; 2]>);
 
 /// Where lines are drawn and what may hide them.
+#[non_exhaustive]
 pub struct Scene {
     /// The camera.
     pub camera: Camera,

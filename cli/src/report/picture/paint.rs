@@ -8,6 +8,7 @@ use std::fmt::Write;
 
 /// Something to paint: corners in the picture, how near, which colour.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub struct Facet {
     /// In picture coordinates.
     pub corners: [[f64; 3]; 3],

@@ -4,6 +4,7 @@ use crate::report::project::Direction;
 
 /// What the surface's colours say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PartColours {
     /// The deviation.
     #[default]
@@ -14,6 +15,7 @@ pub enum PartColours {
 
 /// What the path's colours say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PathColours {
     /// No path.
     Hidden,
@@ -29,6 +31,7 @@ pub const USUAL: Direction = Direction { azimuth_deg: -52.0, elevation_deg: 34.0
 
 /// How to look at the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct View {
     /// From where; `None`: the side from which most of what is machined is seen.
     pub direction: Option<Direction>,

@@ -15,6 +15,7 @@ const WHY: usize = 90;
 /// What became of a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Outcome {
     /// Verified within tolerance; the first such row is the best.
     Holds,

@@ -144,6 +144,7 @@ pub fn judged(job: &Job, all: Part) -> Result<Part, Failure> {
 }
 
 /// A face ready to be flank milled.
+#[non_exhaustive]
 pub struct FlankFace {
     /// The face.
     pub face: Arc<Across>,

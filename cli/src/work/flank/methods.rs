@@ -40,6 +40,7 @@ pub struct Range {
 
 /// One line of the table.
 #[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
 pub struct Method {
     /// One of [`NAMES`].
     pub name: &'static str,

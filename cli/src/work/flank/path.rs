@@ -134,6 +134,7 @@ pub fn pass(work: &Work<'_>) -> Result<Passes, Failure> {
 
 /// The program held against the envelope of the motion that it was made from.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
+#[non_exhaustive]
 pub struct Agreement {
     /// Samples compared: those of the machined face that the program cut and the envelope lies over.
     pub samples: usize,

@@ -25,6 +25,7 @@ pub struct Wanted<'a> {
 }
 
 /// A part with its groups.
+#[non_exhaustive]
 pub struct Grouped {
     /// The part, its faces turned to the side of their material.
     pub part: Loaded,

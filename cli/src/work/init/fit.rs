@@ -48,6 +48,7 @@ const SKIRT: f64 = 1.6;
 const AS_GOOD: f64 = 0.995;
 
 /// How faces are to be machined.
+#[non_exhaustive]
 pub struct Fit {
     /// The tool.
     pub tool: Tool,

@@ -26,6 +26,7 @@ const MOST_TRIES: usize = 6;
 const GRID: usize = 24;
 
 /// A first job.
+#[non_exhaustive]
 pub struct First {
     /// Its text.
     pub text: String,

@@ -9,6 +9,7 @@ use osculate_surfaces::groups::Look;
 const LISTED: usize = 12;
 
 /// Faces to machine.
+#[non_exhaustive]
 pub struct Target {
     /// Their numbers, ascending.
     pub faces: Vec<usize>,

@@ -2,6 +2,7 @@
 
 /// Numbers of all points, so many for each.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Numbers {
     /// With a fraction.
     Real(Vec<f64>),
@@ -34,6 +35,7 @@ impl Column {
 
 /// Points with what is known of them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Cloud {
     /// Where they are, mm.
     pub points: Vec<[f64; 3]>,

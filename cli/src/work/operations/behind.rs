@@ -88,6 +88,7 @@ impl Ground {
 }
 
 /// Places of faces where material stands too high.
+#[non_exhaustive]
 pub struct TooHigh {
     /// The places.
     pub places: Vec<Point3>,
@@ -106,6 +107,7 @@ pub struct Standing {
 
 /// What an operation makes of what stands on a face.
 #[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
 pub struct OnFace {
     /// The face.
     pub face: String,

@@ -322,6 +322,7 @@ fn finishers(list: &Operations, part: &Part) -> Result<HashMap<String, String>, 
 }
 
 /// A step on the way to the part.
+#[non_exhaustive]
 pub struct StepOf<'a> {
     /// Its job as it is judged, with its tool in hand.
     pub job: Job,

@@ -142,6 +142,7 @@ pub fn verify(
 }
 
 /// An operation judged.
+#[non_exhaustive]
 pub struct Judged {
     /// The verdict on it.
     pub verified: Verified,

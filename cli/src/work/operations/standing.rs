@@ -21,6 +21,7 @@ const LEAST_MM2: f64 = 1e-6;
 
 /// What stands too high on a face.
 #[derive(Debug, Clone, Serialize)]
+#[non_exhaustive]
 pub struct LeftStanding {
     /// The face.
     pub face: String,
@@ -37,6 +38,7 @@ pub struct LeftStanding {
 }
 
 /// Faces on which too much stands for the same reason.
+#[non_exhaustive]
 pub struct Alike<'a> {
     /// The faces, that with most first.
     pub faces: Vec<&'a str>,

@@ -75,6 +75,7 @@ impl<'a> Step<'a> {
 }
 
 /// What became of an operation.
+#[non_exhaustive]
 pub enum Planning<'a> {
     /// It has a path.
     Path(Box<Step<'a>>),

@@ -32,6 +32,7 @@ use std::time::Instant;
 const CUBES: usize = 160;
 
 /// Everything that is known of a list of operations.
+#[non_exhaustive]
 pub struct Known<'a> {
     /// The list.
     pub list: &'a Operations,

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 
 /// A case with its job.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Case {
     /// From 1 on.
     pub number: usize,

@@ -17,6 +17,7 @@ pub type Keep<'a> = dyn Fn(&Case, &Plan) -> Result<(), Failure> + Sync + 'a;
 
 /// How many cases of a sweep cannot be planned as their jobs stand, with what the first of them says.
 #[derive(Debug, Default)]
+#[non_exhaustive]
 pub struct Refused {
     /// How many.
     pub count: usize,

@@ -19,6 +19,7 @@ const LEAST_INVERSE: f64 = 0.1;
 
 /// How the control goes from block to block.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum PathControl {
     /// G64: corners may be left by the tolerance (0: by as much as half of a block allows), straight moves within the
     /// second tolerance are joined.
@@ -41,6 +42,7 @@ impl PathControl {
 
 /// One programmed move.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CanonMove {
     /// G0.
     pub rapid: bool,
@@ -56,6 +58,7 @@ pub struct CanonMove {
 
 /// F of a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum CanonFeed {
     /// G94: mm/min, and deg/min where only rotary axes move.
     PerMinute {
@@ -70,6 +73,7 @@ pub enum CanonFeed {
 
 /// An arc in X Y Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CanonArc {
     /// First and second axis of its plane; the third one moves along.
     pub plane: [usize; 2],

@@ -5,6 +5,7 @@ pub(super) const FORMAT: u32 = 1;
 
 /// Why a dialect file is none, or why its dialect cannot say a program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DialectFileError {
     /// Not TOML, an unknown key or a missing one.
     #[error("the dialect file cannot be read: {0}")]

@@ -59,6 +59,7 @@ impl SideTilt {
 
 /// The tool's axis in a task.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub enum Leaning<'a> {
     /// Lead and tilt held along all passes.
     Held(Lean),

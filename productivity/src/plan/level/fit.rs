@@ -95,7 +95,7 @@ impl Problem {
                 right[i] += p.area_mm2 * (a[0] * x[0] + a[1] * x[1]);
             }
         }
-        let x = self.factor.solve(right);
+        let x = self.factor.solve(&right);
         let mut out = self.zero.clone();
         for i in 0..out.bases[0].count() {
             for j in 0..out.bases[1].count() {

@@ -17,6 +17,7 @@ impl Default for IgesOptions {
 
 /// Why faces cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IgesWriteError {
     /// Nothing to write.
     #[error("there is no face to write")]

@@ -17,6 +17,7 @@ impl Default for StepOptions {
 
 /// Why faces cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepWriteError {
     /// Nothing to write.
     #[error("there is no face to write")]

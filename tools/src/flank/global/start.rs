@@ -6,6 +6,7 @@ use osculate_geom::{Interval, Vec3, uv};
 
 /// A first motion.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Start {
     /// The motion.
     pub axes: AxisSurface,

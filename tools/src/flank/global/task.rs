@@ -7,6 +7,7 @@ use osculate_geom::{Interval, Surface};
 
 /// What is made small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Goal {
     /// The greatest absolute deviation.
     #[default]
@@ -78,6 +79,7 @@ impl Task<'_> {
 
 /// An optimum.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Found {
     /// The motion.
     pub axes: AxisSurface,
@@ -100,6 +102,7 @@ pub struct Found {
 
 /// Why a rule gives no first position.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StartError {
     /// A rule of no length, or a directrix that stands still or runs along the rule.
     #[error(
@@ -119,6 +122,7 @@ pub enum StartError {
 
 /// Why there is no optimum.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GlobalError {
     /// Fewer spans or places than make a problem.
     #[error("{what} is {got}; at least {least} are needed")]

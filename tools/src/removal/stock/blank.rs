@@ -14,6 +14,7 @@ use rayon::prelude::*;
 
 /// What the material is before the first motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Blank<'a> {
     /// A box.
     Box(Box3),
@@ -34,6 +35,7 @@ pub enum Blank<'a> {
 
 /// Raw material that is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BlankError {
     /// A box without volume, or no triangles.
     #[error("the raw material has no volume: its box is {} x {} x {} mm", .0[0], .0[1], .0[2])]
@@ -64,6 +66,7 @@ pub enum BlankError {
 
 /// Stock as it was made.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Made {
     /// The stock.
     pub stock: Stock,

@@ -11,6 +11,7 @@ use osculate_geom::Point3;
 
 /// A closed triangle mesh.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Mesh {
     /// Vertices, mm.
     pub points: Vec<Point3>,

@@ -5,6 +5,7 @@ use osculate_geom::{Point3, Vec3};
 
 /// A volume seen along every direction of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Volume {
     /// Mean over the directions, mm3.
     pub mm3: f64,
@@ -41,6 +42,7 @@ pub struct Work {
 
 /// Something that is not to cut met material.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Collision {
     /// Index of the motion.
     pub motion: u32,
@@ -60,6 +62,7 @@ pub struct Collision {
 
 /// What a path did to the stock.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Carved {
     /// What cutting motions took, in the order of the path; those that took nothing are left out.
     pub work: Vec<Work>,

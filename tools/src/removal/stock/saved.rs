@@ -19,6 +19,7 @@ const MOST_RAYS: u64 = 1 << 32;
 
 /// A file that is no stock.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SavedError {
     /// It begins with something else.
     #[error("it is no stock that was saved: it does not begin with \"osculate stock 1\"")]

@@ -13,6 +13,7 @@ pub struct Within {
 
 /// A strip on a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Nearly {
     /// Width, mm.
     pub width_mm: f64,

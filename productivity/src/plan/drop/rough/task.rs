@@ -38,6 +38,7 @@ pub struct RoughTask<'a> {
 
 /// From where a part is roughed.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub enum Headings<'a> {
     /// Along one axis, from the tip to the holder.
     Along(Unit3),
@@ -47,6 +48,7 @@ pub enum Headings<'a> {
 
 /// The way of rows, brought into the plane across the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Rows {
     /// Along a direction.
     Along(Vec3),
@@ -86,6 +88,7 @@ pub struct Places {
 
 /// How the tool comes into the material where it cannot come from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Entry {
     /// By a helix where one fits, else to and fro along the pass, else straight down where the tool may.
     Auto,
@@ -135,6 +138,7 @@ impl Sizes {
 
 /// Layers along one axis.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Heading {
     /// The axis, from the tip to the holder.
     pub axis: Unit3,
@@ -152,6 +156,7 @@ pub struct Heading {
 
 /// A roughing.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Roughing {
     /// Passes in the order of cutting.
     pub passes: Passes,
