@@ -1,5 +1,6 @@
 //! Plain descriptions of tools as they stand in job files and CL data. Validation happens in [`crate::Cutter`].
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// A cutter as a user writes it. All lengths mm, angles deg; the diameter is the outer one but for `apt`.
@@ -19,8 +20,9 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(Cutter::try_from(none), Err(CutterError::Corner { corner_mm: 11.0, radius_mm: 10.0 }));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields))]
 pub enum CutterSpec {
     /// Ball end: the corner radius is half the diameter.
     Ball {
@@ -61,7 +63,7 @@ pub enum CutterSpec {
         /// Radius of the rounded end.
         corner_radius_mm: f64,
         /// Diameter at which the cone would meet the tip's plane without the corner; a ball end where not given.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
         tip_diameter_mm: Option<f64>,
         /// Length from the tip to the holder.
         length_mm: f64,
@@ -84,10 +86,10 @@ pub enum CutterSpec {
         /// Corner radius, r.
         corner_radius_mm: f64,
         /// Rise of the bottom from the tip's plane, a.
-        #[serde(default)]
+        #[cfg_attr(feature = "serde", serde(default))]
         bottom_angle_deg: f64,
         /// Opening of the side from the axis, b; negative where it closes upwards.
-        #[serde(default)]
+        #[cfg_attr(feature = "serde", serde(default))]
         side_angle_deg: f64,
         /// Length from the tip to the holder, h.
         length_mm: f64,
@@ -102,14 +104,15 @@ pub enum CutterSpec {
 /// assert_eq!(Holder::new(&[sleeve])?, Holder::cylinder(30.0, 50.0)?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct HolderSpec {
     /// Diameter, at the lower end.
     pub diameter_mm: f64,
     /// Length.
     pub length_mm: f64,
     /// Diameter at the upper end, where it is another.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub upper_diameter_mm: Option<f64>,
 }
