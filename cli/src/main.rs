@@ -30,7 +30,9 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Axes(options) => cmd::axes::run(options, cli.json),
         Verb::Plan { job, out } => cmd::plan::run(job, out, cli.json),
         Verb::Sweep(args) => cmd::sweep::run(args, cli.json),
-        Verb::Flank { job, out } => cmd::flank::run(job, out.as_deref(), cli.json),
+        Verb::Flank { job, out, largest_tool } => {
+            cmd::flank::run(job, (out.as_deref(), *largest_tool), cli.json)
+        }
         Verb::Post(options) => cmd::post::run(options, cli.json),
         Verb::Verify { files, job, lenient, second_opinion, ply, blocks, data } => cmd::verify::run(
             files,

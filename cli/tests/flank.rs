@@ -141,3 +141,32 @@ fn reasons_stand_in_the_table() {
     let m = method(&v, "optimum");
     assert!(m["valid"] == false && m["why"].as_str().unwrap().contains("three tangencies"), "{m}");
 }
+
+/// `--largest-tool` gives the radius of the closed form, and a cutter of it holds what a larger one does not.
+#[test]
+fn the_largest_tool_is_that_of_the_closed_form() {
+    let scratch = Scratch::new();
+    let hyperbolic = "builtin = { kind = \"d98-hyperbolic\", h_mm = 40, alpha_deg = 20 }";
+    let path = scratch.write("job.toml", &job(hyperbolic, CYLINDER, ""));
+    let run = osculate(&["flank", path.to_str().unwrap(), "--largest-tool", "--json"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let v = run.json();
+    let of =
+        |name: &str| v["largest"].as_array().unwrap().iter().find(|l| l["name"] == name).unwrap().clone();
+    // The end normals of the middle rule enclose twice the 20 degrees: halved between them, or all at one end.
+    let radius = of("standard_b")["at_rule"]["radius_mm"].as_f64().unwrap();
+    near(&of("standard_b")["at_rule"]["radius_mm"], 0.1 / (1.0 - 20f64.to_radians().cos()), 1e-6);
+    near(&of("standard_a")["at_rule"]["radius_mm"], 0.1 / (1.0 - 40f64.to_radians().cos()), 1e-6);
+    for (share, valid) in [(0.999, true), (1.001, false)] {
+        let tool = format!("kind = \"cylindrical\"\ndiameter_mm = {}\nlength_mm = 200", 2.0 * radius * share);
+        let path = scratch.write("job.toml", &job(hyperbolic, &tool, ""));
+        let run = osculate(&["flank", path.to_str().unwrap(), "--json"]).json();
+        let range = &method(&run, "standard_b")["static_mm"];
+        let worst = range["max"].as_f64().unwrap().max(-range["min"].as_f64().unwrap());
+        assert_eq!(worst <= 0.1, valid, "{worst} with {share} of {radius}");
+    }
+    let over = of("static_minimax")["over_span"]["radius_mm"].as_f64().unwrap();
+    assert!(over <= of("static_minimax")["at_rule"]["radius_mm"].as_f64().unwrap());
+    let both = osculate(&["flank", path.to_str().unwrap(), "--largest-tool", "--out", "x"]);
+    assert_eq!(both.code, 2, "a search makes no program");
+}

@@ -51,10 +51,10 @@ usage: cargo xtask COMMAND
                 times of the kernel; with --peers OpenCASCADE and SISL beside them (Debian: g++, libocct-*-dev, libsisl-dev)
   reference [--data FOLDER]
                 the kernel against reference vectors and samples to 1e-12 and 1e-9
-  papers [r97] [m86]
-                docs/papers/r97.md and m86.md, docs/closed-forms.md: closed forms of strip width against the exact strip
-  papers z17    docs/papers/z17.md: the feed modes of Z17 side by side on a real blade, with plots of K and F by block
-  papers d98    docs/papers/d98.md: the values, errata and figures of D98, ours beside theirs
+  papers [r97] [m86] [z17] [d98]
+                the pages of papers in docs/papers, all where none is named: r97 and m86, with docs/closed-forms.md, closed forms of strip
+                width against the exact strip; z17 the feed modes side by side on a real blade, with plots of K and F by block; d98 the
+                values, errata and figures, ours beside theirs
   plans --data FOLDER [--only TEXT] [--program FILE]
                 docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
   plans --speed [--only TEXT] [--program FILE]
@@ -97,11 +97,10 @@ fn main() -> ExitCode {
         ["reference", rest @ ..] => example("reference", rest),
         ["truth", rest @ ..] => example("truth", rest),
         ["sides", rest @ ..] if !rest.is_empty() => example("sides", rest),
-        ["papers", rest @ ..] if !rest.is_empty() && rest.iter().all(|p| ["r97", "m86"].contains(p)) => {
-            strips(rest)
-        }
-        ["papers", "z17"] => postproc_example("z17", &["docs/papers"]),
-        ["papers", "d98"] => d98(),
+        ["papers", rest @ ..] => match rest.iter().find(|p| !PAPERS.contains(p)) {
+            None => papers(if rest.is_empty() { &PAPERS } else { rest }),
+            Some(other) => return wrong_usage(&format!("papers are {}, not {other}", PAPERS.join(", "))),
+        },
         ["plans", rest @ ..] => match plans::Options::of(rest) {
             Some(options) => plans::run(&options),
             None => {
@@ -176,6 +175,22 @@ fn example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
 fn postproc_example(name: &str, rest: &[&str]) -> Result<(), cmd::Failure> {
     let example = ["run", "--locked", "-p", "osculate-postproc", "--example", name, "--"];
     cmd::run(cmd::cargo(&cmd::root()?, &[&example, rest].concat()))
+}
+
+/// The papers that have pages.
+const PAPERS: [&str; 4] = ["r97", "m86", "z17", "d98"];
+
+/// Makes the pages of papers anew.
+fn papers(names: &[&str]) -> Result<(), cmd::Failure> {
+    let (strip_widths, others): (Vec<&str>, Vec<&str>) =
+        names.iter().partition(|p| ["r97", "m86"].contains(*p));
+    if !strip_widths.is_empty() {
+        strips(&strip_widths)?;
+    }
+    for paper in others {
+        if paper == "z17" { postproc_example("z17", &["docs/papers"]) } else { d98() }?;
+    }
+    Ok(())
 }
 
 /// Runs the study of side milling, an example of the tools.

@@ -14,6 +14,7 @@ use osculate::watch::Stage;
 use osculate::words::{Table, number};
 use osculate::work::extras::{Extras, Field};
 use osculate::work::flank::face::{FlankFace, judged};
+use osculate::work::flank::largest::{Largest, Radius};
 use osculate::work::flank::methods::{Answer, Method, Motion, NAMES, Study};
 use osculate::work::flank::path::{self, Work};
 use osculate::work::passes;
@@ -49,7 +50,7 @@ struct Comparison {
 }
 
 /// Runs the verb.
-pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
+pub fn run(path: &Path, (out, largest): (Option<&Path>, bool), json: bool) -> Outcome {
     if let Some(out) = out {
         output::folder(out)?;
     }
@@ -112,6 +113,11 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
         options,
         tolerance: [tolerance.scallop_mm, tolerance.gouge_mm],
     };
+    if largest {
+        let found = study.largest().map_err(|e| wrong(e.to_string()))?;
+        stage.end();
+        return show_largest(&LargestTools::of(&study, found), json).map(|()| Done::Yes);
+    }
     let answers: Vec<Answer> = NAMES
         .iter()
         .enumerate()
@@ -276,6 +282,43 @@ fn page_table(c: &Comparison) -> report::Table {
         columns: HEADINGS.iter().map(|h| Column { name: (*h).to_owned(), unit: String::new() }).collect(),
         rows: c.methods.iter().map(|m| cells(m).to_vec()).collect(),
     }
+}
+
+/// What `--largest-tool --json` prints.
+#[derive(Debug, Serialize)]
+struct LargestTools {
+    at_u: f64,
+    span_u: [f64; 2],
+    /// Of the static deviation, above and below the face.
+    tolerance_mm: f64,
+    largest: Vec<Largest>,
+}
+
+impl LargestTools {
+    fn of(study: &Study<'_>, largest: Vec<Largest>) -> Self {
+        let tolerance_mm = study.tolerance[0].min(study.tolerance[1]);
+        Self { at_u: study.at_u, span_u: [study.span.lo, study.span.hi], tolerance_mm, largest }
+    }
+}
+
+fn show_largest(all: &LargestTools, json: bool) -> Result<(), Failure> {
+    if json {
+        return render::json(all);
+    }
+    let mut t = Table::new(["setting", "at rule mm", "limited by", "over span mm", "limited by"]);
+    let radius = |r: &Radius| r.radius_mm.map_or_else(|| "none".to_owned(), |mm| number(mm, 6));
+    for l in &all.largest {
+        let [at, over] = [&l.at_rule, &l.over_span];
+        t.row([l.name.to_owned(), radius(at), at.limited_by.clone(), radius(over), over.limited_by.clone()]);
+    }
+    render::text(&format!(
+        "\n  largest radius of a cylinder that deviates by no more than {} mm, at the rule of u = {} and at all rules of u = {} to {}\n\n{}\n",
+        all.tolerance_mm,
+        all.at_u,
+        all.span_u[0],
+        all.span_u[1],
+        t.render()
+    ))
 }
 
 fn show(c: &Comparison, json: bool, more: &str, red: Option<&str>) -> Result<(), Failure> {

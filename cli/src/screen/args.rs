@@ -9,7 +9,6 @@ use std::path::PathBuf;
 /// Plan, verify and post multi-axis NC machining of free-form surfaces.
 #[derive(Debug, Parser)]
 #[command(name = "osculate", version, about, long_about = None)]
-#[non_exhaustive]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -30,7 +29,6 @@ pub struct Cli {
 
 /// The verbs.
 #[derive(Debug, Subcommand)]
-#[non_exhaustive]
 pub enum Verb {
     /// What is in a CAD file: faces with kind, degrees, poles, area, curvature range, what was not understood.
     Inspect(InspectArgs),
@@ -93,6 +91,9 @@ pub enum Verb {
         /// Folder for path, program and report; without it only the table is made.
         #[arg(long)]
         out: Option<PathBuf>,
+        /// The largest cylinder that holds the tolerance by each setting, at the rule and over the span, in place of what the job's tool leaves.
+        #[arg(long, conflicts_with = "out")]
+        largest_tool: bool,
     },
     /// CL data to NC code.
     Post(PostArgs),
@@ -161,7 +162,6 @@ pub enum Verb {
 
 /// A part: a file or a built-in surface.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct PartArgs {
     /// A STEP or IGES file, or a mesh (STL, PLY, 3MF) to look at.
     #[arg(required_unless_present = "builtin", conflicts_with = "builtin")]
@@ -184,7 +184,6 @@ impl PartArgs {
 
 /// What `inspect` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct InspectArgs {
     /// The part.
     #[command(flatten)]
@@ -199,7 +198,6 @@ pub struct InspectArgs {
 
 /// What `init` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct InitArgs {
     /// A STEP or IGES file.
     pub part: PathBuf,
@@ -219,7 +217,6 @@ pub struct InitArgs {
 
 /// What `tools` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct ToolsArgs {
     /// A library: .toml of ours, .tbl of LinuxCNC, .fctl or .fctb of FreeCAD, .json of Fusion; "shipped" is that of the program.
     #[arg(value_name = "LIBRARY")]
@@ -234,7 +231,6 @@ pub struct ToolsArgs {
 
 /// What `axes` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct AxesArgs {
     /// The job file; the tool is its first, the strategy one whose tool leans along its passes.
     pub job: PathBuf,
@@ -252,7 +248,6 @@ pub struct AxesArgs {
 
 /// What `sweep` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct SweepArgs {
     /// The sweep: the job, and what is varied of it.
     pub sweep: PathBuf,
@@ -287,7 +282,6 @@ fn shard(text: &str) -> Result<Shard, String> {
 
 /// What `lines` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct LinesArgs {
     /// The part.
     #[command(flatten)]
@@ -317,7 +311,6 @@ pub struct LinesArgs {
 
 /// What the postures of `lines` take.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct PostureArgs {
     /// Show the best posture of this tool all over the face: a list of its keys, as under `[tool]` of a job:
     /// 'kind = "toroidal", diameter_mm = 12, corner_radius_mm = 2, length_mm = 60'.
@@ -345,7 +338,6 @@ pub struct PostureArgs {
 
 /// What `export` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct ExportArgs {
     /// A STEP or IGES file, or the JSON of an export.
     pub part: PathBuf,
@@ -371,7 +363,6 @@ pub struct ExportArgs {
 
 /// What `post` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct PostArgs {
     /// The CL file.
     pub clfile: PathBuf,
@@ -432,7 +423,6 @@ pub struct PostArgs {
 
 /// What `time` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct TimeArgs {
     /// The NC program.
     #[arg(value_name = "NCFILE")]
@@ -456,7 +446,6 @@ pub struct TimeArgs {
 
 /// What `readback` takes.
 #[derive(Debug, Args)]
-#[non_exhaustive]
 pub struct ReadbackArgs {
     /// The program and its machine.
     #[command(flatten)]

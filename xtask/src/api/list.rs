@@ -271,11 +271,8 @@ impl List<'_> {
         fields: impl Iterator<Item = &'f syn::Field>,
     ) {
         let mut traits = BTreeSet::new();
-        for attribute in attributes.iter().filter(|a| a.path().is_ident("derive")) {
-            let _ = attribute.parse_nested_meta(|meta| {
-                traits.extend(meta.path.segments.last().map(|s| s.ident.to_string()));
-                Ok(())
-            });
+        for attribute in attributes {
+            traits.extend(derives(&attribute.meta));
         }
         // `thiserror` makes the text as well, and what a field is made from.
         if traits.contains("Error") {
@@ -450,4 +447,17 @@ fn has_parameters(item: &ItemImpl) -> bool {
         _ => true,
     };
     arguments || item.generics.params.iter().any(|p| !matches!(p, syn::GenericParam::Lifetime(_)))
+}
+
+/// The traits of `derive(...)`, and of one that a feature turns on.
+fn derives(meta: &syn::Meta) -> Vec<String> {
+    let of = syn::punctuated::Punctuated::<syn::Meta, syn::Token![,]>::parse_terminated;
+    let Ok(inner) = meta.require_list().and_then(|list| list.parse_args_with(of)) else { return Vec::new() };
+    if meta.path().is_ident("derive") {
+        inner.iter().filter_map(|m| m.path().segments.last().map(|s| s.ident.to_string())).collect()
+    } else if meta.path().is_ident("cfg_attr") {
+        inner.iter().skip(1).flat_map(derives).collect()
+    } else {
+        Vec::new()
+    }
 }

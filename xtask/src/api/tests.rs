@@ -53,7 +53,7 @@ const FILES: [(&str, &str); 4] = [
         "mod further;
          pub use self::further::both;
          pub mod names { pub const ONE: [u8; 2] = [0; 2]; }
-         #[derive(Clone, Debug)] #[non_exhaustive] pub enum Kept { A, B(u8, String), C { x: f64 } }
+         #[derive(Clone)] #[cfg_attr(feature = \"f\", derive(Debug))] #[non_exhaustive] pub enum Kept { A, B(u8, String), C { x: f64 } }
          pub struct Old(pub f64, u8);
          pub struct Lost;
          impl Lost { pub fn never(&self) {} }

@@ -20,7 +20,7 @@ const LIU: f64 = 0.25;
 /// Fewest positions of a motion.
 const FEWEST: usize = 4;
 /// Samples of a rule.
-const SAMPLES: usize = 129;
+pub(super) const SAMPLES: usize = 129;
 /// Samples of directrices between two breaks.
 const STATIONS: usize = 64;
 /// Places across, of the optimum's grid and of the judged one.
@@ -314,24 +314,37 @@ impl Study<'_> {
             row.gamma_deg = Some((-line.direction.dot(&f.x)).atan2(line.direction.dot(&f.z)).to_degrees());
         }
         if let (true, Ok(tool)) = (self.side().is_cylinder(), SideTool::cylinder(self.cutter.radius_mm())) {
-            let stations = Stations::new(self.strip, STATIONS);
+            let stations = self.stations();
             let p = profile(self.strip, &stations, &tool, &line, SAMPLES);
             row.static_mm = Some(Range { min: p.lowest.deviation_mm, max: p.highest.deviation_mm });
         }
     }
 
+    /// Samples of the strip's directrices.
+    pub(super) fn stations(&self) -> Stations {
+        Stations::new(self.strip, STATIONS)
+    }
+
     /// One method.
     pub fn run(&self, name: &'static str) -> Answer {
-        match name {
-            "standard_a" => self.setting(name, Setting::AtDirectrix(0)),
-            "standard_b" => self.setting(name, Setting::Distributed),
-            "double_point_offset" => self.setting(name, Setting::DoublePoint(LIU)),
-            "optimum" => self.setting(name, Setting::ThreeTangent),
-            "static_minimax" => self.setting(name, Setting::Minimax),
-            "envelope_rms" => self.global(name, Goal::Rms),
+        match (setting_of(name), name) {
+            (Some(setting), _) => self.setting(name, setting),
+            (None, "envelope_rms") => self.global(name, Goal::Rms),
             _ => self.global(name, Goal::Minimax),
         }
     }
+}
+
+/// The setting at a rule of a method; None for those of whole motions.
+pub(super) fn setting_of(name: &str) -> Option<Setting> {
+    Some(match name {
+        "standard_a" => Setting::AtDirectrix(0),
+        "standard_b" => Setting::Distributed,
+        "double_point_offset" => Setting::DoublePoint(LIU),
+        "optimum" => Setting::ThreeTangent,
+        "static_minimax" => Setting::Minimax,
+        _ => return None,
+    })
 }
 
 fn empty(name: &'static str) -> Method {
