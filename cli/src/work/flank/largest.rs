@@ -1,4 +1,4 @@
-//! The largest cylinder that holds the tolerance, setting by setting: what D98 proposes its own for [D98, 5].
+//! The largest cylinder that holds the tolerance, setting by setting: what D98 proposes its own for.
 
 use super::methods::{SAMPLES, Study, setting_of};
 use osculate_tools::flank::{RadiusLimit, RadiusSearch, RadiusSearchError, Stations, largest_radius};
