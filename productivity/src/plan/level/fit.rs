@@ -96,35 +96,23 @@ impl Problem {
             }
         }
         let x = self.factor.solve(&right);
-        let mut out = self.zero.clone();
-        for i in 0..out.bases[0].count() {
-            for j in 0..out.bases[1].count() {
-                let k = out.index(i, j);
-                out.poles[k] = x[out.row(i, j)];
-            }
-        }
-        out
+        Spline { bases: self.zero.bases, poles: x }
     }
 }
 
 impl Place {
-    /// What each pole adds to the gradient in the tangent frame, by row of the matrix.
+    /// What each pole adds to the gradient in the tangent frame, by its index.
     fn rows(&self, spline: &Spline) -> [(usize, [f64; 2]); 16] {
         std::array::from_fn(|k| {
             let (a, b) = (k / 4, k % 4);
             let (du, dv) = (self.u.first[a] * self.v.value[b], self.u.value[a] * self.v.first[b]);
-            let row = spline.row(self.u.index[a], self.v.index[b]);
-            (row, self.along.map(|r| du * r.u + dv * r.v))
+            let pole = spline.index(self.u.index[a], self.v.index[b]);
+            (pole, self.along.map(|r| du * r.u + dv * r.v))
         })
     }
 }
 
 impl Spline {
-    /// Row of the matrix of a pole.
-    fn row(&self, i: usize, j: usize) -> usize {
-        self.bases[0].order(i) * self.bases[1].count() + self.bases[1].order(j)
-    }
-
     /// Adds the squares of the poles' second differences, and a trace of the poles themselves.
     fn smooth(&self, matrix: &mut Symmetric, weight: f64) {
         let [nu, nv] = self.bases.map(|b| b.count());
@@ -140,10 +128,10 @@ impl Spline {
         for i in 0..nu {
             for j in 0..nv {
                 if i + 2 < nu {
-                    add([0, 1, 2].map(|d| self.row(i + d, j)));
+                    add([0, 1, 2].map(|d| self.index(i + d, j)));
                 }
                 if j + 2 < nv {
-                    add([0, 1, 2].map(|d| self.row(i, j + d)));
+                    add([0, 1, 2].map(|d| self.index(i, j + d)));
                 }
             }
         }

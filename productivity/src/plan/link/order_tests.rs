@@ -10,21 +10,9 @@ use proptest::prelude::*;
 const RADIUS: f64 = 1.0;
 
 fn links() -> Links {
-    Links {
-        obstacles: Box3 { min: Point3::new(-50.0, -50.0, 0.0), max: Point3::new(50.0, 50.0, 0.0) },
-        clearance_mm: 5.0,
-        approach_mm: 2.0,
-        hop_mm: 0.25,
-        dip_mm: 0.0,
-        contacts: true,
-        dropped: false,
-        layer_mm: 0.0,
-        cutter: Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 }).unwrap(),
-        holder: None,
-        feed_mm_min: 1500.0,
-        plunge_mm_min: 3000.0,
-        rates: Rates::default(),
-    }
+    let obstacles = Box3 { min: Point3::new(-50.0, -50.0, 0.0), max: Point3::new(50.0, 50.0, 0.0) };
+    let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * RADIUS, length_mm: 30.0 }).unwrap();
+    Links { clearance_mm: 5.0, plunge_mm_min: 3000.0, ..Links::new(obstacles, ball, 1500.0) }
 }
 
 /// Upright at a place of the plane z = 0.
