@@ -1,5 +1,5 @@
 //! The pages of R97 and M86, every closed form held against the exact strip:
-//! `cargo run --release -p osculate-productivity --example papers -- docs [r97] [m86]`.
+//! `cargo run -p osculate-productivity --example papers -- docs [r97] [m86]`.
 #![allow(clippy::print_stdout, clippy::expect_used)]
 
 mod forms;
