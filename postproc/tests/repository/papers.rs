@@ -3,7 +3,6 @@
 use crate::fresh::first_stale;
 
 #[path = "../../examples/z17.rs"]
-#[allow(dead_code)]
 mod z17;
 
 #[test]
