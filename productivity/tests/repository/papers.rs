@@ -4,12 +4,12 @@ use crate::fresh::first_stale;
 
 #[path = "../../examples/papers/main.rs"]
 #[allow(dead_code)]
-mod papers;
+mod maker;
 
 #[test]
 fn pages_are_fresh() {
     let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-    let files = papers::pages(|_| true);
+    let files = maker::pages(|_| true);
     assert!(files.len() > 6);
     for (file, made) in files {
         let page = std::fs::read_to_string(docs.join(&file)).unwrap();
