@@ -132,6 +132,10 @@ fn reasons_stand_in_the_table() {
     let v = of("builtin = { kind = \"d98-eq18\" }", large, short);
     let m = method(&v, "standard_b");
     assert!(m["valid"] == false && m["why"].as_str().unwrap().contains("mm"), "{m}");
+    for name in ["optimum", "static_minimax"] {
+        let m = method(&v, name);
+        assert!(m["valid"] == false && m["why"].as_str().unwrap().contains("at most 29.8999 mm does"), "{m}");
+    }
     // R = h and alpha = 45 deg: no root.
     let v = of(
         "builtin = { kind = \"d98-hyperbolic\", h_mm = 10, alpha_deg = 45 }",

@@ -108,9 +108,31 @@ fn row(
 
 fn study(folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(folder)?;
+    for (file, text) in page()? {
+        std::fs::write(folder.join(file), text)?;
+    }
+    Ok(())
+}
+
+/// The page and its pictures by file. A test makes them too.
+pub fn page() -> Result<Vec<(&'static str, String)>, Box<dyn std::error::Error>> {
     let machine = Machine::built_in("mill-turn-xyzc")?;
     let setup = Setup::at(Vec3::new(0.0, 0.0, 200.0), 60.0);
-    let blade = Blade::rotor_37();
+    let paths = paths(&Blade::rotor_37());
+    let mut text = head();
+    for (name, path) in &paths {
+        let rows = modes()
+            .iter()
+            .map(|(mode_name, mode)| Ok((*mode_name, row(&machine, &setup, path, *mode)?)))
+            .collect::<Result<Vec<_>, Box<dyn std::error::Error>>>()?;
+        table(&mut text, name, path, &rows)?;
+    }
+    let (words, charts) = figures(&machine, &setup, &paths[0].1)?;
+    Ok(charts.into_iter().chain([("z17.md", text + &words)]).collect())
+}
+
+/// The paths, with their names.
+fn paths(blade: &Blade) -> [(&'static str, ClPath); 3] {
     let n = blade.around();
     let x = |i: &usize| blade.at(0.5, *i).point.x;
     let leading = (0..n).min_by(|a, b| x(a).total_cmp(&x(b))).unwrap_or(0);
@@ -128,7 +150,7 @@ fn study(folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
         sides[0].0 = "suction side";
         sides[1].0 = "pressure side";
     }
-    let paths = [
+    [
         (
             "around both edges",
             blade::path(
@@ -136,20 +158,9 @@ fn study(folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
                 FEED,
             ),
         ),
-        (sides[0].0, side(&blade, sides[0].1, sides[0].2)),
-        (sides[1].0, side(&blade, sides[1].1, sides[1].2)),
-    ];
-    let mut text = head();
-    for (name, path) in &paths {
-        let rows = modes()
-            .iter()
-            .map(|(mode_name, mode)| Ok((*mode_name, row(&machine, &setup, path, *mode)?)))
-            .collect::<Result<Vec<_>, Box<dyn std::error::Error>>>()?;
-        table(&mut text, name, path, &rows)?;
-    }
-    figures(&mut text, folder, &machine, &setup, &paths[0].1)?;
-    std::fs::write(folder.join("z17.md"), text)?;
-    Ok(())
+        (sides[0].0, side(blade, sides[0].1, sides[0].2)),
+        (sides[1].0, side(blade, sides[1].1, sides[1].2)),
+    ]
 }
 
 fn head() -> String {
@@ -203,14 +214,11 @@ fn table(text: &mut String, name: &str, path: &ClPath, rows: &[(&str, Row)]) -> 
     )
 }
 
+/// Words and their pictures, by file.
+type Figures = (String, [(&'static str, String); 2]);
+
 /// K and F by block over two rounds.
-fn figures(
-    text: &mut String,
-    folder: &Path,
-    machine: &Machine,
-    setup: &Setup,
-    path: &ClPath,
-) -> Result<(), Box<dyn std::error::Error>> {
+fn figures(machine: &Machine, setup: &Setup, path: &ClPath) -> Result<Figures, Box<dyn std::error::Error>> {
     let options = SolveOptions { tcp: false, ..SolveOptions::default() };
     let two_rounds = ClPath { moves: path.moves.iter().take(601).copied().collect(), ..path.clone() };
     let joints = machine.solve(&two_rounds, setup, &options)?;
@@ -227,18 +235,19 @@ fn figures(
     }
     let f: Vec<f64> = kv.iter().map(|k| k * FEED).collect();
     let kz = limited_rise(&f, KZ_STEP);
-    std::fs::write(folder.join("z17-k.svg"), chart("K by block", &[("K_V", &kv), ("K_F", &kf)]))?;
-    std::fs::write(folder.join("z17-f.svg"), chart("F by block, mm/min", &[("K_V", &f), ("K_Z", &kz)]))?;
+    let charts = [
+        ("z17-k.svg", chart("K by block", &[("K_V", &kv), ("K_F", &kf)])),
+        ("z17-f.svg", chart("F by block, mm/min", &[("K_V", &f), ("K_Z", &kz)])),
+    ];
     let most = kv.iter().copied().fold(0.0, f64::max);
-    write!(
-        text,
+    let words = format!(
         "## K and F by block\n\n\
          As figures 6 and 7 of the paper, over two rounds: the peaks are the leading and the trailing edge. The greatest\n\
          K_V is {most:.1}, so F reaches {:.0} mm/min at F0 = {FEED} mm/min. K_Z limits the rise of F to {KZ_STEP} mm/min a\n\
          block.\n\n![K by block](z17-k.svg)\n\n![F by block](z17-f.svg)\n",
         most * FEED
-    )?;
-    Ok(())
+    );
+    Ok((words, charts))
 }
 
 /// A line chart with a logarithmic ordinate.

@@ -7,9 +7,9 @@
 //! E_R(t) = int over C of (g . v) dA = int I(psi) d psi      I(psi) = int rho (g . v) ds along the meridian at psi
 //! ```
 //!
-//! psi is the angle about the axis. The first form is that of a continuous surface [R97, eqs. 23 to 25]. With m teeth each
+//! psi is the angle about the axis. The first form is that of a continuous surface [R97, eqs. 23, 24, 27, 28]. With m teeth each
 //! edge takes, as it passes psi, the chip that the feed has put there since the tooth before: `2 pi / m` of I, so that
-//! `E_R(t) = (2 pi / m) sum I(psi_j(t))` over the teeth in cut [R97, eqs. 29, 30]; its mean over a turn is the first form.
+//! `E_R(t) = (2 pi / m) sum I(psi_j(t))` over the teeth in cut [R97, eqs. 25 to 30]; its mean over a turn is the first form.
 //!
 //! *Errors.* Along a meridian ends of the engagement are interpolated linearly between nodes, in psi the midpoint rule is used:
 //! the error falls with the square of both steps. Edges stand for meridians (no helix), the feed is slow against the cutting
@@ -157,7 +157,7 @@ impl Outline {
 }
 
 impl Engagement {
-    /// Volume per unit of the motion's parameter, mm3: the rate of a continuous cutting surface [R97, eq. 25].
+    /// Volume per unit of the motion's parameter, mm3: the rate of a continuous cutting surface [R97, eqs. 24, 27].
     #[must_use]
     pub fn rate(&self) -> f64 {
         self.by_angle.iter().sum::<f64>() * TAU / self.by_angle.len() as f64

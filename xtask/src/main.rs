@@ -201,8 +201,7 @@ fn d98() -> Result<(), cmd::Failure> {
 
 /// Runs the study of strip widths, an example of the productivity crate.
 fn strips(papers: &[&str]) -> Result<(), cmd::Failure> {
-    let example =
-        ["run", "--release", "--locked", "-p", "osculate-productivity", "--example", "papers", "--", "docs"];
+    let example = ["run", "--locked", "-p", "osculate-productivity", "--example", "papers", "--", "docs"];
     cmd::run(cmd::cargo(&cmd::root()?, &[&example, papers].concat()))
 }
 

@@ -14,6 +14,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// Per cent of a form are told up to this many times the exact width. Where forms apply they are off by less than half of it; two contacts
+/// (5C) are several times as wide as the one that the job's lead gives.
+const MOST_TIMES: f64 = 100.0;
+
 #[derive(Serialize)]
 struct Exact {
     width_mm: f64,
@@ -178,6 +182,14 @@ fn answer(contact: &Contact<'_>, exact: &strip::Strip, scallop_mm: f64) -> Answe
     }
 }
 
+/// A form beside the exact width. Where next to nothing is left of the strip, as under a tool lifted by the tolerance, per cent say nothing.
+fn against(width_mm: f64, exact_mm: f64) -> String {
+    match width_mm / exact_mm {
+        times if times <= MOST_TIMES => format!("{:+.3} %", 100.0 * (times - 1.0)),
+        _ => format!("over {MOST_TIMES} times"),
+    }
+}
+
 fn describe(a: &Answer, scallop_mm: f64) -> String {
     let mut t = Table::new(["strip", "width mm", "against exact"]);
     let e = &a.exact;
@@ -185,7 +197,7 @@ fn describe(a: &Answer, scallop_mm: f64) -> String {
     for (name, form) in &a.closed_forms {
         match (form.width_mm, &form.why_not) {
             (Some(w), _) => {
-                t.row([(*name).into(), number(w, 8), format!("{:+.3} %", 100.0 * (w / e.width_mm - 1.0))]);
+                t.row([(*name).into(), number(w, 8), against(w, e.width_mm)]);
             }
             (None, Some(_)) => t.row([(*name).into(), "-".into(), "does not apply".into()]),
             (None, None) => {}
@@ -219,4 +231,18 @@ fn describe(a: &Answer, scallop_mm: f64) -> String {
     }
     out.push('\n');
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn per_cent_are_finite() {
+        assert_eq!(against(1.01, 1.0), "+1.000 %");
+        assert_eq!(against(100.0, 1.0), "+9900.000 %");
+        for exact_mm in [0.0, 1e-300, 1e-5] {
+            assert_eq!(against(3.0, exact_mm), "over 100 times");
+        }
+    }
 }

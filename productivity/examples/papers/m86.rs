@@ -1,7 +1,7 @@
 //! The page of M86.
 
-use crate::forms::{Row, table};
-use crate::plot::{Curve, logarithmic};
+use super::forms::{Row, table};
+use super::plot::{Curve, logarithmic};
 use osculate_geom::analytic::Torus;
 use osculate_geom::{Axis, Flipped, uv};
 use osculate_productivity::closed_form::{five_axis_flat, three_axis_flat, two_axis_ball};

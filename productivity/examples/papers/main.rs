@@ -1,5 +1,5 @@
 //! The pages of R97 and M86, every closed form held against the exact strip:
-//! `cargo run --release -p osculate-productivity --example papers -- docs [r97] [m86]`.
+//! `cargo run -p osculate-productivity --example papers -- docs [r97] [m86]`.
 #![allow(clippy::print_stdout, clippy::expect_used)]
 
 mod forms;
@@ -13,8 +13,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let docs = Path::new(arguments.first().map_or("docs", String::as_str));
     let wanted = |paper: &str| arguments.len() < 2 || arguments[1..].iter().any(|a| a == paper);
-    let papers = docs.join("papers");
-    std::fs::create_dir_all(&papers)?;
+    std::fs::create_dir_all(docs.join("papers"))?;
+    for (name, text) in pages(wanted) {
+        std::fs::write(docs.join(&name), text)?;
+        println!("{}", docs.join(&name).display());
+    }
+    Ok(())
+}
+
+/// The pages of papers that are wanted and their pictures, and the page of all forms, by file. A test makes them too.
+pub fn pages(wanted: impl Fn(&str) -> bool) -> Vec<(String, String)> {
     let rows = forms::all();
     let mut files: Vec<(String, String)> = Vec::new();
     if wanted("r97") {
@@ -23,14 +31,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if wanted("m86") {
         files.extend(m86::page(&rows));
     }
-    for (name, text) in files {
-        std::fs::write(papers.join(&name), text)?;
-        println!("{}", papers.join(&name).display());
-    }
-    let table = docs.join("closed-forms.md");
-    std::fs::write(&table, closed_forms(&rows))?;
-    println!("{}", table.display());
-    Ok(())
+    let mut files: Vec<_> = files.into_iter().map(|(name, text)| (format!("papers/{name}"), text)).collect();
+    files.push(("closed-forms.md".into(), closed_forms(&rows)));
+    files
 }
 
 fn closed_forms(rows: &[forms::Row]) -> String {

@@ -1,7 +1,7 @@
 //! The page of R97.
 
-use crate::forms::{HEIGHTS, Row, table};
-use crate::plot::{Curve, logarithmic, polar};
+use super::forms::{HEIGHTS, Row, table};
+use super::plot::{Curve, logarithmic, polar};
 use osculate_geom::analytic::Paraboloid;
 use osculate_geom::indicatrix::{Conformity, dupin_root_mm};
 use osculate_geom::{Forms, Relative, Surface, ToolCurvature, Unit3, uv};
@@ -29,8 +29,8 @@ const EQUATIONS: [[&str; 3]; 18] = [
     ],
     ["20, 21 change of parameters", "`finish::Place`, `Place::jacobian`", ""],
     ["22 roughing in time", "`rough::layer_rate_mm3_min`", "(22) prints dU dV under one integral: dw"],
-    ["23 to 25 continuous cutting surface", "`engagement::Outline`, `Engagement::rate`", ""],
-    ["26 to 30 teeth", "`Engagement::rate_of_teeth`", ""],
+    ["23, 24, 27, 28 continuous cutting surface", "`engagement::Outline`, `Engagement::rate`", ""],
+    ["25 to 30 teeth", "`Engagement::rate_of_teeth`", ""],
     ["32 to 35 finishing in time", "`finish::area_rate_mm2_min`", ""],
     [
         "36, 37, 49 width of two arcs",

@@ -6,7 +6,6 @@ use osculate_geom::Side;
 use osculate_tools::flank::closed::MiddleRule;
 use osculate_tools::flank::{RuledStrip, Setting, SideTool, place};
 use std::fmt::Write;
-use std::path::Path;
 
 const SETTINGS: [(&str, Setting); 4] = [
     ("standard (b)", Setting::Distributed),
@@ -55,11 +54,13 @@ fn kept(all: Vec<[Series; 2]>) -> Vec<Series> {
         .collect()
 }
 
-pub(crate) fn figures(text: &mut String, folder: &Path) -> Done<()> {
+/// The words on the figures, and the figures by file.
+pub(crate) fn figures(text: &mut String) -> Done<Vec<(&'static str, String)>> {
+    let mut files = Vec::new();
     writeln!(text, "\n## Figures\n")?;
-    let mut save = |file: &str, svg: String, words: &str| -> Done<()> {
-        std::fs::write(folder.join(file), svg)?;
+    let mut save = |file: &'static str, svg: String, words: &str| -> Done<()> {
         writeln!(text, "{words}\n\n![{file}]({file})\n")?;
+        files.push((file, svg));
         Ok(())
     };
     let e = eq18(Side::Along)?;
@@ -151,5 +152,6 @@ pub(crate) fn figures(text: &mut String, folder: &Path) -> Done<()> {
         "d98-11.svg",
         lines("Gouge of three tangencies, h_p = 80 mm", ["R, mm", "mm"], &errors, true),
         "The error itself over R and twist:",
-    )
+    )?;
+    Ok(files)
 }

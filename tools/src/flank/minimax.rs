@@ -91,6 +91,16 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
+    /// Why there is no optimum: where no cylinder of this radius fits into the hollow, that.
+    fn unsettled(&self, step_mm: f64, iterations: u32) -> PlaceError {
+        let (u, radius_mm, largest_mm) = (self.rule.u, self.tool.radius_mm(), self.rule.largest_fit_mm());
+        if radius_mm >= largest_mm {
+            PlaceError::TooLarge { u, radius_mm, largest_mm }
+        } else {
+            PlaceError::NotConverged { u, step_mm, iterations }
+        }
+    }
+
     fn at(&self, axis: &AxisLine, v: f64) -> Least {
         least_at(self.strip, self.stations, &self.tool, axis, v)
     }
@@ -282,7 +292,8 @@ fn greatest(seen: &[Least]) -> f64 {
 /// The minimax axis at the rule at u.
 ///
 /// # Errors
-/// [`PlaceError::Rule`], [`PlaceError::NotConverged`].
+/// [`PlaceError::Rule`], [`PlaceError::NotConverged`], and [`PlaceError::TooLarge`] where it does not converge since the radius is beyond the
+/// hollow's.
 pub fn minimax(
     strip: &RuledStrip<'_>,
     stations: &Stations,
@@ -311,8 +322,8 @@ pub fn minimax(
     let mut trust = (worst * 4.0).max(1e-6 * tool.radius_mm());
     let mut size = f64::INFINITY;
     for iteration in 0..how.rounds {
-        let failed = |size| PlaceError::NotConverged { u, step_mm: size, iterations: iteration };
-        let (step, predicted) = search.step(&axis, &seen, trust).ok_or_else(|| failed(size))?;
+        let (step, predicted) =
+            search.step(&axis, &seen, trust).ok_or_else(|| search.unsettled(size, iteration))?;
         let next = search.moved(&axis, &step);
         let there = search.deviations(&next);
         let value = greatest(&there);
@@ -340,5 +351,5 @@ pub fn minimax(
             });
         }
     }
-    Err(PlaceError::NotConverged { u, step_mm: size, iterations: how.rounds })
+    Err(search.unsettled(size, how.rounds))
 }

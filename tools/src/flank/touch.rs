@@ -52,17 +52,22 @@ pub enum PlaceError {
         fraction: f64,
     },
     /// The search for the least greatest deviation did not settle.
-    #[error(
-        "the least greatest deviation at u = {u} did not settle: last step {step_mm:.3e} mm after {iterations} rounds"
-    )]
+    #[error("the least greatest deviation at u = {u} did not settle: {}", last_step(*.step_mm, *.iterations))]
     NotConverged {
         /// The rule.
         u: f64,
-        /// Size of the last step, mm.
+        /// Size of the last step, mm; infinite where none could be made.
         step_mm: f64,
         /// Rounds.
         iterations: u32,
     },
+}
+
+fn last_step(step_mm: f64, iterations: u32) -> String {
+    match step_mm.is_finite() {
+        true => format!("last step {step_mm:.3e} mm after {iterations} rounds"),
+        false => "no step could be made from where it began".to_owned(),
+    }
 }
 
 /// A place of contact.

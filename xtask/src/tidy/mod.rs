@@ -15,6 +15,7 @@ mod layers;
 mod modules;
 mod notation;
 mod packaging;
+mod papers;
 mod paths;
 mod serde;
 mod shape;
@@ -28,7 +29,7 @@ use finding::Finding;
 use tree::Tree;
 
 /// The rules that read files.
-const RULES: [fn(&Tree) -> Vec<Finding>; 18] = [
+const RULES: [fn(&Tree) -> Vec<Finding>; 20] = [
     circles::no_module_circles,
     effects::quiet_libraries,
     floating::no_bare_mul_add,
@@ -46,6 +47,8 @@ const RULES: [fn(&Tree) -> Vec<Finding>; 18] = [
     docs::readme_commands,
     docs::named_files,
     notation::code_names,
+    papers::every_statement,
+    papers::citations,
     workflows::workflows,
 ];
 

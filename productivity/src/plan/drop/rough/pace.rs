@@ -1,4 +1,4 @@
-//! The feed of a roughing: the volume that the cutter takes is kept under a cap from place to place [R97, eq. 25].
+//! The feed of a roughing: the volume that the cutter takes is kept under a cap from place to place [R97, eq. 27].
 //!
 //! At a feed f the tool takes f times the section of material that it moves into, which is the rate of its engagement per length of its
 //! way. Feeds are steps of a twentieth, so that a program does not say a new one in every block.
