@@ -7,7 +7,7 @@ use osculate_geom::quadrature::area;
 use osculate_geom::{Axis, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, Vec3};
 use osculate_productivity::plan::{Along, Pass, Strategy, Task, Tolerance, run};
 use osculate_productivity::real_time::{
-    Cells, FinishedPlace, Fineness, Finishing, Region, Spread, TimedMotion,
+    Cells, Fineness, FinishedPlace, Finishing, Region, Spread, TimedMotion,
 };
 use osculate_surfaces::{Net, NurbsSurface};
 use osculate_tools::removal::{Cut, Job, Sample, Swept, cut, sample_surface};
@@ -156,7 +156,8 @@ fn strip_mm2(pass: &Pass) -> f64 {
 /// every pass alone brings within the tolerance, less the area.
 #[test]
 fn strips_are_the_area_and_their_overlap() {
-    for (major, minor) in [(16.0, 5.0), (12.0, 8.0)] {
+    // The hole is wider than the tool is long.
+    for (major, minor) in [(36.0, 4.0), (40.0, 7.0)] {
         let ring = Torus::new(major, minor).unwrap();
         let tool = cutter(1);
         let passes = plan(&ring, &tool, &strategy(0));
@@ -204,7 +205,10 @@ fn a_plane_is_spacing_times_real_speed() {
         if k > 0 {
             let from = moves.last().map_or(a, |m: &Swept| m.to);
             // Far above: a rapid that cuts nothing.
-            let up = |p: osculate_tools::Pose| osculate_tools::Pose { tip: p.tip + Vec3::new(0.0, 0.0, 20.0), ..p };
+            let up = |p: osculate_tools::Pose| osculate_tools::Pose {
+                tip: p.tip + Vec3::new(0.0, 0.0, 20.0),
+                ..p
+            };
             moves.push(Swept { from: up(from), to: up(a), rapid: true, block: 0 });
         }
         let pieces = (0..n as u32).map(f64::from);
@@ -222,7 +226,8 @@ fn a_plane_is_spacing_times_real_speed() {
         })
         .collect();
     let found = Finishing::of(&places, &path, Fineness::of_places(SPACING_MM)).unwrap();
-    let region = Region::of(&places, &found, Cells { face: 0, domain: plane.domain(), along_u: 4, along_v: 4 });
+    let region =
+        Region::of(&places, &found, Cells { face: 0, domain: plane.domain(), along_u: 4, along_v: 4 });
     let rates = region.mm2_min();
     for (u, want) in [(0, 1500.0 * spacing_mm), (3, 500.0 * spacing_mm)] {
         // Inside, away from the first and the last pass: a cell holds about ten of them, one more or less at its sides.
@@ -233,8 +238,11 @@ fn a_plane_is_spacing_times_real_speed() {
     }
     let spread = Spread::of(&found.stretches).unwrap();
     assert!(spread.min < 600.0 * spacing_mm && spread.max > 1400.0 * spacing_mm, "{spread:?}");
-    // Half of the way takes three quarters of the time: the mean is 2 / (1 / 1500 + 1 / 500) = 750 mm/min.
-    assert!((spread.mean / (750.0 * spacing_mm) - 1.0).abs() < 0.03, "{spread:?} {spacing_mm}");
+    // Half of the way takes three quarters of the time: the mean is 2 / (1 / 1500 + 1 / 500) = 750 mm/min times the spacing, less
+    // what the last pass shares with the one before it and what both outer ones lay beside the face.
+    let strips = passes.len() as f64 * spacing_mm * 24.0;
+    let want = 750.0 * spacing_mm * (24.0 * 24.0 / strips);
+    assert!((spread.mean / want - 1.0).abs() < 0.01, "{spread:?} {want}");
 }
 
 /// A face of which a part is not reached: the maps say that part, and not more than what was cut.
@@ -249,7 +257,8 @@ fn what_no_pass_reaches_is_not_finished() {
     let cuts = cuts(&samples, &moves, &tool);
     let places = places(&samples, &cuts);
     let found = Finishing::of(&places, &timed(&moves, 10.0), Fineness::of_places(SPACING_MM)).unwrap();
-    let reached: f64 = samples.iter().zip(&cuts).filter(|(_, c)| c.by.is_some()).map(|(s, _)| s.area_mm2).sum();
+    let reached: f64 =
+        samples.iter().zip(&cuts).filter(|(_, c)| c.by.is_some()).map(|(s, _)| s.area_mm2).sum();
     assert!((found.finished_mm2 - reached).abs() < 1e-9 * reached);
     let share = found.finished_mm2 / found.area_mm2;
     assert!(share > 0.4 && share < 0.75, "{share}");

@@ -71,7 +71,11 @@ impl Fineness {
     /// ```
     #[must_use]
     pub fn of_places(spacing_mm: f64) -> Self {
-        Self { amount: 64.0 * spacing_mm * spacing_mm, length_mm: 16.0 * spacing_mm, idle_mm: 4.0 * spacing_mm }
+        Self {
+            amount: 64.0 * spacing_mm * spacing_mm,
+            length_mm: 16.0 * spacing_mm,
+            idle_mm: 4.0 * spacing_mm,
+        }
     }
 }
 
@@ -198,7 +202,9 @@ pub fn stretches(
         stretch.time_min += idle.time_min + m.time_min;
         stretch.length_mm += idle.length_mm + m.length_mm;
         stretch.amount += amount;
-        if stretch.amount >= fineness.amount && stretch.length_mm >= fineness.length_mm && stretch.time_min > 0.0
+        if stretch.amount >= fineness.amount
+            && stretch.length_mm >= fineness.length_mm
+            && stretch.time_min > 0.0
         {
             run.last = Some(out.len());
             out.extend(run.open.take());
@@ -342,7 +348,8 @@ impl Finishing {
             area_mm2 += p.area_mm2;
             if let Some(motion) = p.by {
                 let amount = amounts.get_mut(motion as usize);
-                *amount.ok_or(RealTimeError::NoMotion { place, motion, motions: motions.len() })? += p.area_mm2;
+                *amount.ok_or(RealTimeError::NoMotion { place, motion, motions: motions.len() })? +=
+                    p.area_mm2;
             }
         }
         let stretches = stretches(motions, &amounts, fineness)?;
@@ -430,7 +437,8 @@ mod tests {
 
     #[test]
     fn the_median_counts_by_time() {
-        let stretch = |time_min: f64, amount: f64| Stretch { motions: 0..1, time_min, length_mm: 1.0, amount };
+        let stretch =
+            |time_min: f64, amount: f64| Stretch { motions: 0..1, time_min, length_mm: 1.0, amount };
         let all = [stretch(1.0, 1.0), stretch(5.0, 50.0), stretch(1.0, 30.0)];
         let spread = Spread::of(&all).unwrap();
         assert_eq!((spread.min, spread.median, spread.max), (1.0, 10.0, 30.0));
