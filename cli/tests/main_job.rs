@@ -54,6 +54,26 @@ fn a_plan_is_written_posted_verified_and_reported() {
             number(&summary, &["passes"])
         );
 
+        let real = &summary["productivity"];
+        let sum = |map: &Value, key: &str| -> f64 {
+            map[key].as_array().unwrap().iter().filter_map(Value::as_f64).sum()
+        };
+        // Nothing is uncut: all of the face is finished, and the map over the time of its cells is that area.
+        let area = number(&summary, &["area_mm2"]);
+        let finished = number(real, &["finished_mm2"]);
+        assert!((finished / area - 1.0).abs() < 0.005, "{finished} of {area}");
+        let map = &real["regional"][0];
+        let rates = map["mm2_min"].as_array().unwrap().iter().zip(map["time_s"].as_array().unwrap());
+        let by_cells: f64 = rates.filter_map(|(e, t)| Some(e.as_f64()? * t.as_f64()? / 60.0)).sum();
+        assert!((by_cells / area - 1.0).abs() < 0.005, "{by_cells} of {area}");
+        // Cells take the time in which something is finished, which the cutting time contains.
+        let finishing = number(real, &["finishing_min"]);
+        assert!((sum(map, "time_s") / 60.0 / finishing - 1.0).abs() < 1e-4);
+        assert!(finishing <= number(&summary, &["cutting_time_min"]) * (1.0 + 1e-9));
+        let mean = number(real, &["instantaneous_mm2_min", "mean"]);
+        assert!((mean * finishing / finished - 1.0).abs() < 1e-4);
+        assert!(number(real, &["strips_over_area"]) > 0.995, "{}", real["strips_over_area"]);
+
         // The CL file verifies too, and so does the program on its own.
         for (file, source) in [(out.join("path.cl"), "cl"), (program.clone(), "nc")] {
             let run =

@@ -47,6 +47,7 @@
 //! - [`field`]: the best postures over a face, as arrays.
 //! - [`ideal`]: the time that the best posture at every place of the faces would take, to hold plans against.
 //! - [`levels`]: productivity at an instant, along a pass and over the whole face.
+//! - [`real_time`]: the same of a path as a control runs it, at every instant and over the cells of a face.
 //!
 //! ```
 //! use osculate_productivity::rate::Caps;
@@ -85,6 +86,7 @@ pub mod levels;
 pub mod optimum;
 pub mod plan;
 pub mod rate;
+pub mod real_time;
 mod rectangle;
 pub mod rough;
 mod spline;

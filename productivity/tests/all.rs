@@ -26,6 +26,7 @@ mod level;
 mod limits;
 mod links;
 mod optimum;
+mod real_time;
 mod regions;
 mod rough;
 mod side_tilt;

@@ -80,7 +80,13 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     for left in &s.left_out {
         row(&format!("left out of {}", left.face), format!("{:.3}", left.area_mm2), "mm2");
     }
-    row("global productivity", format!("{:.1}", s.productivity_mm2_min.global), "mm2/min");
+    let removes = s.productivity.removal.is_some() && s.productivity.finished_mm2.is_none();
+    if !removes {
+        row("global productivity", format!("{:.1}", s.productivity_mm2_min.global), "mm2/min");
+    }
+    for (what, value, unit) in s.productivity.rows() {
+        row(what, value, unit);
+    }
     if let Some(i) = &s.ideal {
         row("ideal time, estimated", i.ideal.words(), "min");
         row("efficiency", format!("{:.0}", i.efficiency_percent), "%");

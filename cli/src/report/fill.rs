@@ -13,6 +13,7 @@ use crate::words::number;
 use crate::work::extras::Extras;
 use crate::work::extras::FaceLeftOut;
 use crate::work::nc::Motions;
+use crate::work::productivity::InTime;
 use crate::work::summary::Summary;
 use crate::work::verify::Verified;
 use osculate_geom::{Diagnostic, Point3, Unit3};
@@ -59,6 +60,8 @@ pub struct Story<'a> {
     pub hands: Vec<(usize, Tool)>,
     /// What this report shows beside what every report shows.
     pub extras: &'a Extras<'a>,
+    /// Productivity of the program in its time.
+    pub in_time: &'a InTime,
 }
 
 /// The report's pages.
@@ -95,16 +98,22 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
     let edge = (2.0 * total_area / TRIANGLES).sqrt().max(1e-6);
     let verdict_of = &story.verified.verdict;
     let measured = Measured::new(verdict_of.samples(), verdict_of.cuts(), story.verified.summary.spacing_mm);
+    let painted = story.in_time.maps(story.job, story.hands.len() == 1);
     let mut faces = Vec::new();
     let machined = story.faces.faces.iter().map(|f| (f, false));
     for (k, (face, check)) in machined.chain(story.faces.check.iter().map(|f| (f, true))).enumerate() {
         let mut m = mesh_of(face, if check { 3.0 * edge } else { edge });
         m.checked = check;
-        m.deviation_mm = measured.on(&m, k as u32);
+        let nearest = measured.nearest(&m, k as u32);
+        m.deviation_mm = measured.deviation_mm(&nearest, check);
         let point = |p: &[f32; 3]| Point3::from(p.map(f64::from));
         for (_, field) in &story.extras.maps {
             let value = |p: &[f32; 3]| if check { f32::NAN } else { field(k, &point(p)) as f32 };
             m.scalars.push(m.positions.par_iter().map(value).collect());
+        }
+        for (_, values) in &painted {
+            let value = |s: &Option<u32>| s.filter(|_| !check).map_or(f32::NAN, |s| values[s as usize]);
+            m.scalars.push(nearest.iter().map(value).collect());
         }
         faces.push(m);
         progress(0.6 * (k + 1) as f64 / (story.faces.faces.len() + story.faces.check.len()) as f64);
@@ -116,7 +125,14 @@ fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {
         faces_only: false,
         verdict: verdict(story, &kept),
         faces,
-        scalars: story.extras.maps.iter().map(|m| m.0.clone()).collect(),
+        scalars: story
+            .extras
+            .maps
+            .iter()
+            .map(|m| &m.0)
+            .chain(painted.iter().map(|m| &m.0))
+            .cloned()
+            .collect(),
         passes: passes(story.passes),
         path_points: PathPoints::Contact,
         links: links(story.linked),
@@ -376,6 +392,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             ("the estimate took", format!("{:.1} s at {} places", s.wall_s.ideal, i.ideal.places)),
         ]
     });
+    let real = s.productivity.rows().into_iter().map(|(what, value, unit)| (what, format!("{value} {unit}")));
     let scope = story.verified.verdict.scope();
     let mut out = sheet::setups(story.job, s, scope);
     out.push(sheet::tools(story.job));
@@ -398,7 +415,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
             vec![
                 ("area", format!("{:.1} mm2", s.area_mm2)),
                 (
-                    "instantaneous",
+                    "passes at the feed asked for",
                     format!(
                         "{} to {} mm2/min",
                         number(s.productivity_mm2_min.instantaneous_min, 4),
@@ -408,6 +425,7 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
                 ("global", format!("{} mm2/min", number(s.productivity_mm2_min.global, 4))),
             ]
             .into_iter()
+            .chain(real)
             .chain(ideal)
             .collect(),
         ),

@@ -90,15 +90,17 @@ impl<'a> Measured<'a> {
         }
     }
 
-    /// The deviation at the vertices of a face with this number, mm; NaN where no sample is near.
-    pub fn on(&self, mesh: &FaceMesh, face: u32) -> Vec<f32> {
+    /// Of every vertex of a face with this number the sample nearest to it, where one is near.
+    pub fn nearest(&self, mesh: &FaceMesh, face: u32) -> Vec<Option<u32>> {
         let cells = if mesh.checked { &self.checked } else { &self.machined };
-        let most = if mesh.checked { 0.0 } else { f64::INFINITY };
-        let at = |p: &[f32; 3]| {
-            let point = Point3::from(p.map(f64::from));
-            let nearest = cells.nearest(&point, face, self.samples);
-            nearest.map_or(f32::NAN, |s| self.cuts[s as usize].standoff_mm.min(most) as f32)
-        };
+        let at = |p: &[f32; 3]| cells.nearest(&Point3::from(p.map(f64::from)), face, self.samples);
         mesh.positions.par_iter().map(at).collect()
+    }
+
+    /// The deviation at vertices with these samples next to them, mm; NaN where none is.
+    pub fn deviation_mm(&self, nearest: &[Option<u32>], checked: bool) -> Vec<f32> {
+        let most = if checked { 0.0 } else { f64::INFINITY };
+        let at = |s: &Option<u32>| s.map_or(f32::NAN, |s| self.cuts[s as usize].standoff_mm.min(most) as f32);
+        nearest.iter().map(at).collect()
     }
 }

@@ -26,6 +26,7 @@ pub mod passes;
 pub mod plan;
 pub mod ply;
 pub mod posted_setup;
+pub mod productivity;
 pub mod program;
 pub mod reached;
 pub mod reading;

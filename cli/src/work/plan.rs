@@ -12,6 +12,7 @@ use crate::work::choice::{self, Choice, Row};
 use crate::work::joints::JointFigures;
 use crate::work::nc::Motions;
 use crate::work::passes::{self, Way};
+use crate::work::productivity::{InTime, RealProductivity, Timed, strips_over_area};
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::summary::{Productivity, SetupSummary, Summary};
 use crate::work::verify::{VerdictKeys, Verified};
@@ -248,6 +249,11 @@ impl Proved<'_> {
         let times = Times::of(&read);
         let times_min = times.time_min;
         let mut summary = summary_of(job, faces, &planned, times, &verified)?;
+        let timed = Timed { motions: &read.motions, times_min: &read.times_min };
+        let in_time = InTime::of(job, timed, &verified);
+        let mut found = in_time.whole(job, faces, times_min);
+        found.strips_over_area = strips_over_area(&planned, found.finished_mm2);
+        summary.productivity = found;
         summary.ideal = ideal;
         summary.wall_s = wall_s;
         summary.compared = compared;
@@ -268,6 +274,7 @@ impl Proved<'_> {
             setups: vec![(0, setup)],
             hands: vec![(0, fill::tool(job))],
             extras: &planned.extras,
+            in_time: &in_time,
         };
         let pages = pages(&story, watch, &|f| stage.at(f));
         let mut files = vec![PlanFile::of_text("path.cl", cl_text), PlanFile::of_text(file, program.text)];
@@ -356,6 +363,7 @@ pub fn summary_of(
             regional: l.regional,
             global: l.global,
         },
+        productivity: RealProductivity::default(),
         ideal: None,
         verification: verified.summary.clone(),
         verdict: VerdictKeys::of(&verified.verdict),

@@ -7,12 +7,13 @@ use crate::work::ideal::IdealTime;
 use crate::work::joints::JointFigures;
 use crate::work::operations::behind::OnFace;
 use crate::work::operations::standing::LeftStanding;
+use crate::work::productivity::RealProductivity;
 use crate::work::program::WallS;
 use crate::work::verify::{VerdictKeys, Verification, WorstPlace};
 use osculate_postproc::Setup;
 use serde::Serialize;
 
-/// Productivity at three levels, mm2/min.
+/// Productivity of passes at the feed asked for, and of the whole program, mm2/min.
 #[derive(Debug, Serialize)]
 #[non_exhaustive]
 pub struct Productivity {
@@ -72,6 +73,8 @@ pub struct Summary {
     pub area_mm2: f64,
     /// Area over time at three levels.
     pub productivity_mm2_min: Productivity,
+    /// In the time that the program takes; `productivity_mm2_min` has the passes at the feed that was asked for.
+    pub productivity: RealProductivity,
     /// The estimated ideal time, with which the plan is compared.
     #[serde(flatten)]
     pub ideal: Option<IdealTime>,

@@ -21,7 +21,11 @@ const EQUATIONS: [[&str; 3]; 18] = [
         "left to another paper",
     ],
     ["9 h(u, v), 19 S(u, v)", "`given::Given`", ""],
-    ["11, 31 averages", "`levels::Levels`: regional and global", ""],
+    [
+        "11, 31 averages",
+        "`levels::Levels`: regional and global; of a program in its real time `real_time::Region`, `real_time::Finishing`",
+        "",
+    ],
     [
         "18 volume of stock",
         "`rough::layer_volume`: S + S^2 H + S^3 K / 3 over the area; as printed: `rough::flat_volume`",

@@ -15,6 +15,7 @@ use crate::work::operations::posted::Program;
 use crate::work::operations::standing;
 use crate::work::operations::step::Step;
 use crate::work::plan::{self, Plan, PlanFile, Times, summary_of};
+use crate::work::productivity::{InTime, Timed};
 use crate::work::program::{Planned, WallS};
 use crate::work::summary::{OperationSummary, SetupSummary, Summary};
 use crate::work::verify::Verified;
@@ -64,8 +65,14 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let Known { list, part, steps, programs, course, judged, whole, notes, mut wall_s, begin } = known;
     let stage = Stage::begin(watch, "report");
     let mut operations = Vec::with_capacity(steps.len());
+    let timed = Timed { motions: &course.motions, times_min: &course.times_min };
+    let in_time = InTime::of(list.whole(), timed, &whole);
     for ((step, judged), section) in steps.iter().zip(&judged).zip(&course.sections) {
-        operations.push(operation(list, step, judged, times(&course, &section.motions))?);
+        let times = times(&course, &section.motions);
+        let part = (section.motions.clone(), times.time_min);
+        let mut told = operation(list, step, judged, times)?;
+        told.figures.productivity = in_time.told(&step.job, part);
+        operations.push(told);
     }
     let hands = steps.iter().zip(&course.sections).map(|(step, section)| {
         let mut tool = fill::tool(&step.job);
@@ -82,6 +89,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let job = list.whole();
     let mut summary = summary_of(job, part, &merged, all, &whole)?;
     summary.format = 2;
+    summary.productivity = in_time.whole(job, part, summary.time_min);
     summary.setups = setups(list, &programs, &course);
     let mut diagnostics: Vec<Diagnostic> = part.part.diagnostics.clone();
     diagnostics.extend(notes);
@@ -121,6 +129,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         setups: clamped,
         hands,
         extras: &extras,
+        in_time: &in_time,
     };
     let pages = plan::pages(&story, watch, &|f| stage.at(f));
     let mut files = Vec::new();

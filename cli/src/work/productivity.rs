@@ -1,0 +1,271 @@
+//! Productivity of a program in the time that it takes on its control: at every instant, over the cells of the faces, and as a whole.
+//!
+//! Of every place of the faces the verdict knows the motion that finished it, and of every motion the time is known as the control
+//! runs it, so that nothing here is what a planner hoped for. With declared raw material the volume is told too [R97, definition 4].
+
+use crate::job::Job;
+use crate::part::{Part, area};
+use crate::report::Scalar;
+use crate::work::program::Planned;
+use crate::work::rough;
+use crate::work::verify::Verified;
+use osculate_productivity::real_time::{
+    Cells, Fineness, FinishedPlace, Finishing, Region, Spread, Stretch, TimedMotion, stretches,
+};
+use osculate_tools::removal::{Body, Cut, Limits, Sample, Swept};
+use serde::Serialize;
+use std::ops::Range;
+
+/// Cells of the maps over all faces together, about: a summary stays a file that one can look at.
+const CELLS: f64 = 1024.0;
+/// Slower than this share of the feed of the job counts as held back.
+const SLOWER: f64 = 0.95;
+
+/// How a productivity is spread over the time in which something is made.
+#[derive(Debug, Serialize, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct SpreadKeys {
+    /// Least.
+    pub min: f64,
+    /// Half of the time it is lower.
+    pub median: f64,
+    /// Greatest.
+    pub max: f64,
+    /// What is made over the time of it.
+    pub mean: f64,
+}
+
+impl From<Spread> for SpreadKeys {
+    fn from(s: Spread) -> Self {
+        let [min, median, max, mean] = [s.min, s.median, s.max, s.mean].map(six_digits);
+        Self { min, median, max, mean }
+    }
+}
+
+/// The map of one face; cells stand in rows of u, as `[i][j]` at `i * v.len() + j`.
+#[derive(Debug, Serialize, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FaceMap {
+    /// The face.
+    pub face: String,
+    /// Middles of the cells along u.
+    pub u: Vec<f64>,
+    /// Middles of the cells along v.
+    pub v: Vec<f64>,
+    /// Area finished in each.
+    pub area_mm2: Vec<f64>,
+    /// The time of that.
+    pub time_s: Vec<f64>,
+    /// Area over time; null where nothing was finished.
+    pub mm2_min: Vec<Option<f64>>,
+}
+
+/// What is removed of declared raw material.
+#[derive(Debug, Serialize, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct RemovalKeys {
+    /// At every instant in which something is removed.
+    pub instantaneous_mm3_min: Option<SpreadKeys>,
+    /// All of it.
+    pub removed_mm3: f64,
+    /// The time in which something is removed.
+    pub removing_min: f64,
+    /// Over the whole time of the program, or of the operation.
+    pub global_mm3_min: f64,
+}
+
+/// The `productivity` object of `summary.json`, and of each operation there, which has no maps.
+#[derive(Debug, Serialize, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct RealProductivity {
+    /// Of finishing, at every instant in which something is finished; absent for a roughing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instantaneous_mm2_min: Option<SpreadKeys>,
+    /// The area that is finished, each place once: all but the uncut area.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finished_mm2: Option<f64>,
+    /// The time in which something is finished; the rest is ways, run-outs and air.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finishing_min: Option<f64>,
+    /// The share of that time in which the tip is slower than 95 % of the feed of the job.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slower_share: Option<f64>,
+    /// Strip width times way over the finished area: 1 and what strips share with each other or lay beside the faces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strips_over_area: Option<f64>,
+    /// The finished area over the whole time of the program, or of the operation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub global_mm2_min: Option<f64>,
+    /// By cells of each face.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub regional: Vec<FaceMap>,
+    /// With declared raw material.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub removal: Option<RemovalKeys>,
+}
+
+/// Six digits: the places are not worth more, and files stay short.
+fn six_digits(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+/// A program whose motions have their times.
+#[derive(Clone, Copy)]
+pub struct Timed<'a> {
+    /// Straight pieces.
+    pub motions: &'a [Swept],
+    /// Time at the end of each, min.
+    pub times_min: &'a [f64],
+}
+
+/// Productivity over the whole of a program, from which that of its parts is told.
+#[derive(Default)]
+pub struct InTime {
+    places: Vec<FinishedPlace>,
+    finishing: Option<Finishing>,
+    removing: Option<Vec<Stretch>>,
+}
+
+impl InTime {
+    /// What a verdict measured, in the time of the program that it is on. Where a time is not known there is nothing to tell.
+    pub fn of(job: &Job, program: Timed<'_>, verified: &Verified) -> Self {
+        let Timed { motions, times_min } = program;
+        let begins = std::iter::once(&0.0).chain(times_min);
+        let timed: Vec<TimedMotion> = motions
+            .iter()
+            .zip(times_min.iter().zip(begins))
+            .map(|(m, (end, begin))| TimedMotion {
+                time_min: (end - begin).max(0.0),
+                length_mm: (m.to.tip - m.from.tip).norm(),
+                feed: !m.rapid,
+            })
+            .collect();
+        let verdict = &verified.verdict;
+        let tolerance = job.tolerance();
+        let uncut_mm = Limits::new(tolerance.scallop_mm, tolerance.gouge_mm).uncut_mm;
+        let finishes = |s: &Sample, c: &Cut| !s.check_only && c.standoff_mm <= uncut_mm;
+        let place = |(s, c): (&Sample, &Cut)| FinishedPlace {
+            face: s.face,
+            at: s.uv,
+            area_mm2: if s.check_only { 0.0 } else { s.area_mm2 },
+            by: c.by.filter(|b| !b.rapid && b.body == Body::Cutter && finishes(s, c)).map(|b| b.motion),
+        };
+        let places: Vec<FinishedPlace> = verdict.samples().iter().zip(verdict.cuts()).map(place).collect();
+        let fineness = Fineness::of_places(verified.summary.spacing_mm);
+        let finishing = Finishing::of(&places, &timed, fineness).ok();
+        let removing = verdict.figures().stock.as_ref().and_then(|found| {
+            let mut volumes = vec![0.0; timed.len()];
+            for w in &found.carved.work {
+                *volumes.get_mut(w.motion as usize)? += w.volume_mm3;
+            }
+            // As fine as the cells of the stock, of which as many make a stretch as of places.
+            let fine = Fineness::of_places(found.cell_mm);
+            stretches(&timed, &volumes, Fineness { amount: fine.amount * found.cell_mm, ..fine }).ok()
+        });
+        Self { places, finishing, removing }
+    }
+
+    /// Of some of its motions, which take so long: without maps.
+    pub fn told(&self, job: &Job, (motions, time_min): (Range<usize>, f64)) -> RealProductivity {
+        let within = |s: &&Stretch| motions.contains(&s.motions.start);
+        let mut out = RealProductivity::default();
+        if let Some(finishing) = self.finishing.as_ref().filter(|_| !rough::is(job)) {
+            let own: Vec<&Stretch> = finishing.stretches.iter().filter(within).collect();
+            let sum = |of: &dyn Fn(&Stretch) -> f64| own.iter().fold(0.0, |sum, s| sum + of(s));
+            let (area, time) = (sum(&|s| s.amount), sum(&|s| s.time_min));
+            let slow_mm_min = SLOWER * job.feed_mm_min();
+            let slow = sum(&|s| if s.speed_mm_min() < slow_mm_min { s.time_min } else { 0.0 });
+            out.instantaneous_mm2_min = Spread::of(own.iter().copied()).map(Into::into);
+            out.finished_mm2 = Some(area);
+            out.finishing_min = Some(time);
+            out.slower_share = (time > 0.0).then(|| six_digits(slow / time));
+            out.global_mm2_min = (time_min > 0.0).then(|| area / time_min);
+        }
+        out.removal = self.removing.as_ref().map(|all| {
+            let own: Vec<&Stretch> = all.iter().filter(within).collect();
+            let removed_mm3 = own.iter().fold(0.0, |sum, s| sum + s.amount);
+            RemovalKeys {
+                instantaneous_mm3_min: Spread::of(own.iter().copied()).map(Into::into),
+                removed_mm3,
+                removing_min: own.iter().fold(0.0, |sum, s| sum + s.time_min),
+                global_mm3_min: if time_min > 0.0 { removed_mm3 / time_min } else { 0.0 },
+            }
+        });
+        out
+    }
+
+    /// Of the whole program, with the maps of its faces.
+    pub fn whole(&self, job: &Job, faces: &Part, time_min: f64) -> RealProductivity {
+        let mut out = self.told(job, (0..usize::MAX, time_min));
+        let Some(finishing) = self.finishing.as_ref().filter(|_| out.finished_mm2.is_some()) else {
+            return out;
+        };
+        let areas: Vec<f64> = faces.faces.iter().map(area).collect();
+        let all: f64 = areas.iter().sum();
+        let own = faces.faces.iter().zip(&areas).zip(0u32..).map(|((face, area), number)| {
+            let most = (CELLS * area / all).round().max(1.0) as usize;
+            let found = Region::of(&self.places, finishing, Cells::over(&face.surface, number, most));
+            let short = |all: &[f64]| all.iter().map(|x| six_digits(*x)).collect();
+            FaceMap {
+                face: face.id.clone(),
+                u: short(&found.u),
+                v: short(&found.v),
+                area_mm2: short(&found.area_mm2),
+                time_s: found.time_min.iter().map(|t| six_digits(60.0 * t)).collect(),
+                mm2_min: found.mm2_min().into_iter().map(|e| e.is_finite().then(|| six_digits(e))).collect(),
+            }
+        });
+        out.regional = own.collect();
+        out
+    }
+
+    /// What the report paints, of every sample of the verdict; NaN where nothing was finished. None for a roughing. Of several tools
+    /// each may have a feed of its own: then the map of the speed is left out.
+    pub fn maps(&self, job: &Job, one_tool: bool) -> Vec<(Scalar, Vec<f32>)> {
+        let Some(finishing) = self.finishing.as_ref().filter(|_| !rough::is(job)) else { return Vec::new() };
+        let map = |name: &str, unit: &str, value: &dyn Fn(&Stretch) -> f64| {
+            let one = |k: usize| finishing.stretch(k).map_or(f32::NAN, |s| value(s) as f32);
+            let scalar = Scalar { name: name.to_owned(), unit: unit.to_owned() };
+            (scalar, (0..self.places.len()).map(one).collect())
+        };
+        let mut out = vec![map("Productivity", "mm2/min", &Stretch::per_min)];
+        if one_tool {
+            let asked_mm_min = job.feed_mm_min();
+            out.push(map("Speed of feed asked", "%", &|s| 100.0 * s.speed_mm_min() / asked_mm_min));
+        }
+        out
+    }
+}
+
+/// Strip width times way over the finished area, of passes that know their strips.
+pub fn strips_over_area(planned: &Planned<'_>, finished_mm2: Option<f64>) -> Option<f64> {
+    let finished = finished_mm2.filter(|area| planned.with_strips && *area > 0.0)?;
+    let strips = planned.passes.passes.iter().flat_map(|p| p.points.windows(2)).map(|w| {
+        let width = 0.5 * (w[0].width_mm + w[1].width_mm);
+        if width.is_finite() { width * (w[1].point - w[0].point).norm() } else { 0.0 }
+    });
+    let strips: f64 = strips.sum();
+    (strips > 0.0).then(|| six_digits(strips / finished))
+}
+
+impl RealProductivity {
+    /// Rows for people: what, value, unit.
+    pub fn rows(&self) -> Vec<(&'static str, String, &'static str)> {
+        let spread = |s: &SpreadKeys| format!("{:.1} to {:.1}, median {:.1}", s.min, s.max, s.median);
+        let mut out = Vec::new();
+        if let Some(s) = &self.instantaneous_mm2_min {
+            out.push(("productivity at an instant", spread(s), "mm2/min"));
+        }
+        if let Some(share) = self.slower_share {
+            out.push(("slower than the feed asked for", format!("{:.0}", 100.0 * share), "% of it"));
+        }
+        // Of a roughing alone: of all others the area says more.
+        if let Some(r) = self.removal.as_ref().filter(|_| self.finished_mm2.is_none()) {
+            if let Some(s) = &r.instantaneous_mm3_min {
+                out.push(("removal at an instant", spread(s), "mm3/min"));
+            }
+            out.push(("global removal", format!("{:.1}", r.global_mm3_min), "mm3/min"));
+        }
+        out
+    }
+}
