@@ -52,7 +52,7 @@ fn words_mm(job: &Job) -> f64 {
 }
 
 /// By how much the control of a job leaves the programmed way at corners, mm: verdicts add it.
-fn blend_mm(job: &Job) -> f64 {
+pub fn blend_mm(job: &Job) -> f64 {
     let asked = solve(job).tip_tol_mm;
     match job.control().dialect {
         Dialect::Fanuc => 0.0,

@@ -442,11 +442,11 @@ impl<'a> Choice<'a> {
         self.entries[contender.entry].state = State::Out(why.message().to_owned());
     }
 
-    /// Records what verification said of a contender; `why` it is out where it does not hold.
-    pub fn record(&mut self, contender: &Contender, measured: Measured, why: Option<Objection>) {
+    /// Records what verification said of a contender; `why` it is out where it does not hold. Whether it is laid out anew, for less.
+    pub fn record(&mut self, contender: &Contender, measured: Measured, why: Option<Objection>) -> bool {
         let k = contender.entry;
         self.entries[k].verified = Some(measured);
-        let Some(objection) = why else { return };
+        let Some(objection) = why else { return false };
         let limit_mm = contender.job.tolerance().scallop_mm;
         let again = self.for_less(k, &objection, limit_mm);
         self.entries[k].state = State::Out(objection.text);
@@ -454,6 +454,7 @@ impl<'a> Choice<'a> {
             self.entries[k].state = State::Open;
             self.entries[k].figures = None;
         }
+        again
     }
 
     /// The candidates for tables, fastest first, of each tool and strategy the lead that came furthest.

@@ -7,13 +7,14 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part;
 use crate::watch::Watch;
+use crate::work::budget;
 use crate::work::look::Objection;
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::verify::{Verification, Verified};
 use osculate_productivity::levels::{Totals, levels};
 use osculate_tools::removal::{Answer, Limits};
 
-/// Contenders that hold at their samples only, after which the best of them is taken: finer looks are for the job to ask for.
+/// Contenders that hold at their samples only, and closer passes too, after which the best of them is taken: finer looks are for the job to ask for.
 const MOST_NOT_SHOWN: usize = 2;
 /// Contenders that are verified at most.
 const MOST_VERIFIED: usize = 9;
@@ -55,10 +56,10 @@ pub fn settle(
             }
         };
         let why = objection(&contender.job, &found)?;
-        not_shown += usize::from(found.verdict.answer() == Answer::NotShown);
         holding += usize::from(why.is_none());
         let measured = measured(choice, &contender, &found.summary)?;
-        choice.record(&contender, measured, why);
+        let again = choice.record(&contender, measured, why);
+        not_shown += usize::from(found.verdict.answer() == Answer::NotShown && !again);
         if holding >= enough && found.summary.within_tolerance {
             choice.undercut(&contender);
         }
@@ -98,7 +99,10 @@ fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> 
         Answer::Held => return Ok(None),
         Answer::NotShown => {
             let text = format!("verified: {}", found.verdict.words());
-            return Ok(Some(Objection { digs_in: false, left_mm: None, marks_mm: 0.0, text }));
+            // What may stand between samples and at blended corners counts as left.
+            let left_mm = v.hidden_scallop_mm.map(|more| v.height_max_mm + more + budget::blend_mm(job));
+            let marks_mm = v.height_max_mm - v.scallop_max_mm;
+            return Ok(Some(Objection { digs_in: false, left_mm, marks_mm, text }));
         }
         Answer::NotHeld => {}
     }
