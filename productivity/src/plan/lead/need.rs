@@ -26,8 +26,8 @@ const STRIDE: usize = 5;
 /// Points of the lattice along each side of what is passed over at once, near the tool and further off.
 const BLOCK: usize = 4;
 const GROUP: usize = 30;
-/// Depth accepted, of the tolerance: what else goes too deep, chords above all, needs the rest.
-const ACCEPTED: f64 = 0.15;
+/// Depth accepted, of the tolerance, as fields of axes have it: what else goes too deep, chords above all, needs the rest.
+const ACCEPTED: f64 = 0.3;
 /// Depth accepted of a pose beyond the border, of the tolerance: no lead was found for it.
 const DUG: f64 = 0.5;
 /// Quotient of leads that are tried one after the other, and halvings between the last two.
