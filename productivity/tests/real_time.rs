@@ -27,7 +27,7 @@ fn nurbs(wave_mm: f64) -> Box<dyn Surface> {
     let knots = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
     let pole = |k: usize| {
         let (i, j) = ((k / 4) as f64, (k % 4) as f64);
-        let z = if (k / 4 + k % 4) % 2 == 0 { wave_mm } else { -0.5 * wave_mm };
+        let z = if (k / 4 + k % 4).is_multiple_of(2) { wave_mm } else { -0.5 * wave_mm };
         Point3::new(14.0 * i / 3.0, 11.0 * j / 3.0 + 0.6 * i, z)
     };
     let net = Net { count: [4, 4], points: (0..16).map(pole).collect(), weights: None };
