@@ -24,6 +24,8 @@ const ACCEPTED: f64 = 0.3;
 const ACCEPTED_OF_BALLS: f64 = 0.6;
 /// Axes lean off the normal by a right angle less this at most, rad.
 const UPRIGHT_RAD: f64 = 0.035;
+/// A flat bottom leans so much at least, rad: else it rubs where it should cut.
+const LEAST_RAD: f64 = 0.017_453_292_519_943_295;
 
 /// Whether the job's machine leaves axes no more than a line: three or four joints.
 pub fn is_line(job: &Job) -> bool {
@@ -168,7 +170,7 @@ impl Fields {
 
 /// The least and the greatest lean off the normal that a cutter is asked for, rad.
 pub fn leans_rad(cutter: &Cutter) -> [f64; 2] {
-    [cutter.least_lean_rad(), FRAC_PI_2 - UPRIGHT_RAD]
+    [if cutter.is_ball() { 0.0 } else { LEAST_RAD }, FRAC_PI_2 - UPRIGHT_RAD]
 }
 
 /// The direction of a strategy's passes where it is one of the parameters'; else empty.

@@ -23,6 +23,8 @@ pub const PLACES: usize = 500;
 const PLACES_OF_A_LIST: usize = 1500;
 /// Axes stay so far off the tangent planes, rad.
 const UPRIGHT_RAD: f64 = 0.035;
+/// A flat end leans so much at least where it may lean, rad.
+const LEAST_RAD: f64 = 0.0175;
 
 /// What a tool reaches of the faces of an operation.
 #[derive(Debug, Serialize)]
@@ -81,7 +83,7 @@ fn of_tool(operation: &str, job: &Job, part: &Part, at: At<'_>) -> Result<(Reach
     let gouge_mm = coarse_mm(job.tolerance());
     let (own, check) = (named(&part.faces), named(&part.check));
     let kept = job.strategy().kept_axis();
-    let least = if kept.is_some() { 0.0 } else { cutter.least_lean_rad() };
+    let least = if cutter.is_ball() || kept.is_some() { 0.0 } else { LEAST_RAD };
     let asked = Asked {
         around: Around { faces: &own, check: &check, cutter: &cutter, gouge_mm, left: Left::default() },
         holder: job.holder(),
