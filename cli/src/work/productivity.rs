@@ -87,7 +87,7 @@ pub struct RealProductivity {
     /// The time in which something is finished; the rest is ways, run-outs and air.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finishing_min: Option<f64>,
-    /// The share of that time in which the tip is slower than 95 % of the feed of the job.
+    /// The share of that time in which the tip is slower than 95 % of the feed of the job; of a list each operation has its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slower_share: Option<f64>,
     /// Strip width times way over the finished area: 1 and what strips share with each other or lay beside the faces.
