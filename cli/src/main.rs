@@ -23,7 +23,7 @@ fn run(cli: &Cli) -> Outcome {
         Verb::Export(options) => cmd::export::run(options, cli.json),
         Verb::Probe { part, face, at } => cmd::probe::run(part, face.as_deref(), at, cli.json),
         Verb::Lines(options) => cmd::lines::run(options, cli.json),
-        Verb::Strip { job } => cmd::strip::run(job, cli.json),
+        Verb::Strip { job, out } => cmd::strip::run(job, out.as_deref(), cli.json),
         Verb::Compare { job, out, nodes } => {
             cmd::compare::run(job, out.as_deref(), *nodes as usize, cli.json)
         }

@@ -73,6 +73,10 @@ fn a_plan_is_written_posted_verified_and_reported() {
         let mean = number(real, &["instantaneous_mm2_min", "mean"]);
         assert!((mean * finishing / finished - 1.0).abs() < 1e-4);
         assert!(number(real, &["strips_over_area"]) > 0.995, "{}", real["strips_over_area"]);
+        // A ball of 5 mm that leans by 15 degrees along the pass: 2 pi R sin 15 of way a turn, 8000 times a minute.
+        let speed = std::f64::consts::TAU * 5.0 * 15f64.to_radians().sin() * 8.0;
+        let median = number(real, &["cutting_speed_m_min", "median"]);
+        assert!((median / speed - 1.0).abs() < 0.02, "{median} of {speed}");
 
         // The CL file verifies too, and so does the program on its own.
         for (file, source) in [(out.join("path.cl"), "cl"), (program.clone(), "nc")] {

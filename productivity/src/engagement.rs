@@ -179,6 +179,17 @@ impl Engagement {
         each.sum::<f64>() * TAU / f64::from(teeth)
     }
 
+    /// How many of `teeth` edges are in cut, the first at `phase_rad`: the m of [R97, eq. 30].
+    #[must_use]
+    pub fn teeth_in_cut(&self, teeth: u32, phase_rad: f64) -> u32 {
+        let n = self.by_angle.len();
+        let in_cut = |j: &u32| {
+            let turn = (phase_rad / TAU + f64::from(*j) / f64::from(teeth)).rem_euclid(1.0);
+            self.by_angle[(turn * n as f64) as usize % n] > 0.0
+        };
+        (0..teeth).filter(in_cut).count() as u32
+    }
+
     /// The angle over which the cutter is engaged, rad.
     #[must_use]
     pub fn arc_rad(&self) -> f64 {
@@ -246,6 +257,11 @@ mod tests {
                 _ => PI * 2f64.sqrt() / 4.0,
             };
             assert!((most / rate - want).abs() < 1e-3, "{teeth}: {}", most / rate);
+            // Half a turn of a slot is in cut, and so are half of an even number of teeth.
+            let phase = |k: i32| TAU * (f64::from(k) + 0.25) / f64::from(n);
+            let in_cut: Vec<u32> = (0..n).map(|k| got.teeth_in_cut(teeth, phase(k))).collect();
+            let range = [in_cut.iter().min(), in_cut.iter().max()].map(|x| *x.unwrap());
+            assert_eq!(range, [teeth / 2, teeth.div_ceil(2)], "{teeth}");
         }
     }
 

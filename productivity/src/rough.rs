@@ -40,15 +40,36 @@ pub enum LayerError {
     Rate(#[from] RateError),
 }
 
-/// Volume per area of the layer, mm: `S + S^2 H + S^3 K / 3`; zero where the surface has no tangent plane.
-fn depth(jet: &Jet2, thickness_mm: f64, crossed: &Cell<Option<LayerError>>) -> f64 {
-    let Ok(forms) = jet.forms() else { return 0.0 };
+/// Volume of the layer per area of the part at a place, mm: `S + S^2 H + S^3 K / 3`; zero where the surface has no tangent plane.
+///
+/// ```
+/// use osculate_geom::{Surface, analytic::Sphere, uv};
+/// use osculate_productivity::rough::layer_depth_mm;
+///
+/// // 1 mm around a ball of radius 10 mm: (11^3 - 10^3) / (3 * 10^2) of volume per area.
+/// let depth = layer_depth_mm(&Sphere::new(10.0)?.jet2(uv(0.3, 0.4)), 1.0)?;
+/// assert!((depth - 331.0 / 300.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`LayerError::Crosses`].
+pub fn layer_depth_mm(jet: &Jet2, thickness_mm: f64) -> Result<f64, LayerError> {
+    let Ok(forms) = jet.forms() else { return Ok(0.0) };
     let k = forms.principal().k_min;
     if 1.0 + thickness_mm * k <= 0.0 {
-        crossed.set(Some(LayerError::Crosses { at: jet.uv, thickness_mm, radius_mm: -1.0 / k }));
+        return Err(LayerError::Crosses { at: jet.uv, thickness_mm, radius_mm: -1.0 / k });
     }
     let s = thickness_mm;
-    s * (1.0 + s * (forms.mean() + s * forms.gauss() / 3.0))
+    Ok(s * (1.0 + s * (forms.mean() + s * forms.gauss() / 3.0)))
+}
+
+/// The same for an integral, whose error is told after it.
+fn depth(jet: &Jet2, thickness_mm: f64, crossed: &Cell<Option<LayerError>>) -> f64 {
+    layer_depth_mm(jet, thickness_mm).unwrap_or_else(|e| {
+        crossed.set(Some(e));
+        0.0
+    })
 }
 
 /// The exact volume of the layer over the surface's whole parameter rectangle, mm3, to the `relative` accuracy of its

@@ -1,67 +1,27 @@
 //! `strip`: the strip at one contact, exact and by every closed form that applies.
 
-use crate::screen::render;
+use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
+use osculate::figure::indicatrices;
 use osculate::job::strategy::Kind;
 use osculate::job::{ContactFeed, Job, LeadKey};
 use osculate::part;
 use osculate::words::{Table, number};
+use osculate::work::strip::{Answer, Bends, Forms, Instant, Passing, Sharing};
 use osculate_geom::{Surface, uv};
-use osculate_productivity::closed_form::{self, DomainError, Section};
 use osculate_productivity::plan::{Along, Strategy};
-use osculate_tools::{Contact, FeedLine, strip};
-use serde::Serialize;
-use std::collections::BTreeMap;
+use osculate_tools::{Contact, FeedLine};
 use std::path::Path;
 
 /// Per cent of a form are told up to this many times the exact width. Where forms apply they are off by less than half of it; two contacts
 /// (5C) are several times as wide as the one that the job's lead gives.
 const MOST_TIMES: f64 = 100.0;
 
-#[derive(Serialize)]
-struct Exact {
-    width_mm: f64,
-    left_mm: f64,
-    right_mm: f64,
-    undercut_mm: f64,
-    error_mm: f64,
-    ends_at_edge: [bool; 2],
-}
-
-#[derive(Serialize)]
-struct Form {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    width_mm: Option<f64>,
-    /// Why the form has no value here.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    why_not: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    lead_deg: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct MinMax {
-    min: f64,
-    /// Absent for a sharp edge, whose curvature is infinite.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Answer {
-    exact: Exact,
-    closed_forms: BTreeMap<&'static str, Form>,
-    relative_curvature_per_mm: MinMax,
-    /// Why the tool digs in next to the contact, with what would fit.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    does_not_fit: Option<String>,
-    widest_direction_deg: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max_feed_per_tooth_mm: Option<f64>,
-}
-
 /// Runs the verb.
-pub fn run(path: &Path, json: bool) -> Outcome {
+pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
+    if let Some(out) = out {
+        output::folder(out)?;
+    }
     let job = Job::load_with_one_tool(path)?;
     let table = job.contact().ok_or_else(|| {
         Failure::file(path, "strip needs a [contact] table: at = [u, v] and along or angle_deg")
@@ -105,81 +65,22 @@ pub fn run(path: &Path, json: bool) -> Outcome {
     let contact = Contact::new(&*face.surface, at, &cutter, feed, job.lean(0.0))
         .map_err(|e| Failure::file(path, e))?
         .lifted(table.lift_mm);
-    let exact = strip::exact(&contact, scallop_mm).map_err(|e| Failure::file(path, e))?;
-    let answer = answer(&contact, &exact, scallop_mm);
+    let answer = Answer::of(&contact, Passing::of(&job)).map_err(|e| Failure::file(path, e))?;
+    if let Some(out) = out {
+        let whole = serde_json::to_string(&answer).map_err(Failure::job)?;
+        let title = format!("{}: contact at u, v = {}, {}", face.id, table.at[0], table.at[1]);
+        let picture = indicatrices::page(&answer, &title);
+        let claimed = output::claim(out)?;
+        let undivided = cancel::whole();
+        output::set(out, &[("strip.json", whole.as_bytes()), ("strip.svg", picture.as_bytes())])?;
+        drop((undivided, claimed));
+    }
     if json {
         render::json(&answer)?;
     } else {
         render::text(&describe(&answer, scallop_mm))?;
     }
     Ok(Done::Yes)
-}
-
-fn answer(contact: &Contact<'_>, exact: &strip::Strip, scallop_mm: f64) -> Answer {
-    let q = contact.relative();
-    let (left, tangent) = (contact.frame.left.into_inner(), contact.frame.tangent.into_inner());
-    let part_across = contact.forms.normal_curvature(&left);
-    let part_along = contact.forms.normal_curvature(&tangent);
-    let section = Section { part_per_mm: part_across, tool_per_mm: q.along(&left) - part_across, scallop_mm };
-    let lengthwise =
-        Section { part_per_mm: part_along, tool_per_mm: q.along(&tangent) - part_along, scallop_mm };
-    let mut forms = BTreeMap::new();
-    let mut put = |name, value: Result<f64, DomainError>, lead: Option<f64>| {
-        let form = match value {
-            Ok(w) => Form { width_mm: Some(w), why_not: None, lead_deg: lead },
-            Err(e) => Form { width_mm: None, why_not: Some(e.to_string()), lead_deg: None },
-        };
-        forms.insert(name, form);
-    };
-    put("r97_37", closed_form::width_37(section), None);
-    put("r97_38", closed_form::chord_38(section), None);
-    put("r97_40", closed_form::linear_40(section), None);
-    put("leading_order", closed_form::leading_order(section), None);
-    put("leading_order_swept", closed_form::leading_order_swept(&q, &left, scallop_mm), None);
-    let cutter = contact.cutter;
-    if cutter.is_ball() {
-        put("m86_2cl", closed_form::two_axis_ball(cutter.radius_mm(), scallop_mm), None);
-    } else {
-        let (arc, lead) = (cutter.touching(contact.lean.lead_rad), contact.lean.lead_rad);
-        let (core, corner) = (arc.centre_rho_mm, arc.radius_mm);
-        put("m86_3c", closed_form::three_axis_toroidal(core, corner, lead, part_across, scallop_mm), None);
-        let five = closed_form::five_axis_flat(core, corner, part_along, part_across, scallop_mm);
-        let lead = five.as_ref().ok().map(|f| f.lead_rad.to_degrees());
-        put("m86_5c", five.map(|f| f.width_mm), lead);
-    }
-    // The angle from S_u towards S_v at which the strip is widest: the feed lies across the eigenvector of Q's
-    // smaller eigenvalue.
-    let widest = contact.forms.normal.cross(&q.d_min);
-    let jet = contact.surface.jet2(contact.at);
-    let e1 = contact.forms.frame[0];
-    let e2 = contact.forms.frame[1].into_inner() * jet.side.sign();
-    let angle = widest.dot(&e2).atan2(widest.dot(&e1)).to_degrees();
-    Answer {
-        exact: Exact {
-            width_mm: exact.width_mm,
-            left_mm: exact.left_mm,
-            right_mm: exact.right_mm,
-            undercut_mm: exact.undercut_mm,
-            error_mm: exact.error_mm,
-            ends_at_edge: exact.at_edge,
-        },
-        closed_forms: forms,
-        relative_curvature_per_mm: MinMax { min: q.min, max: q.max.is_finite().then_some(q.max) },
-        does_not_fit: contact.fits().err().map(|e| e.to_string()),
-        // Directions are lines: the angle in (-90, 90].
-        widest_direction_deg: if angle > 90.0 {
-            angle - 180.0
-        } else if angle <= -90.0 {
-            angle + 180.0
-        } else {
-            angle
-        },
-        max_feed_per_tooth_mm: if lengthwise.tool_per_mm.is_finite() {
-            closed_form::width_37(lengthwise).ok()
-        } else {
-            None
-        },
-    }
 }
 
 /// A form beside the exact width. Where next to nothing is left of the strip, as under a tool lifted by the tolerance, per cent say nothing.
@@ -190,20 +91,94 @@ fn against(width_mm: f64, exact_mm: f64) -> String {
     }
 }
 
-fn describe(a: &Answer, scallop_mm: f64) -> String {
-    let mut t = Table::new(["strip", "width mm", "against exact"]);
-    let e = &a.exact;
-    t.row(["exact".into(), number(e.width_mm, 8), String::new()]);
-    for (name, form) in &a.closed_forms {
-        match (form.width_mm, &form.why_not) {
-            (Some(w), _) => {
-                t.row([(*name).into(), number(w, 8), against(w, e.width_mm)]);
-            }
-            (None, Some(_)) => t.row([(*name).into(), "-".into(), "does not apply".into()]),
-            (None, None) => {}
+/// Closed forms beside what is exact.
+fn beside(what: &str, exact_mm: Option<f64>, forms: &Forms) -> String {
+    let mut t = Table::new([what, "mm", "against exact"]);
+    t.row(["exact".into(), exact_mm.map_or_else(|| "-".into(), |mm| number(mm, 8)), String::new()]);
+    for (name, form) in forms {
+        let (width, off) = form.width_mm.map_or_else(
+            || ("-".into(), "does not apply".into()),
+            |w| (number(w, 8), exact_mm.map_or_else(String::new, |exact| against(w, exact))),
+        );
+        t.row([(*name).into(), width, off]);
+    }
+    t.render()
+}
+
+/// Curvatures and radii in the direction of the feed and across it.
+fn bends(a: &Answer) -> String {
+    let mut t = Table::new(["", "part 1/mm", "radius mm", "tool 1/mm", "radius mm"]);
+    let radius = |k: f64| if k == 0.0 { "straight".into() } else { number(1.0 / k, 6) };
+    let mut row = |name: &str, b: &Bends| {
+        let [tool, of_tool] =
+            b.tool_per_mm.map_or_else(|| ["infinite".into(), "edge".into()], |k| [number(k, 6), radius(k)]);
+        t.row([name.into(), number(b.part_per_mm, 6), radius(b.part_per_mm), tool, of_tool]);
+    };
+    row("along the feed", &a.turns.along_feed);
+    row("across the feed", &a.turns.across_feed);
+    t.render()
+}
+
+/// How the tolerance is best shared.
+fn shared(s: &Sharing) -> String {
+    let b = &s.best;
+    let mut out = format!(
+        "  best share of the tolerance for marks {}: {} mm a tooth x strip {} mm = {} mm2",
+        number(b.chi, 4),
+        number(b.feed_per_tooth_mm, 5),
+        number(b.strip_mm, 5),
+        number(b.area_per_tooth_mm2, 5)
+    );
+    if let Some(a) = b.leading_area_per_tooth_mm2 {
+        out.push_str(&format!(" (leading order {})", number(a, 5)));
+    }
+    if let Some(a) = b.area_mm2_min {
+        out.push_str(&format!(", {} mm2/min", number(a, 5)));
+    }
+    if let Some(cap) = s.cap.as_ref().filter(|_| b.capped) {
+        let what = cap.by.replace('_', " ");
+        out.push_str(&format!("; {what} holds it to {} mm a tooth", number(cap.feed_per_tooth_mm, 5)));
+    }
+    out.push('\n');
+    out
+}
+
+/// What is made as the tool passes.
+fn passing(i: &Instant) -> String {
+    let mut out = format!(
+        "  at {} mm/min: {} mm2/min (width times feed {})",
+        number(i.feed_mm_min, 6),
+        number(i.area_mm2_min, 6),
+        number(i.width_times_feed_mm2_min, 6)
+    );
+    if let Some(v) = i.layer_mm3_min {
+        out.push_str(&format!(", of a layer of {} mm {} mm3/min", number(i.layer_mm, 4), number(v, 6)));
+    }
+    if let Some(e) = &i.engagement {
+        out.push_str(&format!(
+            "\n  in that layer, uncut: {} mm3/min over {:.0} deg of the cutter",
+            number(e.mm3_min, 6),
+            e.arc_deg
+        ));
+        if let Some(t) = &e.teeth {
+            let [few, many] = t.in_cut;
+            out.push_str(&format!(
+                ", {few} to {many} of {} teeth in cut, {} to {} mm3/min, one at most {}",
+                t.count,
+                number(t.mm3_min[0], 4),
+                number(t.mm3_min[1], 4),
+                number(t.one_most_mm3_min, 4)
+            ));
         }
     }
-    let mut out = format!("\n  strip at a tolerance of {scallop_mm} mm\n\n{}\n", t.render());
+    out.push('\n');
+    out
+}
+
+fn describe(a: &Answer, scallop_mm: f64) -> String {
+    let e = &a.exact;
+    let strip = beside("strip", Some(e.width_mm), &a.closed_forms);
+    let mut out = format!("\n  strip at a tolerance of {scallop_mm} mm\n\n{strip}\n");
     out.push_str(&format!(
         "  left {} mm, right {} mm, undercut {} mm, numerical error {} mm\n",
         number(e.left_mm, 8),
@@ -221,10 +196,31 @@ fn describe(a: &Answer, scallop_mm: f64) -> String {
         "  widest strip with the feed at {:.2} deg from S_u towards S_v\n",
         a.widest_direction_deg
     ));
-    if let Some(f) = a.max_feed_per_tooth_mm {
-        out.push_str(&format!("  longest feed per tooth at this tolerance {} mm\n", number(f, 6)));
+    if let Some([claimed, off]) =
+        a.turns.claimed_direction_deg.zip(a.turns.claimed_off_deg).map(|(deg, off)| [deg, off])
+    {
+        out.push_str(&format!(
+            "  the smallest radius of conformity asks for {claimed:.2} deg, {off:.2} deg off\n"
+        ));
     }
-    for (name, form) in &a.closed_forms {
+    out.push_str(&format!(
+        "  Dupin's indicatrix: part {}, tool {}\n\n{}\n",
+        a.turns.dupin_part.words(),
+        a.turns.dupin_tool.words(),
+        bends(a)
+    ));
+    let marks = &a.feed_per_tooth;
+    out.push_str(&beside("longest feed per tooth", marks.exact_mm, &marks.closed_forms));
+    out.push('\n');
+    match (&a.sharing, &a.no_sharing) {
+        (Some(sharing), _) => out.push_str(&shared(sharing)),
+        (None, Some(why)) => out.push_str(&format!("  no shares of the tolerance: {why}\n")),
+        (None, None) => {}
+    }
+    if let Some(instant) = &a.instant {
+        out.push_str(&passing(instant));
+    }
+    for (name, form) in a.closed_forms.iter().chain(&marks.closed_forms) {
         if let Some(why) = &form.why_not {
             out.push_str(&format!("  {name}: {why}\n"));
         }

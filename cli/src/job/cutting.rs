@@ -6,6 +6,7 @@ use crate::job::raw::Raw;
 use crate::job::strategy::Strategy;
 use crate::job::tool::Tool;
 use crate::job::words::LeadKey;
+use osculate_productivity::rate::Caps;
 
 /// Feed of a job that gives none, mm/min.
 const FEED_MM_MIN: f64 = 1000.0;
@@ -45,6 +46,17 @@ pub(super) fn feed_per_tooth_mm(tool: &Tool, strategy: &Strategy, mark_mm: f64) 
     let lead_rad = strategy.side_tilt().map_or(deg.to_radians(), |side| side.lean(1.0).lead_rad);
     let slope = (lead_rad.sin() * lead_rad.cos()).abs();
     (slope > 0.0).then(|| mark_mm / slope)
+}
+
+/// What holds the feed of a tool down besides the marks of its teeth; None without a spindle speed.
+pub(super) fn caps(tool: &Tool) -> Option<Caps> {
+    let c = tool.feeding();
+    Some(Caps {
+        spindle_rpm: c.spindle_rpm?,
+        teeth: tool.teeth().unwrap_or(1),
+        feed_mm_min: c.feed_mm_min.unwrap_or(FEED_MM_MIN),
+        feed_per_tooth_mm: c.feed_per_tooth_mm.unwrap_or(f64::INFINITY),
+    })
 }
 
 /// The feed of a tool, capped by the feed per tooth where the job gives both.

@@ -1,12 +1,13 @@
 //! What a job says, value by value: its tools, its tolerances, how to cut, for which machine.
 
-use super::cutting::feed_per_tooth_mm;
+use super::cutting::{caps, feed_per_tooth_mm};
 use super::{
     Contact, Control, Fixture, Flank, Job, Part, Setup, Stock, Strategy, Tool, Verification, control,
 };
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
 use osculate_productivity::plan::Tolerance;
+use osculate_productivity::rate::Caps;
 use osculate_tools::{Cutter, CutterSpec, Holder, Lean};
 use std::path::Path;
 use std::sync::Arc;
@@ -166,6 +167,12 @@ impl Job {
     #[must_use]
     pub fn feed_mm_min(&self) -> f64 {
         self.told.feeds_mm_min[self.hand.unwrap_or(0)]
+    }
+
+    /// What holds the feed down besides the marks of teeth; None without a spindle speed.
+    #[must_use]
+    pub fn caps(&self) -> Option<Caps> {
+        caps(self.tool())
     }
 
     /// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.

@@ -59,6 +59,9 @@ pub enum Verb {
     Strip {
         /// The job file, with its contact table.
         job: PathBuf,
+        /// Folder for strip.json and strip.svg: the indicatrices of part and tool, and productivity over the share of marks.
+        #[arg(long)]
+        out: Option<PathBuf>,
     },
     /// Tools, strategies, directions and leads of a job side by side: time, length, productivity, ranked, with why each lost.
     Compare {

@@ -33,6 +33,7 @@ pub mod reading;
 pub mod rough;
 pub mod setup;
 pub mod stock;
+pub mod strip;
 pub mod summary;
 pub mod sweep;
 pub mod verify;

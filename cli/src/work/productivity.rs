@@ -4,16 +4,20 @@
 //! runs it, so that nothing here is what a planner hoped for. With declared raw material the volume is told too [R97, definition 4].
 
 use crate::job::Job;
+use crate::job::stock::Blank;
 use crate::part::{Part, area};
 use crate::report::Scalar;
 use crate::work::program::Planned;
 use crate::work::rough;
 use crate::work::verify::Verified;
+use osculate_geom::Surface;
 use osculate_productivity::real_time::{
     Cells, Fineness, FinishedPlace, Finishing, Region, Spread, Stretch, TimedMotion, stretches,
 };
+use osculate_productivity::rough::layer_depth_mm;
 use osculate_tools::removal::{Body, Cut, Limits, Sample, Swept};
 use serde::Serialize;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Cells of the maps over all faces together, about: a summary stays a file that one can look at.
@@ -72,6 +76,10 @@ pub struct RemovalKeys {
     pub removing_min: f64,
     /// Over the whole time of the program, or of the operation.
     pub global_mm3_min: f64,
+    /// The volume of a declared layer over the faces, with the curvature of the faces [R97, eq. 18]; of the whole program alone, and
+    /// absent where normals of the faces cross in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer_mm3: Option<f64>,
 }
 
 /// The `productivity` object of `summary.json`, and of each operation there, which has no maps.
@@ -99,6 +107,10 @@ pub struct RealProductivity {
     /// By cells of each face.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub regional: Vec<FaceMap>,
+    /// Speed of the edge where it touches the faces, m/min, each place counting by its area; absent without a spindle speed. A ball
+    /// whose axis is the normal cuts with its tip, which stands still.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cutting_speed_m_min: Option<SpreadKeys>,
     /// With declared raw material.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removal: Option<RemovalKeys>,
@@ -122,6 +134,8 @@ pub struct Timed<'a> {
 #[derive(Default)]
 pub struct InTime {
     places: Vec<FinishedPlace>,
+    /// The angle between axis and normal as each place was finished, rad; not a number where nothing finished it.
+    leans_rad: Vec<f32>,
     finishing: Option<Finishing>,
     removing: Option<Vec<Stretch>>,
 }
@@ -152,6 +166,10 @@ impl InTime {
         };
         let places: Vec<FinishedPlace> = verdict.samples().iter().zip(verdict.cuts()).map(place).collect();
         let fineness = Fineness::of_places(verified.summary.spacing_mm);
+        let lean = |(p, s): (&FinishedPlace, &Sample)| {
+            p.by.and_then(|m| motions.get(m as usize)).map_or(f32::NAN, |m| m.to.axis.angle(&s.normal) as f32)
+        };
+        let leans_rad = places.iter().zip(verdict.samples()).map(lean).collect();
         let finishing = Finishing::of(&places, &timed, fineness).ok();
         let removing = verdict.figures().stock.as_ref().and_then(|found| {
             let mut volumes = vec![0.0; timed.len()];
@@ -162,7 +180,7 @@ impl InTime {
             let fine = Fineness::of_places(found.cell_mm);
             stretches(&timed, &volumes, Fineness { amount: fine.amount * found.cell_mm, ..fine }).ok()
         });
-        Self { places, finishing, removing }
+        Self { places, leans_rad, finishing, removing }
     }
 
     /// Of some of its motions, which take so long: without maps.
@@ -180,6 +198,12 @@ impl InTime {
             out.finishing_min = Some(time);
             out.slower_share = (time > 0.0).then(|| six_digits(slow / time));
             out.global_mm2_min = (time_min > 0.0).then(|| area / time_min);
+            out.cutting_speed_m_min = edge(job).and_then(|speed| {
+                let own = |p: &FinishedPlace| p.by.is_some_and(|m| motions.contains(&(m as usize)));
+                let all = self.places.iter().zip(&self.leans_rad).filter(|(p, _)| own(p));
+                let speeds = all.map(|(p, lean)| (speed(f64::from(*lean)), p.area_mm2));
+                Spread::weighted(speeds.filter(|(v, _)| v.is_finite())).map(Into::into)
+            });
         }
         out.removal = self.removing.as_ref().map(|all| {
             let own: Vec<&Stretch> = all.iter().filter(within).collect();
@@ -189,6 +213,7 @@ impl InTime {
                 removed_mm3,
                 removing_min: own.iter().fold(0.0, |sum, s| sum + s.time_min),
                 global_mm3_min: if time_min > 0.0 { removed_mm3 / time_min } else { 0.0 },
+                layer_mm3: None,
             }
         });
         out
@@ -197,6 +222,9 @@ impl InTime {
     /// Of the whole program, with the maps of its faces.
     pub fn whole(&self, job: &Job, faces: &Part, time_min: f64) -> RealProductivity {
         let mut out = self.told(job, (0..usize::MAX, time_min));
+        if let Some(removal) = &mut out.removal {
+            removal.layer_mm3 = self.layer_mm3(job, faces);
+        }
         let Some(finishing) = self.finishing.as_ref().filter(|_| out.finished_mm2.is_some()) else {
             return out;
         };
@@ -219,6 +247,17 @@ impl InTime {
         out
     }
 
+    /// The volume of a declared layer, by its depth at every place.
+    fn layer_mm3(&self, job: &Job, faces: &Part) -> Option<f64> {
+        let Blank::Layer(thickness_mm) = job.stock()?.blank else { return None };
+        let mut sum = 0.0;
+        for p in self.places.iter().filter(|p| p.area_mm2 > 0.0) {
+            let jet = faces.faces.get(p.face as usize)?.surface.jet2(p.at);
+            sum += p.area_mm2 * layer_depth_mm(&jet, thickness_mm).ok()?;
+        }
+        Some(sum)
+    }
+
     /// What the report paints, of every sample of the verdict; NaN where nothing was finished. None for a roughing. Of several tools
     /// each may have a feed of its own: then the map of the speed is left out.
     pub fn maps(&self, job: &Job, one_tool: bool) -> Vec<(Scalar, Vec<f32>)> {
@@ -232,9 +271,23 @@ impl InTime {
         if one_tool {
             let asked_mm_min = job.feed_mm_min();
             out.push(map("Speed of feed asked", "%", &|s| 100.0 * s.speed_mm_min() / asked_mm_min));
+            if let Some(speed) = edge(job) {
+                let scalar = Scalar { name: "Cutting speed".to_owned(), unit: "m/min".to_owned() };
+                let one = |lean: &f32| speed(f64::from(*lean)) as f32;
+                out.push((scalar, self.leans_rad.iter().map(one).collect()));
+            }
         }
         out
     }
+}
+
+/// The speed of the edge, m/min, by the angle between axis and normal, rad; None without a spindle speed.
+fn edge(job: &Job) -> Option<impl Fn(f64) -> f64> {
+    let (rpm, cutter) = (job.spindle_rpm()?, job.cutter());
+    Some(move |lean_rad: f64| {
+        let arc = cutter.touching(lean_rad);
+        TAU * (arc.centre_rho_mm + arc.radius_mm * lean_rad.sin()) * rpm / 1000.0
+    })
 }
 
 /// Strip width times way over the finished area, of passes that know their strips.
@@ -258,6 +311,9 @@ impl RealProductivity {
         }
         if let Some(share) = self.slower_share {
             out.push(("slower than the feed asked for", format!("{:.0}", 100.0 * share), "% of it"));
+        }
+        if let Some(s) = &self.cutting_speed_m_min {
+            out.push(("cutting speed at the contact", spread(s), "m/min"));
         }
         // Of a roughing alone: of all others the area says more.
         if let Some(r) = self.removal.as_ref().filter(|_| self.finished_mm2.is_none()) {

@@ -277,21 +277,23 @@ impl Spread {
     /// Of stretches that take time; none where no stretch does.
     #[must_use]
     pub fn of<'a>(stretches: impl IntoIterator<Item = &'a Stretch>) -> Option<Self> {
-        let (mut amount, mut time_min) = (0.0, 0.0);
-        let mut all: Vec<(f64, f64)> = Vec::new();
-        for s in stretches.into_iter().filter(|s| s.time_min > 0.0) {
-            amount += s.amount;
-            time_min += s.time_min;
-            all.push((s.per_min(), s.time_min));
-        }
+        Self::weighted(stretches.into_iter().filter(|s| s.time_min > 0.0).map(|s| (s.per_min(), s.time_min)))
+    }
+
+    /// Of values with their weights, which are positive; none where there is none.
+    #[must_use]
+    pub fn weighted(values: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
+        let mut all: Vec<(f64, f64)> = values.into_iter().filter(|(_, weight)| *weight > 0.0).collect();
+        let (sum, whole) =
+            all.iter().fold((0.0, 0.0), |(s, w), (value, weight)| (s + value * weight, w + weight));
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut so_far = 0.0;
-        let half = all.iter().find(|(_, time)| {
-            so_far += time;
-            so_far >= 0.5 * time_min
+        let half = all.iter().find(|(_, weight)| {
+            so_far += weight;
+            so_far >= 0.5 * whole
         });
         let (first, last) = (all.first()?, all.last()?);
-        Some(Self { min: first.0, median: half.unwrap_or(last).0, max: last.0, mean: amount / time_min })
+        Some(Self { min: first.0, median: half.unwrap_or(last).0, max: last.0, mean: sum / whole })
     }
 }
 
