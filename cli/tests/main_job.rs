@@ -31,6 +31,7 @@ fn a_plan_is_written_posted_verified_and_reported() {
             "path.cl".to_owned(),
             "path.svg".into(),
             "picture.svg".into(),
+            "productivity.svg".into(),
             format!("program.{extension}"),
             "report.html".into(),
             "summary.json".into(),
@@ -73,6 +74,8 @@ fn a_plan_is_written_posted_verified_and_reported() {
         let mean = number(real, &["instantaneous_mm2_min", "mean"]);
         assert!((mean * finishing / finished - 1.0).abs() < 1e-4);
         assert!(number(real, &["strips_over_area"]) > 0.995, "{}", real["strips_over_area"]);
+        let map = std::fs::read_to_string(out.join("productivity.svg")).unwrap();
+        assert!(map.contains("Productivity, mm2/min") && map.matches("<path").count() > 50, "{}", map.len());
         // A ball of 5 mm that leans by 15 degrees along the pass: 2 pi R sin 15 of way a turn, 8000 times a minute.
         let speed = std::f64::consts::TAU * 5.0 * 15f64.to_radians().sin() * 8.0;
         let median = number(real, &["cutting_speed_m_min", "median"]);

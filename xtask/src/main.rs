@@ -18,6 +18,7 @@ mod fuzz;
 mod interop;
 mod measured;
 mod mutate;
+mod own;
 mod package;
 mod parts;
 mod plans;
@@ -61,6 +62,8 @@ usage: cargo xtask COMMAND
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
   parts [--only TEXT] [--program FILE]
                 docs/parts.md: the examples that are whole parts, from the block to finished, planned and verified
+  own [--only TEXT] [--program FILE]
+                docs/papers/own-parts.md: what the papers' quantities are for real parts, with pictures
   first-hour --data FOLDER [--only TEXT] [--program FILE] [--limit S]
                 docs/first-hour.md: eleven real parts of a reference collection by init, check and plan, no key changed
   browser [--only TEXT] [--program FILE] [--report FILE] [--bless]
@@ -112,6 +115,10 @@ fn main() -> ExitCode {
         ["parts", rest @ ..] => match parts::Options::of(rest) {
             Some(options) => parts::run(&options),
             None => return wrong_usage("parts takes --only TEXT and --program FILE"),
+        },
+        ["own", rest @ ..] => match parts::Options::of(rest) {
+            Some(options) => own::run(&options),
+            None => return wrong_usage("own takes --only TEXT and --program FILE"),
         },
         ["first-hour", rest @ ..] => match first_hour::Options::of(rest) {
             Some(options) => first_hour::run(&options),

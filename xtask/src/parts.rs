@@ -13,8 +13,8 @@ use std::process::Command;
 /// What the command takes.
 #[derive(Default)]
 pub struct Options<'a> {
-    only: &'a str,
-    program: Option<&'a str>,
+    pub only: &'a str,
+    pub program: Option<&'a str>,
 }
 
 impl<'a> Options<'a> {
@@ -79,7 +79,7 @@ fn wholes(root: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// The section of a part on an earlier page; nothing where it has none.
-fn section(page: &str, name: &str) -> String {
+pub fn section(page: &str, name: &str) -> String {
     let head = format!("\n## {name}\n");
     let Some(from) = page.find(&head) else { return String::new() };
     let rest = &page[from + 1..];

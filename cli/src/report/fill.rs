@@ -13,7 +13,7 @@ use crate::words::number;
 use crate::work::extras::Extras;
 use crate::work::extras::FaceLeftOut;
 use crate::work::nc::Motions;
-use crate::work::productivity::InTime;
+use crate::work::productivity::{InTime, PRODUCTIVITY};
 use crate::work::summary::Summary;
 use crate::work::verify::Verified;
 use osculate_geom::{Diagnostic, Point3, Unit3};
@@ -73,6 +73,8 @@ pub struct Pages {
     pub svg: String,
     /// `path.svg`.
     pub path_svg: String,
+    /// `productivity.svg`: area finished a minute by place; none of a roughing, or where no time is known.
+    pub productivity_svg: Option<String>,
 }
 
 /// Builds both pages.
@@ -89,7 +91,14 @@ pub fn pages(story: &Story<'_>, progress: &dyn Fn(f64)) -> Pages {
         ..View::default()
     };
     let path_svg = report::svg(&report, &view);
-    Pages { html, svg, path_svg }
+    let by_place = report.scalars.iter().position(|s| s.name == PRODUCTIVITY).map(|k| {
+        let part = report::PartColours::Quantity(k);
+        report::svg(
+            &report,
+            &View { part, path: report::PathColours::Hidden, tool_at: None, ..View::default() },
+        )
+    });
+    Pages { html, svg, path_svg, productivity_svg: by_place }
 }
 
 fn report(story: &Story<'_>, progress: &dyn Fn(f64)) -> Report {

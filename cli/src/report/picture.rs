@@ -11,7 +11,7 @@ mod view;
 
 use self::lines::Scene;
 use self::paint::{Facet, nearness, paint, shaded};
-use super::data::Report;
+use super::data::{Report, Scalar};
 use super::legend::{Limits, Scale, nice_step};
 use super::mesh::{Clean, clean};
 use super::opening::opening;
@@ -28,24 +28,69 @@ const FACETS: usize = 14_000;
 const FACET_BYTES: usize = 225_000;
 /// Triangles so much farther than what is seen are left out, px: what stands for several of them may lie in front of it.
 const BEHIND: f64 = 8.0;
-/// Width of a legend with its title, px.
+/// The share of values beyond each end of a quantity's scale.
+const OUTSIDE: f64 = 0.01;
+/// Width of a legend, px, and of a letter of its title.
 const LEGEND: f64 = 118.0;
+const LETTER: f64 = 7.4;
 /// The picture of `report` as an SVG document.
 pub fn svg(report: &Report, view: &View) -> String {
-    let faces: Vec<Clean> = report.faces.iter().map(|f| clean(f, 0)).collect();
+    let mut faces: Vec<Clean> = report.faces.iter().map(|f| clean(f, quantities(report, view))).collect();
+    if let PartColours::Quantity(k) = view.part {
+        // Facets are made few by what is painted.
+        for face in &mut faces {
+            face.deviation_mm = face.scalars.get(k).cloned().unwrap_or_default();
+        }
+    }
     svg_of(report, &faces, view)
+}
+
+/// What stands above a scale: the name and its unit.
+fn title(scale: &Scale) -> String {
+    if scale.unit.is_empty() { scale.name.clone() } else { format!("{}, {}", scale.name, scale.unit) }
+}
+
+/// Room for a scale with its title, px.
+fn legend_width(scale: &Scale) -> f64 {
+    LEGEND.max(LETTER * title(scale).chars().count() as f64 + 12.0)
+}
+
+/// How many quantities the faces need for a picture.
+fn quantities(report: &Report, view: &View) -> usize {
+    if matches!(view.part, PartColours::Quantity(_)) { report.scalars.len() } else { 0 }
+}
+
+/// The scale of a quantity, without the few values beyond most others: the least and the greatest of many samples are noise.
+fn scale_of(scalar: &Scalar, values: impl Iterator<Item = f64>) -> Option<Scale> {
+    let mut all: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    all.sort_by(f64::total_cmp);
+    let cut = (OUTSIDE * all.len() as f64) as usize;
+    let within = all.get(cut..all.len() - cut).unwrap_or_default();
+    Scale::sequential(&scalar.name, &scalar.unit, within.iter().copied())
 }
 
 /// [`svg`] with the faces already made clean.
 pub fn svg_of(report: &Report, faces: &[Clean], view: &View) -> String {
     let (width, height) = (view.width_px.clamp(160, 4000), view.height_px.clamp(120, 4000));
-    let limits = Limits {
-        scallop_mm: report.verdict.scallop_tolerance_mm,
-        gouge_mm: report.verdict.gouge_tolerance_mm,
+    let quantity = match view.part {
+        PartColours::Quantity(k) => report.scalars.get(k),
+        _ => None,
     };
-    let deviations = faces.iter().flat_map(|f| &f.deviation_mm).map(|d| f64::from(*d));
-    let reach = deviations.filter(|d| d.is_finite()).fold(0.0, |m: f64, d| m.max(d.abs()));
-    let part_scale = (view.part == PartColours::Deviation).then(|| Scale::deviation(limits, reach));
+    let limits = match quantity {
+        // Of a quantity no value counts more than others.
+        Some(_) => Limits { scallop_mm: f64::INFINITY, gouge_mm: f64::INFINITY },
+        None => Limits {
+            scallop_mm: report.verdict.scallop_tolerance_mm,
+            gouge_mm: report.verdict.gouge_tolerance_mm,
+        },
+    };
+    let values = || faces.iter().flat_map(|f| &f.deviation_mm).map(|d| f64::from(*d));
+    let reach = || values().filter(|d| d.is_finite()).fold(0.0, |m: f64, d| m.max(d.abs()));
+    let part_scale = match (view.part, quantity) {
+        (PartColours::Deviation, _) => Some(Scale::deviation(limits, reach())),
+        (_, Some(scalar)) => scale_of(scalar, values()),
+        _ => None,
+    };
     let widths = report.passes.iter().flat_map(|p| &p.widths_mm).map(|w| f64::from(*w));
     let path_scale = (view.path == PathColours::StripWidth)
         .then(|| Scale::sequential("Strip width", "mm", widths))
@@ -56,7 +101,7 @@ pub fn svg_of(report: &Report, faces: &[Clean], view: &View) -> String {
     let frame = Frame {
         x: margin,
         y: 48.0,
-        width: f64::from(width) - 2.0 * margin - LEGEND * legends.len() as f64,
+        width: f64::from(width) - 2.0 * margin - legends.iter().map(|s| legend_width(s)).sum::<f64>(),
         height: f64::from(height) - 48.0 - 40.0,
     };
     let direction = view.direction.unwrap_or_else(|| opening(report, faces));
@@ -191,19 +236,17 @@ fn furniture(out: &mut String, report: &Report, legends: &[&Scale], sheet: Sheet
         escape(&report.title)
     );
     for (i, scale) in legends.iter().enumerate() {
-        let x = width - LEGEND * (legends.len() - i) as f64;
-        let unit = if scale.unit.is_empty() { String::new() } else { format!(", {}", scale.unit) };
+        let x = width - legends[i..].iter().map(|s| legend_width(s)).sum::<f64>();
         let long = (height - 130.0).clamp(60.0, 320.0);
         // Tool and holder may reach behind it.
         let _ = write!(
             out,
             "<rect x=\"{}\" y=\"40\" width=\"{}\" height=\"{}\" rx=\"6\" fill=\"#f7f9fa\" fill-opacity=\".88\"/>\
-             <text x=\"{x}\" y=\"56\" font-weight=\"600\">{}{}</text><g transform=\"translate({x} 70)\">{}</g>",
+             <text x=\"{x}\" y=\"56\" font-weight=\"600\">{}</text><g transform=\"translate({x} 70)\">{}</g>",
             x - 8.0,
-            LEGEND + 4.0,
+            legend_width(scale) + 4.0,
             long + 44.0,
-            escape(&scale.name),
-            escape(&unit),
+            escape(&title(scale)),
             scale.bar(long)
         );
     }

@@ -295,7 +295,8 @@ pub fn pages(story: &Story<'_>, watch: &dyn Watch, progress: &(dyn Fn(f64) + Syn
     }
     let made = fill::pages(story, progress);
     let named = [(REPORT, made.html), ("picture.svg", made.svg), ("path.svg", made.path_svg)];
-    named.map(|(name, text)| PlanFile::of_text(name, text)).into()
+    let by_place = made.productivity_svg.map(|svg| ("productivity.svg", svg));
+    named.into_iter().chain(by_place).map(|(name, text)| PlanFile::of_text(name, text)).collect()
 }
 
 /// How long a program takes, and what it asks of the joints.

@@ -20,6 +20,8 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+/// The name of the map of the area that is finished a minute.
+pub const PRODUCTIVITY: &str = "Productivity";
 /// Cells of the maps over all faces together, about: a summary stays a file that one can look at.
 const CELLS: f64 = 1024.0;
 /// Slower than this share of the feed of the job counts as held back.
@@ -267,7 +269,7 @@ impl InTime {
             let scalar = Scalar { name: name.to_owned(), unit: unit.to_owned() };
             (scalar, (0..self.places.len()).map(one).collect())
         };
-        let mut out = vec![map("Productivity", "mm2/min", &Stretch::per_min)];
+        let mut out = vec![map(PRODUCTIVITY, "mm2/min", &Stretch::per_min)];
         if one_tool {
             let asked_mm_min = job.feed_mm_min();
             out.push(map("Speed of feed asked", "%", &|s| 100.0 * s.speed_mm_min() / asked_mm_min));

@@ -11,6 +11,8 @@ pub enum PartColours {
     Deviation,
     /// Nothing but its shape.
     Plain,
+    /// The further quantity of this number among those of the report.
+    Quantity(usize),
 }
 
 /// What the path's colours say.
