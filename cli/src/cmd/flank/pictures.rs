@@ -47,8 +47,8 @@ fn deviation(mm: f64) -> String {
     figure(if mm.abs() < 1e-9 { 0.0 } else { mm }, 4)
 }
 
-/// Curves this much larger than the best one are cut off where the best is looked at.
-const ENLARGED: f64 = 4.0;
+/// A second panel, cut off at three times the best, is drawn where the largest is this many times as high.
+const ENLARGED: f64 = 2.0;
 
 /// `profile.svg`.
 pub fn profile(p: &Profiles, answers: &[Answer], study: &Study<'_>) -> String {
@@ -89,7 +89,7 @@ pub fn profile(p: &Profiles, answers: &[Answer], study: &Study<'_>) -> String {
     let mut panels = vec![whole];
     let sizes = || p.methods.iter().map(worst);
     let (best, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
-    let size = (1.5 * best).max(1e-6);
+    let size = (3.0 * best).max(1e-6);
     if best.is_finite() && most > ENLARGED * size {
         let shown = [above, below].into_iter().filter(|t| t.abs() < size);
         let shown = shown.map(|t| limit(t, format!("tolerance {} mm", short(t, 4)))).collect();

@@ -42,7 +42,7 @@ pub enum NoRatio {
     Rule(#[from] RuleError),
     /// The end normals are parallel: no setting deviates.
     #[error(
-        "the end normals of the rule enclose {twist_deg:.2e} degrees: no setting deviates, and there is no ratio"
+        "the end normals of the rule enclose {twist_deg:.4} degrees: no setting deviates, and there is no ratio"
     )]
     NoTwist {
         /// Between the end normals, degrees.

@@ -28,7 +28,8 @@ fn axis(task: &Task<'_>, u: f64, share: f64) -> Result<AxisPoints, StartError> {
     let range = task.surface.domain().u;
     let at = |inside: f64| (inside, [0.0, 1.0].map(|v| task.surface.jet2(uv(inside, v))));
     let (mut inside, mut jets) = at(range.bring(u));
-    if jets.iter().any(|j| j.point.iter().all(|x| x.is_finite()) && !j.du.iter().all(|x| x.is_finite())) {
+    // The point of such a jet may be no number either.
+    if jets.iter().any(|j| !j.point.iter().chain(j.du.iter()).all(|x| x.is_finite())) {
         (inside, jets) = at(inside + ASIDE * (range.at(0.5) - inside).signum() * range.length());
     }
     let ends = jets.map(|j| j.point + j.du * (u - inside));
