@@ -277,6 +277,11 @@ fn reasons_stand_in_the_table() {
         let m = method(&v, name);
         assert!(m["valid"] == false && m["why"].as_str().unwrap().contains("at most 29.8999 mm does"), "{m}");
     }
+    // The ratio ends there, and the closed form of straight directrices goes on.
+    let (own, exact) = (&v["ratio"]["own"], &v["ratio"]["exact"]);
+    near(&exact["ends_at_mm"], 29.8999, 1e-3);
+    assert!(exact["ends_by"].as_str().unwrap().contains("29.8999 mm fits into the hollow"), "{exact}");
+    assert!(own["exact"].is_null() && own["difference_percent"].is_null() && own["closed"].is_f64(), "{own}");
     // R = h and alpha = 45 deg: no root.
     let v = of(
         "builtin = { kind = \"d98-hyperbolic\", h_mm = 10, alpha_deg = 45 }",

@@ -164,8 +164,11 @@ fn closed(model: MiddleRule, reach_mm: f64) -> Found {
 }
 
 impl Study<'_> {
-    /// The ratio by the settings on the face.
-    fn exact_ratio(&self, stations: &Stations, radius_mm: f64) -> Found {
+    /// The ratio by the settings on the face, up to the largest radius that its hollow takes.
+    fn exact_ratio(&self, stations: &Stations, largest_mm: f64, radius_mm: f64) -> Found {
+        if radius_mm > largest_mm {
+            return Err(format!("at most R = {largest_mm:.4} mm fits into the hollow along the rule"));
+        }
         let tool = SideTool::cylinder(radius_mm).map_err(|e| e.to_string())?;
         let worst = |setting: Setting| {
             let placed = place(self.strip, stations, self.at_u, tool, setting).map_err(|e| e.to_string())?;
@@ -211,9 +214,11 @@ impl Study<'_> {
             })
         };
         let stations = Stations::beyond(self.strip, STATIONS, self.beyond);
-        let exact = curve(height_mm, half.to_degrees(), &radii, |r| self.exact_ratio(&stations, r));
+        let largest_mm = rule.largest_fit_mm();
+        let exact =
+            curve(height_mm, half.to_degrees(), &radii, |r| self.exact_ratio(&stations, largest_mm, r));
         let own = {
-            let exact = self.exact_ratio(&stations, own_mm).ok().flatten().map(|f| f.0);
+            let exact = self.exact_ratio(&stations, largest_mm, own_mm).ok().flatten().map(|f| f.0);
             let closed = closed(model, reach_mm).ok().flatten().map(|f| f.0);
             let difference_percent = exact.zip(closed).map(|(e, c)| 100.0 * (c - e) / e);
             AtRadius { radius_mm: own_mm, exact, closed, difference_percent }
