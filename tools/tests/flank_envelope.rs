@@ -2,6 +2,7 @@
 //! global optimum against the values of other solvers and its own bound.
 
 use osculate_geom::{Interval, Point3, Side, Surface, Unit3, uv};
+use osculate_surfaces::NurbsCurve3;
 use osculate_surfaces::gallery::{
     LiuSize, ParaboloidSize, eq18_directrices, liu_directrices, paraboloid_directrices,
 };
@@ -284,8 +285,24 @@ fn impossible_tasks_are_refused() {
     assert!(matches!(with(less), Err(GlobalError::Weight { what: "enough_mm", .. })));
     let empty = Task { positions: Interval::new(1.0, 1.0), ..task };
     assert!(matches!(optimise(&empty, &Options::default(), &[]), Err(GlobalError::Axes(_))));
-    // At u = 0 the directrix of surface (18) has no tangent.
-    let s = eq18();
+    // A directrix that turns back on itself stands still in the middle.
+    let poles = [0.0, 9.0, 0.0].map(|x| Point3::new(x, 0.0, 0.0));
+    let back = NurbsCurve3::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], poles.to_vec(), None).unwrap();
+    let edge =
+        osculate_geom::analytic::Line::segment(Point3::new(0.0, 5.0, 30.0), Point3::new(9.0, 5.0, 30.0))
+            .unwrap();
+    let s = RuledStrip::new(back, edge, Side::Along, 1.0).unwrap();
     let cusp = Task { surface: &s, positions: UNIT, judged: Patch { u: UNIT, ..judged }, ..task };
     assert!(matches!(optimise(&cusp, &Options::default(), &[]), Err(GlobalError::Start(_))));
+}
+
+/// At u = 0 the directrix of surface (18) has an infinite derivative: the search begins with the rule beside.
+#[test]
+fn a_rule_without_derivatives_is_passed() {
+    let s = eq18();
+    let part = Interval::new(0.0, 0.1);
+    let judged = Patch { u: part, v: UNIT, count: [21, 7] };
+    let task = Task { surface: &s, side: cylinder(3.0), positions: part, judged };
+    let found = optimise(&task, &Options { spans: 4, ..Options::default() }, &[]).unwrap();
+    assert!(found.value_mm.is_finite() && found.axes.range() == part, "{}", found.value_mm);
 }

@@ -98,6 +98,8 @@ fn lius_surface_has_the_reference_values() {
     assert!((least + 0.586_034_1).abs() < 1e-6 && (most - 0.586_034_1).abs() < 1e-7, "{t} {least} {most}");
     // The surface beside the rule is cut deeper.
     assert!(low < least - 0.02);
+    let (same, _) = judged(&s, 23.014, 10.0, Setting::BalancedDoublePoint);
+    assert_eq!((same.axis, same.motion), (placed.axis, None));
 }
 
 /// The table of ratios of standard to optimum, by R/h and alpha_0.

@@ -83,6 +83,7 @@ fn a_cone_fits_a_cone() {
     }
     let refused = place(&s, &stations, 1.0, tool, Setting::DoublePoint(0.25));
     assert_eq!(refused, Err(PlaceError::CylinderOnly));
+    assert_eq!(place(&s, &stations, 1.0, tool, Setting::BalancedDoublePoint), refused);
     let refused = place(&s, &stations, 1.0, SideTool::cylinder(8.0).unwrap(), Setting::DoublePoint(0.5));
     assert!(matches!(refused, Err(PlaceError::Fraction { .. })));
 }

@@ -1,5 +1,7 @@
 //! `flank`: the side of a cutter on a ruled face, every positioning side by side, the chosen one as path and program.
 
+mod pictures;
+
 use crate::cmd::plan;
 use crate::screen::output;
 use crate::screen::progress::SCREEN;
@@ -17,13 +19,15 @@ use osculate::work::flank::face::{FlankFace, judged};
 use osculate::work::flank::largest::{Largest, Radius};
 use osculate::work::flank::methods::{Answer, Method, Motion, NAMES, Study};
 use osculate::work::flank::path::{self, Work};
+use osculate::work::flank::ratio::Ratios;
+use osculate::work::flank::span::BetterSpan;
 use osculate::work::passes;
 use osculate::work::plan::prove;
 use osculate::work::program::{Planned, WallS};
 use osculate_geom::{Axis, Diagnostic, Interval, Point3, Surface, uv};
-use osculate_tools::flank::RuledStrip;
 use osculate_tools::flank::envelope::{Envelope, Scratch};
 use osculate_tools::flank::global::Options;
+use osculate_tools::flank::{Rule, RuleError, RuledStrip};
 use osculate_tools::{CutterSpec, Lean};
 use serde::Serialize;
 use std::path::Path;
@@ -35,7 +39,8 @@ const ENOUGH: f64 = 1e-4;
 #[derive(Debug, Serialize)]
 struct Comparison {
     rule_length_mm: f64,
-    normals_angle_deg: f64,
+    /// None where the rule has no normals at its ends.
+    normals_angle_deg: Option<f64>,
     at_u: f64,
     span_u: [f64; 2],
     judge_u: [f64; 2],
@@ -44,6 +49,12 @@ struct Comparison {
     ruled_error_mm: f64,
     methods: Vec<Method>,
     chosen: String,
+    /// The error along the rule.
+    profiles: pictures::Profiles,
+    /// The ratio of the errors over the radius, where there is one.
+    ratio: Option<Ratios>,
+    /// A span of positions with which the chosen setting, or three tangencies, would leave less.
+    proposed_span_u: Option<[f64; 2]>,
     /// The program's heights as verified against those of the envelope.
     program: Option<path::Agreement>,
     diagnostics: Vec<String>,
@@ -83,7 +94,11 @@ pub fn run(path: &Path, (out, largest): (Option<&Path>, bool), json: bool) -> Ou
     let strip = RuledStrip::between_borders(&*face, Axis::U, least_mm(longest)).map_err(|e| {
         Failure::file(job.path(), format!("[part] {e}: choose another range, or along = \"u\" or \"v\""))
     })?;
-    let rule = strip.rule(at_u).map_err(|e| wrong(e.to_string()))?;
+    // Where a directrix begins with an infinite derivative no setting stands at that rule, but motions pass it.
+    let rule = match strip.rule(at_u) {
+        Err(RuleError::NotFinite { .. }) => None,
+        found => Some(found.map_err(|e| wrong(e.to_string()))?),
+    };
     let cutter = job.cutter();
     let tolerance = job.tolerance();
     let bulge_per_mm = match job.cutter_spec() {
@@ -126,11 +141,21 @@ pub fn run(path: &Path, (out, largest): (Option<&Path>, bool), json: bool) -> Ou
             study.run(name)
         })
         .collect();
-    let mut diagnostics = notes(&job, straying_mm, &rule);
+    let mut diagnostics = notes(&job, straying_mm, rule.as_ref());
     diagnostics.extend(outside(&answers[chosen].row));
+    let better = [NAMES[chosen], "optimum"]
+        .iter()
+        .find_map(|name| study.better_span(&answers.iter().find(|a| a.row.name == *name)?.row));
+    diagnostics.extend(better.as_ref().map(|b| span_words(b, &study, &answers)));
+    let ratio = study.ratios();
+    diagnostics
+        .push(Diagnostic::note("flank", ratio.as_ref().map_or_else(ToString::to_string, pictures::sentence)));
+    let rule_length_mm = length(at_u);
+    let profiles = pictures::Profiles::of(&answers, rule_length_mm);
+    let drawn = [pictures::profile(&profiles, &answers, &study), pictures::ratio(&ratio)];
     let mut comparison = Comparison {
-        rule_length_mm: rule.length_mm,
-        normals_angle_deg: rule.twist_rad().abs().to_degrees(),
+        rule_length_mm,
+        normals_angle_deg: rule.map(|r| r.twist_rad().abs().to_degrees()),
         at_u,
         span_u: [span.lo, span.hi],
         judge_u: [judge.lo, judge.hi],
@@ -138,6 +163,9 @@ pub fn run(path: &Path, (out, largest): (Option<&Path>, bool), json: bool) -> Ou
         ruled_error_mm: straying_mm,
         methods: answers.iter().map(|a| a.row.clone()).collect(),
         chosen: table.method.word().to_owned(),
+        profiles,
+        ratio: ratio.ok(),
+        proposed_span_u: better.map(|b| [b.span.lo, b.span.hi]),
         program: None,
         diagnostics: diagnostics.iter().map(ToString::to_string).collect(),
     };
@@ -181,8 +209,12 @@ pub fn run(path: &Path, (out, largest): (Option<&Path>, bool), json: bool) -> Ou
     let plan = prove(&job, &faces, planned, wall_s, &SCREEN)?;
     comparison.program = Some(path::agreement(&motion, path::lead_mm(&job, &cutter), &plan.verified));
     let text_json = serde_json::to_string_pretty(&comparison).map_err(Failure::job)? + "\n";
-    plan::write(&plan, out, Some(("flank.json", text_json.as_bytes())))?;
-    show(&comparison, json, &plan::describe(&plan, out), plan::red(&plan.verified).as_deref())?;
+    let [profile, ratio] = drawn;
+    let own = [("flank.json", text_json), ("profile.svg", profile), ("ratio.svg", ratio)];
+    plan::write(&plan, out, &own.each_ref().map(|(name, text)| (*name, text.as_bytes())))?;
+    let names: Vec<String> = own.iter().map(|(name, _)| out.join(name).display().to_string()).collect();
+    let more = format!("{}  {}\n", plan::describe(&plan, out), names.join(", "));
+    show(&comparison, json, &more, plan::red(&plan.verified).as_deref())?;
     Ok(if plan.summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
 }
 
@@ -215,8 +247,30 @@ fn outside(row: &Method) -> Option<Diagnostic> {
     })
 }
 
+/// A better span of positions, as a finding.
+fn span_words(b: &BetterSpan, study: &Study<'_>, answers: &[Answer]) -> Diagnostic {
+    let now = answers.iter().find(|a| a.row.name == b.name).and_then(|a| a.row.envelope_mm);
+    let leaves = match b.off_face {
+        [Some(a), Some(z)] => format!("its contacts leave the face below u = {a:.4} and above {z:.4}; "),
+        [Some(a), None] => format!("its contacts leave the face below u = {a:.4}; "),
+        [None, Some(z)] => format!("its contacts leave the face above u = {z:.4}; "),
+        [None, None] => String::new(),
+    };
+    let is = now.map_or_else(String::new, |r| {
+        format!(" in place of {:+.4} to {:+.4} mm with [{}, {}]", r.min, r.max, study.span.lo, study.span.hi)
+    });
+    let (min, max) = (b.envelope_mm.min, b.envelope_mm.max);
+    Diagnostic::note(
+        "flank",
+        format!(
+            "{}: {leaves}with [flank] span_u = [{}, {}] its envelope leaves {min:+.4} to {max:+.4} mm{is}",
+            b.name, b.span.lo, b.span.hi
+        ),
+    )
+}
+
 /// What is to be known about the face.
-fn notes(job: &Job, straying_mm: f64, rule: &osculate_tools::flank::Rule) -> Vec<Diagnostic> {
+fn notes(job: &Job, straying_mm: f64, rule: Option<&Rule>) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     if job.flank().face == FlankShape::Borders {
         out.push(Diagnostic::warning(
@@ -232,7 +286,7 @@ fn notes(job: &Job, straying_mm: f64, rule: &osculate_tools::flank::Rule) -> Vec
             ),
         ));
     }
-    if rule.twist_rad().abs() < 1e-9 {
+    if rule.is_some_and(|r| r.twist_rad().abs() < 1e-9) {
         out.push(Diagnostic::note(
             "flank",
             "the end normals of the rule are parallel: developable there, all settings agree",
@@ -329,11 +383,14 @@ fn show(c: &Comparison, json: bool, more: &str, red: Option<&str>) -> Result<(),
     for m in &c.methods {
         t.row(cells(m));
     }
+    let normals = c.normals_angle_deg.map_or_else(
+        || "without normals at its ends".to_owned(),
+        |deg| format!("its end normals enclose {} deg", number(deg, 9)),
+    );
     let mut text = format!(
-        "\n  rule at u = {}: {} mm long, its end normals enclose {} deg; judged over u = {} to {}\n\n{}",
+        "\n  rule at u = {}: {} mm long, {normals}; judged over u = {} to {}\n\n{}",
         c.at_u,
         number(c.rule_length_mm, 9),
-        number(c.normals_angle_deg, 9),
         c.judge_u[0],
         c.judge_u[1],
         t.render()
@@ -344,7 +401,8 @@ fn show(c: &Comparison, json: bool, more: &str, red: Option<&str>) -> Result<(),
             p.max_mm, p.samples, p.p99_mm
         ));
     }
-    for d in &c.diagnostics {
+    // Those of a plan stand among its own.
+    for d in c.diagnostics.iter().filter(|_| more.is_empty()) {
         text.push_str(&format!("  {d}\n"));
     }
     text.push_str(more);

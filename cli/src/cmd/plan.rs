@@ -35,7 +35,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
         SCREEN.saves_into(out);
         plan(&part, &job, &SCREEN)?
     };
-    write(&plan, out, None)?;
+    write(&plan, out, &[])?;
     drop(claimed);
     if json {
         render::json(&plan.summary)?;
@@ -45,11 +45,11 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Outcome {
     Ok(if plan.summary.verification.within_tolerance { Done::Yes } else { Done::NotWithinTolerance })
 }
 
-/// Writes the files of a plan, and one more that belongs to them. A stop waits until all of them are there.
-pub fn write(plan: &Plan, out: &Path, more: Option<(&str, &[u8])>) -> Result<(), Failure> {
+/// Writes the files of a plan, and more that belong to them. A stop waits until all of them are there.
+pub fn write(plan: &Plan, out: &Path, more: &[(&str, &[u8])]) -> Result<(), Failure> {
     let whole = cancel::whole();
     let own = plan.files().iter().map(|f| (f.name.as_str(), &*f.bytes));
-    output::set(out, &own.chain(more).collect::<Vec<_>>())?;
+    output::set(out, &own.chain(more.iter().copied()).collect::<Vec<_>>())?;
     // What an earlier run saved when it was stopped is out of date.
     let _ = std::fs::remove_file(out.join(cancel::PARTIAL));
     for place in 0..plan.summary.operations.len().max(MOST_KEPT) {

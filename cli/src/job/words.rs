@@ -275,6 +275,8 @@ words! {
         StandardB = "standard_b",
         /// Liu's double point offset.
         DoublePointOffset = "double_point_offset",
+        /// The same, leaving as much at the ends of the rule as it gouges on it.
+        DoublePointBalanced = "double_point_balanced",
         /// The best setting at each rule.
         Optimum = "optimum",
         /// The least greatest deviation at each rule.

@@ -8,6 +8,7 @@
 #![allow(dead_code, unused_imports)]
 
 mod chart;
+pub mod curves;
 mod data;
 pub mod fill;
 mod joint_chart;

@@ -5,7 +5,7 @@ use super::minimax::{MinimaxSearch, minimax};
 use super::rule::{Rule, RuleError};
 use super::ruled::RuledStrip;
 use super::section::{Profile, Stations, profile};
-use super::standard::{at_directrix, distributed, double_point};
+use super::standard::{at_directrix, balanced_fraction, distributed, double_point};
 use super::three::three_tangent;
 use super::tool::SideTool;
 use super::touch::{PlaceError, Touch};
@@ -19,6 +19,8 @@ pub enum Setting {
     Distributed,
     /// Through the points at the fractions t and 1 - t of the rule, offset along the normals; Liu takes 1/4.
     DoublePoint(f64),
+    /// The same with the fraction that leaves as much at the ends of the rule as it gouges on the rule: [`balanced_fraction`].
+    BalancedDoublePoint,
     /// Tangent to the rule and to both directrices: D98's optimum setting.
     ThreeTangent,
     /// The axis of least greatest static deviation.
@@ -32,7 +34,8 @@ pub struct Placed {
     pub u: f64,
     /// The axis; its point lies in the tool's reference section.
     pub axis: AxisLine,
-    /// The axis with its exact derivative by u, the setting being kept; None for a static minimax without one.
+    /// The axis with its exact derivative by u, the setting being kept; None for a static minimax without one, and for a
+    /// balanced double point offset, whose fraction changes from rule to rule.
     pub motion: Option<AxisJet>,
     /// Where the tool touches by construction. For the standard settings and the double point offset these are the points of
     /// the rule used, for three tangencies M0, M1 and M2, for the minimax the places of greatest deviation.
@@ -82,7 +85,7 @@ fn turn_rad(rule: &Rule, axis: &AxisLine) -> f64 {
 
 /// The tool at the rule at u in a setting.
 ///
-/// `stations` are of the same strip; [`Setting::ThreeTangent`] and [`Setting::DoublePoint`] do not use them.
+/// `stations` are of the same strip; [`Setting::ThreeTangent`] and the double point offsets do not use them.
 ///
 /// # Errors
 /// [`PlaceError`].
@@ -113,6 +116,11 @@ pub fn place(
             Ok(simple(distributed(strip, stations, &rule, &tool)?, vec![touch(0.0), touch(1.0)]))
         }
         Setting::DoublePoint(t) => Ok(simple(double_point(&rule, &tool, t)?, vec![touch(t), touch(1.0 - t)])),
+        Setting::BalancedDoublePoint => {
+            let t = balanced_fraction(&rule, tool)?;
+            let placed = simple(double_point(&rule, &tool, t)?, vec![touch(t), touch(1.0 - t)]);
+            Ok(Placed { motion: None, ..placed })
+        }
         Setting::ThreeTangent => {
             let root = three_tangent(strip, u, tool)?;
             Ok(Placed {

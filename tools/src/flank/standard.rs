@@ -132,18 +132,30 @@ pub(super) fn double_point(rule: &Rule, tool: &SideTool, fraction: f64) -> Resul
     AxisJet::of(rule.u, (middle.into(), middle_rate), (q.0 - p.0, q.1 - p.1)).ok_or(none)
 }
 
+/// Liu's fraction of the rule.
+const LIU: f64 = 0.25;
+
 /// The fraction t in (0, 1/2) at which the double point offset leaves as much at the ends of the rule as it gouges on the
 /// rule: Liu's error, +-0.5860 mm on his surface.
 ///
 /// The deviation is that of the points of the rule itself, as Liu and D98 have it. That of the surface beside the rule
 /// ([`profile`](super::profile)) reaches lower.
 ///
+/// A rule without twist is touched all along whatever the fraction: there it is Liu's quarter.
+///
 /// # Errors
-/// [`PlaceError`]; [`PlaceError::NoAxis`] where no fraction balances.
+/// [`PlaceError`]; [`PlaceError::NoBalance`] where no fraction balances.
 pub fn balanced_fraction(rule: &Rule, tool: SideTool) -> Result<f64, PlaceError> {
     // The difference is smooth in t: a step of 1e-12 of the rule is rounding.
     const TOLERANCE: f64 = 1e-12;
-    double_point(rule, &tool, 0.25)?;
+    // R times the square of this twist is below 1e-10 mm for any mill: rounding has no balance.
+    const FLAT_RAD: f64 = 1e-6;
+    // Both points must stay apart.
+    const LAST: f64 = 0.49;
+    double_point(rule, &tool, LIU)?;
+    if rule.twist_rad().abs() < FLAT_RAD {
+        return Ok(LIU);
+    }
     let balance = |t: f64| {
         double_point(rule, &tool, t).map_or(f64::NAN, |jet| {
             let on_rule = |v: f64| tool.deviation_mm(&jet.line, &rule.point(v));
@@ -152,6 +164,7 @@ pub fn balanced_fraction(rule: &Rule, tool: SideTool) -> Result<f64, PlaceError>
         })
     };
     let at = |x: f64| End { x, f: balance(x) };
-    let root = bracketed(at(0.0), at(0.49), TOLERANCE, balance);
-    root.map(|r| r.x).map_err(|_| PlaceError::NoAxis { u: rule.u })
+    let (first, last) = (at(0.0), at(LAST));
+    let root = bracketed(first, last, TOLERANCE, balance);
+    root.map(|r| r.x).map_err(|_| PlaceError::NoBalance { u: rule.u, first_mm: first.f, last_mm: last.f })
 }

@@ -51,6 +51,18 @@ pub enum PlaceError {
         /// The value given.
         fraction: f64,
     },
+    /// No fraction of the double point offset leaves as much as it gouges.
+    #[error(
+        "no double point offset at u = {u} leaves as much at the ends of the rule as it gouges on it: left less gouged is {first_mm:.3e} mm with both points at the ends, {last_mm:.3e} mm with both near the middle"
+    )]
+    NoBalance {
+        /// The rule.
+        u: f64,
+        /// Greatest deviation at the ends plus the lowest along the rule for the fraction 0, mm.
+        first_mm: f64,
+        /// The same for the largest fraction looked at, mm.
+        last_mm: f64,
+    },
     /// The search for the least greatest deviation did not settle.
     #[error("the least greatest deviation at u = {u} did not settle: {}", last_step(*.step_mm, *.iterations))]
     NotConverged {

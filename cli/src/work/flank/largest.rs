@@ -5,7 +5,8 @@ use osculate_tools::flank::{RadiusLimit, RadiusSearch, RadiusSearchError, Statio
 use serde::Serialize;
 
 /// The settings at a rule, by the names of the methods.
-const SETTINGS: [&str; 5] = ["standard_a", "standard_b", "double_point_offset", "optimum", "static_minimax"];
+const SETTINGS: [&str; 6] =
+    ["standard_a", "standard_b", "double_point_offset", "double_point_balanced", "optimum", "static_minimax"];
 /// Radii that are looked at, mm: from finer than any mill to more than any.
 const RADII_MM: [f64; 2] = [0.01, 500.0];
 /// Relative accuracy of a radius.

@@ -1,5 +1,6 @@
 //! The positionings of a cutter on a strip side by side: what each leaves at a rule and over the face.
 
+use osculate_geom::roots::{FLAT, minimum};
 use osculate_geom::{Interval, Surface, Uv, uv};
 use osculate_tools::Cutter;
 use osculate_tools::flank::axes::{AxisPoints, AxisSurface};
@@ -8,7 +9,7 @@ use osculate_tools::flank::deviation::{Deviation, Patch, deviation};
 use osculate_tools::flank::envelope::Envelope;
 use osculate_tools::flank::global::{Goal, Options, Task, optimise};
 use osculate_tools::flank::{
-    AxisLine, Placed, RuledStrip, Setting, SideTool, Stations, Verdict, place, profile,
+    AxisLine, Placed, Profile, Rule, RuledStrip, Setting, SideTool, Stations, Verdict, place, profile,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -22,7 +23,7 @@ const FEWEST: usize = 4;
 /// Samples of a rule.
 pub(super) const SAMPLES: usize = 129;
 /// Samples of directrices between two breaks.
-const STATIONS: usize = 64;
+pub(super) const STATIONS: usize = 64;
 /// Places across, of the optimum's grid and of the judged one.
 const ACROSS: [usize; 2] = [21, 41];
 /// Spans of an axis surface for as long a way as is judged, and the most.
@@ -30,7 +31,7 @@ const SPANS: f64 = 32.0;
 const MOST_SPANS: usize = 96;
 
 /// Least and greatest, mm.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Range {
     /// Least, negative is gouge.
     pub min: f64,
@@ -56,8 +57,12 @@ pub struct Method {
     pub u0: Option<f64>,
     /// Parameter of the contact on the second directrix.
     pub u1: Option<f64>,
-    /// Along the rule.
+    /// Share of the rule from either end to the points of a double point offset.
+    pub fraction: Option<f64>,
+    /// Along the rule, the least over u at each place: what a cutter that stands leaves of the surface.
     pub static_mm: Option<Range>,
+    /// Of the points of the rule itself, as Liu has it.
+    pub on_rule_mm: Option<Range>,
     /// Over the judged patch.
     pub envelope_mm: Option<Range>,
     /// No motion near the found one on the same splines leaves less, to first order.
@@ -119,6 +124,14 @@ pub struct Answer {
     pub row: Method,
     /// Its motion, where it has one.
     pub motion: Option<Motion>,
+    /// Its static deviation at the rule, where it stands there.
+    pub profile: Option<Profile>,
+}
+
+impl Answer {
+    fn none(row: Method) -> Self {
+        Self { row, motion: None, profile: None }
+    }
 }
 
 /// The side of a cutter near a height above its tip, in the form of the settings at a rule; Q0 is at `foot_mm` above the tip.
@@ -161,6 +174,16 @@ impl Study<'_> {
         CutterSide::of(&self.cutter, -self.foot_mm())
     }
 
+    /// Whether the cutter's side is a cylinder.
+    pub(super) fn is_cylinder(&self) -> bool {
+        self.side().is_cylinder()
+    }
+
+    /// The same with other positions.
+    pub(super) fn with_span(&self, span: Interval) -> Study<'_> {
+        Study { span, longer: span, ..*self }
+    }
+
     fn judged(&self, motion: &Motion) -> Deviation {
         deviation(&Envelope::new(motion.side, &motion.pieces), self.face, self.patch(ACROSS[1]))
     }
@@ -198,11 +221,12 @@ impl Study<'_> {
         let tool = match side_tool(&self.cutter, &self.side(), [section, self.foot_mm()], self.bulge_per_mm) {
             Ok(t) => t,
             Err(why) => {
-                return Answer { row: Method { why, ..row }, motion: None };
+                return Answer::none(Method { why, ..row });
             }
         };
+        let mut profile = None;
         match place(self.strip, &stations, self.at_u, tool, setting) {
-            Ok(p) => self.describe(&mut row, &p, &stations, &tool, setting),
+            Ok(p) => profile = Some(self.describe(&mut row, &p, &stations, &tool, setting)),
             Err(e) => row.why = e.to_string(),
         }
         let count = self.positions.max(FEWEST);
@@ -229,11 +253,11 @@ impl Study<'_> {
             k += run.max(1);
         }
         if pieces.is_empty() {
-            return Answer { row, motion: None };
+            return Answer { row, motion: None, profile };
         }
         let side = CutterSide::of(&self.cutter, -section);
         let motion = Motion { pieces, side, tip_mm: (!cylinder).then_some(-section) };
-        self.finished(row, motion)
+        self.finished(row, motion, profile)
     }
 
     /// Guiding points on an axis: beside both directrices, or the reference section.
@@ -244,10 +268,23 @@ impl Study<'_> {
         AxisPoints { lower: line.at(low), upper: line.at(high.max(low + 0.1 * (b - a).norm())) }
     }
 
-    fn describe(&self, row: &mut Method, p: &Placed, stations: &Stations, tool: &SideTool, setting: Setting) {
+    fn describe(
+        &self,
+        row: &mut Method,
+        p: &Placed,
+        stations: &Stations,
+        tool: &SideTool,
+        setting: Setting,
+    ) -> Profile {
         let profile = p.profile(self.strip, stations, tool, SAMPLES);
         row.gamma_deg = Some(p.turn_rad.to_degrees());
-        row.static_mm = Some(Range { min: profile.lowest.deviation_mm, max: profile.highest.deviation_mm });
+        row.static_mm = Some(extremes(&profile));
+        row.on_rule_mm = self.strip.rule(self.at_u).ok().map(|rule| on_rule(&rule, tool, &p.axis));
+        if let (Setting::DoublePoint(_) | Setting::BalancedDoublePoint, [near, _]) =
+            (setting, p.touches.as_slice())
+        {
+            row.fraction = Some(near.v);
+        }
         if let (Setting::ThreeTangent, [a, b, m]) = (setting, p.touches.as_slice()) {
             (row.u0, row.u1) = (Some(a.u), Some(b.u));
             row.h0_mm = Some((m.point - self.strip.directrix(0, self.at_u).point).norm());
@@ -268,13 +305,14 @@ impl Study<'_> {
             Ok(Verdict::Gouge { depth_mm }) => (true, format!("gouges by {depth_mm:.4} mm at the rule")),
             Ok(Verdict::Left { height_mm }) => (true, format!("leaves {height_mm:.4} mm at the rule")),
         };
+        profile
     }
 
-    fn finished(&self, mut row: Method, motion: Motion) -> Answer {
+    fn finished(&self, mut row: Method, motion: Motion, profile: Option<Profile>) -> Answer {
         let d = self.judged(&motion);
         row.envelope_mm = Some(Range { min: d.min.value_mm, max: d.max.value_mm });
         row.share_within = Some(self.share(&d));
-        Answer { row, motion: Some(motion) }
+        Answer { row, motion: Some(motion), profile }
     }
 
     /// The best motion for the whole face.
@@ -286,7 +324,7 @@ impl Study<'_> {
         match optimise(&task, &options, &[]) {
             Err(e) => {
                 row.why = e.to_string();
-                Answer { row, motion: None }
+                Answer::none(row)
             }
             Ok(found) => {
                 row.valid = true;
@@ -297,27 +335,28 @@ impl Study<'_> {
                 );
                 row.lower_bound_mm = found.bound_mm;
                 row.lower_bound_refined_mm = found.bound_refined_mm;
-                self.at_rule(&mut row, &found.axes);
+                let profile = self.at_rule(&mut row, &found.axes);
                 let tip_mm = (!side.is_cylinder()).then_some(-self.foot_mm());
                 let motion = Motion { pieces: vec![found.axes], side, tip_mm };
-                self.finished(row, motion)
+                self.finished(row, motion, profile)
             }
         }
     }
 
     /// The position of a motion at the rule.
-    fn at_rule(&self, row: &mut Method, axes: &AxisSurface) {
+    fn at_rule(&self, row: &mut Method, axes: &AxisSurface) -> Option<Profile> {
         let pose = axes.pose(self.at_u, 0.0);
         let line = AxisLine { point: pose.tip, direction: pose.axis };
-        if let Ok(rule) = self.strip.rule(self.at_u) {
+        let rule = self.strip.rule(self.at_u).ok();
+        if let Some(rule) = &rule {
             let f = &rule.frame;
             row.gamma_deg = Some((-line.direction.dot(&f.x)).atan2(line.direction.dot(&f.z)).to_degrees());
         }
-        if let (true, Ok(tool)) = (self.side().is_cylinder(), SideTool::cylinder(self.cutter.radius_mm())) {
-            let stations = self.stations();
-            let p = profile(self.strip, &stations, &tool, &line, SAMPLES);
-            row.static_mm = Some(Range { min: p.lowest.deviation_mm, max: p.highest.deviation_mm });
-        }
+        let tool = SideTool::cylinder(self.cutter.radius_mm()).ok().filter(|_| self.side().is_cylinder())?;
+        let p = profile(self.strip, &self.stations(), &tool, &line, SAMPLES);
+        row.static_mm = Some(extremes(&p));
+        row.on_rule_mm = rule.map(|rule| on_rule(&rule, &tool, &line));
+        Some(p)
     }
 
     /// Samples of the strip's directrices.
@@ -341,10 +380,28 @@ pub(super) fn setting_of(name: &str) -> Option<Setting> {
         "standard_a" => Setting::AtDirectrix(0),
         "standard_b" => Setting::Distributed,
         "double_point_offset" => Setting::DoublePoint(LIU),
+        "double_point_balanced" => Setting::BalancedDoublePoint,
         "optimum" => Setting::ThreeTangent,
         "static_minimax" => Setting::Minimax,
         _ => return None,
     })
+}
+
+fn extremes(p: &Profile) -> Range {
+    Range { min: p.lowest.deviation_mm, max: p.highest.deviation_mm }
+}
+
+/// Least and greatest deviation of the points of a rule, between samples too.
+fn on_rule(rule: &Rule, tool: &SideTool, axis: &AxisLine) -> Range {
+    let at = |v: f64| tool.deviation_mm(axis, &rule.point(v));
+    let v = |k: usize| k as f64 / (SAMPLES - 1) as f64;
+    let extreme = |sign: f64| {
+        let value = |k: &usize| sign * at(v(*k));
+        let k = (0..SAMPLES).min_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(0);
+        let around = [v(k.saturating_sub(1)), v((k + 1).min(SAMPLES - 1))];
+        sign * minimum(around, FLAT, |v| sign * at(v)).f.min(value(&k))
+    };
+    Range { min: extreme(1.0), max: extreme(-1.0) }
 }
 
 fn empty(name: &'static str) -> Method {
@@ -356,7 +413,9 @@ fn empty(name: &'static str) -> Method {
         h0_mm: None,
         u0: None,
         u1: None,
+        fraction: None,
         static_mm: None,
+        on_rule_mm: None,
         envelope_mm: None,
         lower_bound_mm: None,
         lower_bound_refined_mm: None,

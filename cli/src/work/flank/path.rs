@@ -17,6 +17,9 @@ use serde::Serialize;
 
 /// Way beyond a radius before and after the face where the job does not say, mm.
 const BEYOND_MM: f64 = 2.0;
+/// Part of the way to the middle of the face at which a normal is taken where there is none: a thousandth of the length
+/// off along a root.
+const ASIDE: f64 = 1e-6;
 /// Points of check faces along each parameter.
 const CHECKS: usize = 48;
 /// Steps in which the tool is raised from a check face, of the rule's length.
@@ -125,9 +128,17 @@ pub fn pass(work: &Work<'_>) -> Result<Passes, Failure> {
         let u = work.judge.bring(p.tau);
         let at = uv(u, 0.5);
         let jet = work.face.jet2(at);
-        let normal = jet.normal().map_err(|e| fail(format!("no normal at u = {}: {e}", p.tau)))?;
+        let (point, normal) = match jet.normal() {
+            Ok(normal) => (jet.point, normal),
+            // At a rule with infinite derivatives the normal is that of the rules beside it.
+            Err(e) => {
+                let aside = work.face.jet2(uv(u + ASIDE * (work.judge.at(0.5) - u), 0.5)).normal();
+                let normal = aside.map_err(|_| fail(format!("no normal at u = {}: {e}", p.tau)))?;
+                (work.face.point(at), normal)
+            }
+        };
         let width_mm = (work.face.point(uv(u, 1.0)) - work.face.point(uv(u, 0.0))).norm();
-        points.push(CcPoint { uv: at, point: jet.point, normal, pose: p.pose, width_mm });
+        points.push(CcPoint { uv: at, point, normal, pose: p.pose, width_mm });
     }
     Ok(Passes { passes: vec![Pass { points, closed: false }], diagnostics: notes })
 }

@@ -18,12 +18,20 @@ pub struct Start {
 /// Shares of the twist tried.
 const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
 
+/// Part of the face's length by which the first motion keeps off a rule with infinite derivatives, such as the end of a
+/// directrix in the root of u: the rule that is taken lies within a thousandth of the length.
+const ASIDE: f64 = 1e-6;
+
 /// The axis beside the rule at u.
 fn axis(task: &Task<'_>, u: f64, share: f64) -> Result<AxisPoints, StartError> {
     // Beyond the face the end rule goes on along the tangents of the directrices.
     let range = task.surface.domain().u;
-    let inside = range.bring(u);
-    let jets = [0.0, 1.0].map(|v| task.surface.jet2(uv(inside, v)));
+    let at = |inside: f64| (inside, [0.0, 1.0].map(|v| task.surface.jet2(uv(inside, v))));
+    let (mut inside, mut jets) = at(range.bring(u));
+    // The point of such a jet may be no number either.
+    if jets.iter().any(|j| !j.point.iter().chain(j.du.iter()).all(|x| x.is_finite())) {
+        (inside, jets) = at(inside + ASIDE * (range.at(0.5) - inside).signum() * range.length());
+    }
     let ends = jets.map(|j| j.point + j.du * (u - inside));
     let rule = ends[1] - ends[0];
     let sign = jets[0].side.sign();
