@@ -47,7 +47,7 @@ fn cutter() -> Cutter {
 fn local() -> LocalLead<'static> {
     LocalLead {
         tilt_rad: 0.0,
-        least_rad: LocalLead::LEAST_RAD,
+        least_rad: 1f64.to_radians(),
         most_rad: LocalLead::MOST_RAD,
         rate_rad_per_mm: RATE_DEG_PER_MM.to_radians(),
         holder: None,

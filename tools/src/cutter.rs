@@ -109,6 +109,9 @@ fn local(pose: &Pose, p: &Point3) -> (f64, f64) {
     ((w - pose.axis.into_inner() * z).norm(), z)
 }
 
+/// What a bottom keeps off a plane at its heel, mm: closer it rubs where it should cut.
+pub const HEEL_CLEARANCE_MM: f64 = 0.05;
+
 /// Newton steps towards the entry into the rounded corner. The distance along a line is convex, so the iteration
 /// from outside is monotone and quadratic; more steps than this happen only for lines that graze.
 const MAX_CORNER_STEPS: u32 = 60;
@@ -183,6 +186,22 @@ impl Cutter {
             None => self.radius - self.corner,
             Some(m) => m.corner.centre_rho_mm,
         }
+    }
+
+    /// The least lean at which the bottom cuts and does not rub, rad: the one that lifts its heel, as far behind as the circle of corner
+    /// centres is wide, by [`HEEL_CLEARANCE_MM`] off a plane, and never more than a degree. Zero for a ball, which has no bottom.
+    ///
+    /// ```
+    /// use osculate_tools::{Cutter, CutterSpec};
+    /// let large = CutterSpec::Toroidal { diameter_mm: 63.0, corner_radius_mm: 6.0, length_mm: 80.0 };
+    /// assert!((Cutter::try_from(large)?.least_lean_rad() - (0.05f64 / 51.0).asin()).abs() < 1e-15);
+    /// # Ok::<(), osculate_tools::CutterError>(())
+    /// ```
+    #[must_use]
+    pub fn least_lean_rad(&self) -> f64 {
+        let behind_mm = (2.0 * self.core_mm()).max(HEEL_CLEARANCE_MM);
+        let lean_rad = (HEEL_CLEARANCE_MM / behind_mm).asin().min(1f64.to_radians());
+        if self.is_ball() { 0.0 } else { lean_rad }
     }
 
     /// Whether the cutter is a ball, flat or toroidal end, told by its radius and corner radius alone.

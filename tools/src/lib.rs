@@ -131,7 +131,7 @@ pub mod strip;
 pub mod sweep;
 
 pub use contact::{Contact, ContactError, ContactMotion, FeedLine, Lean, moving_with_axis, pose_with_axis};
-pub use cutter::{Cutter, CutterError, Entry, Line, Part};
+pub use cutter::{Cutter, CutterError, Entry, HEEL_CLEARANCE_MM, Line, Part};
 pub use holder::{Holder, HolderError, HolderSection};
 pub use pose::Pose;
 pub use spec::{CutterSpec, HolderSpec};

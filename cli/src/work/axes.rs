@@ -24,8 +24,9 @@ const ACCEPTED: f64 = 0.3;
 const ACCEPTED_OF_BALLS: f64 = 0.6;
 /// Axes lean off the normal by a right angle less this at most, rad.
 const UPRIGHT_RAD: f64 = 0.035;
-/// A flat bottom leans so much at least, rad: else it rubs where it should cut.
-const LEAST_RAD: f64 = 0.017_453_292_519_943_295;
+/// In a field a flat bottom leans so much at least, rad: between nodes axes lean a little less than at them, and more than its heel
+/// needs ([`Cutter::least_lean_rad`]) must be left there.
+pub const LEAST_RAD: f64 = 0.017_453_292_519_943_295;
 
 /// Whether the job's machine leaves axes no more than a line: three or four joints.
 pub fn is_line(job: &Job) -> bool {

@@ -280,7 +280,7 @@ pub fn with_best_lead(
         return Ok((each_face(job, faces, &way(Lean::default(), Axes::Field), progress)?, Lean::default()));
     }
     if job.strategy().lead == LeadKey::Local {
-        let lean = job.lean(LocalLead::LEAST_RAD);
+        let lean = job.lean(cutter.least_lean_rad());
         return Ok((each_face(job, faces, &way(lean, Axes::Local), progress)?, lean));
     }
     let mut leads: Vec<f64> = match job.strategy().lead {

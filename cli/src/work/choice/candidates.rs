@@ -8,7 +8,7 @@ use crate::work::axes;
 use crate::work::passes::{BALL_LEAD_DEG, each_direction};
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
 use osculate_productivity::compare::{Axes, Candidate};
-use osculate_productivity::plan::{Along, LocalLead, Strategy};
+use osculate_productivity::plan::{Along, Strategy};
 use osculate_tools::{Cutter, Lean};
 
 /// Leads tried, degrees: small ones for wide strips, great ones to keep heel and holder off.
@@ -75,7 +75,7 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
     if strategy.fixed_axis().is_some() {
         return vec![(Lean::default(), Axes::Held)];
     }
-    let of_field = || (job.lean(LocalLead::LEAST_RAD), Axes::Field);
+    let of_field = || (job.lean(axes::LEAST_RAD), Axes::Field);
     // Three or four joints take no lead along every feed.
     if job.strategy().axis_field || (axes::is_line(job) && job.strategy().may_be_field()) {
         return vec![of_field()];
@@ -83,7 +83,7 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
     let held = |leads: &[f64]| -> Vec<(Lean, Axes)> {
         leads.iter().map(|deg| (job.lean(deg.to_radians()), Axes::Held)).collect()
     };
-    let local = || (job.lean(LocalLead::LEAST_RAD), Axes::Local);
+    let local = || (job.lean(cutter.least_lean_rad()), Axes::Local);
     // A field goes by the direction of passes, which level lines have not yet.
     let lined = matches!(strategy, Strategy::Regions { .. });
     // Next to the normal a sharp edge tells nothing of what lies between points: a flat end keeps to leads, unless the machine leaves it

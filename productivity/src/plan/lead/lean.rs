@@ -14,7 +14,7 @@ use osculate_tools::{ContactError, Cutter, Holder, Lean, moving_with_axis};
 pub struct LocalLead<'a> {
     /// Tilt, held.
     pub tilt_rad: f64,
-    /// Least lead used.
+    /// Least lead used: [`Cutter::least_lean_rad`], unless one is given.
     pub least_rad: f64,
     /// Greatest lead used.
     pub most_rad: f64,
@@ -27,8 +27,6 @@ pub struct LocalLead<'a> {
 }
 
 impl LocalLead<'_> {
-    /// Least lead, rad: below a degree a bottom rubs where it should cut.
-    pub const LEAST_RAD: f64 = 0.017_453_292_519_943_295;
     /// Greatest lead, rad.
     pub const MOST_RAD: f64 = std::f64::consts::FRAC_PI_4;
 }
