@@ -23,10 +23,19 @@ struct Shown {
 }
 
 /// Rows of a plan that say what it makes in its time.
-const IN_TIME: &[&str] =
-    &["passes  ", "time  ", "cutting time", "productivity", "slower", "cutting speed", "held:", "not shown:"];
+const IN_TIME: &[&str] = &[
+    "passes  ",
+    "time  ",
+    "cutting time",
+    "productivity",
+    "slower than the feed",
+    "cutting speed",
+    "  held",
+    "  not shown",
+    "  NOT held",
+];
 
-const SHOWN: [Shown; 13] = [
+const SHOWN: [Shown; 14] = [
     Shown {
         heading: "Propeller: one contact",
         text: "A ball on a convex side. The strip beside every closed form, radii along and across the feed, the mark of one tooth, how the \
@@ -102,10 +111,17 @@ const SHOWN: [Shown; 13] = [
         pictures: &["figures.svg"],
     },
     Shown {
-        heading: "Ways of machining side by side",
-        text: "The cutters and lines that [M86] gives to each kind of machine, 16 mm across, on its four surfaces and on three real faces: \
-               which wins, and what each leaves. Length, minutes of cutting, and the verdict.",
+        heading: "Ways of machining side by side: the paper's surfaces",
+        text: "The cutters and lines that [M86] gives to each kind of machine, 16 mm across, on its four surfaces: which wins, and what each \
+               leaves. Length, minutes of cutting, and the verdict.",
         command: &["sweep", "docs/papers/own/ways.toml"],
+        lines: &[],
+        pictures: &[],
+    },
+    Shown {
+        heading: "Ways of machining side by side: real faces",
+        text: "The same on a propeller, an impeller blade and a hull. None of the three holds the tolerance on a whole real face by itself.",
+        command: &["sweep", "docs/papers/own/ways-real.toml"],
         lines: &[],
         pictures: &[],
     },
