@@ -76,6 +76,18 @@ fn a_list_becomes_one_program_with_its_tools_and_verify_says_the_same() {
         let sum: f64 = all.iter().map(|o| number(&o[key])).sum();
         assert!((sum - number(&v[key])).abs() < 1e-9 * sum, "{key}: {sum} {}", v[key]);
     }
+    // The finish's ball stands upright on slopes of up to tan = .12 and .24: its edge is as fast as its radius there lets it be, and next to
+    // nothing at the bottom. Of both tools together there is no one speed.
+    let speed = &all[1]["productivity"]["cutting_speed_m_min"];
+    let steepest = 0.12f64.hypot(0.24).atan();
+    let fastest = std::f64::consts::TAU * 3.0 * steepest.sin() * 9.0;
+    assert!(
+        (number(&speed["max"]) / fastest - 1.0).abs() < 0.03 && number(&speed["min"]) < 1.0,
+        "{speed}, {fastest}"
+    );
+    assert!(
+        v["productivity"]["cutting_speed_m_min"].is_null() && v["productivity"]["finished_mm2"].is_number()
+    );
     // From the block down to the dish: the volume between them, by the integral of a x^2 + b y^2.
     let between = 144.0 * (4.0 - (0.01 + 0.02) * 36.0 / 3.0);
     let taken: f64 = all.iter().map(|o| number(&o["removed_mm3"])).sum();

@@ -90,8 +90,9 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let mut summary = summary_of(job, part, &merged, all, &whole)?;
     summary.format = 2;
     summary.productivity = in_time.whole(job, part, summary.time_min);
-    // Each operation has a feed of its own.
+    // Each operation has a feed, a spindle speed and a tool of its own.
     summary.productivity.slower_share = None;
+    summary.productivity.cutting_speed_m_min = None;
     summary.setups = setups(list, &programs, &course);
     let mut diagnostics: Vec<Diagnostic> = part.part.diagnostics.clone();
     diagnostics.extend(notes);
