@@ -35,7 +35,7 @@ const IN_TIME: &[&str] = &[
     "  NOT held",
 ];
 
-const SHOWN: [Shown; 14] = [
+const SHOWN: [Shown; 15] = [
     Shown {
         heading: "Propeller: one contact",
         text: "A ball on a convex side. The strip beside every closed form, radii along and across the feed, the mark of one tooth, how the \
@@ -122,6 +122,14 @@ const SHOWN: [Shown; 14] = [
         heading: "Ways of machining side by side: real faces",
         text: "The same on a propeller, an impeller blade and a hull. None of the three holds the tolerance on a whole real face by itself.",
         command: &["sweep", "docs/papers/own/ways-real.toml"],
+        lines: &[],
+        pictures: &[],
+    },
+    Shown {
+        heading: "Turbine blade: ways of saying the feed",
+        text: "One path with every correction of the feed of [Z17], on a control that reads F over all axes: minutes as the control takes them, \
+               without a correction and with tool-centre-point control for comparison.",
+        command: &["sweep", "docs/papers/own/feeds.toml"],
         lines: &[],
         pictures: &[],
     },
@@ -226,15 +234,12 @@ fn ways(table: &Path) -> Result<String, Failure> {
         let why = || Failure::Answer { line: "sweep".into(), why: format!("no column {name}") };
         head.iter().position(|h| h == name).ok_or_else(why)
     };
-    let [face, way, answer, length, minutes, why] = [
-        column("face")?,
-        column("way")?,
-        column("answer")?,
-        column("cutting_length_mm")?,
-        column("cutting_time_min")?,
-        column("why")?,
-    ];
-    let mut out = String::from("\n| face | way | mm | min | verdict |\n|---|---|---|---|---|\n");
+    let (answer, length, minutes, why) =
+        (column("answer")?, column("cutting_length_mm")?, column("cutting_time_min")?, column("why")?);
+    // What is varied stands between the case and the answer.
+    let varied = 1..answer;
+    let names = head.get(varied.clone()).unwrap_or_default().join(" | ");
+    let mut out = format!("\n| {names} | mm | min | verdict |\n|{}\n", "---|".repeat(varied.len() + 3));
     let digits =
         |cell: &str, n: usize| cell.parse::<f64>().map_or_else(|_| "-".to_owned(), |x| format!("{x:.n$}"));
     for row in rows.iter().skip(1) {
@@ -242,9 +247,8 @@ fn ways(table: &Path) -> Result<String, Failure> {
             if row[why].is_empty() { String::new() } else { format!(": {}", row[why].replace('|', "/")) };
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {} | {}{words} |",
-            row[face],
-            row[way],
+            "| {} | {} | {} | {}{words} |",
+            row[varied.clone()].join(" | "),
             digits(&row[length], 0),
             digits(&row[minutes], 2),
             row[answer].replace('_', " ")

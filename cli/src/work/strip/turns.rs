@@ -52,7 +52,7 @@ impl Dupin {
     }
 }
 
-/// The indicatrices in directions around the normal, and what [R97] reads off them. Angles from `S_u` towards `S_v` in the tangent plane.
+/// The indicatrices in directions around the normal, and what R97 reads off them. Angles from `S_u` towards `S_v` in the tangent plane.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Turns {
