@@ -153,6 +153,11 @@ pub fn number(x: f64, digits: usize) -> String {
     }
 }
 
+/// A number of minima.
+pub fn minima(count: usize) -> String {
+    format!("{count} {}", if count == 1 { "minimum" } else { "minima" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

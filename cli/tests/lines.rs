@@ -68,6 +68,43 @@ fn postures_of_a_ball_on_a_plane() {
     assert!(picture.starts_with("<svg ") && picture.contains("strip width, with the direction of feed"));
 }
 
+/// M86, 5.2: a flat end does not get around the minimum of the third surface, and gets everywhere on the one that has none.
+#[test]
+fn undercut_regions_and_the_axis_without_minima() {
+    let scratch = Scratch::new();
+    let flat = "kind = \"flat\", diameter_mm = 16, length_mm = 60";
+    let run = |kind: &str| {
+        let (out, builtin) = (scratch.path(kind), format!("kind = \"{kind}\""));
+        let out = out.to_str().unwrap();
+        let args = ["lines", "--builtin", &builtin, "--tool", flat, "--nodes", "4", "--out", out, "--json"];
+        osculate(&args).json()
+    };
+    let (plain, hollow) = (run("m86-1"), run("m86-3"));
+    assert!(plain["fewest_minima"].is_null());
+    let shares = |way: &serde_json::Value| -> Vec<f64> {
+        let each = way["shares_percent"].as_array().unwrap().iter();
+        each.map(|s| s["percent"].as_f64().unwrap()).collect()
+    };
+    assert_eq!(shares(&plain["fixed_axis"][0])[0], 100.0);
+    assert_eq!(hollow["fewest_minima"]["minima"], 0);
+    let ways = hollow["fixed_axis"].as_array().unwrap();
+    assert_eq!(ways.len(), 2);
+    for (way, minima) in ways.iter().zip([1, 0]) {
+        assert_eq!(way["minima"], minima);
+        assert!((shares(way).iter().sum::<f64>() - 100.0).abs() < 1e-9);
+        let states = way["state"].as_array().unwrap();
+        let tight = states.iter().filter(|s| **s == "tight_contour").count();
+        assert!(states.len() == 256 && tight > 0 && tight < 20, "{tight}");
+        let least = way["relative_min_per_mm"].as_array().unwrap();
+        assert!(least.iter().zip(states).all(|(q, s)| q.is_null() == (s != "clear")));
+    }
+    assert!(shares(&ways[1])[0] > shares(&ways[0])[0]);
+    let picture = std::fs::read_to_string(scratch.path("m86-3").join("i-fixed-axis.svg")).unwrap();
+    assert!(
+        picture.contains("contour line too tight") && picture.contains("held along 0 0 1.000: 1 minimum")
+    );
+}
+
 #[test]
 fn the_gallery_is_listed() {
     let all = osculate(&["gallery", "--json"]).json();

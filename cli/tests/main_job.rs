@@ -64,6 +64,14 @@ fn a_plan_is_written_posted_verified_and_reported() {
         let finished = number(real, &["finished_mm2"]);
         assert!((finished / area - 1.0).abs() < 0.005, "{finished} of {area}");
         let map = &real["regional"][0];
+        let held = real["feed_held_by"].as_object().unwrap();
+        assert!((held.values().map(|v| v.as_f64().unwrap()).sum::<f64>() - 1.0).abs() < 1e-4, "{held:?}");
+        let slower = number(real, &["slower_share"]);
+        let asked = held.iter().filter(|(by, _)| *by != "acceleration" && !by.starts_with("joint "));
+        let asked: f64 = asked.map(|(_, v)| v.as_f64().unwrap()).sum();
+        assert!((asked + slower - 1.0).abs() < 1e-4, "{held:?} {slower}");
+        let (by, rates) = (map["held_by"].as_array().unwrap(), map["mm2_min"].as_array().unwrap());
+        assert!(by.len() == rates.len() && by.iter().zip(rates).all(|(b, r)| b.is_null() == r.is_null()));
         let rates = map["mm2_min"].as_array().unwrap().iter().zip(map["time_s"].as_array().unwrap());
         let by_cells: f64 = rates.filter_map(|(e, t)| Some(e.as_f64()? * t.as_f64()? / 60.0)).sum();
         assert!((by_cells / area - 1.0).abs() < 0.005, "{by_cells} of {area}");

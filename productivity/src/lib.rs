@@ -20,6 +20,7 @@
 //! - [`plan`]: passes over a face whose spacing the exact strip decides, and the moves between them.
 //! - [`axis`]: the tool's axis as a field over a face, the same for passes to and fro.
 //! - [`access`]: from where a tool reaches faces, and which axes together reach the most.
+//! - [`fixed_axis`]: where a tool that does not turn would dig in next to its contact.
 //! - [`compare`]: tools, strategies, directions and leads screened side by side.
 //!
 //! ```
@@ -80,6 +81,7 @@ pub mod compare;
 pub mod engagement;
 pub mod field;
 pub mod finish;
+pub mod fixed_axis;
 pub mod given;
 pub mod ideal;
 pub mod levels;

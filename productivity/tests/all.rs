@@ -15,6 +15,7 @@ mod drop;
 #[path = "common/dropped.rs"]
 mod dropped;
 mod errata;
+mod fixed_axis;
 mod gradient;
 #[path = "common/heights.rs"]
 mod heights;

@@ -9,7 +9,7 @@ use osculate_geom::analytic::{Ellipsoid, Paraboloid, Placed, Placement, Sphere, 
 use osculate_geom::{Axis, Point3, Side, Surface, Unit3, Vec3, uv};
 use osculate_surfaces::lines::{
     Chart, Course, Cover, CriticalKind, CurvatureDifference, Family, Gauss, Height, LineEnd, LinePoint,
-    LineTolerance, TraceStops, contours, cover, critical_points, ridges, trace, umbilics,
+    LineTolerance, TraceStops, Turn, contours, cover, critical_points, ridges, trace, turned, umbilics,
 };
 use osculate_surfaces::{NurbsSurface, TrimmedSurface, gallery};
 use proptest::prelude::*;
@@ -384,6 +384,68 @@ fn gallery_surfaces_have_their_features() {
             // Minima where the difference vanishes.
             _ => assert_eq!(d.inside(CriticalKind::Minimum).count(), want.0),
         }
+    }
+}
+
+/// Minima of the height over a grid's inner nodes: places lower than their eight neighbours.
+fn minima_of_a_grid(s: &dyn Surface, axis: &Unit3, n: usize) -> usize {
+    let d = s.domain();
+    let at = |i: usize, j: usize| {
+        s.point(d.at((i as f64 + 0.37) / n as f64, (j as f64 + 0.41) / n as f64)).coords.dot(axis)
+    };
+    let heights: Vec<f64> = (0..n * n).map(|k| at(k / n, k % n)).collect();
+    (1..n - 1)
+        .flat_map(|i| (1..n - 1).map(move |j| (i, j)))
+        .filter(|(i, j)| {
+            (i - 1..=i + 1)
+                .flat_map(|a| (j - 1..=j + 1).map(move |b| a * n + b))
+                .all(|k| k == i * n + j || heights[k] > heights[i * n + j])
+        })
+        .count()
+}
+
+/// M86, 5.2: turned far enough, the paper's third and fourth surfaces have no minimum left, as a dense grid says too; turned less they
+/// have one wherever they are turned to.
+#[test]
+fn a_turned_face_has_no_minima() {
+    for number in [3, 4] {
+        let s = gallery::m86(number);
+        let c = chart(&s);
+        let turn = turned(&c, Vec3::z_axis());
+        assert_eq!((turn.asked.minima, turn.fewest.minima), (1, 0), "m86-{number}");
+        assert_eq!((turn.asked.away, turn.fewest.away), (0.0, 0.0));
+        assert_eq!(minima_of_a_grid(&s, &Vec3::z_axis(), 120), 1);
+        assert_eq!(minima_of_a_grid(&s, &turn.fewest.axis, 120), 0);
+        let angle = turn.fewest.axis.angle(&Vec3::z_axis());
+        assert!((angle - turn.fewest.turn_rad).abs() < 1e-12);
+        for k in 0..36 {
+            let (sin, cos) = (angle - 1.1 * Turn::STEP_RAD).sin_cos();
+            let (s0, c0) = f64::from(10 * k).to_radians().sin_cos();
+            let less = Unit3::new_normalize(Vec3::new(sin * c0, sin * s0, cos));
+            assert_eq!(minima_of_a_grid(&s, &less, 240), 1, "m86-{number}, {k}");
+        }
+    }
+    // Two bowls beside each other, z = (x^2 - 1)^2 / 20 + y^2 / 10 over |x|, |y| < 1.3: whichever way it is turned up to the slope of its
+    // border, one is left.
+    let two = bezier_graph(1.3, 4, |x, y| (x * x - 1.0).powi(2) / 20.0 + y * y / 10.0);
+    let turn = turned(&chart(&two), Vec3::z_axis());
+    assert_eq!((turn.asked.minima, minima_of_a_grid(&two, &Vec3::z_axis(), 201)), (2, 2));
+    assert_eq!(minima_of_a_grid(&two, &turn.fewest.axis, 201), turn.fewest.minima);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// A bowl z = a x^2 + b y^2 over |x|, |y| < 20 has a bottom until it leans by the lesser slope of its borders' middles.
+    #[test]
+    fn a_bowl_is_turned_by_its_lesser_slope(a in 0.002f64..0.014, b in 0.002f64..0.014) {
+        let bowl = Paraboloid::new([a, b], 20.0).unwrap();
+        let turn = turned(&chart(&bowl), Vec3::z_axis());
+        prop_assert_eq!((turn.asked.minima, turn.fewest.minima), (1, 0));
+        let least = (2.0 * a.min(b) * 20.0).atan();
+        let (found, step) = (turn.fewest.turn_rad, Turn::STEP_RAD);
+        // Rings are a step apart; of a ring an axis may stand half a step beside the direction that needs least.
+        prop_assert!(found > least && found < least + 2.0 * step, "{} {}", found.to_degrees(), least.to_degrees());
     }
 }
 

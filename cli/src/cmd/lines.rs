@@ -3,15 +3,16 @@
 use crate::screen::args::{LinesArgs, PostureArgs};
 use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
+use osculate::figure::fixed_axis::FixedAxis;
 use osculate::figure::postures::Postures;
 use osculate::figure::{self, Panel, Study, Wanted, json, sheet};
 use osculate::part;
 use osculate::report::project::Direction;
-use osculate::words::number;
+use osculate::words::{minima, number};
 use osculate_geom::{Unit3, Vec3};
 use osculate_productivity::optimum::{Limits, Range};
 use osculate_productivity::rate::Caps;
-use osculate_surfaces::lines::{CriticalKind, UmbilicKind};
+use osculate_surfaces::lines::{CriticalKind, Turn, UmbilicKind};
 use osculate_tools::{Cutter, CutterSpec};
 
 /// Most levels that a figure can tell apart.
@@ -38,7 +39,9 @@ pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     };
     let from = args.view_deg.map(|[azimuth_deg, elevation_deg]| Direction { azimuth_deg, elevation_deg });
     let scene = sheet::scene(&study, from);
-    let mut answer = json::answer(&study, &face.id);
+    let turn = study.turned().map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
+    let mut answer = json::answer(&study, &turn, &face.id);
+    let mut stands = Vec::new();
     let mut files = vec![("figures.svg".to_owned(), figure::page(&study, &scene, &name))];
     for panel in Panel::ALL.into_iter().filter(|p| p.applies(&study)) {
         files.push((format!("{}.svg", panel.file()), figure::single(&study, &scene, panel, &name)));
@@ -46,9 +49,13 @@ pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     if let Some((cutter, limits)) = &tool {
         let postures = Postures::of(&face.surface, cutter, limits, args.postures.nodes)
             .map_err(|e| Failure::job(format!("{}: {e}", face.id)))?;
-        let scene = sheet::beside_bar(&study, from);
-        files.push(("h-postures.svg".to_owned(), postures.page(&study, &scene, &name)));
+        let beside = sheet::beside_bar(&study, from);
+        files.push(("h-postures.svg".to_owned(), postures.page(&study, &beside, &name)));
         answer.postures = Some(postures.arrays());
+        let held = FixedAxis::of(&face.surface, cutter, &turn, args.postures.nodes);
+        files.push(("i-fixed-axis.svg".to_owned(), held.page(&study, &scene, &name)));
+        answer.fixed_axis = Some(held.arrays());
+        stands = held.told();
     }
     answer.files = files.iter().map(|(f, _)| f.clone()).chain(["lines.json".to_owned()]).collect();
     files.push(("lines.json".to_owned(), serde_json::to_string(&answer).map_err(Failure::job)?));
@@ -59,7 +66,7 @@ pub fn run(args: &LinesArgs, json_wanted: bool) -> Outcome {
     if json_wanted {
         render::json(&answer)?;
     } else {
-        render::text(&describe(&study, &name, &answer.files, args))?;
+        render::text(&describe(&study, &name, (&turn, &stands), &answer.files, args))?;
     }
     Ok(Done::Yes)
 }
@@ -122,7 +129,13 @@ fn limits(keys: &str, args: &PostureArgs) -> Result<(Cutter, Limits), Failure> {
     Ok((cutter, limits))
 }
 
-fn describe(study: &Study, name: &str, files: &[String], args: &LinesArgs) -> String {
+fn describe(
+    study: &Study,
+    name: &str,
+    (turn, stands): (&Turn, &[String]),
+    files: &[String],
+    args: &LinesArgs,
+) -> String {
     let mut out = format!("\n  {name}, {} mm across\n\n", number(study.size_mm, 4));
     let u = &study.umbilics;
     let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
@@ -167,6 +180,22 @@ fn describe(study: &Study, name: &str, files: &[String], args: &LinesArgs) -> St
         count(of(CriticalKind::Maximum), "maximum", "maxima"),
         count(of(CriticalKind::Saddle), "saddle", "saddles"),
     ));
+    if turn.asked.minima > 0 {
+        let f = &turn.fewest;
+        out.push_str(&if f.minima < turn.asked.minima {
+            let [x, y, z] = [f.axis.x, f.axis.y, f.axis.z].map(|x| number(x, 4));
+            format!(
+                "  along {x} {y} {z}, {} deg off: {}\n",
+                number(f.turn_rad.to_degrees(), 3),
+                minima(f.minima)
+            )
+        } else {
+            "  no axis from which no more faces away has fewer minima\n".to_owned()
+        });
+    }
+    for line in stands {
+        out.push_str(&format!("  {line}\n"));
+    }
     out.push_str(&format!("  searched in cells of at most {} mm\n", number(study.resolution_mm, 3)));
     for note in &study.notes {
         out.push_str(&format!("  note: {note}\n"));

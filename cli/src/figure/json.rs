@@ -2,7 +2,7 @@
 
 use super::study::{Levels, Study};
 use osculate_geom::{Point3, Uv};
-use osculate_surfaces::lines::{Critical, CriticalKind, Family, LineEnd, SurfacePolyline, UmbilicKind};
+use osculate_surfaces::lines::{Critical, CriticalKind, Family, LineEnd, SurfacePolyline, Turn, UmbilicKind};
 use serde::Serialize;
 
 /// Everything in one object.
@@ -30,8 +30,21 @@ pub struct Answer {
     /// The best postures of a tool, where one is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub postures: Option<super::postures::Arrays>,
+    /// The axis with the fewest minima of height, where `axis` has some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fewest_minima: Option<Fewest>,
+    /// Where a tool that does not turn stands, where one is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed_axis: Option<Vec<super::fixed_axis::Arrays>>,
     /// The files written.
     pub files: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Fewest {
+    axis: [f64; 3],
+    turn_deg: f64,
+    minima: usize,
 }
 
 #[derive(Debug, Serialize)]
@@ -106,8 +119,8 @@ struct Line {
     uv: Vec<[f64; 2]>,
 }
 
-/// The lines of a study.
-pub fn answer(study: &Study, face: &str) -> Answer {
+/// The lines of a study, and what its axis might be.
+pub fn answer(study: &Study, turn: &Turn, face: &str) -> Answer {
     let u = &study.umbilics;
     let half = |twice: Option<i32>| twice.map(|t| 0.5 * f64::from(t));
     let point = |p: &osculate_surfaces::lines::Umbilic| Umbilic {
@@ -162,6 +175,12 @@ pub fn answer(study: &Study, face: &str) -> Answer {
         asymptotic_lines: study.asymptotic.iter().flatten().map(line).collect(),
         notes: study.notes.clone(),
         postures: None,
+        fewest_minima: (turn.asked.minima > 0).then(|| Fewest {
+            axis: [turn.fewest.axis.x, turn.fewest.axis.y, turn.fewest.axis.z],
+            turn_deg: turn.fewest.turn_rad.to_degrees(),
+            minima: turn.fewest.minima,
+        }),
+        fixed_axis: None,
         files: Vec::new(),
     }
 }

@@ -5,7 +5,7 @@ use osculate_geom::{Axis, Interval, Point3, Surface, Unit3, Uv, Vec3, uv};
 use osculate_surfaces::lines::{
     Chart, ChartError, Contours, Course, Cover, CoverEnd, Covered, CriticalKind, CriticalPoints,
     CurvatureDifference, Family, FieldSample, Gauss, Height, LinePoint, LineTolerance, Ridge, ScalarField,
-    SurfacePolyline, TraceStops, Umbilics, contours, cover, critical_points, ridges, umbilics,
+    SurfacePolyline, TraceStops, Turn, Umbilics, contours, cover, critical_points, ridges, turned, umbilics,
 };
 use osculate_surfaces::{BezierPatch, Mesh, NurbsSurface, TrimmedSurface, tessellate};
 
@@ -203,6 +203,14 @@ impl Study {
         let lines = contours(&chart, &Facing(*toward), &[0.0], None).lines;
         let closed = |l: &SurfacePolyline| l.is_closed().then(|| l.points[0].point);
         lines.iter().map(|c| c.line.points.iter().map(|p| p.point).chain(closed(&c.line)).collect()).collect()
+    }
+
+    /// The face under its axis, and the axis with the fewest minima of height.
+    ///
+    /// # Errors
+    /// [`StudyError::Chart`].
+    pub fn turned(&self) -> Result<Turn, StudyError> {
+        Ok(turned(&Chart::new(&self.face, self.tolerance)?, self.axis))
     }
 
     /// The critical points of the difference other than umbilics.

@@ -6,7 +6,7 @@ use crate::job::raw::Raw;
 use crate::job::strategy::Strategy;
 use crate::job::tool::Tool;
 use crate::job::words::LeadKey;
-use osculate_productivity::rate::Caps;
+use osculate_productivity::rate::{Caps, FeedLimit};
 
 /// Feed of a job that gives none, mm/min.
 const FEED_MM_MIN: f64 = 1000.0;
@@ -59,25 +59,28 @@ pub(super) fn caps(tool: &Tool) -> Option<Caps> {
     })
 }
 
-/// The feed of a tool, capped by the feed per tooth where the job gives both.
+/// The feed of a tool, capped by the feed per tooth where the job gives both, and what sets it.
 pub(super) fn feed_mm_min(
     places: &Places,
     raw: &Raw,
     (tool, strategy): (&Tool, &Strategy),
-) -> Result<f64, Failure> {
+) -> Result<(f64, FeedLimit), Failure> {
     let c = tool.feeding();
-    let mut feed = c.feed_mm_min.unwrap_or(FEED_MM_MIN);
+    let lesser = |feed: (f64, FeedLimit), other: f64, by| if other < feed.0 { (other, by) } else { feed };
+    let mut feed = (c.feed_mm_min.unwrap_or(FEED_MM_MIN), FeedLimit::Feed);
     // The feed at which the marks of teeth take half of the scallop tolerance on a plane. Half is best where the feed is free: the
     // width of a strip goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97,
     // eq. 41]. Layers of a roughing stand higher than marks.
     if let (Some(rpm), None) = (c.spindle_rpm, strategy.layers()) {
         let mark_mm = MARK_SHARE * raw.tolerance.scallop_mm;
         let teeth = f64::from(tool.teeth().unwrap_or(1));
-        feed = feed_per_tooth_mm(tool, strategy, mark_mm).map_or(feed, |f| feed.min(f * teeth * rpm));
+        if let Some(per_tooth) = feed_per_tooth_mm(tool, strategy, mark_mm) {
+            feed = lesser(feed, per_tooth * teeth * rpm, FeedLimit::ToothMark);
+        }
     }
     match (c.feed_per_tooth_mm, c.spindle_rpm, tool.teeth()) {
         (None, ..) => Ok(feed),
-        (Some(f), Some(n), Some(z)) => Ok(feed.min(f * n * f64::from(z))),
+        (Some(f), Some(n), Some(z)) => Ok(lesser(feed, f * n * f64::from(z), FeedLimit::FeedPerTooth)),
         _ => {
             let what = "feed_per_tooth_mm needs spindle_rpm and [tool] teeth to become a feed";
             Err(places.refuse("cutting", "feed_per_tooth_mm", what))

@@ -33,6 +33,7 @@ pub use flank::Flank;
 pub use operations::{Clamping, Operation, Operations};
 use osculate_geom::Axis;
 use osculate_productivity::plan::Tolerance;
+use osculate_productivity::rate::FeedLimit;
 pub use part::{FaceChoice, Part, Source};
 use problem::Places;
 use raw::Raw;
@@ -63,7 +64,7 @@ struct Told {
     part: Part,
     tools: Vec<Tool>,
     /// Of each tool.
-    feeds_mm_min: Vec<f64>,
+    feeds_mm_min: Vec<(f64, FeedLimit)>,
     /// With each tool.
     layers_mm: Vec<f64>,
     tolerance: Tolerance,

@@ -7,7 +7,7 @@ use super::{
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
 use osculate_productivity::plan::Tolerance;
-use osculate_productivity::rate::Caps;
+use osculate_productivity::rate::{Caps, FeedLimit};
 use osculate_tools::{Cutter, CutterSpec, Holder, Lean};
 use std::path::Path;
 use std::sync::Arc;
@@ -166,7 +166,13 @@ impl Job {
     /// ```
     #[must_use]
     pub fn feed_mm_min(&self) -> f64 {
-        self.told.feeds_mm_min[self.hand.unwrap_or(0)]
+        self.told.feeds_mm_min[self.hand.unwrap_or(0)].0
+    }
+
+    /// What sets that feed: the one that is given, the feed per tooth, or the height of the marks of teeth.
+    #[must_use]
+    pub fn feed_limit(&self) -> FeedLimit {
+        self.told.feeds_mm_min[self.hand.unwrap_or(0)].1
     }
 
     /// What holds the feed down besides the marks of teeth; None without a spindle speed.

@@ -4,9 +4,11 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::job::strategy::Drop;
 use crate::part::{self, LoadedFace, Part};
+use crate::words::{self, number};
 use crate::work::budget;
-use osculate_geom::{Box3, Unit3, Vec3};
+use osculate_geom::{Box3, Diagnostic, Unit3, Vec3};
 use osculate_productivity::plan::{DropTask, Milling, Named, Passes, drop_cutter, gradient_3c, waterline_3c};
+use osculate_surfaces::lines::{Chart, LineTolerance, turned};
 
 /// Passes over all faces of the job, with its check faces kept clear.
 pub fn passes(
@@ -31,11 +33,38 @@ pub fn passes(
         Drop::Waterlines => waterline_3c,
     };
     let mut found = plan(&task).map_err(|e| Failure::file(job.path(), e))?;
+    if kind != Drop::Waterlines && !job.cutter().is_ball() {
+        found.diagnostics.extend(faces.faces.iter().filter_map(|face| minima(face, axis)));
+    }
     // Waterlines have material on the right.
     if kind == Drop::Waterlines && job.strategy().senses.milling == Milling::Conventional {
         found.passes.iter_mut().for_each(|p| p.points.reverse());
     }
     Ok(found)
+}
+
+/// What is to be said of a face whose height along the axis has minima: no flat bottom gets around them [M86, 5.2].
+fn minima(face: &LoadedFace, axis: Unit3) -> Option<Diagnostic> {
+    let size_mm = (part::bounds(face).max - part::bounds(face).min).norm();
+    let chart = Chart::new(&*face.surface, LineTolerance::for_size(size_mm)).ok()?;
+    let turn = turned(&chart, axis);
+    let asked = words::minima(turn.asked.minima);
+    let text = match turn.fewest.minima {
+        _ if turn.asked.minima == 0 => return None,
+        fewest if fewest < turn.asked.minima => {
+            let [x, y, z] =
+                [turn.fewest.axis.x, turn.fewest.axis.y, turn.fewest.axis.z].map(|x| number(x, 4));
+            let deg = number(turn.fewest.turn_rad.to_degrees(), 3);
+            format!(
+                "{asked} of height along the axis, which a flat bottom does not get around; along [{x}, {y}, {z}], {deg} deg off, {}",
+                words::minima(fewest)
+            )
+        }
+        _ => format!(
+            "{asked} of height along the axis, which a flat bottom does not get around; along no other are there fewer"
+        ),
+    };
+    Some(Diagnostic::note(face.id.clone(), text))
 }
 
 /// The tool axis, and the way of the passes.

@@ -114,6 +114,7 @@ mod tests {
             time_min: 2.0,
             slowed_min: 0.25,
             slowest: Some(SlowestBlock { ratio: 4.41, letter: "C".to_owned(), line: 31 }),
+            ..JointDemand::default()
         };
         let figures = JointFigures::of(&demand);
         let json = serde_json::to_value(&figures).expect("plain values");

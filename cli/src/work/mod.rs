@@ -12,6 +12,7 @@ pub mod extras;
 pub mod faces_page;
 pub mod flank;
 pub mod goal;
+mod held;
 pub mod ideal;
 pub mod import;
 pub mod init;

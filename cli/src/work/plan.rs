@@ -249,7 +249,8 @@ impl Proved<'_> {
         let times = Times::of(&read);
         let times_min = times.time_min;
         let mut summary = summary_of(job, faces, &planned, times, &verified)?;
-        let timed = Timed { motions: &read.motions, times_min: &read.times_min };
+        let timed =
+            Timed { motions: &read.motions, times_min: &read.times_min, joints: read.joints.as_ref() };
         let in_time = InTime::of(job, timed, &verified);
         let mut found = in_time.whole(job, faces, times_min);
         found.strips_over_area = strips_over_area(&planned, found.finished_mm2);

@@ -7,16 +7,19 @@ use crate::job::Job;
 use crate::job::stock::Blank;
 use crate::part::{Part, area};
 use crate::report::Scalar;
+use crate::work::held::{Held, SLOWER};
 use crate::work::program::Planned;
 use crate::work::rough;
 use crate::work::verify::Verified;
 use osculate_geom::Surface;
+use osculate_postproc::motion::JointDemand;
 use osculate_productivity::real_time::{
     Cells, Fineness, FinishedPlace, Finishing, Region, Spread, Stretch, TimedMotion, stretches,
 };
 use osculate_productivity::rough::layer_depth_mm;
 use osculate_tools::removal::{Body, Cut, Limits, Sample, Swept};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -24,8 +27,6 @@ use std::ops::Range;
 pub const PRODUCTIVITY: &str = "Productivity";
 /// Cells of the maps over all faces together, about: a summary stays a file that one can look at.
 const CELLS: f64 = 1024.0;
-/// Slower than this share of the feed of the job counts as held back.
-const SLOWER: f64 = 0.95;
 
 /// How a productivity is spread over the time in which something is made.
 #[derive(Debug, Serialize, Clone, Copy, PartialEq)]
@@ -64,6 +65,9 @@ pub struct FaceMap {
     pub time_s: Vec<f64>,
     /// Area over time; null where nothing was finished.
     pub mm2_min: Vec<Option<f64>>,
+    /// What holds the feed over most of the area of each, as in [`RealProductivity::feed_held_by`]; empty where that is not known.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub held_by: Vec<Option<String>>,
 }
 
 /// What is removed of declared raw material.
@@ -100,6 +104,10 @@ pub struct RealProductivity {
     /// The share of that time in which the tip is slower than 95 % of the feed of the job; of a list each operation has its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slower_share: Option<f64>,
+    /// What holds the feed, with its share of that time: the cap on the job's feed (`feed`, `feed_per_tooth` or `tooth_mark`), `joint X`
+    /// at its greatest speed, or else `acceleration`; of a program of one tool whose machine is known.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub feed_held_by: BTreeMap<String, f64>,
     /// Strip width times way over the finished area: 1 and what strips share with each other or lay beside the faces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strips_over_area: Option<f64>,
@@ -130,6 +138,8 @@ pub struct Timed<'a> {
     pub motions: &'a [Swept],
     /// Time at the end of each, min.
     pub times_min: &'a [f64],
+    /// What its feed moves ask of the joints, of a program of one tool on a known machine.
+    pub joints: Option<&'a JointDemand>,
 }
 
 /// Productivity over the whole of a program, from which that of its parts is told.
@@ -140,12 +150,13 @@ pub struct InTime {
     leans_rad: Vec<f32>,
     finishing: Option<Finishing>,
     removing: Option<Vec<Stretch>>,
+    held: Option<Held>,
 }
 
 impl InTime {
     /// What a verdict measured, in the time of the program that it is on. Where a time is not known there is nothing to tell.
     pub fn of(job: &Job, program: Timed<'_>, verified: &Verified) -> Self {
-        let Timed { motions, times_min } = program;
+        let Timed { motions, times_min, joints } = program;
         let begins = std::iter::once(&0.0).chain(times_min);
         let timed: Vec<TimedMotion> = motions
             .iter()
@@ -182,7 +193,11 @@ impl InTime {
             let fine = Fineness::of_places(found.cell_mm);
             stretches(&timed, &volumes, Fineness { amount: fine.amount * found.cell_mm, ..fine }).ok()
         });
-        Self { places, leans_rad, finishing, removing }
+        let held = finishing
+            .as_ref()
+            .zip(joints)
+            .map(|(finishing, demand)| Held::of(job, motions, &finishing.stretches, demand));
+        Self { places, leans_rad, finishing, removing, held }
     }
 
     /// Of some of its motions, which take so long: without maps.
@@ -230,11 +245,17 @@ impl InTime {
         let Some(finishing) = self.finishing.as_ref().filter(|_| out.finished_mm2.is_some()) else {
             return out;
         };
+        if let Some(held) = &self.held {
+            out.feed_held_by = held.shares(&finishing.stretches);
+            out.feed_held_by.values_mut().for_each(|share| *share = six_digits(*share));
+        }
         let areas: Vec<f64> = faces.faces.iter().map(area).collect();
         let all: f64 = areas.iter().sum();
         let own = faces.faces.iter().zip(&areas).zip(0u32..).map(|((face, area), number)| {
             let most = (CELLS * area / all).round().max(1.0) as usize;
-            let found = Region::of(&self.places, finishing, Cells::over(&face.surface, number, most));
+            let cells = Cells::over(&face.surface, number, most);
+            let found = Region::of(&self.places, finishing, cells);
+            let held = self.held.as_ref().map(|held| held.by_cell(&self.places, finishing, &cells));
             let short = |all: &[f64]| all.iter().map(|x| six_digits(*x)).collect();
             FaceMap {
                 face: face.id.clone(),
@@ -243,6 +264,7 @@ impl InTime {
                 area_mm2: short(&found.area_mm2),
                 time_s: found.time_min.iter().map(|t| six_digits(60.0 * t)).collect(),
                 mm2_min: found.mm2_min().into_iter().map(|e| e.is_finite().then(|| six_digits(e))).collect(),
+                held_by: held.unwrap_or_default(),
             }
         });
         out.regional = own.collect();
@@ -313,6 +335,14 @@ impl RealProductivity {
         }
         if let Some(share) = self.slower_share {
             out.push(("slower than the feed asked for", format!("{:.0}", 100.0 * share), "% of it"));
+        }
+        if !self.feed_held_by.is_empty() {
+            let mut by: Vec<_> = self.feed_held_by.iter().collect();
+            by.sort_by(|a, b| b.1.total_cmp(a.1));
+            let each = by
+                .into_iter()
+                .map(|(name, share)| format!("{} {:.0}", name.replace('_', " "), 100.0 * share));
+            out.push(("feed held by", each.collect::<Vec<_>>().join(", "), "% of it"));
         }
         if let Some(s) = &self.cutting_speed_m_min {
             out.push(("cutting speed at the contact", spread(s), "m/min"));

@@ -49,6 +49,15 @@ pub struct SlowestBlock {
     pub line: usize,
 }
 
+/// A block that a joint slows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SlowedBlock {
+    /// The line of the block.
+    pub line: usize,
+    /// The joint, as a place in [`JointDemand::letters`].
+    pub joint: usize,
+}
+
 /// What the feed moves of a program ask of the joints.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct JointDemand {
@@ -64,6 +73,10 @@ pub struct JointDemand {
     pub slowed_min: f64,
     /// The one that is slowed most; none where no joint slows a block in which the tip moves.
     pub slowest: Option<SlowestBlock>,
+    /// The letters of all joints of the machine, outer first.
+    pub letters: Vec<String>,
+    /// Every block that a joint slows, in the order of the program.
+    pub slowed: Vec<SlowedBlock>,
 }
 
 impl JointDemand {
@@ -75,7 +88,11 @@ impl JointDemand {
             step_rad: 0.0,
             line: 0,
         };
-        Self { largest_steps: machine.rotary().iter().map(rest).collect(), ..Self::default() }
+        Self {
+            largest_steps: machine.rotary().iter().map(rest).collect(),
+            letters: machine.joints().iter().map(|j| j.letter.clone()).collect(),
+            ..Self::default()
+        }
     }
 
     /// Adds a feed move of a program for the machine.
@@ -95,6 +112,7 @@ impl JointDemand {
             return;
         };
         self.slowed_blocks += 1;
+        self.slowed.push(SlowedBlock { line, joint: place });
         self.slowed_min += real_min;
         let ratio = real_min / asked_min;
         if ratio.is_finite() && self.slowest.as_ref().is_none_or(|s| ratio > s.ratio) {

@@ -14,7 +14,7 @@ mod joint_demand;
 pub mod linuxcnc;
 mod lookahead;
 
-pub use joint_demand::{FeedBlock, JointDemand, LargestStep, SlowestBlock};
+pub use joint_demand::{FeedBlock, JointDemand, LargestStep, SlowedBlock, SlowestBlock};
 pub use lookahead::{LookAhead, Stretch, block_times_s};
 
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! Regional productivity as a map over a face: area and time of each of its cells.
 
 use super::{FinishedPlace, Finishing};
-use osculate_geom::{Domain, Surface};
+use osculate_geom::{Domain, Surface, Uv};
 
 /// The cells into which the parameter rectangle of a face is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,21 @@ impl Cells {
         let along_u = if along.is_finite() { (along as usize).clamp(1, most) } else { 1 };
         Self { face, domain, along_u, along_v: (most / along_u).max(1) }
     }
+
+    /// How many they are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.along_u.max(1) * self.along_v.max(1)
+    }
+
+    /// The cell of a place, the nearest one of a place beyond the rectangle; they stand in rows of u.
+    #[must_use]
+    pub fn of(&self, at: Uv) -> usize {
+        let cell = |x: f64, n: usize| ((x * n as f64).floor().max(0.0) as usize).min(n - 1);
+        let u = cell((at.u - self.domain.u.lo) / self.domain.u.length(), self.along_u.max(1));
+        let v = cell((at.v - self.domain.v.lo) / self.domain.v.length(), self.along_v.max(1));
+        u * self.along_v.max(1) + v
+    }
 }
 
 /// Regional productivity: what each cell of a face takes. Cells stand in rows of u: that of cell i along u, j along v is at
@@ -69,14 +84,11 @@ impl Region {
         let middles = |n: usize, at: &dyn Fn(f64) -> f64| -> Vec<f64> {
             (0..n).map(|k| at((k as f64 + 0.5) / n as f64)).collect()
         };
-        let mut area_mm2 = vec![0.0; rows * columns];
+        let mut area_mm2 = vec![0.0; cells.count()];
         let mut time_min = area_mm2.clone();
-        let cell = |x: f64, n: usize| ((x * n as f64).floor().max(0.0) as usize).min(n - 1);
         for (k, p) in places.iter().enumerate().filter(|(_, p)| p.face == face) {
             let Some(stretch) = finishing.stretch(k) else { continue };
-            let u = cell((p.at.u - domain.u.lo) / domain.u.length(), rows);
-            let v = cell((p.at.v - domain.v.lo) / domain.v.length(), columns);
-            let at = u * columns + v;
+            let at = cells.of(p.at);
             area_mm2[at] += p.area_mm2;
             time_min[at] += p.area_mm2 / stretch.amount * stretch.time_min;
         }

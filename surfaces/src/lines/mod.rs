@@ -5,7 +5,8 @@
 //!   against the rotation of the curvature directions along the boundary.
 //! - [`contours`] draws all lines on which a [`ScalarField`] has given values: heights along an axis
 //!   ([`Height`]), the difference of the principal curvatures ([`CurvatureDifference`]), zero Gaussian curvature
-//!   ([`Gauss`]), ridges ([`Extremality`]). [`critical_points`] finds minima, maxima and saddles.
+//!   ([`Gauss`]), ridges ([`Extremality`]). [`critical_points`] finds minima, maxima and saddles, [`turned`] the axis with the
+//!   fewest minima of height.
 //! - [`trace`] follows a [`Course`] from a point: lines of curvature, gradient lines, asymptotic lines; [`cover`]
 //!   spreads such lines evenly over the face.
 //!
@@ -36,6 +37,7 @@ mod critical;
 mod field;
 mod near;
 mod ridge;
+mod standing;
 mod stitch;
 mod third;
 mod trace;
@@ -50,6 +52,7 @@ pub use cover::{Cover, CoverEnd, Covered, cover};
 pub use critical::{Critical, CriticalKind, CriticalPoints, critical_points};
 pub use field::{CurvatureDifference, Extremality, FieldSample, Gauss, Height, ScalarField, Scale};
 pub use ridge::{Ridge, Ridges, ridges};
+pub use standing::{Standing, Turn, turned};
 pub use third::{FormsRate, forms_rate};
 pub use trace::{LineEnd, LinePoint, SurfacePolyline, TraceStops, curvature_line, trace};
 pub use umbilic::{Umbilic, UmbilicKind, UmbilicLine, Umbilics, umbilics};

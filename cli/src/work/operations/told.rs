@@ -65,7 +65,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let Known { list, part, steps, programs, course, judged, whole, notes, mut wall_s, begin } = known;
     let stage = Stage::begin(watch, "report");
     let mut operations = Vec::with_capacity(steps.len());
-    let timed = Timed { motions: &course.motions, times_min: &course.times_min };
+    let timed = Timed { motions: &course.motions, times_min: &course.times_min, joints: None };
     let in_time = InTime::of(list.whole(), timed, &whole);
     for ((step, judged), section) in steps.iter().zip(&judged).zip(&course.sections) {
         let times = times(&course, &section.motions);
