@@ -264,7 +264,9 @@ fn a_side_from_within_the_part_is_told() {
         let text = job(|j| {
             let builtin = j.lines().find(|l| l.starts_with("builtin")).unwrap().to_owned();
             let file = format!("file = \"lens.csv\"\nunit_mm = 1\nfaces = [\"F1\"]\nnormals = \"{normals}\"");
-            j.replace(&builtin, &file).replace("max_samples = 20000", "max_samples = 1000")
+            j.replace(&builtin, &file)
+                .replace("max_samples = 20000", "max_samples = 1000")
+                .replace("scallop_mm = 0.02", "scallop_mm = 0.2")
         });
         let path = scratch.write("lens.toml", &text);
         let out = scratch.path(normals);

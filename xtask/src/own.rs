@@ -29,13 +29,14 @@ const IN_TIME: &[&str] = &[
     "cutting time",
     "productivity",
     "slower than the feed",
+    "feed held by",
     "cutting speed",
     "  held",
     "  not shown",
     "  NOT held",
 ];
 
-const SHOWN: [Shown; 15] = [
+const SHOWN: [Shown; 20] = [
     Shown {
         heading: "Propeller: one contact",
         text: "A ball on a convex side. The strip beside every closed form, radii along and across the feed, the mark of one tooth, how the \
@@ -111,6 +112,37 @@ const SHOWN: [Shown; 15] = [
         pictures: &["figures.svg"],
     },
     Shown {
+        heading: "Mould: undercut, and the axis without minima",
+        text: "A bull-nose cutter of 10 mm held along z does not get around the minimum of a mould's floor, nor around hollows whose contour \
+               lines bend tighter than its bottom; leant by 8 degrees the floor has no minimum left [M86, 5.2].",
+        command: &[
+            "lines",
+            "examples/mould/mould.step",
+            "--face",
+            "F23",
+            "--tool",
+            "kind=\"toroidal\",diameter_mm=10,corner_radius_mm=2,length_mm=60",
+        ],
+        lines: &["contours", "along", "held"],
+        pictures: &["i-fixed-axis.svg"],
+    },
+    Shown {
+        heading: "Mould: productivity of a roughing",
+        text: "Volume in place of area [R97, definition 4].",
+        command: &["plan", "docs/papers/own/mould-rough.toml"],
+        lines: &[
+            "passes  ",
+            "time  ",
+            "cutting time",
+            "removal",
+            "note: stock",
+            "  held",
+            "  not shown",
+            "  NOT held",
+        ],
+        pictures: &["picture.svg"],
+    },
+    Shown {
         heading: "Ways of machining side by side: the paper's surfaces",
         text: "The cutters and lines that [M86] gives to each kind of machine, 16 mm across, on its four surfaces: which wins, and what each \
                leaves. Length, minutes of cutting, and the verdict.",
@@ -134,12 +166,35 @@ const SHOWN: [Shown; 15] = [
         pictures: &[],
     },
     Shown {
+        heading: "Turbine blade: both edges on four axes",
+        text: "A ball that goes around the blade and both its edges on a turning centre with a milling spindle, its axis across that of the \
+               part. The control reads F over X, Y and Z.",
+        command: &["plan", "docs/papers/own/four-axis.toml"],
+        lines: IN_TIME,
+        pictures: &["productivity.svg"],
+    },
+    Shown {
+        heading: "Turbine blade: ways of saying the feed on four axes",
+        text: "What [Z17] corrects, and what it costs: without a correction and with K_V and K_Z the tip runs faster than asked where the part \
+               turns, so that the marks of teeth grow; K_F and inverse time keep the feed, and the tolerance.",
+        command: &["sweep", "docs/papers/own/feeds-four-axis.toml"],
+        lines: &[],
+        pictures: &[],
+    },
+    Shown {
         heading: "Impeller blade: the side of a cutter",
         text: "A ruled blade by the positions of [D98]: the error along the rule of each, and the ratio of the standard error to the least \
                over the radius.",
         command: &["flank", "examples/centrifugal-blade/job.toml"],
         lines: &[],
         pictures: &["profile.svg", "ratio.svg"],
+    },
+    Shown {
+        heading: "Impeller blade: a better span",
+        text: "On the pressure side contacts of the last positions leave the face; a span that ends earlier is proposed.",
+        command: &["flank", "docs/papers/own/pressure-side.toml"],
+        lines: &["method", "optimum", "minimax", "span_u"],
+        pictures: &[],
     },
     Shown {
         heading: "Impeller blade: the largest cutter",
@@ -183,7 +238,9 @@ fn named(shown: &Shown, picture: &str) -> String {
 
 /// Runs a command: its section.
 fn section(shown: &Shown, program: &Path, root: &Path) -> Result<String, Failure> {
-    let line = format!("osculate {}", shown.command.join(" "));
+    let quoted = |word: &&str| if word.contains('"') { format!("'{word}'") } else { (*word).to_owned() };
+    let words: Vec<String> = shown.command.iter().map(quoted).collect();
+    let line = format!("osculate {}", words.join(" "));
     let out = root.join("target/own").join(named(shown, ""));
     // Results of an earlier run must not be taken for this one's.
     let _ = std::fs::remove_dir_all(&out);

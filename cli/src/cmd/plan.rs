@@ -76,6 +76,9 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     row("air length", format!("{:.1}", s.air_length_mm), "mm");
     row("time", format!("{:.2}", s.time_min), "min");
     row("of it cutting", format!("{:.2}", s.cutting_time_min), "min");
+    if let Some(min) = s.control_time_min {
+        row("time on the control", format!("{min:.2}"), "min");
+    }
     row("area", format!("{:.1}", s.area_mm2), "mm2");
     for left in &s.left_out {
         row(&format!("left out of {}", left.face), format!("{:.3}", left.area_mm2), "mm2");

@@ -12,7 +12,7 @@ use osculate_postproc::machine::JointValues;
 use osculate_postproc::motion::JointDemand;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::WorkOffset;
-use osculate_postproc::nc::readback::{self, ReadError, ReadOptions};
+use osculate_postproc::nc::readback::{self, ControlTime, ReadError, ReadOptions};
 use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
 use osculate_tools::CutterSpec;
 use osculate_tools::cl::{ClPath, Motion};
@@ -108,6 +108,8 @@ pub struct Motions {
     pub motions: Vec<Swept>,
     /// Time at the end of each piece, min.
     pub times_min: Vec<f64>,
+    /// The time that its control takes, with accelerations and corners; none where no machine is known.
+    pub on_control: Option<OnControl>,
     /// Where the joints stand at the end of each piece, as [`ReadMove::at_nose`](readback::ReadMove::at_nose); empty where no machine is known.
     pub at_nose: Vec<Option<JointValues>>,
     /// Total time, min.
@@ -126,6 +128,18 @@ pub struct Motions {
     pub control: GoalControl,
     /// Findings.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The time that a control takes over a program.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct OnControl {
+    /// At the end of each piece, min; dwells are in none of them.
+    pub times_min: Vec<f64>,
+    /// All of it, min.
+    pub time_min: f64,
+    /// Feed moves, min.
+    pub cutting_min: f64,
 }
 
 /// A tool that takes over in a program.
@@ -222,6 +236,17 @@ fn judged(conduct: &Conduct) -> GoalControl {
     }
 }
 
+/// The clock of the control at the end of each piece: the first move leads from an unknown place and is none.
+fn on_control(read: &ControlTime) -> OnControl {
+    let mut clock = 0.0;
+    let at = |t: &f64| {
+        clock += t;
+        clock
+    };
+    let times_min = read.of_moves_min.iter().skip(1).map(at).collect();
+    OnControl { times_min, time_min: read.time_min(), cutting_min: read.cutting_min }
+}
+
 /// Reads an NC program back through the machine; it is to run in the state that the job means.
 pub fn read_back(
     text: &str,
@@ -242,7 +267,7 @@ pub fn read_back_tools(
     lenient: bool,
 ) -> Result<Motions, String> {
     let expected = expected(job, tools, setup.gauge_length_mm);
-    let options = ReadOptions { strict: !lenient, ..ReadOptions::default() };
+    let options = ReadOptions { strict: !lenient, timed: true, ..ReadOptions::default() };
     let lengths = lengths(tools);
     let length = |number: Option<u32>| {
         let own = lengths.iter().find(|l| Some(l.0) == number);
@@ -260,6 +285,7 @@ pub fn read_back_tools(
     let mut out = Motions {
         motions: Vec::with_capacity(read.moves.len()),
         times_min: Vec::with_capacity(read.moves.len()),
+        on_control: read.control.as_ref().map(on_control),
         at_nose: Vec::with_capacity(read.moves.len()),
         time_min: read.time_min(),
         cutting_time_min: read.blocks.iter().filter(|b| !b.rapid).map(|b| b.time_min).sum(),

@@ -249,10 +249,14 @@ impl Proved<'_> {
         let times = Times::of(&read);
         let times_min = times.time_min;
         let mut summary = summary_of(job, faces, &planned, times, &verified)?;
-        let timed =
-            Timed { motions: &read.motions, times_min: &read.times_min, joints: read.joints.as_ref() };
+        // Productivity is told in the control's time; where none is known F tells.
+        let (clock_min, whole_min) = match &read.on_control {
+            Some(control) => (&control.times_min, control.time_min),
+            None => (&read.times_min, times_min),
+        };
+        let timed = Timed { motions: &read.motions, times_min: clock_min, joints: read.joints.as_ref() };
         let in_time = InTime::of(job, timed, &verified);
-        let mut found = in_time.whole(job, faces, times_min);
+        let mut found = in_time.whole(job, faces, whole_min);
         found.strips_over_area = strips_over_area(&planned, found.finished_mm2);
         summary.productivity = found;
         summary.ideal = ideal;
@@ -307,6 +311,8 @@ pub struct Times {
     pub time_min: f64,
     /// Its feed moves, min.
     pub cutting_min: f64,
+    /// The same two on the control, with its accelerations and corners, where that is known.
+    pub on_control_min: Option<[f64; 2]>,
     /// What the feed moves ask of the joints, where that is known.
     pub joints: Option<JointFigures>,
 }
@@ -316,6 +322,7 @@ impl Times {
         Self {
             time_min: read.time_min,
             cutting_min: read.cutting_time_min,
+            on_control_min: read.on_control.as_ref().map(|c| [c.time_min, c.cutting_min]),
             joints: read.joints.as_ref().map(JointFigures::of),
         }
     }
@@ -357,6 +364,8 @@ pub fn summary_of(
         air_length_mm: planned.linked.air_length_mm,
         time_min: times.time_min,
         cutting_time_min: times.cutting_min,
+        control_time_min: times.on_control_min.map(|t| t[0]),
+        control_cutting_time_min: times.on_control_min.map(|t| t[1]),
         joints: times.joints,
         area_mm2,
         productivity_mm2_min: Productivity {

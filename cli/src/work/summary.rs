@@ -63,10 +63,16 @@ pub struct Summary {
     pub cutting_length_mm: f64,
     /// Length of what joins them.
     pub air_length_mm: f64,
-    /// Time of the program.
+    /// Time of the program by its feed words and the joints' greatest speeds.
     pub time_min: f64,
     /// Time of its feed moves.
     pub cutting_time_min: f64,
+    /// Time of the program on its control, with accelerations, corners and dwells, as `time` tells it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub control_time_min: Option<f64>,
+    /// Of it feed moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub control_cutting_time_min: Option<f64>,
     /// What the feed moves ask of the joints.
     pub joints: Option<JointFigures>,
     /// Area of the faces to machine.

@@ -22,7 +22,7 @@ fn every_other_example_of_one_operation() {
     for name in names {
         let job = examples.join(&name).join("job.toml");
         let text = std::fs::read_to_string(&job).unwrap();
-        // The main job of the README is planned and verified by `.ci/run`, with the build that a user would run.
+        // The main job of the README is planned and verified by `.ci/run`.
         if is_whole_part(&text) || name == "eee-hpt-rotor2" {
             continue;
         }

@@ -136,6 +136,16 @@ impl Stretch {
         }
     }
 
+    /// Keeps the time of every block, for [`Self::take_each_s`]. Before the first one.
+    pub(crate) fn keep_each(&mut self) {
+        self.each_s = Some(Vec::new());
+    }
+
+    /// The time of every block so far, s, after [`Self::stop`]; empty where times are not kept.
+    pub(crate) fn take_each_s(&mut self) -> Vec<f64> {
+        self.each_s.take().unwrap_or_default()
+    }
+
     /// Time so far, s; all of it only after [`Self::stop`].
     #[must_use]
     pub const fn time_s(&self) -> f64 {

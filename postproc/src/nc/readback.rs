@@ -18,6 +18,7 @@ use super::interpret::Interpreter;
 use super::names::Names;
 pub use super::read_error::ReadError;
 use super::state::FeedReading;
+use super::timing::Planned;
 use super::way::MOST_PIECES;
 use crate::machine::{JointValues, Machine};
 use crate::motion::{FeedBlock, JointDemand, TimedMove, TooLong, rapid_time_min};
@@ -32,12 +33,14 @@ pub struct ReadOptions {
     pub axis_tol_rad: f64,
     /// Refuse words that are not understood; otherwise they are reported as losses and left out.
     pub strict: bool,
+    /// Say how long the control takes too: [`ReadBack::control`].
+    pub timed: bool,
 }
 
 impl Default for ReadOptions {
-    /// 0.1 um, 0.05 deg, strict.
+    /// 0.1 um, 0.05 deg, strict, without the control's time.
     fn default() -> Self {
-        Self { tip_tol_mm: 1e-4, axis_tol_rad: 0.05f64.to_radians(), strict: true }
+        Self { tip_tol_mm: 1e-4, axis_tol_rad: 0.05f64.to_radians(), strict: true, timed: false }
     }
 }
 
@@ -99,6 +102,30 @@ pub struct ReadBack {
     pub diagnostics: Vec<Diagnostic>,
     /// In which states of the control it moves.
     pub record: Record,
+    /// The time that its control takes, where it is asked for.
+    pub control: Option<ControlTime>,
+}
+
+/// The time that a control takes over a program, with its accelerations and corners, as [`crate::nc::timing`] models them.
+#[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ControlTime {
+    /// Of every one of [`ReadBack::moves`], min; a block's time is shared by its moves as they share its time by F.
+    pub of_moves_min: Vec<f64>,
+    /// Of feed moves, min.
+    pub cutting_min: f64,
+    /// Of rapid moves, min.
+    pub rapid_min: f64,
+    /// Of dwells, min.
+    pub dwell_min: f64,
+}
+
+impl ControlTime {
+    /// All of it, min.
+    #[must_use]
+    pub fn time_min(&self) -> f64 {
+        self.cutting_min + self.rapid_min + self.dwell_min
+    }
 }
 
 impl ReadBack {
@@ -218,8 +245,10 @@ pub fn read_tools(
         reader.line(line)?;
     }
     reader.end()?;
-    let Reader { control, .. } = reader;
+    let Reader { mut control, .. } = reader;
+    let timed = control.sink.timed();
     let mut out = control.sink.out;
+    out.control = timed;
     TooLong::refused(out.time_min())?;
     out.spindle_rpm = control.spindle_rpm;
     out.diagnostics = control.diagnostics;
@@ -258,7 +287,9 @@ impl<'a> Reader<'a> {
         }
         let frame = Frame { machine, setup };
         let tolerance = [options.tip_tol_mm, options.axis_tol_rad];
-        let collect = Collect { out: ReadBack::default(), tolerance, unbounded: None };
+        let clock = options.timed.then(|| Planned::of_blocks(names.dialect(), machine));
+        let collect =
+            Collect { out: ReadBack::default(), tolerance, unbounded: None, clock, ends: Vec::new() };
         let mut control = Interpreter::new(names.dialect(), frame, options.strict, collect);
         control.rest_unnamed(names.all());
         let flow = Flow::new(names.dialect(), names.kept());
@@ -338,10 +369,16 @@ struct Collect {
     tolerance: [f64; 2],
     /// The line of a block whose way is too long for its curvature.
     unbounded: Option<usize>,
+    /// The control's clock, where its time is asked for, and the moves of every block of it.
+    clock: Option<Planned>,
+    ends: Vec<[usize; 2]>,
 }
 
 impl Sink for Collect {
     fn take(&mut self, frame: Frame<'_>, event: &Event<'_>) {
+        if let Some(clock) = &mut self.clock {
+            clock.take(frame, event);
+        }
         match *event {
             Event::Placed { line, known, joints, tool } => {
                 let (from, to) = (joints, joints);
@@ -367,6 +404,27 @@ impl Sink for Collect {
 }
 
 impl Collect {
+    /// The control's time of what has been read: the end of the text.
+    fn timed(&mut self) -> Option<ControlTime> {
+        let (each, dwell_min) = self.clock.take()?.block_times_min();
+        let mut out = ControlTime {
+            of_moves_min: vec![0.0; self.out.moves.len()],
+            dwell_min,
+            ..ControlTime::default()
+        };
+        for (block_min, &[begin, end]) in each.iter().zip(&self.ends) {
+            let own = &self.out.moves[begin..end];
+            let asked: f64 = own.iter().map(|m| m.time_min).sum();
+            for (m, time) in own.iter().zip(&mut out.of_moves_min[begin..end]) {
+                let share = if asked > 0.0 { m.time_min / asked } else { 1.0 / own.len() as f64 };
+                *time = block_min * share;
+            }
+            let rapid = own.iter().any(|m| matches!(m.motion, Motion::Rapid));
+            *(if rapid { &mut out.rapid_min } else { &mut out.cutting_min }) += block_min;
+        }
+        Some(out)
+    }
+
     fn moved(&mut self, frame: Frame<'_>, m: &Moved) {
         let time_min = if m.rapid { rapid_time_min(frame.machine, &m.from, &m.to).0 } else { m.time_min };
         let Some(poses) = m.way.densified(&|k| frame.pose(k), self.tolerance) else {
@@ -391,6 +449,7 @@ impl Collect {
             (false, _) if tip_length_mm == 0.0 => Motion::Feed(1.0 / time_min),
             (false, _) => Motion::Feed(tip_length_mm / time_min),
         };
+        let begin = self.out.moves.len();
         let mut t0 = 0.0;
         for (t, pose) in poses {
             let Moved { line, tool, own_frame, .. } = *m;
@@ -398,6 +457,9 @@ impl Collect {
             let at_nose = frame.at_nose(&m.way.at(t));
             self.out.moves.push(ReadMove { pose, motion, line, time_min, tool, own_frame, at_nose });
             t0 = t;
+        }
+        if self.clock.is_some() {
+            self.ends.push([begin, self.out.moves.len()]);
         }
         self.out.blocks.push(ReadBlock {
             line: m.line,

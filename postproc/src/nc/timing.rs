@@ -143,7 +143,7 @@ fn letters(machine: &Machine, order: &[usize; 3]) -> Vec<String> {
 }
 
 /// Plans what happens.
-struct Planned {
+pub(super) struct Planned {
     /// Programs of LinuxCNC.
     canon: Option<Canon>,
     /// Programs of the other controls.
@@ -155,6 +155,17 @@ struct Planned {
     time: ProgramTime,
     joints: JointDemand,
     control: PathControl,
+    /// Every block so far, where their times are asked for.
+    blocks: Option<Vec<Block>>,
+}
+
+/// A block whose time is asked for.
+#[derive(Clone, Copy)]
+struct Block {
+    /// Rapid moves of controls that run them from rest to rest have their time at once.
+    known_min: Option<f64>,
+    /// Its time by F, min.
+    asked_min: f64,
 }
 
 impl Planned {
@@ -188,7 +199,40 @@ impl Planned {
             time: ProgramTime::default(),
             joints: JointDemand::new(machine),
             control: PathControl::FIRST,
+            blocks: None,
         }
+    }
+
+    /// One that keeps the time of every block.
+    pub(super) fn of_blocks(dialect: Dialect, machine: &Machine) -> Self {
+        let mut out = Self::new(dialect, machine);
+        out.blocks = Some(Vec::new());
+        if let Some(stretch) = &mut out.stretch {
+            stretch.keep_each();
+        }
+        out
+    }
+
+    /// The time of every block, min, and that of all dwells: the end of the text.
+    pub(super) fn block_times_min(mut self) -> (Vec<f64>, f64) {
+        let blocks = self.blocks.take().unwrap_or_default();
+        let dwell_min = self.time.dwell_min;
+        let mut each_s = Vec::new();
+        if let Some(stretch) = &mut self.stretch {
+            stretch.stop();
+            each_s = stretch.take_each_s();
+            // Starting and stopping with limited jerk is of no block: all have their share of it.
+            let sum: f64 = each_s.iter().sum();
+            let more = if sum > 0.0 { stretch.time_s() / sum } else { 1.0 };
+            each_s.iter_mut().for_each(|t| *t *= more);
+        } else if let Some(canon) = &mut self.canon {
+            canon.stop();
+            let own = blocks.iter().filter(|b| b.known_min.is_none());
+            each_s = canon.take_each_s(&own.map(|b| b.asked_min).collect::<Vec<_>>());
+        }
+        let mut each_min = each_s.into_iter().map(|t| t / 60.0);
+        let time = |b: &Block| b.known_min.unwrap_or_else(|| each_min.next().unwrap_or(0.0));
+        (blocks.iter().map(time).collect(), dwell_min)
     }
 
     fn place(&self, known: &Known) -> ([f64; 3], [f64; 2]) {
@@ -228,6 +272,14 @@ impl Sink for Planned {
             let asked_min = time_min;
             self.joints.add(frame.machine, &FeedBlock { line, from, to, time_min, asked_min });
         }
+        if let (Some(blocks), Event::Moved(m)) = (&mut self.blocks, event) {
+            let known_min = match (&self.stretch, &self.canon) {
+                (Some(_), _) if m.rapid => Some(rapid_time_min(frame.machine, &m.from, &m.to).0),
+                (None, None) => Some(m.time_min),
+                _ => None,
+            };
+            blocks.push(Block { known_min, asked_min: m.time_min });
+        }
         if let Some(stretch) = &mut self.stretch {
             match event {
                 Event::Moved(m) if m.rapid => {
@@ -255,6 +307,9 @@ impl Sink for Planned {
                     Some(canon) => canon.jump(xyz, rotary),
                     None => {
                         let mut canon = Canon::new(&self.limits, xyz, rotary);
+                        if self.blocks.is_some() {
+                            canon.keep_each();
+                        }
                         canon.path_control(self.control);
                         self.canon = Some(canon);
                     }

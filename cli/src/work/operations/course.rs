@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::job::{Job, Operations};
 use crate::part::Part;
 use crate::work::goal::Aim;
-use crate::work::nc::{self, Call, Motions};
+use crate::work::nc::{self, Call, Motions, OnControl};
 use crate::work::operations::Judged;
 use crate::work::operations::passages::Passages;
 use crate::work::verify::{self, Reading, Verified};
@@ -37,6 +37,8 @@ pub struct Course {
     pub motions: Vec<Swept>,
     /// Time at the end of each, min; the changes from setup to setup take none.
     pub times_min: Vec<f64>,
+    /// The same by the control, with its accelerations and corners.
+    pub on_control: OnControl,
     /// Where the joints stand at the end of each, as in [`Motions`](nc::Motions::at_nose).
     pub at_nose: Vec<Option<JointValues>>,
     /// Where the tools after the first take over.
@@ -142,6 +144,11 @@ impl Course {
             out.motions.extend(read.motions);
             out.at_nose.extend(read.at_nose);
             out.times_min.extend(read.times_min.iter().map(|t| t + clock));
+            let on_control = read.on_control.unwrap_or_default();
+            let clock = out.on_control.times_min.last().copied().unwrap_or(0.0);
+            out.on_control.times_min.extend(on_control.times_min.iter().map(|t| t + clock));
+            out.on_control.time_min += on_control.time_min;
+            out.on_control.cutting_min += on_control.cutting_min;
             out.setups.push(begin..out.motions.len());
             out.setup_min.push(read.time_min);
             let prefix = if setups.len() > 1 { format!("{}: ", setup.name) } else { String::new() };

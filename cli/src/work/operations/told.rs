@@ -65,11 +65,11 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let Known { list, part, steps, programs, course, judged, whole, notes, mut wall_s, begin } = known;
     let stage = Stage::begin(watch, "report");
     let mut operations = Vec::with_capacity(steps.len());
-    let timed = Timed { motions: &course.motions, times_min: &course.times_min, joints: None };
+    let timed = Timed { motions: &course.motions, times_min: &course.on_control.times_min, joints: None };
     let in_time = InTime::of(list.whole(), timed, &whole);
     for ((step, judged), section) in steps.iter().zip(&judged).zip(&course.sections) {
         let times = times(&course, &section.motions);
-        let part = (section.motions.clone(), times.time_min);
+        let part = (section.motions.clone(), times.on_control_min.map_or(times.time_min, |t| t[0]));
         let mut told = operation(list, step, judged, times)?;
         told.figures.productivity = in_time.told(&step.job, part);
         operations.push(told);
@@ -84,12 +84,13 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let all = Times {
         time_min: course.setup_min.iter().sum(),
         cutting_min: operations.iter().map(|o| o.figures.cutting_time_min).sum(),
+        on_control_min: Some([course.on_control.time_min, course.on_control.cutting_min]),
         joints: None,
     };
     let job = list.whole();
     let mut summary = summary_of(job, part, &merged, all, &whole)?;
     summary.format = 2;
-    summary.productivity = in_time.whole(job, part, summary.time_min);
+    summary.productivity = in_time.whole(job, part, course.on_control.time_min);
     // Each operation has a feed, a spindle speed and a tool of its own.
     summary.productivity.slower_share = None;
     summary.productivity.cutting_speed_m_min = None;
@@ -164,9 +165,13 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
 
 /// Times of a stretch of the motions.
 fn times(course: &Course, &Range { start, end }: &Range<usize>) -> Times {
-    let at = |k: usize| if k == 0 { 0.0 } else { course.times_min[k - 1] };
-    let feeds = (start..end).filter(|k| !course.motions[*k].rapid);
-    Times { time_min: at(end) - at(start), cutting_min: feeds.map(|k| at(k + 1) - at(k)).sum(), joints: None }
+    let of = |clock: &[f64]| {
+        let at = |k: usize| if k == 0 { 0.0 } else { clock[k - 1] };
+        let feeds = (start..end).filter(|k| !course.motions[*k].rapid);
+        [at(end) - at(start), feeds.map(|k| at(k + 1) - at(k)).sum()]
+    };
+    let [time_min, cutting_min] = of(&course.times_min);
+    Times { time_min, cutting_min, on_control_min: Some(of(&course.on_control.times_min)), joints: None }
 }
 
 fn operation(

@@ -149,6 +149,7 @@ impl Planner {
         let length = radius * phi + if swallows { left } else { 0.0 };
         let wanted = last.target(f64::INFINITY).max(next.target(f64::INFINITY));
         let mut segment = Segment {
+            of: last.of,
             rapid: last.rapid,
             shape: Shape::Blend,
             start: u1,

@@ -93,6 +93,12 @@ pub struct Canon {
     feed: CanonFeed,
     joined: Vec<Vec3>,
     limited: [usize; 5],
+    /// Moves so far.
+    count: usize,
+    /// The first and the last of the joined moves.
+    run: [usize; 2],
+    /// Runs of moves that became one piece, where times of moves are asked for.
+    runs: Vec<[usize; 2]>,
 }
 
 /// A move's way as the axes' limits see it.
@@ -118,7 +124,32 @@ impl Canon {
             feed: CanonFeed::Inverse(0.0),
             joined: Vec::new(),
             limited: [0; 5],
+            count: 0,
+            run: [0; 2],
+            runs: Vec::new(),
         }
+    }
+
+    /// Keeps the time of every move, for [`Self::take_each_s`]. Before the first one.
+    pub fn keep_each(&mut self) {
+        self.planner.each_s = Some(Vec::new());
+    }
+
+    /// The time of every move so far, s, after [`Self::stop`]; moves that became one piece share its time as `weights` say. Empty where
+    /// times are not kept.
+    #[must_use]
+    pub fn take_each_s(&mut self, weights: &[f64]) -> Vec<f64> {
+        let mut each = self.planner.each_s.take().unwrap_or_default();
+        for [first, last] in self.runs.drain(..) {
+            let own = weights.get(first..=last).unwrap_or_default();
+            let (all, count) = (own.iter().sum::<f64>(), (last + 1 - first) as f64);
+            let Some(times) = each.get_mut(first..=last) else { continue };
+            let spent = times.last().copied().unwrap_or(0.0);
+            for (k, time) in times.iter_mut().enumerate() {
+                *time = spent * own.get(k).filter(|_| all > 0.0).map_or(1.0 / count, |w| w / all);
+            }
+        }
+        each
     }
 
     /// Another path control from here on.
@@ -160,9 +191,13 @@ impl Canon {
 
     /// One move.
     pub fn go(&mut self, m: &CanonMove) {
+        self.count += 1;
+        if let Some(each) = &mut self.planner.each_s {
+            each.push(0.0);
+        }
         if m.rapid {
             self.flush();
-            self.straight(m, None);
+            self.straight(m, None, self.count - 1);
             return;
         }
         if self.feed != m.feed {
@@ -183,7 +218,7 @@ impl Canon {
             self.see(Vec3::from(m.xyz_mm));
         } else {
             self.flush();
-            self.straight(m, Some(m.feed));
+            self.straight(m, Some(m.feed), self.count - 1);
         }
     }
 
@@ -192,6 +227,11 @@ impl Canon {
         if !self.joined.is_empty() && !self.joins(&to) {
             self.flush();
         }
+        let now = self.count - 1;
+        if self.joined.is_empty() {
+            self.run[0] = now;
+        }
+        self.run[1] = now;
         self.joined.push(to);
     }
 
@@ -211,12 +251,16 @@ impl Canon {
     fn flush(&mut self) {
         let Some(to) = self.joined.pop() else { return };
         self.joined.clear();
+        if self.planner.each_s.is_some() && self.run[0] < self.run[1] {
+            self.runs.push(self.run);
+        }
         let m =
             CanonMove { rapid: false, xyz_mm: to.into(), rotary_deg: self.at.1, arc: None, feed: self.feed };
-        self.straight(&m, Some(self.feed));
+        self.straight(&m, Some(self.feed), self.run[1]);
     }
 
-    fn straight(&mut self, m: &CanonMove, feed: Option<CanonFeed>) {
+    /// A straight piece that ends with the move `of`.
+    fn straight(&mut self, m: &CanonMove, feed: Option<CanonFeed>, of: usize) {
         let b = self.bounds(m);
         let from = Vec3::from(self.at.0);
         self.at = (m.xyz_mm, m.rotary_deg);
@@ -226,7 +270,7 @@ impl Canon {
         let to = Vec3::from(m.xyz_mm);
         let way = if b.linear { (to - from) / b.length } else { Vec3::x() };
         let wanted = self.wanted(&b, feed);
-        let segment = self.segment(m, (Shape::Line { from, to }, way, way), &b, wanted);
+        let segment = Segment { of, ..self.segment(m, (Shape::Line { from, to }, way, way), &b, wanted) };
         self.planner.add(segment);
     }
 
@@ -251,6 +295,7 @@ impl Canon {
             PathControl::ExactStop => (End::Stop, 0.0),
         };
         Segment {
+            of: 0,
             rapid: m.rapid,
             shape,
             start,
@@ -358,7 +403,8 @@ impl Canon {
         normal[third] = 1.0;
         let shape = Shape::Circle { radius_mm: radius + slope * slope / radius, normal };
         let wanted = self.wanted(&b, Some(m.feed));
-        let segment = self.segment(m, (shape, ends.0, ends.1), &b, wanted);
+        let of = self.count - 1;
+        let segment = Segment { of, ..self.segment(m, (shape, ends.0, ends.1), &b, wanted) };
         self.planner.add(segment);
     }
 }

@@ -54,6 +54,9 @@ impl Planner {
         }
         let clock = if first.rapid { &mut self.rapid_s } else { &mut self.cutting_s };
         *clock += steps * self.step_s;
+        if let Some(spent) = self.each_s.as_mut().and_then(|each| each.get_mut(first.of)) {
+            *spent += steps * self.step_s;
+        }
         if let Some(next) = next {
             self.queue.push_front(next);
         }

@@ -58,6 +58,8 @@ pub(crate) struct Planner {
     /// Time of feed moves and of rapid moves so far, s.
     cutting_s: f64,
     rapid_s: f64,
+    /// Time of every move so far, s, where it is asked for.
+    each_s: Option<Vec<f64>>,
 }
 
 impl Planner {
@@ -73,6 +75,7 @@ impl Planner {
             cap_mm_s: limits.path_velocity_mm_s,
             cutting_s: 0.0,
             rapid_s: 0.0,
+            each_s: None,
         }
     }
 

@@ -46,6 +46,8 @@ pub(super) enum Shape {
 /// A piece of motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Segment {
+    /// The last of the moves that it is made of, by its place in the program.
+    pub of: usize,
     pub rapid: bool,
     pub shape: Shape,
     /// Unit tangents of the way in X Y Z; +x where X Y Z rest.
