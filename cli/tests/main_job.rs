@@ -55,6 +55,15 @@ fn a_plan_is_written_posted_verified_and_reported() {
             number(&summary, &["passes"])
         );
 
+        // The time on the control is what `time` tells of the program alone.
+        let (machine, dialect) = (summary["machine"].as_str().unwrap(), summary["dialect"].as_str().unwrap());
+        let asked = ["time", program.to_str().unwrap(), "--machine", machine, "--dialect", dialect, "--json"];
+        let clock = osculate(&asked).json();
+        for (own, its) in [("control_time_min", "time_min"), ("control_cutting_time_min", "cutting_min")] {
+            let [own, its] = [number(&summary, &[own]), number(&clock, &[its])];
+            assert!((own / its - 1.0).abs() < 1e-9, "{own} {its}");
+        }
+
         let real = &summary["productivity"];
         let sum = |map: &Value, key: &str| -> f64 {
             map[key].as_array().unwrap().iter().filter_map(Value::as_f64).sum()

@@ -4,6 +4,7 @@ use crate::common;
 
 use common::{angle, blade};
 use osculate_geom::Vec3;
+use osculate_postproc::nc::timing::time;
 use osculate_postproc::readback::{ReadBack, ReadOptions, read};
 use osculate_postproc::{Dialect, FeedMode, Machine, PostOptions, Setup, built_in_names, post};
 use osculate_tools::cl::ClPath;
@@ -48,9 +49,23 @@ fn blade_paths_come_back() {
                             continue;
                         }
                     };
-                    let back = read(&posted.text, dialect, &machine, &setup, &ReadOptions::default());
+                    let timed = ReadOptions { timed: true, ..ReadOptions::default() };
+                    let back = read(&posted.text, dialect, &machine, &setup, &timed);
                     let back = back.unwrap_or_else(|e| panic!("{what}: {e}"));
                     assert!(back.diagnostics.is_empty(), "{what}: {:?}", back.diagnostics);
+                    // The moves' times are those of the clock that reads the text alone.
+                    let clock = time(&posted.text, dialect, &machine, &setup, true).unwrap().time;
+                    let own = back.control.as_ref().unwrap();
+                    let whole = own.time_min();
+                    let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * whole;
+                    assert!(same(own.cutting_min, clock.cutting_min), "{what}: {own:?} {clock:?}");
+                    assert!(
+                        same(own.rapid_min, clock.rapid_min) && own.dwell_min == clock.dwell_min,
+                        "{what}"
+                    );
+                    let sum: f64 = own.of_moves_min.iter().sum();
+                    assert!(same(sum + own.dwell_min, whole) && own.of_moves_min.len() == back.moves.len());
+                    assert!(own.of_moves_min.iter().all(|t| *t >= 0.0), "{what}");
                     // The blade is 75 mm high; heads add gauge length and pivot.
                     meets(path, &back, 400.0, &what);
                     done += 1;

@@ -1,6 +1,7 @@
 //! The time model against programs timed on a real controller (LinuxCNC 2.9, see `data/timing/NOTICE`).
 
 use osculate_postproc::nc::timing::time;
+use osculate_postproc::readback::{ReadOptions, read};
 use osculate_postproc::{Dialect, Machine, Setup};
 
 /// Limits of one kind of axis.
@@ -49,7 +50,15 @@ fn mid() -> Machine {
 
 fn cutting_s(machine: &Machine, text: &str) -> f64 {
     let timed = time(text, Dialect::LinuxCnc, machine, &Setup::default(), true);
-    60.0 * timed.expect("the programs are LinuxCNC's").time.cutting_min
+    let cutting_min = timed.expect("the programs are LinuxCNC's").time.cutting_min;
+    // Read back, the same time is shared out among its moves: those that the control joins have theirs too.
+    let options = ReadOptions { timed: true, ..ReadOptions::default() };
+    let back = read(text, Dialect::LinuxCnc, machine, &Setup::default(), &options).expect("they are");
+    let own = back.control.expect("it is asked for");
+    assert!((own.cutting_min / cutting_min - 1.0).abs() < 1e-9, "{} {cutting_min}", own.cutting_min);
+    let rests = back.moves.iter().zip(&own.of_moves_min).filter(|(m, t)| m.time_min > 0.0 && **t == 0.0);
+    assert_eq!(rests.count(), 0);
+    60.0 * cutting_min
 }
 
 /// Within 1 % of what the controller took; 5 % is asked for.

@@ -1,6 +1,6 @@
 //! `readback`: what an NC program makes the tool do, as CL data, read and written as a stream.
 
-use crate::cmd::time::names_of;
+use crate::cmd::time::names_and_setup;
 use crate::screen::args::ReadbackArgs;
 use crate::screen::output;
 use crate::screen::render;
@@ -8,8 +8,7 @@ use osculate::failure::{Done, Failure, Outcome, each_line};
 use osculate::words;
 use osculate::words::{Table, number};
 use osculate::work::nc;
-use osculate_geom::{Point3, Vec3};
-use osculate_postproc::Setup;
+use osculate_geom::Point3;
 use osculate_postproc::cldata::{ClWriteOptions, ClWriter};
 use osculate_postproc::readback::{ReadOptions, Reader};
 use osculate_tools::cl::{ClMove, Motion};
@@ -35,9 +34,8 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
     output::file(&args.out, &[file, Path::new(&args.nc.machine)])?;
     let machine = nc::machine(&args.nc.machine)?;
     let language = nc::dialect_of(args.nc.dialect.as_deref(), file)?;
-    let zero = Vec3::from(args.nc.part_zero.unwrap_or_default());
-    let setup = Setup::at(zero, args.nc.gauge_length_mm.unwrap_or(0.0));
-    let names = names_of(file, &language, &machine)?;
+    let given = (args.nc.part_zero, args.nc.gauge_length_mm);
+    let (names, setup) = names_and_setup(file, &language, &machine, given)?;
     let here = |e| Failure::file(file, e);
     let options = ReadOptions { strict: args.nc.strict, ..ReadOptions::default() };
     let mut reader = Reader::new(&names, &machine, &setup, &options).map_err(here)?;

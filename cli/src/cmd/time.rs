@@ -30,10 +30,8 @@ struct Answer {
 pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     let machine = nc::machine(&args.machine)?;
     let language = nc::dialect_of(args.dialect.as_deref(), &args.file)?;
-    let setup =
-        Setup::at(Vec3::from(args.part_zero.unwrap_or_default()), args.gauge_length_mm.unwrap_or(0.0));
     let file = &args.file;
-    let names = names_of(file, &language, &machine)?;
+    let (names, setup) = names_and_setup(file, &language, &machine, (args.part_zero, args.gauge_length_mm))?;
     let here = |e| Failure::file(file, e);
     let mut clock = Clock::new(&names, &machine, &setup, args.strict).map_err(here)?;
     each_line(file, |line| clock.line(&language.engine_line(line)).map_err(here))?;
@@ -75,12 +73,36 @@ pub fn run(args: &TimeArgs, json: bool) -> Outcome {
     Ok(Done::with(&timed.diagnostics))
 }
 
-/// What a program calls its axes, read from the whole of it.
-pub fn names_of(file: &Path, language: &Language, machine: &Machine) -> Result<Names, Failure> {
+/// Lines at the head of a program that may say its setup.
+const HEAD_LINES: usize = 100;
+
+/// What a program calls its axes, read from the whole of it, and where the part sits: as given, or else as the program's head says it was
+/// posted for.
+pub fn names_and_setup(
+    file: &Path,
+    language: &Language,
+    machine: &Machine,
+    (part_zero, gauge_length_mm): (Option<[f64; 3]>, Option<f64>),
+) -> Result<(Names, Setup), Failure> {
     let mut names = Names::new(language.engine, machine);
+    let (mut head, mut lines) = (String::new(), 0);
     each_line(file, |line| {
-        names.line(&language.engine_line(line));
+        let line = language.engine_line(line);
+        names.line(&line);
+        if lines < HEAD_LINES {
+            head.push_str(&line);
+            head.push('\n');
+            lines += 1;
+        }
         Ok(())
     })?;
-    Ok(names)
+    let posted = Setup::of_program(&head, language.engine).map_err(|e| Failure::file(file, e))?;
+    let mut setup = posted.unwrap_or_default();
+    if let Some(zero) = part_zero {
+        setup.part_zero.translation.vector = Vec3::from(zero);
+    }
+    if let Some(length_mm) = gauge_length_mm {
+        setup.gauge_length_mm = length_mm;
+    }
+    Ok((names, setup))
 }

@@ -436,10 +436,10 @@ pub struct TimeArgs {
     /// A dialect (see `dialects`) or the path of a dialect file; by the program's extension where not given.
     #[arg(long)]
     pub dialect: Option<String>,
-    /// Where the part's origin sits from the table's reference point, mm.
+    /// Where the part's origin sits from the table's reference point, mm; as the program's head says where not given.
     #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
     pub part_zero: Option<[f64; 3]>,
-    /// From the tip to the spindle nose, mm.
+    /// From the tip to the spindle nose, mm; as the program's head says where not given.
     #[arg(long)]
     pub gauge_length_mm: Option<f64>,
     /// Stop at the first word that is not understood instead of leaving it out with a finding.

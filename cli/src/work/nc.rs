@@ -155,6 +155,12 @@ pub struct Call {
 }
 
 impl Motions {
+    /// The time by which programs are ranked, min: that of their control where it is known.
+    #[must_use]
+    pub fn ranked_min(&self) -> f64 {
+        self.on_control.as_ref().map_or(self.time_min, |c| c.time_min)
+    }
+
     /// The motions as a verdict takes them, all with one tool.
     pub fn reading(&self, source: &'static str) -> Reading<'_> {
         Reading {

@@ -112,13 +112,13 @@ impl Posted {
         let mut best = written(&base);
         let mut place = base;
         stage.at(0.6);
-        let first_min = best.as_ref().ok().map(|(_, read)| read.time_min);
+        let first_min = best.as_ref().ok().map(|(_, read)| read.ranked_min());
         let worth_min = first_min.map_or(f64::INFINITY, |min| (1.0 - setup::WORTH_A_TURN) * min);
         for turned in setup::turned(job, faces, &cl, &control, &base) {
             // A turn that no program can be written for is none.
             let Ok(other) = written(&turned) else { continue };
-            let now_min = other.1.time_min;
-            let least_min = best.as_ref().map_or(f64::INFINITY, |(_, read)| read.time_min);
+            let now_min = other.1.ranked_min();
+            let least_min = best.as_ref().map_or(f64::INFINITY, |(_, read)| read.ranked_min());
             if now_min < least_min.min(worth_min) {
                 setup_notes = setup::notes_of_turned(&turned, first_min, now_min);
                 best = Ok(other);
@@ -134,9 +134,9 @@ impl Posted {
         Ok(Self { cl_text, control, program, setup: place, read, diagnostics })
     }
 
-    /// Time of the program, min.
-    pub const fn time_min(&self) -> f64 {
-        self.read.time_min
+    /// Time of the program on its control, min.
+    pub fn time_min(&self) -> f64 {
+        self.read.ranked_min()
     }
 
     /// Measures what the program leaves.
