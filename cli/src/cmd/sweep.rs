@@ -197,13 +197,13 @@ fn describe(sweep: &Sweep, (rows, whole): (&[&Row], bool), out: &Path) -> String
     }
     text += "\n\n";
     let mut order: Vec<&&Row> = rows.iter().filter(|r| r.holds()).collect();
-    let time = |r: &Row| r.number("time_min").unwrap_or(f64::INFINITY);
+    let time = |r: &Row| r.number("control_time_min").unwrap_or(f64::INFINITY);
     order.sort_by(|a, b| time(a).total_cmp(&time(b)));
     let headings = ["case"].into_iter().chain(sweep.varied().iter().map(|v| v.name.as_str()));
-    let mut t = Table::left(headings.chain(["min", "cutting min", "height mm", "gouge mm"]));
+    let mut t = Table::left(headings.chain(["control min", "cutting min", "height mm", "gouge mm"]));
     for row in order.iter().take(SHOWN) {
         let labels = sweep.labels_of(row.case).into_iter().map(ToOwned::to_owned);
-        let shown = ["time_min", "cutting_time_min", "height_mm", "gouge_mm"]
+        let shown = ["control_time_min", "cutting_time_min", "height_mm", "gouge_mm"]
             .map(|name| row.number(name).map_or_else(|| "-".to_owned(), |x| number(x, 4)));
         t.row(std::iter::once(row.case.to_string()).chain(labels).chain(shown));
     }

@@ -96,9 +96,10 @@ pub struct Figures {
 }
 
 /// What the numbers are.
-pub const NAMES: [&str; 11] = [
+pub const NAMES: [&str; 12] = [
     "time_min",
     "cutting_time_min",
+    "control_time_min",
     "cutting_length_mm",
     "air_length_mm",
     "area_mm2",
@@ -117,6 +118,7 @@ impl Figures {
         let numbers = [
             Some(s.time_min),
             Some(s.cutting_time_min),
+            s.control_time_min,
             Some(s.cutting_length_mm),
             Some(s.air_length_mm),
             Some(s.area_mm2),

@@ -12,13 +12,13 @@ const SHOWN: usize = 2000;
 const PAIRS: usize = 6;
 /// Figures that are drawn over what is varied, with their titles.
 const DRAWN: [(&str, &str); 3] = [
-    ("time_min", "time, min"),
-    ("cutting_time_min", "cutting time, min"),
+    ("control_time_min", "time on the control, min"),
+    ("cutting_time_min", "cutting time by feed words, min"),
     ("efficiency_percent", "efficiency, %"),
 ];
 /// Columns of the table, with their headings.
 const COLUMNS: [(&str, &str); 6] = [
-    ("time_min", "min"),
+    ("control_time_min", "control min"),
     ("cutting_time_min", "cutting min"),
     ("efficiency_percent", "efficiency %"),
     ("height_mm", "height mm"),
