@@ -26,7 +26,7 @@ struct Shown {
 const IN_TIME: &[&str] = &[
     "passes  ",
     "time  ",
-    "cutting time",
+    "time on the control",
     "productivity",
     "slower than the feed",
     "feed held by",
@@ -112,7 +112,7 @@ const SHOWN: [Shown; 20] = [
         pictures: &["figures.svg"],
     },
     Shown {
-        heading: "Mould: undercut, and the axis without minima",
+        heading: "Mould: undercut and an axis without minima",
         text: "A bull-nose cutter of 10 mm held along z does not get around the minimum of a mould's floor, nor around hollows whose contour \
                lines bend tighter than its bottom; leant by 8 degrees the floor has no minimum left [M86, 5.2].",
         command: &[
@@ -133,7 +133,7 @@ const SHOWN: [Shown; 20] = [
         lines: &[
             "passes  ",
             "time  ",
-            "cutting time",
+            "time on the control",
             "removal",
             "note: stock",
             "  held",
@@ -145,7 +145,7 @@ const SHOWN: [Shown; 20] = [
     Shown {
         heading: "Ways of machining side by side: the paper's surfaces",
         text: "The cutters and lines that [M86] gives to each kind of machine, 16 mm across, on its four surfaces: which wins, and what each \
-               leaves. Length, minutes of cutting, and the verdict.",
+               leaves. Length, minutes of cutting by feed words and of all on the control, and the verdict.",
         command: &["sweep", "docs/papers/own/ways.toml"],
         lines: &[],
         pictures: &[],
@@ -291,12 +291,13 @@ fn ways(table: &Path) -> Result<String, Failure> {
         let why = || Failure::Answer { line: "sweep".into(), why: format!("no column {name}") };
         head.iter().position(|h| h == name).ok_or_else(why)
     };
-    let (answer, length, minutes, why) =
-        (column("answer")?, column("cutting_length_mm")?, column("cutting_time_min")?, column("why")?);
+    let (answer, length, why) = (column("answer")?, column("cutting_length_mm")?, column("why")?);
+    let (minutes, control) = (column("cutting_time_min")?, column("control_time_min")?);
     // What is varied stands between the case and the answer.
     let varied = 1..answer;
     let names = head.get(varied.clone()).unwrap_or_default().join(" | ");
-    let mut out = format!("\n| {names} | mm | min | verdict |\n|{}\n", "---|".repeat(varied.len() + 3));
+    let mut out =
+        format!("\n| {names} | mm | min | control min | verdict |\n|{}\n", "---|".repeat(varied.len() + 4));
     let digits =
         |cell: &str, n: usize| cell.parse::<f64>().map_or_else(|_| "-".to_owned(), |x| format!("{x:.n$}"));
     for row in rows.iter().skip(1) {
@@ -304,10 +305,11 @@ fn ways(table: &Path) -> Result<String, Failure> {
             if row[why].is_empty() { String::new() } else { format!(": {}", row[why].replace('|', "/")) };
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {}{words} |",
+            "| {} | {} | {} | {} | {}{words} |",
             row[varied.clone()].join(" | "),
             digits(&row[length], 0),
             digits(&row[minutes], 2),
+            digits(&row[control], 2),
             row[answer].replace('_', " ")
         );
     }
