@@ -176,7 +176,8 @@ const SHOWN: [Shown; 20] = [
     Shown {
         heading: "Turbine blade: ways of saying the feed on four axes",
         text: "What [Z17] corrects, and what it costs: without a correction and with K_V and K_Z the tip runs faster than asked where the part \
-               turns, so that the marks of teeth grow; K_F and inverse time keep the feed, and the tolerance.",
+               turns, so that the marks of teeth grow; K_F and inverse time keep the feed, and the tolerance. Verdicts take F at its word. \
+               LinuxCNC's planner brakes at every block of a program with rotary axes, so that on this control they all take as long.",
         command: &["sweep", "docs/papers/own/feeds-four-axis.toml"],
         lines: &[],
         pictures: &[],
