@@ -3,10 +3,11 @@
 //! Between two CL points the tip moves on a straight line and the axis on a great circle. A control interpolates the
 //! joints linearly instead; with tool-centre-point control it keeps the tip on the line and only the axis strays.
 //! A block is accepted where neither the tip nor the axis strays by more than its tolerance at seven inner points and
-//! the end. The deviation of one block is close to a parabola, so the inner points see at least 98 % of its height.
+//! the end; of the tip's what goes towards the part, where it is known how far from its axis the tool touches it. The deviation of one block is close to a parabola, so the inner points see at least 98 % of its height.
 //! Short blocks are looked at in the middle and at the end only: where rotary joints turn by less than [`SHORT_RAD`]
 //! and a quarter of the tolerance is used there, a curve with four times as much elsewhere does not exist.
 
+use nalgebra::Vector3;
 use osculate_geom::{Unit3, any_perpendicular};
 use osculate_tools::{Pose, cl::Motion};
 
@@ -28,6 +29,9 @@ const SHORT_RAD: f64 = 0.1;
 /// Halvings after which a block counts as a jump: 2^-24 of a CL move is far below any resolution.
 const MOST_HALVINGS: u32 = 24;
 
+/// Across the axis the tip may stray by this many times its tolerance, where no part of that goes towards the part.
+const ACROSS: f64 = 4.0;
+
 /// Blocks of one CL move at most. A metre with a tool that turns over at the finest tolerance in use has some thousands.
 const MOST_PIECES: usize = 100_000;
 
@@ -47,6 +51,18 @@ pub(crate) fn slerp(a: &Unit3, b: &Unit3, t: f64) -> Unit3 {
         .unwrap_or_else(|| any_perpendicular(a));
     let (s, c) = (angle * t).sin_cos();
     Unit3::new_normalize(a.into_inner() * c + across.into_inner() * s)
+}
+
+/// How much of what the tip strays by goes towards the part, mm, where the tool touches it at no more than `touch_rad` from its axis:
+/// the most over all directions within that angle. Across the axis [`ACROSS`] times as much passes at most.
+fn towards(off: &Vector3<f64>, axis: &Unit3, touch_rad: f64) -> f64 {
+    let along = off.dot(axis).abs();
+    let across = (off - axis.into_inner() * off.dot(axis)).norm();
+    if across.atan2(along) <= touch_rad {
+        return off.norm();
+    }
+    let (sin, cos) = touch_rad.sin_cos();
+    (along * cos + across * sin).max(across / ACROSS)
 }
 
 /// How far a block strays.
@@ -187,7 +203,8 @@ impl Liner<'_> {
             }
             let pose = self.machine.forward(&q, self.setup);
             if !self.options.tcp {
-                worst.tip_mm = worst.tip_mm.max((pose.tip - want.tip).norm());
+                let off = pose.tip - want.tip;
+                worst.tip_mm = worst.tip_mm.max(towards(&off, &want.axis, self.options.touch_rad));
             }
             worst.axis_rad = worst.axis_rad.max(angle_between(&pose.axis, &want.axis));
         }

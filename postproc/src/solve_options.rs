@@ -1,6 +1,7 @@
 //! How closely joints have to follow a path.
 
 use crate::solve_error::SolveError;
+use std::f64::consts::FRAC_PI_2;
 
 /// How a path is to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +10,10 @@ pub struct SolveOptions {
     pub tcp: bool,
     /// How far the tip may leave the CL line in feed moves, mm.
     pub tip_tol_mm: f64,
+    /// The angle between the tool's axis and the normal wherever the tool touches the part, at most, rad. What the tip strays
+    /// counts by its share towards the part; straight across the axis up to four times `tip_tol_mm` pass where that
+    /// share is small. A right angle, the usual value, says that the tool may touch anywhere.
+    pub touch_rad: f64,
     /// How far the axis may leave the CL's in feed moves, rad.
     pub axis_tol_rad: f64,
     /// How far the tip may leave its line in rapid moves, mm.
@@ -26,6 +31,7 @@ impl Default for SolveOptions {
         Self {
             tcp: false,
             tip_tol_mm: 0.002,
+            touch_rad: FRAC_PI_2,
             axis_tol_rad: 0.02f64.to_radians(),
             rapid_tol_mm: 0.1,
             singular_cone_rad: 0.005f64.to_radians(),
@@ -47,6 +53,10 @@ pub(crate) fn check_options(o: &SolveOptions) -> Result<(), SolveError> {
     if !(o.rewind_retract_mm.is_finite() && o.rewind_retract_mm >= 0.0) {
         let (what, value) = ("rewind_retract_mm", o.rewind_retract_mm);
         return Err(SolveError::Option { what, value, wanted: "not below zero" });
+    }
+    let (what, value) = ("touch_rad", o.touch_rad);
+    if !(0.0..=FRAC_PI_2).contains(&value) {
+        return Err(SolveError::Option { what, value, wanted: "from zero to a right angle" });
     }
     let value = o.singular_cone_rad;
     if !(value >= 0.0 && value <= o.axis_tol_rad) {

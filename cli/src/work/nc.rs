@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::control::machine_file;
 use crate::job::language::Language;
 use crate::job::{Control, Job};
+use crate::work::budget;
 use crate::work::verify::Reading;
 use osculate_geom::Diagnostic;
 use osculate_postproc::cldata::{self, ClWriteOptions};
@@ -85,13 +86,13 @@ pub fn post_options(control: &Control, name: &str) -> PostOptions {
     PostOptions { program_name: name.to_owned(), ..PostOptions::new(control.dialect, control.feed) }
 }
 
-/// The options of a post of a job's path, as close to it as its tolerance wants.
-pub fn job_options(job: &Job, control: &Control, name: &str) -> PostOptions {
-    let solve = crate::work::budget::solve(job);
+/// The options of a post of a job's path, as close to it as its tolerance wants where the tool touches the part at no more than
+/// `touch_rad` from its axis.
+pub fn job_options(job: &Job, control: &Control, name: &str, touch_rad: f64) -> PostOptions {
     let usual = post_options(control, name);
     PostOptions {
-        blend_mm: solve.tip_tol_mm,
-        solve,
+        blend_mm: budget::asked_mm(job),
+        solve: budget::solve(job, touch_rad),
         tool_number: job.tool().number(),
         coolant: job.coolant(),
         work_offset: work_offset(job),

@@ -16,6 +16,7 @@ use osculate_postproc::{self as post, Setup};
 use osculate_productivity::plan::{CcPoint, Linked, Passes};
 use osculate_tools::Lean;
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
 
 /// Seconds of wall time by stage.
 #[derive(Debug, Default, Serialize, Clone, Copy)]
@@ -100,7 +101,7 @@ impl Posted {
         let (base, mut setup_notes) = setup::of(job, faces, Some(along));
         let options = post::PostOptions {
             blank_mm: stock::corners_of(job, faces)?,
-            ..nc::job_options(job, &control, &title)
+            ..nc::job_options(job, &control, &title, touch_rad(planned))
         };
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
             let mut program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
@@ -152,6 +153,11 @@ impl Posted {
         wall_s.verify += stage.end();
         Ok(verified)
     }
+}
+
+/// How far from its axis the tool touches the part at most, rad; a right angle where that is not known.
+pub fn touch_rad(planned: &Planned<'_>) -> f64 {
+    planned.passes.inclination_rad().map_or(FRAC_PI_2, |[.., most]| most.min(FRAC_PI_2))
 }
 
 /// Tool axes that are looked at for a setup.

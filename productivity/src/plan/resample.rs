@@ -12,8 +12,24 @@ use osculate_tools::{Pose, pose_with_axis};
 const MAX_TURN: f64 = 0.06;
 /// The contact may stray sideways from the chord by this part of the tool's radius: it only moves the strip.
 const SIDEWAYS: f64 = 0.01;
-/// Halvings of one initial piece; past it the surface is not smooth.
-const MAX_DEPTH: u32 = 16;
+/// Steps aim at this part of the longest that holds the tolerance: where the line bends more a little further on they hold it still.
+const AIM: f64 = 0.95;
+/// A step grows or shrinks by no more than these factors from one to the next.
+const GROWTH: [f64; 2] = [0.5, 2.0];
+/// ... and where it does not hold by one of these until the next try.
+const SHRINK: [f64; 2] = [0.1, 0.85];
+/// A step that strains less than this is tried longer once.
+const ENOUGH: f64 = 0.7;
+/// Tries for a step by what the last one strayed, before it is bisected.
+const TRIES: u32 = 4;
+/// The shortest step, of the longest that is allowed there: where it does not hold the surface is not smooth.
+const FINEST: f64 = 1.0 / 65536.0;
+/// The first step of a line, of the longest that is allowed there.
+const FIRST: f64 = 0.125;
+/// Breaks of the line that one step may pass over.
+const MOST_BREAKS: usize = 8;
+/// A step that ends this near to the end of the line, in steps, goes there.
+const NEAR_END: f64 = 1.1;
 /// Halvings of the way over a crease.
 const MAX_ROLLS: u32 = 6;
 
@@ -37,8 +53,8 @@ fn knot(seat: &Seat<'_>, task: &Task<'_>, line: &dyn PassLine, t: f64) -> Result
     Ok(Knot { t, v: 0.0, point: frame.point, normal: frame.normal, pose, height })
 }
 
-/// Parameters and poses along `line` from `from` to `to`, starting from the pieces between `breaks` and halving each
-/// until the straight motion between neighbours stays within the chord tolerance at the contact.
+/// Parameters and poses along `line` from `from` to `to`, each as far from the one before as the straight motion between them
+/// stays within the chord tolerance at the contact, and no further than from one of the `breaks` to the next.
 pub(super) fn resample(
     seat: &Seat<'_>,
     task: &Task<'_>,
@@ -46,47 +62,159 @@ pub(super) fn resample(
     [from, to]: [f64; 2],
     breaks: &[f64],
 ) -> Result<Vec<Knot>, LineError> {
-    let (lo, hi) = (from.min(to), from.max(to));
-    let mut stops = vec![lo];
-    let slack = 1e-9 * (hi - lo);
-    stops.extend(breaks.iter().copied().filter(|b| *b > lo + slack && *b < hi - slack));
-    stops.push(hi);
-    if from > to {
-        stops.reverse();
+    let march = March { on: (seat, task, line), to, longest: Longest::new([from, to], breaks) };
+    let mut last = knot(seat, task, line, from)?;
+    let mut out = vec![last];
+    let mut step = FIRST * march.longest.at(from);
+    while last.t != to {
+        step = march.step(&last, step, &mut out)?;
+        last = out[out.len() - 1];
     }
-    let mut out = vec![knot(seat, task, line, from)?];
-    for w in stops.windows(2) {
-        let mut last = out[out.len() - 1];
-        // Two pieces at least between breaks: the mid-point of a symmetric piece can look straight.
-        for k in 1..=2 {
-            let t = w[0] + (w[1] - w[0]) * 0.5 * f64::from(k);
-            let end = knot(seat, task, line, t)?;
-            halve(seat, task, line, last, end, 0, &mut out)?;
-            last = end;
-        }
-    }
-    Ok(thin(seat, task, line, &out))
+    Ok(out)
 }
 
-fn halve(
-    seat: &Seat<'_>,
-    task: &Task<'_>,
-    line: &dyn PassLine,
-    a: Knot,
-    b: Knot,
-    depth: u32,
-    out: &mut Vec<Knot>,
-) -> Result<(), LineError> {
-    let mid = knot(seat, task, line, 0.5 * (a.t + b.t))?;
-    if straight(seat, task, line, &a, &b, Some(&mid))? {
-        out.push(b);
-    } else if depth < MAX_DEPTH {
-        halve(seat, task, line, a, mid, depth + 1, out)?;
-        halve(seat, task, line, mid, b, depth + 1, out)?;
-    } else {
-        roll((seat, task, line), &a, &b, 0, out);
+/// How far a step may go along a line.
+struct Longest {
+    /// Places where the line's derivatives jump, and its ends, ascending.
+    stops: Vec<f64>,
+    forwards: bool,
+}
+
+impl Longest {
+    fn new([from, to]: [f64; 2], breaks: &[f64]) -> Self {
+        let (lo, hi) = (from.min(to), from.max(to));
+        let slack = 1e-9 * (hi - lo);
+        let mut stops = vec![lo];
+        stops.extend(breaks.iter().copied().filter(|b| *b > lo + slack && *b < hi - slack));
+        // Two pieces at least: the middle of a symmetric line can look straight.
+        if stops.len() == 1 {
+            stops.push(0.5 * (lo + hi));
+        }
+        stops.push(hi);
+        stops.dedup();
+        Self { stops, forwards: to > from }
     }
-    Ok(())
+
+    /// The longest step from `t`: as far as it is over [`MOST_BREAKS`] breaks, were all as far apart as the two around it.
+    fn at(&self, t: f64) -> f64 {
+        let n = self.stops.len();
+        let k = if self.forwards {
+            self.stops.partition_point(|s| *s <= t)
+        } else {
+            self.stops.partition_point(|s| *s < t)
+        };
+        let k = k.clamp(1, n - 1);
+        MOST_BREAKS as f64 * (self.stops[k] - self.stops[k - 1])
+    }
+
+    /// How many breaks lie between two places.
+    fn between(&self, a: f64, b: f64) -> usize {
+        let below = |t: f64| self.stops.partition_point(|s| *s < t);
+        below(a.max(b)) - below(a.min(b))
+    }
+}
+
+/// The way along a line, step by step.
+struct March<'a> {
+    on: (&'a Seat<'a>, &'a Task<'a>, &'a dyn PassLine),
+    to: f64,
+    longest: Longest,
+}
+
+impl March<'_> {
+    /// Goes on from `a` by about `wish`, as far as it holds; the length that the next step should have.
+    fn step(&self, a: &Knot, wish: f64, out: &mut Vec<Knot>) -> Result<f64, LineError> {
+        let left = (self.to - a.t).abs();
+        let longest = self.longest.at(a.t);
+        let finest = FINEST * longest;
+        let mut step = wish.clamp(finest, longest);
+        let (mut held, mut broken) = (None, f64::INFINITY);
+        for _ in 0..TRIES {
+            // No short piece is left for the end.
+            if left <= NEAR_END * step || left <= finest {
+                step = left;
+            } else if left < 2.0 * step {
+                step = 0.5 * left;
+            }
+            let b = self.knot(a, step)?;
+            let strain = self.strain(a, &b)?;
+            let next = step * AIM / strain;
+            if strain <= 1.0 {
+                held = Some((b, next.clamp(GROWTH[0] * step, GROWTH[1] * step)));
+                let longer = next.min(GROWTH[1] * step).min(longest);
+                if strain >= ENOUGH || longer >= broken || longer <= step || left < 2.0 * longer {
+                    break;
+                }
+                step = longer;
+            } else {
+                broken = step;
+                step = next.clamp(SHRINK[0] * step, SHRINK[1] * step);
+                if held.is_some() || step <= finest {
+                    break;
+                }
+            }
+        }
+        if let Some((b, next)) = held {
+            out.push(b);
+            return Ok(next);
+        }
+        // Something sharp lies ahead: up to it in one step, or over it, and on as before.
+        let (mut up_to, mut low) = (None, 0.0);
+        while broken - low > finest {
+            let middle = 0.5 * (low + broken);
+            let b = self.knot(a, middle)?;
+            if self.strain(a, &b)? <= 1.0 {
+                (up_to, low) = (Some(b), middle);
+            } else {
+                broken = middle;
+            }
+        }
+        match up_to {
+            Some(b) => out.push(b),
+            None => roll(self.on, a, &self.knot(a, broken)?, 0, out),
+        }
+        Ok(wish)
+    }
+
+    /// The length of the straight motion from `a` to `b` over that of the longest that would hold the tolerance at contacts
+    /// between, three at least and two for each break: what strays grows with the square of the length, turns with the length.
+    fn strain(&self, a: &Knot, b: &Knot) -> Result<f64, LineError> {
+        let (seat, task, line) = self.on;
+        let turn = a.pose.axis.angle(&b.pose.axis) / MAX_TURN;
+        if turn > 1.0 {
+            return Ok(turn);
+        }
+        let motion = LinearMotion { from: a.pose, to: b.pose };
+        let chord = b.point - a.point;
+        let length = chord.norm();
+        let mut worst = 0.0f64;
+        let half = 1 + self.longest.between(a.t, b.t).max(1);
+        // The middle first, which strays most.
+        for k in 0..2 * half - 1 {
+            let aside = k.div_ceil(2);
+            let place = if k % 2 == 0 { half + aside } else { half - aside };
+            let fraction = place as f64 / (2 * half) as f64;
+            let k = knot(seat, task, line, a.t + (b.t - a.t) * fraction)?;
+            // The instant at which the straight motion is abreast of the contact.
+            let along = if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
+            let Some(now) = motion.at(along.clamp(0.0, 1.0)) else { return Ok(f64::INFINITY) };
+            let off = (k.point - a.point) - chord * along;
+            let sideways = off - k.normal.into_inner() * off.dot(&k.normal);
+            let aside = sideways.norm() / (SIDEWAYS * task.cutter.radius_mm());
+            worst = worst.max(stray(task, &now.pose, &k)).max(aside);
+            if worst > 1.0 {
+                break;
+            }
+        }
+        Ok(turn.max(worst.sqrt()))
+    }
+
+    fn knot(&self, a: &Knot, step: f64) -> Result<Knot, LineError> {
+        let (seat, task, line) = self.on;
+        let left = self.to - a.t;
+        let t = if step >= left.abs() { self.to } else { a.t + step.copysign(left) };
+        knot(seat, task, line, t)
+    }
 }
 
 /// Goes from one side of a crease to the other: the tool rolls over it, as its normal turns, in as few steps as hold the tolerance.
@@ -106,7 +234,7 @@ fn roll(
         Some(Knot { t, v: 0.0, point, normal, pose, height: task.cutter.distance(&pose, &point) })
     };
     let motion = LinearMotion { from: a.pose, to: b.pose };
-    let mid = middle().filter(|mid| !motion.at(0.5).is_some_and(|now| holds(task, &now.pose, mid)));
+    let mid = middle().filter(|mid| !motion.at(0.5).is_some_and(|now| stray(task, &now.pose, mid) <= 1.0));
     match mid {
         Some(mid) if depth < MAX_ROLLS => {
             roll(on, a, &mid, depth + 1, out);
@@ -116,89 +244,20 @@ fn roll(
     }
 }
 
-/// Whether a pose of the straight motion does what the true pose of a knot does: at the contact, and as far to its
-/// sides as the strip reaches.
-fn holds(task: &Task<'_>, pose: &Pose, knot: &Knot) -> bool {
+/// By how much a pose of the straight motion strays from the true pose of a knot, of what it may: at the contact, and as
+/// far to its sides as the strip reaches.
+fn stray(task: &Task<'_>, pose: &Pose, knot: &Knot) -> f64 {
     let t = &task.tolerance;
-    if (task.cutter.distance(pose, &knot.point) - knot.height).abs() > t.chord_mm {
-        return false;
-    }
+    let height = (task.cutter.distance(pose, &knot.point) - knot.height).abs();
     // A ball is the same under any lean.
     if task.cutter.is_ball() {
-        return true;
+        return height / t.chord_mm;
     }
     // Where the contact swings round the end of the tool another part of it than the true one may go through the tangent plane.
-    if (knot.pose.tip - pose.tip).dot(&knot.normal) > t.chord_mm {
-        return false;
-    }
+    let down = (knot.pose.tip - pose.tip).dot(&knot.normal);
     let radius = task.cutter.radius_mm();
     let reach = radius.min(2.0 * (2.0 * t.scallop_mm * radius).sqrt());
-    pose.axis.angle(&knot.pose.axis) * reach <= t.chord_mm
-}
-
-/// Whether the straight motion from `a` to `b` holds the tolerance at three contacts between.
-fn straight(
-    seat: &Seat<'_>,
-    task: &Task<'_>,
-    line: &dyn PassLine,
-    a: &Knot,
-    b: &Knot,
-    mid: Option<&Knot>,
-) -> Result<bool, LineError> {
-    if a.pose.axis.angle(&b.pose.axis) > MAX_TURN {
-        return Ok(false);
-    }
-    let motion = LinearMotion { from: a.pose, to: b.pose };
-    let chord = b.point - a.point;
-    let length = chord.norm();
-    for fraction in [0.5, 0.25, 0.75] {
-        let k = match mid {
-            Some(m) if fraction == 0.5 => *m,
-            _ => knot(seat, task, line, a.t + (b.t - a.t) * fraction)?,
-        };
-        // The instant at which the straight motion is abreast of the contact.
-        let along = if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
-        let Some(now) = motion.at(along.clamp(0.0, 1.0)) else { return Ok(false) };
-        if !holds(task, &now.pose, &k) {
-            return Ok(false);
-        }
-        let off = (k.point - a.point) - chord * along;
-        let sideways = off - k.normal.into_inner() * off.dot(&k.normal);
-        if sideways.norm() > SIDEWAYS * task.cutter.radius_mm() {
-            return Ok(false);
-        }
-    }
-    Ok(true)
-}
-
-/// Drops knots whose neighbours can be joined directly: the halving leaves up to twice as many as needed.
-fn thin(seat: &Seat<'_>, task: &Task<'_>, line: &dyn PassLine, knots: &[Knot]) -> Vec<Knot> {
-    let mut out = vec![knots[0]];
-    let mut at = 0;
-    while at + 1 < knots.len() {
-        // Join as long as every knot passed over, and the contacts between, stay within the tolerance.
-        let mut next = at + 1;
-        while next + 1 < knots.len() && next - at < 8 && joins(seat, task, line, &knots[at..=next + 1]) {
-            next += 1;
-        }
-        out.push(knots[next]);
-        at = next;
-    }
-    out
-}
-
-fn joins(seat: &Seat<'_>, task: &Task<'_>, line: &dyn PassLine, knots: &[Knot]) -> bool {
-    let (a, b) = (&knots[0], &knots[knots.len() - 1]);
-    if !straight(seat, task, line, a, b, None).unwrap_or(false) {
-        return false;
-    }
-    let motion = LinearMotion { from: a.pose, to: b.pose };
-    let chord = b.point - a.point;
-    let l2 = chord.norm_squared();
-    knots[1..knots.len() - 1].iter().all(|k| {
-        let along = if l2 > 0.0 { (k.point - a.point).dot(&chord) / l2 } else { 0.5 };
-        motion.at(along.clamp(0.0, 1.0)).is_some_and(|m| holds(task, &m.pose, k))
-    })
+    height.max(down).max(pose.axis.angle(&knot.pose.axis) * reach) / t.chord_mm
 }
 
 /// Contact points from knots; the strip width is filled in by the caller.

@@ -5,7 +5,7 @@ use crate::job::{Job, Operations};
 use crate::part::Part;
 use crate::work::operations::course::Text;
 use crate::work::operations::step::Step;
-use crate::work::program::axes_of;
+use crate::work::program::{axes_of, touch_rad};
 use crate::work::setup::{self, Along};
 use crate::work::{budget, nc, passes, stock};
 use osculate_geom::Diagnostic;
@@ -58,14 +58,14 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
         let title = passes::title(&held.job);
         // What a control may round off at corners counts for the whole program.
         let blend_mm =
-            own.iter().map(|s| budget::solve(&steps[*s].job).tip_tol_mm).fold(f64::INFINITY, f64::min);
+            own.iter().map(|s| budget::asked_mm(&steps[*s].job)).fold(f64::INFINITY, f64::min);
         let blank_mm = stock::corners_of(&held.job, part)?;
         let sections: Vec<Section<'_>> = own
             .iter()
             .zip(&paths)
             .map(|(s, path)| {
-                let Step { job, operation, .. } = &steps[*s];
-                let mut options = nc::job_options(job, control, &title);
+                let Step { job, operation, planned, .. } = &steps[*s];
+                let mut options = nc::job_options(job, control, &title, touch_rad(planned));
                 options.program_number += k as u32;
                 options.blend_mm = blend_mm;
                 options.blank_mm = blank_mm;
