@@ -5,6 +5,7 @@ use osculate_tools::cl::Motion;
 
 use super::*;
 use crate::machine::MAX_JOINTS;
+use crate::solve_options::check_options;
 
 /// LinuxCNC's AC table with its tilt axis at y -7, z 20 and a tool of 80.
 fn table() -> (Machine, Setup) {
@@ -91,4 +92,43 @@ fn tool_centre_point_control_needs_no_points_for_the_tip() {
     let tcp = SolveOptions { tcp: true, ..options(0.01) };
     let path = blocks((50.0, 0.0, 0.0), (50.0, 0.0, 60.0), &tcp).unwrap();
     assert_eq!((path.blocks.len(), path.summary.tip_error_mm), (1, 0.0));
+}
+
+/// What counts of a stray tip is the most that goes along any normal within the angle, found here by trying many.
+#[test]
+fn a_stray_tip_counts_by_its_share_towards_the_part() {
+    let axis = Unit3::new_normalize(Vector3::new(0.2, -0.3, 1.0));
+    let side = any_perpendicular(&axis);
+    let other = axis.cross(&side);
+    for touch_deg in [0.0f64, 3.0, 20.0, 60.0, 90.0] {
+        let touch = touch_deg.to_radians();
+        for (along, across) in [(1.0f64, 0.0f64), (-1.0, 0.1), (1.0, 0.5), (0.5, 2.0), (0.1, 3.0), (0.0, 1.0)]
+        {
+            let off = axis.into_inner() * along + side.into_inner() * across;
+            let mut most = 0.0f64;
+            for i in 0..=900 {
+                let t = touch * f64::from(i) / 900.0;
+                for j in 0..360 {
+                    let (s, c) = f64::from(j).to_radians().sin_cos();
+                    let normal = axis.into_inner() * t.cos() + (side.into_inner() * c + other * s) * t.sin();
+                    most = most.max(off.dot(&normal).abs());
+                }
+            }
+            let got = towards(&off, &axis, touch);
+            let want = most.max(across / ACROSS);
+            assert!((got - want).abs() < 1e-5, "{touch_deg} deg, {along} and {across}: {got}, not {want}");
+        }
+    }
+}
+
+/// A table that turns under a tool that stands upright moves the tip across its axis alone: blocks may be twice as long.
+#[test]
+fn blocks_are_longer_where_the_tip_strays_across_the_axis() {
+    let anywhere = options(0.001);
+    let below = SolveOptions { touch_rad: 0.1, ..anywhere };
+    let [many, few] =
+        [anywhere, below].map(|o| blocks((50.0, 0.0, 0.0), (50.0, 0.0, 90.0), &o).unwrap().blocks.len());
+    assert_eq!((many, few), (256, 128));
+    let beyond = SolveOptions { touch_rad: 2.0, ..anywhere };
+    assert!(matches!(check_options(&beyond), Err(SolveError::Option { what: "touch_rad", .. })));
 }

@@ -3,7 +3,7 @@
 use crate::cutting::joined;
 
 use joined::joined;
-use osculate_geom::analytic::{Paraboloid, Plane, Torus};
+use osculate_geom::analytic::{Cylinder, Paraboloid, Plane, Torus};
 use osculate_geom::{Axis, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};
 use osculate_productivity::plan::{Along, Leaning, LocalLead, Task, Tolerance, isoparametric};
 use osculate_tools::cl::{ClMove, Motion};
@@ -226,5 +226,30 @@ fn passes_run_out_until_the_border_is_cut_between_them() {
             highest = highest.max(left);
         }
         assert!(highest > 0.0085 && highest <= 0.01, "{highest} at x = {x}");
+    }
+}
+
+/// Round a cylinder the tip goes on a circle, and on chords of it the tool sags by its radius times 1 - cos(angle / 2): the steps are as
+/// long as that allows, but for the twentieth that they aim short of it and the first and last few.
+#[test]
+fn steps_round_a_cylinder_are_as_long_as_the_chord_allows() {
+    let (radius, ball_mm, lead_rad) = (20.0, 5.0, 0.2f64);
+    let cylinder = Cylinder::new(radius, Interval::new(0.0, 4.0)).unwrap();
+    let ball = Cutter::try_from(CutterSpec::Ball { diameter_mm: 2.0 * ball_mm, length_mm: 50.0 }).unwrap();
+    for scallop_mm in [0.001, 0.01, 0.1] {
+        let tolerance = Tolerance { scallop_mm, gouge_mm: 0.5 * scallop_mm, chord_mm: 0.2 * scallop_mm };
+        let task = Task::new("cylinder", &cylinder, &ball, Lean { lead_rad, tilt_rad: 0.0 }, tolerance);
+        let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap();
+        // Planning leaves a twentieth of the scallop to the chords.
+        let centre = radius + ball_mm;
+        let tip = (centre * centre + ball_mm * ball_mm - 2.0 * centre * ball_mm * lead_rad.cos()).sqrt();
+        let most_rad = 2.0 * (1.0 - 0.05 * scallop_mm / tip).acos();
+        for pass in &passes.passes {
+            let turns: Vec<f64> = pass.points.windows(2).map(|w| w[0].normal.angle(&w[1].normal)).collect();
+            let longest = turns.iter().copied().fold(0.0, f64::max);
+            assert!(longest <= most_rad * (1.0 + 1e-3), "{longest} over {most_rad}");
+            let least = turns.iter().sum::<f64>() / most_rad;
+            assert!((turns.len() as f64) < 1.12 * least + 6.0, "{} steps for {least}", turns.len());
+        }
     }
 }

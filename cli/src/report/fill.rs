@@ -415,9 +415,14 @@ fn tables(story: &Story<'_>) -> Vec<Table> {
                 ("CL points", s.points.to_string()),
                 ("cutting length", format!("{:.1} mm", s.cutting_length_mm)),
                 ("air length", format!("{:.1} mm", s.air_length_mm)),
-                ("time", format!("{:.2} min", s.time_min)),
+            ]
+            .into_iter()
+            .chain(s.control_time_min.map(|min| ("time on the control", format!("{min:.2} min"))))
+            .chain([
+                ("time by F", format!("{:.2} min", s.time_min)),
                 ("of it at feed", format!("{:.2} min", s.cutting_time_min)),
-            ],
+            ])
+            .collect(),
         ),
         pairs(
             "Productivity",

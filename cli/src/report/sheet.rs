@@ -23,6 +23,13 @@ fn one_setup(job: &Job, summary: &Summary, setup: &SetupSummary, scope: &[ScopeR
             .map_or_else(|| "not declared".to_owned(), |r| r.covers.clone())
     };
     let [x, y, z] = setup.part_zero_mm.map(|c| format!("{:.4}", c + 0.0));
+    let several = summary.setups.len() > 1;
+    let by_f = format!("{:.2} min by F", setup.time_min);
+    // The control's time is known of all programs together.
+    let time = match summary.control_time_min {
+        Some(min) if !several => format!("{min:.2} min on the control, {by_f}"),
+        _ => by_f,
+    };
     let mut rows = vec![
         ("program", setup.program.clone()),
         ("machine, control", format!("{}, {}, feed {}", summary.machine, summary.dialect, summary.feed)),
@@ -39,13 +46,12 @@ fn one_setup(job: &Job, summary: &Summary, setup: &SetupSummary, scope: &[ScopeR
                 number(job.setup().approach_mm, 4)
             ),
         ),
-        ("time", format!("{:.2} min", setup.time_min)),
+        ("time", time),
     ];
     if let Some(n) = job.program_number() {
         rows.insert(1, ("program number", n.to_string()));
     }
     let rows = rows.into_iter().map(|(key, value)| vec![key.to_owned(), value]).collect();
-    let several = summary.setups.len() > 1;
     let caption = if several { format!("Setup sheet: {}", setup.name) } else { "Setup sheet".to_owned() };
     Table { caption, columns: Vec::new(), rows }
 }

@@ -10,8 +10,8 @@
 use crate::job::Job;
 use crate::part::{self, Part};
 use crate::work::axes;
-use osculate_postproc::{FeedMode, SolveOptions};
 use osculate_postproc::nc::Dialect;
+use osculate_postproc::{FeedMode, SolveOptions};
 use osculate_productivity::plan::Tolerance;
 use std::f64::consts::FRAC_PI_2;
 

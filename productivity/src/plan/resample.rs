@@ -196,7 +196,8 @@ impl March<'_> {
             let fraction = place as f64 / (2 * half) as f64;
             let k = knot(seat, task, line, a.t + (b.t - a.t) * fraction)?;
             // The instant at which the straight motion is abreast of the contact.
-            let along = if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
+            let along =
+                if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
             let Some(now) = motion.at(along.clamp(0.0, 1.0)) else { return Ok(f64::INFINITY) };
             let off = (k.point - a.point) - chord * along;
             let sideways = off - k.normal.into_inner() * off.dot(&k.normal);

@@ -57,8 +57,7 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
         let control = held.job.control();
         let title = passes::title(&held.job);
         // What a control may round off at corners counts for the whole program.
-        let blend_mm =
-            own.iter().map(|s| budget::asked_mm(&steps[*s].job)).fold(f64::INFINITY, f64::min);
+        let blend_mm = own.iter().map(|s| budget::asked_mm(&steps[*s].job)).fold(f64::INFINITY, f64::min);
         let blank_mm = stock::corners_of(&held.job, part)?;
         let sections: Vec<Section<'_>> = own
             .iter()
