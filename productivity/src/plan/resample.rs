@@ -54,7 +54,7 @@ fn knot(seat: &Seat<'_>, task: &Task<'_>, line: &dyn PassLine, t: f64) -> Result
 }
 
 /// Parameters and poses along `line` from `from` to `to`, each as far from the one before as the straight motion between them
-/// stays within the chord tolerance at the contact, and no further than from one of the `breaks` to the next.
+/// stays within the chord tolerance at the contact, over a few of the `breaks` at most.
 pub(super) fn resample(
     seat: &Seat<'_>,
     task: &Task<'_>,
@@ -194,15 +194,15 @@ impl March<'_> {
             let aside = k.div_ceil(2);
             let place = if k % 2 == 0 { half + aside } else { half - aside };
             let fraction = place as f64 / (2 * half) as f64;
-            let k = knot(seat, task, line, a.t + (b.t - a.t) * fraction)?;
+            let at = knot(seat, task, line, a.t + (b.t - a.t) * fraction)?;
             // The instant at which the straight motion is abreast of the contact.
             let along =
-                if length > 0.0 { (k.point - a.point).dot(&chord) / (length * length) } else { fraction };
+                if length > 0.0 { (at.point - a.point).dot(&chord) / (length * length) } else { fraction };
             let Some(now) = motion.at(along.clamp(0.0, 1.0)) else { return Ok(f64::INFINITY) };
-            let off = (k.point - a.point) - chord * along;
-            let sideways = off - k.normal.into_inner() * off.dot(&k.normal);
+            let off = (at.point - a.point) - chord * along;
+            let sideways = off - at.normal.into_inner() * off.dot(&at.normal);
             let aside = sideways.norm() / (SIDEWAYS * task.cutter.radius_mm());
-            worst = worst.max(stray(task, &now.pose, &k)).max(aside);
+            worst = worst.max(stray(task, &now.pose, &at)).max(aside);
             if worst > 1.0 {
                 break;
             }
@@ -213,8 +213,9 @@ impl March<'_> {
     fn knot(&self, a: &Knot, step: f64) -> Result<Knot, LineError> {
         let (seat, task, line) = self.on;
         let left = self.to - a.t;
-        let t = if step >= left.abs() { self.to } else { a.t + step.copysign(left) };
-        knot(seat, task, line, t)
+        let t = a.t + step.copysign(left);
+        // A step too short for its parameter's last digit would lead nowhere.
+        knot(seat, task, line, if step >= left.abs() || t == a.t { self.to } else { t })
     }
 }
 
