@@ -271,8 +271,10 @@ proptest! {
         let q = jet.point + forms.normal.into_inner() * up;
         let (du, dv) = (1e-3 * s.domain().u.length(), 1e-3 * s.domain().v.length());
         let near = closest(&s, &q, Some(uv(at.u + du, at.v - dv))).unwrap();
-        // Coordinates of 130 mm to 1e-14, and the descent stops at that.
-        prop_assert!((near.point - jet.point).norm() < 1e-10 * (1.0 + 1.0 / sine), "{near:?} {at:?}");
+        // Coordinates of 130 mm to 1e-14, and the descent stops at that. Where the surface bends sharply beside it the descent may come
+        // to another foot, which is nearer then.
+        let came_back = (near.point - jet.point).norm() < 1e-10 * (1.0 + 1.0 / sine);
+        prop_assert!(came_back || near.distance_mm < up.abs() - 1e-9, "{near:?} {at:?} {up}");
         let whole = closest(&s, &q, None).unwrap();
         prop_assert!(whole.distance_mm <= near.distance_mm + 1e-12);
     }
