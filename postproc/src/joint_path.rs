@@ -45,7 +45,7 @@ pub struct SolveSummary {
     pub rewinds: usize,
     /// Length of the tip's way during which the outer rotary joint was held near a pole, mm.
     pub singular_mm: f64,
-    /// Greatest distance of the tip from the CL line in feed moves, mm.
+    /// Greatest distance of the tip from the CL line in feed moves, mm: what of it counts (`SolveOptions::touch_rad`).
     pub tip_error_mm: f64,
     /// Greatest angle of the tool axis from the CL's in feed moves, rad.
     pub axis_error_rad: f64,

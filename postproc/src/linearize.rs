@@ -3,7 +3,8 @@
 //! Between two CL points the tip moves on a straight line and the axis on a great circle. A control interpolates the
 //! joints linearly instead; with tool-centre-point control it keeps the tip on the line and only the axis strays.
 //! A block is accepted where neither the tip nor the axis strays by more than its tolerance at seven inner points and
-//! the end; of the tip's what goes towards the part, where it is known how far from its axis the tool touches it. The deviation of one block is close to a parabola, so the inner points see at least 98 % of its height.
+//! the end; of the tip's what goes towards the part, where it is known how far from its axis the tool touches it.
+//! The deviation of one block is close to a parabola, so the inner points see at least 98 % of its height.
 //! Short blocks are looked at in the middle and at the end only: where rotary joints turn by less than [`SHORT_RAD`]
 //! and a quarter of the tolerance is used there, a curve with four times as much elsewhere does not exist.
 

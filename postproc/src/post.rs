@@ -35,7 +35,8 @@ pub struct PostSummary {
     pub singular_mm: f64,
     /// Points put in to keep the tool on its line.
     pub inserted_points: usize,
-    /// Greatest distance of the tip from the CL line in feed moves, without the rounding of the output, mm.
+    /// Greatest distance of the tip from the CL line in feed moves, without the rounding of the output, mm: what of it counts
+    /// (`SolveOptions::touch_rad`).
     pub tip_error_mm: f64,
     /// Greatest angle of the tool axis from the CL's in feed moves, deg.
     pub axis_error_deg: f64,

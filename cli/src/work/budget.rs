@@ -3,7 +3,7 @@
 //! Passes are laid out for the scallop less two terms. *Words*: positions are rounded to the last decimal of the machine's axes; half
 //! a unit of it at a crest, which lies between two passes that are rounded each for itself. *Ways*: between CL points the joints
 //! move, and the tool's end strays from the straight motion that was planned, as far as the post allows: its tip, and what its axis
-//! turns about the tip at the cutter's radius. Such a stray is greatest in the middle of a block, points any way, and at a crest is the
+//! turns about the tip at the cutter's radius; across the axis, where it does not go towards the part, up to four times as far. Such a stray is greatest in the middle of a block, points any way, and at a crest is the
 //! mean of two passes that stray to either side: a quarter of the most that the post allows is counted. What teeth leave at the
 //! feed of the job is kept back before both.
 
