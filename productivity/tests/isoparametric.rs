@@ -4,10 +4,13 @@ use crate::cutting::joined;
 
 use joined::joined;
 use osculate_geom::analytic::{Cylinder, Paraboloid, Plane, Torus};
-use osculate_geom::{Axis, Domain, Flipped, Interval, Patch, Point3, Side, Surface, Unit3, uv};
+use osculate_geom::{
+    Axis, Domain, Flipped, Interval, Jet2, Patch, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
+};
 use osculate_productivity::plan::{Along, Leaning, LocalLead, Task, Tolerance, isoparametric};
 use osculate_tools::cl::{ClMove, Motion};
 use osculate_tools::{Contact, Cutter, CutterSpec, FeedLine, Lean, Pose, strip};
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Mutex;
 
 /// Material left at a point along its normal by a ball that moves linearly between CL points: the first meeting of the
@@ -33,7 +36,7 @@ fn left_by_ball(point: &Point3, normal: &Unit3, centres: &[Point3], radius: f64)
         if l2 == 0.0 {
             continue;
         }
-        let perp = |v: osculate_geom::Vec3| v - axis * (v.dot(&axis) / l2);
+        let perp = |v: Vec3| v - axis * (v.dot(&axis) / l2);
         let (o, d) = (perp(point - a), perp(normal.into_inner()));
         let (qa, qb, qc) = (d.norm_squared(), o.dot(&d), o.norm_squared() - radius * radius);
         let disc = qb * qb - qa * qc;
@@ -250,6 +253,64 @@ fn steps_round_a_cylinder_are_as_long_as_the_chord_allows() {
             assert!(longest <= most_rad * (1.0 + 1e-3), "{longest} over {most_rad}");
             let least = turns.iter().sum::<f64>() / most_rad;
             assert!((turns.len() as f64) < 1.12 * least + 6.0, "{} steps for {least}", turns.len());
+        }
+    }
+}
+
+/// A washboard, `z = slope / k sin(k u)`, knots a quarter of a wave apart.
+struct Washboard {
+    slope: f64,
+    k: f64,
+}
+
+impl Surface for Washboard {
+    fn domain(&self) -> Domain {
+        Domain { u: Interval::new(0.0, 8.0), v: Interval::new(0.0, 3.0) }
+    }
+    fn jet2(&self, at: Uv) -> Jet2 {
+        self.taylor(at, 2).jet2()
+    }
+    fn taylor(&self, at: Uv, order: usize) -> Taylor {
+        let (x, y) = (Series::variable(Axis::U, at.u, order), Series::variable(Axis::V, at.v, order));
+        let z = (x * self.k).sin_cos().0 * (self.slope / self.k);
+        Taylor { uv: at, side: Side::Along, coordinates: [x, y, z] }
+    }
+    fn breaks(&self, axis: Axis) -> Vec<f64> {
+        let i = self.domain().get(axis);
+        let quarters = if axis == Axis::U { (i.length() * self.k / FRAC_PI_2).round() as usize } else { 1 };
+        (0..=quarters).map(|q| i.at(q as f64 / quarters as f64)).collect()
+    }
+}
+
+/// Ripples as long as the stretch over which a held lead's normal is averaged to either side, whose mean is flat: the axis keeps its lead to
+/// the flat as far as a tenth of the lead allows, where the normals at the contacts swing with what a short mean leaves of them.
+#[test]
+fn an_axis_at_a_held_lead_does_not_swing_with_ripples() {
+    let spec = CutterSpec::Toroidal { diameter_mm: 6.0, corner_radius_mm: 1.0, length_mm: 50.0 };
+    let cutter = Cutter::try_from(spec).unwrap();
+    // A twentieth of the radius, four times.
+    let face = Washboard { slope: 0.03, k: TAU / (4.0 * 0.05 * 3.0) };
+    let tolerance = Tolerance { scallop_mm: 0.02, gouge_mm: 0.01, chord_mm: 0.004 };
+    for (lead_deg, bound) in [(20f64, false), (3.0, true)] {
+        let lead_rad = lead_deg.to_radians();
+        let task = Task::new("washboard", &face, &cutter, Lean { lead_rad, tilt_rad: 0.0 }, tolerance);
+        let passes = isoparametric(&task, Along::Fixed(Axis::U)).unwrap().passes;
+        let (mut off_flat, mut swing, mut off_lead) = (0.0f64, 0.0f64, 0.0f64);
+        for p in passes.iter().flat_map(|p| &p.points).filter(|p| (1.0..7.0).contains(&p.uv.u)) {
+            off_flat = off_flat.max((p.pose.axis.angle(&Vec3::z_axis()) - lead_rad).abs());
+            swing = swing.max(p.normal.angle(&Vec3::z_axis()));
+            off_lead = off_lead.max((p.pose.axis.angle(&p.normal) - lead_rad).abs());
+        }
+        let most = 0.1 * lead_rad;
+        assert!(swing > 0.02 && swing < 0.03, "{swing}");
+        assert!(off_lead < most + 1e-3, "{off_lead} of {most}");
+        if bound {
+            assert!(
+                off_lead > 0.9 * most && off_flat > swing - most - 1e-3,
+                "{off_lead}, {off_flat} of {swing}"
+            );
+        } else {
+            assert!(off_flat < 1e-3, "{off_flat}");
         }
     }
 }

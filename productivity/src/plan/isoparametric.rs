@@ -17,7 +17,7 @@ use super::fits::fits;
 use super::lead::{Clearance, LeadField, Leaning};
 use super::motion::PassMotion;
 use super::resample::{contact_points, resample};
-use super::seat::{Averaged, Seat};
+use super::seat::Seat;
 use super::walk::Walk;
 use super::{Along, MAX_PASSES, Pass, Passes, PlanError, Task, Tolerance, shorter};
 use osculate_geom::line::{IsoLine, LineError, SurfaceLine};
@@ -289,10 +289,8 @@ impl Cover<'_> {
         let (frame, speed) = line.frame(t)?;
         // The frame turns forward about b at the normal curvature along the feed.
         let h = task.design_scallop_mm(frame.turn.dot(&frame.left), column.left);
-        let averaged = Averaged { seat: self.seat, line: &line };
-        let led: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &line };
         let ends = self.ends.of(pass, self.reversed);
-        let motion = Ended { motion: PassMotion { task, line: &line, led }, ends };
+        let motion = Ended { motion: PassMotion { seat: self.seat, line: &line }, ends };
         let step = 0.05 * task.cutter.radius_mm() / speed.abs().max(1e-12);
         let of = |point: f64| {
             let at = Uv::from_axis(along, t, point);
@@ -408,9 +406,7 @@ fn build(
     let domain = surface.domain().get(along);
     let ends = layout.ends.of(level.fixed, level.reversed);
     let line = IsoLine { surface, along, fixed: level.fixed, reversed: level.reversed };
-    let averaged = Averaged { seat, line: &line };
-    let led: &dyn SurfaceLine = if seat.rough() { &averaged } else { &line };
-    let motion = Ended { motion: PassMotion { task, line: &line, led }, ends };
+    let motion = Ended { motion: PassMotion { seat, line: &line }, ends };
     let radius = task.cutter.radius_mm();
     // Length of a mm along the pass, in its parameter.
     let mm = |t: f64| {

@@ -6,9 +6,9 @@
 use super::field::{Face, Near};
 use crate::plan::Task;
 use crate::plan::motion::PassMotion;
-use crate::plan::seat::{Averaged, Seat};
+use crate::plan::seat::Seat;
 use crate::plan::walk::Walk;
-use osculate_geom::line::{LineError, SurfaceLine};
+use osculate_geom::line::LineError;
 use osculate_geom::{Darboux, Relative, Uv};
 use osculate_tools::strip::standoff;
 
@@ -45,9 +45,7 @@ impl Asked<'_> {
     fn excess(&self, by: f64) -> Result<f64, LineError> {
         let task = self.task;
         let near = Near::below(self.face, self.at, self.value + by, self.reversed)?;
-        let averaged = Averaged { seat: self.seat, line: &near };
-        let led: &dyn SurfaceLine = if self.seat.rough() { &averaged } else { &near };
-        let motion = PassMotion { task, line: &near, led };
+        let motion = PassMotion { seat: self.seat, line: &near };
         let radius = task.cutter.radius_mm();
         let reach = standoff(task.cutter, task.surface, self.at, &motion, 0.0, 0.05 * radius)?;
         Ok(reach.map_or(radius, |r| r.at_mm - self.height_mm))
