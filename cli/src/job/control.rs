@@ -103,6 +103,11 @@ impl Control {
         }
     }
 
+    /// The same with tool-centre-point control.
+    pub fn by_tip(&self) -> Self {
+        Self { feed: FeedMode::Tcp, feed_name: FeedWord::Tcp.word().to_owned(), ..self.clone() }
+    }
+
     /// The control of a job, which has its words tried.
     pub(super) fn of(places: &Places, t: Option<&raw::Machine>, tool: &Tool) -> Result<Self, Failure> {
         let none = raw::Machine::default();

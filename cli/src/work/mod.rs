@@ -5,6 +5,7 @@ pub mod axis_places;
 pub mod axis_view;
 pub mod bodies;
 pub mod budget;
+mod by_tip;
 pub mod check;
 pub mod choice;
 pub mod drop;

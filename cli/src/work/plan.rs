@@ -236,6 +236,7 @@ impl Proved<'_> {
         };
         wall_s.ideal = stage.end();
         let stage = Stage::begin(watch, "report");
+        let of_feed = posted.note_of_feed(job, faces, &planned);
         let Posted { cl_text, control, program, setup, read, diagnostics } = posted;
         let title = passes::title(job);
         let before = [&faces.part.diagnostics, &planned.passes.diagnostics, &planned.extras.diagnostics];
@@ -244,6 +245,7 @@ impl Proved<'_> {
             .flatten()
             .cloned()
             .chain(diagnostics)
+            .chain(of_feed)
             .chain(verified.diagnostics.iter().cloned())
             .collect();
         let times = Times::of(&read);

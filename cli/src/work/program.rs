@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::{Control, Job};
 use crate::part::Part;
 use crate::watch::{Stage, Watch};
+use crate::work::by_tip;
 use crate::work::extras::Extras;
 use crate::work::nc::{self, Motions};
 use crate::work::passes;
@@ -99,10 +100,7 @@ impl Posted {
         let stage = Stage::begin(watch, "post");
         let along = Along { path: &cl, axes: &axes_of(planned) };
         let (base, mut setup_notes) = setup::of(job, faces, Some(along));
-        let options = post::PostOptions {
-            blank_mm: stock::corners_of(job, faces)?,
-            ..nc::job_options(job, &control, &title, touch_rad(planned))
-        };
+        let options = options(job, faces, &control, planned)?;
         let written = |setup: &Setup| -> Result<(post::Posted, Motions), Failure> {
             let mut program = post::post(&cl, &control.machine, setup, &options).map_err(Failure::job)?;
             program.text = control.language.worded(program.text)?;
@@ -135,6 +133,16 @@ impl Posted {
         Ok(Self { cl_text, control, program, setup: place, read, diagnostics })
     }
 
+    /// What to say of the job's feed mode.
+    pub fn note_of_feed(&self, job: &Job, faces: &Part, planned: &Planned<'_>) -> Option<Diagnostic> {
+        by_tip::note(&self.control, &self.setup, &self.program.text, |tip| {
+            let cl = passes::cl_path(job, &planned.linked);
+            let options = options(job, faces, tip, planned).ok()?;
+            let program = post::post(&cl, &tip.machine, &self.setup, &options).ok()?;
+            tip.language.worded(program.text).ok()
+        })
+    }
+
     /// Time of the program on its control, min.
     pub fn time_min(&self) -> f64 {
         self.read.ranked_min()
@@ -158,6 +166,17 @@ impl Posted {
 /// How far from its axis the tool touches the part at most, rad; a right angle where that is not known.
 pub fn touch_rad(planned: &Planned<'_>) -> f64 {
     planned.passes.inclination_rad().map_or(FRAC_PI_2, |[.., most]| most.min(FRAC_PI_2))
+}
+
+/// How a job's program is written for a control.
+fn options(
+    job: &Job,
+    faces: &Part,
+    control: &Control,
+    planned: &Planned<'_>,
+) -> Result<post::PostOptions, Failure> {
+    let usual = nc::job_options(job, control, &passes::title(job), touch_rad(planned));
+    Ok(post::PostOptions { blank_mm: stock::corners_of(job, faces)?, ..usual })
 }
 
 /// Tool axes that are looked at for a setup.

@@ -1,13 +1,13 @@
 //! The programs of a list of operations: one for each setup, with its tool changes.
 
 use crate::failure::Failure;
-use crate::job::{Job, Operations};
+use crate::job::{Control, Job, Operations};
 use crate::part::Part;
 use crate::work::operations::course::Text;
 use crate::work::operations::step::Step;
 use crate::work::program::{axes_of, touch_rad};
 use crate::work::setup::{self, Along};
-use crate::work::{budget, nc, passes, stock};
+use crate::work::{budget, by_tip, nc, passes, stock};
 use osculate_geom::Diagnostic;
 use osculate_postproc::{Section, Setup, post_sections};
 use osculate_tools::cl::ClPath;
@@ -59,26 +59,35 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
         // What a control may round off at corners counts for the whole program.
         let blend_mm = own.iter().map(|s| budget::asked_mm(&steps[*s].job)).fold(f64::INFINITY, f64::min);
         let blank_mm = stock::corners_of(&held.job, part)?;
-        let sections: Vec<Section<'_>> = own
-            .iter()
-            .zip(&paths)
-            .map(|(s, path)| {
-                let Step { job, operation, planned, .. } = &steps[*s];
-                let mut options = nc::job_options(job, control, &title, touch_rad(planned));
-                options.program_number += k as u32;
-                options.blend_mm = blend_mm;
-                options.blank_mm = blank_mm;
-                Section { name: operation.name.clone(), path, gauge_length_mm: nc::gauge_mm(job), options }
-            })
-            .collect();
-        let posted = post_sections(&sections, &control.machine, &place)
-            .map_err(|e| Failure::file(list.path(), format!("setup {}: {e}", held.name)))?;
+        let by = |control: &Control| -> Result<(String, Vec<Diagnostic>), Failure> {
+            let sections: Vec<Section<'_>> = own
+                .iter()
+                .zip(&paths)
+                .map(|(s, path)| {
+                    let Step { job, operation, planned, .. } = &steps[*s];
+                    let mut options = nc::job_options(job, control, &title, touch_rad(planned));
+                    options.program_number += k as u32;
+                    options.blend_mm = blend_mm;
+                    options.blank_mm = blank_mm;
+                    Section {
+                        name: operation.name.clone(),
+                        path,
+                        gauge_length_mm: nc::gauge_mm(job),
+                        options,
+                    }
+                })
+                .collect();
+            let posted = post_sections(&sections, &control.machine, &place)
+                .map_err(|e| Failure::file(list.path(), format!("setup {}: {e}", held.name)))?;
+            Ok((control.language.worded(posted.text)?, posted.diagnostics))
+        };
         let name = if setups.len() > 1 { format!("program-{}", held.name) } else { "program".to_owned() };
         let file = format!("{name}.{}", control.extension);
+        let (text, found) = by(control)?;
         let mut diagnostics = held.job.control_notes();
         diagnostics.extend(notes);
-        diagnostics.extend(posted.diagnostics);
-        let text = control.language.worded(posted.text)?;
+        diagnostics.extend(found);
+        diagnostics.extend(by_tip::note(control, &place, &text, |tip| Some(by(tip).ok()?.0)));
         out.push(Program { path: PathBuf::from(&file), file, text, setup: place, diagnostics });
     }
     Ok(out)
