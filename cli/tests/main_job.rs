@@ -11,6 +11,7 @@ fn number(v: &Value, path: &[&str]) -> f64 {
 #[test]
 fn a_plan_is_written_posted_verified_and_reported() {
     let scratch = Scratch::new();
+    let mut by_tip_min = f64::NAN;
     for (dialect, extension, feed) in
         [("linuxcnc", "ngc", "tcp"), ("linuxcnc", "ngc", "inverse_time"), ("sinumerik", "mpf", "tcp")]
     {
@@ -62,6 +63,26 @@ fn a_plan_is_written_posted_verified_and_reported() {
         for (own, its) in [("control_time_min", "time_min"), ("control_cutting_time_min", "cutting_min")] {
             let [own, its] = [number(&summary, &[own]), number(&clock, &[its])];
             assert!((own / its - 1.0).abs() < 1e-9, "{own} {its}");
+        }
+
+        // Where another feed mode takes less for the path, a note says what: as the job with that mode takes, whose path is nearly the same.
+        let notes = summary["diagnostics"].as_array().unwrap().iter().filter_map(Value::as_str);
+        let of_feed: Vec<&str> =
+            notes.filter_map(|n| n.split_once("the same path takes ")).map(|n| n.1).collect();
+        let now_min = number(&summary, &["control_time_min"]);
+        if feed == "tcp" {
+            assert!(of_feed.is_empty(), "{of_feed:?}");
+            by_tip_min = if dialect == "linuxcnc" { now_min } else { by_tip_min };
+        } else {
+            let min: f64 = of_feed[0].split(' ').next().unwrap().parse().unwrap();
+            assert!(
+                (min / by_tip_min - 1.0).abs() < 0.05 && min < 0.6 * now_min,
+                "{min} {by_tip_min} {now_min}"
+            );
+            assert!(
+                of_feed[0].contains(&format!("feed = \"tcp\", {now_min:.2} with \"{feed}\"")),
+                "{of_feed:?}"
+            );
         }
 
         let real = &summary["productivity"];
