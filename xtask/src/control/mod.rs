@@ -16,7 +16,7 @@ mod tip;
 use crate::cmd::{self, Failure, program, root};
 use kept::{CLOCKED, OTHER_RATES, RATE, Which, place};
 use programs::{MODES, Made, PARTS, Part};
-use run::Control;
+use run::{Control, Pace};
 use serde_json::Value;
 use std::path::Path;
 
@@ -92,12 +92,13 @@ fn look(
     let seconds = |key: &str| 60.0 * told[key].as_f64().unwrap_or(f64::NAN);
     let drives = programs::drives(part, root)?;
     let run = place(root, part).join("run");
-    let (shown, rate) = control.shown(&drives, made, (&run, which.rate))?;
+    let pace = Pace { folder: &run, rate: which.rate, expected_s: seconds("time_min") };
+    let (shown, rate) = control.shown(&drives, made, &pace)?;
     let value = serde_json::json!({
         "blocks": told["joints"]["blocks"],
         "plan_s": made.planned_s,
         "time_s": seconds("time_min"), "time_feed_s": seconds("cutting_min"),
-        "feed_s": shown.feed_s, "rapid_s": shown.rapid_s, "idle_s": shown.idle_s, "lost": shown.lost, "rate": rate,
+        "feed_s": shown.feed_s, "rapid_s": shown.rapid_s, "approach_s": shown.approach_s, "idle_s": shown.idle_s, "lost": shown.lost, "rate": rate,
         "shares": shown.shares(&drives.joints), "tip_mm": shown.tip_mm, "tip_p99_mm": shown.tip_p99_mm,
     });
     cmd::write(&which.file(root, part), &value.to_string())?;

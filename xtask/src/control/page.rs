@@ -12,12 +12,12 @@ const HEAD: &str = "# Time on LinuxCNC itself\n\nMade by `cargo xtask control`, 
 (Debian's `linuxcnc-uspace`), without a screen, on `xyzac-trt-kins` with the limits of the machine files `xtask/control/fast.toml` (the drives of `trunnion-ac`) and `small.toml`. Seconds are servo \
 cycles of 1 ms, as HAL's sampler wrote them down. The jobs are examples, and surfaces of M86 by isoparametric lines.\n\n## What we say beside what it takes\n\n\
 *plan* is `control_time_min` of `plan`, *time* that of `osculate time` for the program it wrote; both count rapid moves from the first known place on. *Feed* is the time of feed moves. \
-*Rapid* on LinuxCNC has the way from the machine's zero before it. *Idle* is without motion between the first and the last feed move.\n\n\
-| part | feed mode | blocks | plan s | time s | off % | feed: time s | LinuxCNC s | off % | rapid: time s | LinuxCNC s | idle s | lost samples |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+*Rapid* is that of rapid moves after the program has named every joint: where those before it begin is the machine's, *approach* is their time on LinuxCNC from its zero. *Idle* is without motion between the first and the last feed move.\n\n\
+| part | feed mode | blocks | plan s | time s | off % | feed: time s | LinuxCNC s | off % | rapid: time s | LinuxCNC s | both: off % | approach s | idle s | lost samples |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 const FEEDS: &str = "\n## Feed modes of one path\n\nThe path of the part's first plan, posted in every feed mode with the job's `G64 P`. `none` is the constant F of the job over X Y Z of the joints. *Share* is that of the time \
 with `none`. Joints' largest speed, acceleration and jerk in feed moves are per cent of the machine file's limits; LinuxCNC 2.9 limits no jerk, so that acceleration steps from cycle to cycle, and with `tcp` it \
-limits the tip's axes but not the joints. *Tip* is how far the tip is off the straight pieces between CL points, by forward kinematics of the sampled joints: the most, and 99 of 100 cycles.\n";
+limits the tip's axes but not the joints. `fastest` goes as fast as the joints can, beyond the job's F where they can: it is no candidate for the best mode. *Tip* is how far the tip is off the straight pieces between CL points, by forward kinematics of the sampled joints: the most, and 99 of 100 cycles.\n";
 const COLUMNS: &str = "\n| part | feed mode | blocks | LinuxCNC feed s | our feed s | off % | share % | speed % | acceleration % | jerk % | tip, most mm | tip, 99 % mm |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 /// Writes the page.
@@ -78,13 +78,16 @@ fn planned(name: &str, feed: &str, v: &Value) -> String {
         number(v, "time_feed_s"),
         number(v, "feed_s"),
     ];
+    let rapid = number(v, "rapid_s");
     format!(
-        "| {name} | {feed} | {} | {plan:.2} | {time:.2} | {:.2} | {feeds:.3} | {linuxcnc:.3} | {:.2} | {:.2} | {:.2} | {:.2} | {} |\n",
+        "| {name} | {feed} | {} | {plan:.2} | {time:.2} | {:.2} | {feeds:.3} | {linuxcnc:.3} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {} |\n",
         v["blocks"],
         off(plan, time),
         off(feeds, linuxcnc),
         time - feeds,
-        number(v, "rapid_s"),
+        rapid,
+        off(time, linuxcnc + rapid),
+        number(v, "approach_s"),
         number(v, "idle_s"),
         v["lost"]
     )
@@ -112,13 +115,18 @@ fn posted(name: &str, feed: &str, v: &Value, constant: Option<f64>) -> String {
     )
 }
 
-/// The best feed mode of a part.
+/// The best feed mode of a part among those that hold the job's F.
 fn best(name: &str, found: &[(&str, Option<Value>)]) -> Option<String> {
     let times = found.iter().filter_map(|(feed, v)| Some((*feed, number(v.as_ref()?, "feed_s"))));
-    let (feed, seconds) = times.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (feed, seconds) = times.filter(|(feed, _)| *feed != "fastest").min_by(|a, b| a.1.total_cmp(&b.1))?;
     let constant = number(found.first()?.1.as_ref()?, "feed_s");
     let less = -off(seconds, constant);
-    Some(format!("| {name} | *{feed} takes {less:.1} % less than constant F* | | | | | | | | | | |\n"))
+    let words = if feed == MODES[0] {
+        "constant F is the best".to_owned()
+    } else {
+        format!("{feed} takes {less:.1} % less than constant F")
+    };
+    Some(format!("| {name} | *{words}* | | | | | | | | | | |\n"))
 }
 
 /// One program with clocks of other rates.
@@ -148,14 +156,14 @@ mod tests {
         let shares = [[0.5; 5], [1.0; 5], [80.0; 5]];
         let value = |feed_s: f64| {
             serde_json::json!({ "blocks": 7, "plan_s": [11.0, 10.0], "time_s": 11.0, "time_feed_s": 10.0, "feed_s": feed_s,
-                "rapid_s": 1.5, "idle_s": 0.0, "lost": 0, "shares": shares, "tip_mm": 0.01, "tip_p99_mm": 0.005 })
+                "rapid_s": 1.0, "approach_s": 1.5, "idle_s": 0.0, "lost": 0, "shares": shares, "tip_mm": 0.01, "tip_p99_mm": 0.005 })
         };
         let kept = |part: &Part, which: &Which<'_>| {
             let here = part.name == PARTS[0].name && which.feed != "kz";
             here.then(|| value(if which.feed == "tcp" { 7.0 } else { 10.0 }))
         };
         let page = page(&kept);
-        let row = "| eee-hpt-rotor2 | none | 7 | 11.00 | 11.00 | 0.00 | 10.000 | 10.000 | 0.00 | 1.00 | 1.50 | 0.00 | 0 |";
+        let row = "| eee-hpt-rotor2 | none | 7 | 11.00 | 11.00 | 0.00 | 10.000 | 10.000 | 0.00 | 1.00 | 1.00 | 0.00 | 1.50 | 0.00 | 0 |";
         assert!(page.contains(row), "{page}");
         assert!(page.contains("*tcp takes 30.0 % less than constant F*"), "{page}");
         assert!(page.contains("| 70.0 | X 50, Y 50"), "{page}");

@@ -1,7 +1,7 @@
 //! Which programs are run, and how they are made: `plan` for a job with the machine of this command, `post` for other feed
 //! modes of the path that it wrote.
 
-use super::machine::Drives;
+use super::machine::{Drives, LETTERS};
 use crate::cmd::{self, Failure};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -171,6 +171,8 @@ pub struct Setup {
     pub length_mm: f64,
     /// Whether X Y Z are the tip in the part.
     pub tcp: bool,
+    /// The line with which X Y Z A C have all been named; the moves up to it begin where the program does not say.
+    pub named_line: usize,
     /// As the program says it.
     pub blend_mm: String,
 }
@@ -194,10 +196,28 @@ impl Setup {
         Ok(Self {
             part_zero_mm: parts.try_into().map_err(|_| lacks())?,
             length_mm: word("(setup gauge length ").and_then(|w| number(w, 'L')).ok_or_else(lacks)?,
+            named_line: named_line(text),
             tcp: text.lines().any(|l| l == "M428"),
             blend_mm: word("G64 P").ok_or_else(lacks)?.to_owned(),
         })
     }
+}
+
+/// The line, counted from 1, with which moves have named every joint; X Y Z anew where they become the tip's.
+fn named_line(text: &str) -> usize {
+    let mut open: Vec<&str> = LETTERS.to_vec();
+    let tcp = text.lines().any(|l| l == "M428");
+    for (k, line) in text.lines().enumerate() {
+        // Z of the joints, which `G53` names first, is not the tip's.
+        let other = tcp && line.starts_with("G53");
+        if !line.starts_with(['(', '%']) && !other {
+            open.retain(|letter| !line.split(' ').any(|word| word.starts_with(letter)));
+        }
+        if open.is_empty() {
+            return k + 1;
+        }
+    }
+    0
 }
 
 #[cfg(test)]
@@ -214,11 +234,13 @@ mod tests {
 
     #[test]
     fn heads_say_their_setup() {
-        let text = "(setup part zero X-1.5 Y2 Z0.25)\n(setup gauge length L80.0)\nG64 P0.0013\nM428\n";
+        let text = "(setup part zero X-1.5 Y2 Z0.25)\n(setup gauge length L80.0)\nG64 P0.0013\nG53 G0 Z0\n\
+                    G0 A1 C2\nM428\nX3 Y4\nZ5\nX6\n";
         let want = Setup {
             part_zero_mm: [-1.5, 2.0, 0.25],
             length_mm: 80.0,
             tcp: true,
+            named_line: 8,
             blend_mm: "0.0013".to_owned(),
         };
         assert_eq!(Setup::of(text, Path::new("a.ngc")).unwrap(), want);

@@ -13,10 +13,29 @@ use std::process::Command;
 /// The subprograms that switch the kinematics, in the packages.
 const SWITCHES: &str =
     "usr/share/doc/linuxcnc/examples/sample-configs/sim/axis/vismach/5axis/table-rotary-tilting/remap_subs";
-/// Longest run, s: the slowest clock and half an hour of cutting.
-const LIMIT_S: u32 = 2000;
-/// No clock is made slower than this.
-const SLOWEST: f64 = 1.0;
+/// No clock is made slower than this: even a busy computer keeps up with it.
+const SLOWEST: f64 = 5.0;
+/// A run that takes longer than this, s, and so many times what it should is given up.
+const LEAST_LIMIT_S: f64 = 60.0;
+const PATIENCE: f64 = 4.0;
+
+/// How a program is run.
+#[derive(Clone, Copy)]
+pub struct Pace<'a> {
+    /// Where.
+    pub folder: &'a Path,
+    /// How many times as fast the control's clock runs.
+    pub rate: f64,
+    /// What the program should take on the control, s.
+    pub expected_s: f64,
+}
+
+impl Pace<'_> {
+    /// When a run is given up, s of the computer's clock.
+    fn limit_s(&self) -> u32 {
+        (LEAST_LIMIT_S + PATIENCE * self.expected_s / self.rate).ceil() as u32
+    }
+}
 
 /// LinuxCNC, ready to run programs.
 pub struct Control<'a> {
@@ -46,28 +65,32 @@ impl<'a> Control<'a> {
     }
 
     /// Runs a program and reads its samples. On a busy computer blocks may come too late for a quick clock, and the control
-    /// stands still: then the run is made anew with a slower one, and what the last of them shows counts.
+    /// stands still: then the run is made anew with a slower one, until a run shows no stand or the same as the one before.
     ///
     /// # Errors
-    /// Where the control says anything or does not come to the last line.
-    pub fn shown(
-        &self,
-        drives: &Drives,
-        made: &Made,
-        (folder, rate): (&Path, f64),
-    ) -> Result<(Shown, f64), Failure> {
-        let mut slower = rate;
+    /// Where the control says anything, or does not come to the last line within several times what the program should take.
+    pub fn shown(&self, drives: &Drives, made: &Made, pace: &Pace<'_>) -> Result<(Shown, f64), Failure> {
+        let mut rate = pace.rate;
+        let mut before = None;
         loop {
-            let shown = self.once(drives, made, (folder, slower))?;
+            let shown = self.once(drives, made, &Pace { rate, ..*pace })?;
             let late = shown.idle_s > 0.0 || shown.lost > 0;
-            if !late || slower <= SLOWEST {
-                return Ok((shown, slower));
+            let seen = (shown.feed_s, shown.idle_s, shown.lost);
+            if !late || rate <= SLOWEST || before == Some(seen) {
+                return Ok((shown, rate));
             }
-            slower = (0.5 * slower).max(SLOWEST);
+            println!(
+                "  {:.3} s idle and {} samples lost at {rate} times the clock: once more, slower",
+                shown.idle_s, shown.lost
+            );
+            before = Some(seen);
+            rate = (0.5 * rate).max(SLOWEST);
         }
     }
 
-    fn once(&self, drives: &Drives, made: &Made, (folder, rate): (&Path, f64)) -> Result<Shown, Failure> {
+    fn once(&self, drives: &Drives, made: &Made, pace: &Pace<'_>) -> Result<Shown, Failure> {
+        let Pace { folder, rate, .. } = *pace;
+        let limit_s = pace.limit_s();
         let read_text = |path: &Path| {
             std::fs::read_to_string(path).map_err(|why| Failure::Read { path: path.to_path_buf(), why })
         };
@@ -80,7 +103,7 @@ impl<'a> Control<'a> {
             folder,
             ini: &ini,
             program: &made.program,
-            limit_s: LIMIT_S,
+            limit_s,
             clock: Some(Clock { library: &self.clock, rate }),
         };
         let ran = headless.run()?;
@@ -90,13 +113,17 @@ impl<'a> Control<'a> {
         }
         let lines = text.lines().count();
         if ran.end.as_ref().is_none_or(|(last, _)| last + 1 < lines) {
-            let why =
-                format!("it ends so (line, limit switches): {:?}; the program has {lines} lines", ran.end);
+            let why = format!(
+                "after {limit_s} s at most it stands so (line, limit switches): {:?}; the program has {lines} lines. Its folder {} has what it wrote down",
+                ran.end,
+                folder.display()
+            );
             return Err(Failure::Answer { line: line(), why });
         }
         let way = way(&read_text(&made.cl)?);
         let z_mm = drives.top_mm() - setup.length_mm;
-        read(&folder.join("samples.txt"), &Place { z_mm, part_zero_mm: setup.part_zero_mm, way: &way })
+        let place = Place { z_mm, named_line: setup.named_line, part_zero_mm: setup.part_zero_mm, way: &way };
+        read(&folder.join("samples.txt"), &place)
     }
 
     /// The control's files, for a program's setup.
@@ -122,5 +149,16 @@ impl<'a> Control<'a> {
         allow.arg("-R").arg("a+rwX").arg(folder);
         cmd::run(allow)?;
         Ok(ini)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_are_given_up() {
+        let pace = Pace { folder: Path::new(""), rate: 20.0, expected_s: 1000.0 };
+        assert_eq!(pace.limit_s(), 260);
     }
 }

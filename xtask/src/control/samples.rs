@@ -18,6 +18,8 @@ const RATE: f64 = 1000.0;
 pub struct Shown {
     pub feed_s: f64,
     pub rapid_s: f64,
+    /// Rapid moves up to the first place that the program alone tells.
+    pub approach_s: f64,
     /// Without motion between the first and the last feed move: tool changes and switches of kinematics, and where blocks come
     /// too late.
     pub idle_s: f64,
@@ -45,6 +47,7 @@ struct Row {
     number: u64,
     joints: [f64; 5],
     kind: u32,
+    line: usize,
 }
 
 fn row(line: &str) -> Option<Row> {
@@ -54,13 +57,16 @@ fn row(line: &str) -> Option<Row> {
     for joint in &mut joints {
         *joint = words.next()?.parse().ok()?;
     }
-    Some(Row { number, joints, kind: words.next()?.parse().ok()? })
+    let kind = words.next()?.parse().ok()?;
+    Some(Row { number, joints, kind, line: words.next()?.parse().ok()? })
 }
 
 /// Where the table and the part are, and the path.
 pub struct Place<'a> {
     /// How far the control's zero of Z is above the table's reference point, less the tool's length, mm.
     pub z_mm: f64,
+    /// The line of the program with which all joints have been named.
+    pub named_line: usize,
     /// The part's origin from the table's reference point.
     pub part_zero_mm: [f64; 3],
     /// Empty where the tip is not looked at.
@@ -87,6 +93,7 @@ struct Counted<'a> {
     out: Shown,
     feed: usize,
     rapid: usize,
+    approach: usize,
     idle: usize,
     /// Idle rows since the last feed row.
     resting: usize,
@@ -104,6 +111,7 @@ impl<'a> Counted<'a> {
             out: Shown::default(),
             feed: 0,
             rapid: 0,
+            approach: 0,
             idle: 0,
             resting: 0,
             last: None,
@@ -124,7 +132,8 @@ impl<'a> Counted<'a> {
         match row.kind {
             2 | 3 => self.feed(row.joints),
             1 => {
-                self.rapid += 1;
+                let named = row.line > self.place.named_line;
+                *(if named { &mut self.rapid } else { &mut self.approach }) += 1;
                 self.before.clear();
             }
             _ => {
@@ -172,6 +181,7 @@ impl<'a> Counted<'a> {
         Shown {
             feed_s: self.feed as f64 / RATE,
             rapid_s: self.rapid as f64 / RATE,
+            approach_s: self.approach as f64 / RATE,
             idle_s: self.idle as f64 / RATE,
             tip_mm: off(1.0),
             tip_p99_mm: off(0.99),
@@ -186,10 +196,12 @@ mod tests {
 
     #[test]
     fn rows_are_counted_and_differences_taken() {
-        let place = Place { z_mm: -1.0, part_zero_mm: [0.0; 3], way: &[[0.0; 3], [9.0, 0.0, 0.0]] };
+        let place =
+            Place { z_mm: -1.0, named_line: 3, part_zero_mm: [0.0; 3], way: &[[0.0; 3], [9.0, 0.0, 0.0]] };
         let mut counted = Counted::new(&place);
         // X goes 0 0 1 4 um, one row is lost, Z keeps 1 mm, which is on the way.
         for line in [
+            "6 0 0 1 0 0 1 3",
             "7 0 0 1 0 0 1 4",
             "8 0 0 1 0 0 2 5",
             "9 0 0 1 0 0 2 5",
@@ -203,7 +215,10 @@ mod tests {
             counted.line(line);
         }
         let shown = counted.shown();
-        assert_eq!((shown.feed_s, shown.rapid_s, shown.idle_s, shown.lost), (0.005, 0.001, 0.001, 1));
+        assert_eq!(
+            (shown.feed_s, shown.rapid_s, shown.approach_s, shown.idle_s, shown.lost),
+            (0.005, 0.001, 0.001, 0.001, 1)
+        );
         let x = [shown.most[0][0], shown.most[1][0], shown.most[2][0]];
         let want = [3.0, 2e3, 1e6];
         assert!(x.iter().zip(want).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{x:?}");

@@ -8,6 +8,9 @@ use std::process::Command;
 
 use crate::cmd::{self, Failure};
 
+/// Namespaces of a run's own: mounts, shared memory, network, processes.
+const ALONE: [&str; 7] = ["-m", "-i", "-n", "-p", "-f", "--mount-proc", "--kill-child"];
+
 /// What a run has written down.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Ran {
@@ -50,7 +53,7 @@ pub(crate) fn hindrance() -> Option<&'static str> {
         return Some("it needs Debian's tcl8.6 and python3.11");
     }
     let mut try_mount = Command::new("unshare");
-    try_mount.args(["-m", "-i", "-n", "mount", "-t", "tmpfs", "none", "/mnt"]);
+    try_mount.args(ALONE).args(["mount", "-t", "tmpfs", "none", "/mnt"]);
     let may = cmd::output_quietly(try_mount).is_ok();
     (!may).then_some("files can be laid over the system by root only")
 }
@@ -94,7 +97,7 @@ impl Headless<'_> {
                       LD_PRELOAD=\"$CLOCK\" exec linuxcnc -r \"$INI\"";
         let mut start = Command::new("unshare");
         let longest = (self.limit_s + 100).to_string();
-        start.current_dir(folder).args(["-m", "-i", "-n", "timeout", &longest, "sh", "-c", script]);
+        start.current_dir(folder).args(ALONE).args(["timeout", "-k", "10", &longest, "sh", "-c", script]);
         start.env("OVER", self.unpacked).env("INI", self.ini).env("HOME", folder).env_remove("DISPLAY");
         start.env("PROGRAM", self.program).env("FILE", &file).env("MOST_S", self.limit_s.to_string());
         // The realtime part gives up root for a user that may write where all may.
