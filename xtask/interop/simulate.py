@@ -1,4 +1,4 @@
-"""Drives LinuxCNC as its user interface: home, run PROGRAM to its end, and write down what happens.
+"""Drives LinuxCNC as its user interface: home, run PROGRAM to its end, for MOST_S at most, and write down what happens.
 
 Rows of FILE: `at LINE TOOL LENGTH J0 J1 J2 J3 J4` (joints as they are, mm and deg), `message TEXT`, `end LINE LIMITS`.
 """
@@ -7,7 +7,7 @@ import time
 
 import linuxcnc
 
-MOST_S = 400
+MOST_S = float(os.environ["MOST_S"])
 command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 
 

@@ -1,6 +1,6 @@
 //! The workspace's own commands: `cargo xtask test`, `cargo xtask tidy`, `cargo xtask api`, `cargo xtask ci`,
 //! `cargo xtask bench`, `cargo xtask reference`, `cargo xtask figures`, `cargo xtask first-hour`, `cargo xtask browser`, `cargo xtask plans`,
-//! `cargo xtask mutate`, `cargo xtask fuzz`, `cargo xtask package`, `cargo xtask truth` and `cargo xtask sides`.
+//! `cargo xtask control`, `cargo xtask mutate`, `cargo xtask fuzz`, `cargo xtask package`, `cargo xtask truth` and `cargo xtask sides`.
 //!
 //! Exit status as everywhere in this workspace: 0 done, 1 something was found or failed, 2 wrong usage.
 
@@ -12,6 +12,7 @@ mod bench;
 mod browser;
 mod ci;
 mod cmd;
+mod control;
 mod figures;
 mod first_hour;
 mod fuzz;
@@ -60,6 +61,9 @@ usage: cargo xtask COMMAND
                 docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
   plans --speed [--only TEXT] [--program FILE]
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
+  control [--only TEXT] [--program FILE]
+                docs/control-time.md: programs on LinuxCNC's own motion planner, in servo cycles, beside what plan and time say, and feed
+                modes of the same path with what they ask of the joints (Debian: apt-get, dpkg, gcc, tcl8.6, python3.11, root)
   parts [--only TEXT] [--program FILE]
                 docs/parts.md: the examples that are whole parts, from the block to finished, planned and verified
   own [--only TEXT] [--program FILE]
@@ -115,6 +119,10 @@ fn main() -> ExitCode {
         ["parts", rest @ ..] => match parts::Options::of(rest) {
             Some(options) => parts::run(&options),
             None => return wrong_usage("parts takes --only TEXT and --program FILE"),
+        },
+        ["control", rest @ ..] => match control::Options::of(rest) {
+            Some(options) => control::run(&options),
+            None => return wrong_usage("control takes --only TEXT and --program FILE"),
         },
         ["own", rest @ ..] => match parts::Options::of(rest) {
             Some(options) => own::run(&options),

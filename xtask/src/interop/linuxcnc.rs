@@ -15,8 +15,10 @@ const TIP_MM: f64 = 0.002;
 /// How far the axis may be off, deg.
 const AXIS_DEG: f64 = 0.002;
 
-/// Debian packages with the interpreter, its libraries and the kinematics modules.
-const PACKAGES: [&str; 2] = ["linuxcnc-uspace", "libboost-python1.74.0"];
+/// Debian packages with the interpreter, its libraries and the kinematics modules, and what its user interface's module asks for.
+const PACKAGES: [&str; 3] = ["linuxcnc-uspace", "libboost-python1.74.0", "libepoxy0"];
+/// A file of the first and of the last one.
+const UNPACKED: [&str; 2] = ["usr/bin/rs274", "usr/lib/x86_64-linux-gnu/libepoxy.so.0"];
 
 /// The worst of one program.
 #[derive(Default)]
@@ -99,16 +101,19 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// The packages' files, downloaded once.
-fn unpack(work: &Path) -> Result<PathBuf, Failure> {
+pub(super) fn unpack(work: &Path) -> Result<PathBuf, Failure> {
     let files = work.join("packages/files");
-    if files.join("usr/bin/rs274").exists() {
+    if UNPACKED.iter().all(|f| files.join(f).exists()) {
         return Ok(files);
     }
     std::fs::create_dir_all(&files).map_err(|why| Failure::Read { path: files.clone(), why })?;
     let folder = work.join("packages");
     let mut download = Command::new("apt-get");
     download.current_dir(&folder).arg("download").args(PACKAGES);
-    cmd::run(download)?;
+    cmd::run(download).map_err(|_| Failure::NoPeer {
+        what: "LinuxCNC",
+        how: "`apt-get download` of Debian 12's linuxcnc-uspace, libboost-python1.74.0 and libepoxy0 must work",
+    })?;
     for package in list(&folder)?.iter().filter(|p| p.extension().is_some_and(|e| e == "deb")) {
         let mut extract = Command::new("dpkg");
         extract.arg("-x").arg(package).arg(&files);

@@ -1,9 +1,12 @@
 //! `cargo xtask interop`: outside witnesses of what this workspace writes.
 
+pub(crate) mod headless;
 mod linuxcnc;
 mod lists;
 mod occt;
 mod simulation;
+
+use std::path::{Path, PathBuf};
 
 use crate::cmd::Failure;
 
@@ -12,6 +15,11 @@ pub fn linuxcnc() -> Result<(), Failure> {
     let witness = linuxcnc::run()?;
     lists::run(&witness)?;
     simulation::run(&witness)
+}
+
+/// The files of LinuxCNC's packages, unpacked below the folder.
+pub(crate) fn unpacked(work: &Path) -> Result<PathBuf, Failure> {
+    linuxcnc::unpack(work)
 }
 
 /// LinuxCNC itself alone.

@@ -9,6 +9,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use super::headless::{Headless, Ran, hindrance};
 use super::linuxcnc::{Kins, Witness};
 use crate::cmd::{self, Failure};
 
@@ -19,6 +20,8 @@ const SAMPLE: &str =
 const WAY_MM: f64 = 0.002;
 /// What of it the control may round corners by (`G64 P`).
 const BLEND_MM: &str = "0.001";
+/// Longest run, s: several times what the programs take.
+const LIMIT_S: u32 = 400;
 
 struct Sample {
     kind: &'static str,
@@ -40,16 +43,6 @@ const SAMPLES: [Sample; 2] = [
         limits: [[-200.0, 200.0], [-100.0, 100.0], [-120.0, 120.0], [-36000.0, 36000.0], [-36000.0, 36000.0]],
     },
 ];
-
-/// What a run has written down.
-#[derive(Debug, Default, PartialEq)]
-struct Ran {
-    /// Tool, length and joints.
-    rows: Vec<(u32, f64, [f64; 5])>,
-    messages: Vec<String>,
-    /// The last line, and the limit switches of the joints.
-    end: Option<(usize, Vec<u32>)>,
-}
 
 /// Runs both machines, where that can be done.
 pub(super) fn run(witness: &Witness) -> Result<(), Failure> {
@@ -77,19 +70,6 @@ pub(super) fn run(witness: &Witness) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// What stands against running LinuxCNC here.
-fn hindrance() -> Option<&'static str> {
-    let tcl = Path::new("/usr/bin/tclsh8.6").exists();
-    let python = Path::new("/usr/bin/python3.11").exists();
-    if !(tcl && python) {
-        return Some("it needs Debian's tcl8.6 and python3.11");
-    }
-    let mut try_mount = Command::new("unshare");
-    try_mount.args(["-m", "mount", "-t", "tmpfs", "none", "/mnt"]);
-    let may = cmd::output_quietly(try_mount).is_ok();
-    (!may).then_some("files can be laid over the system by root only")
 }
 
 /// The program for a sample machine, and its number of lines.
@@ -143,47 +123,16 @@ fn simulate(witness: &Witness, kind: &str, program: &Path) -> Result<Ran, Failur
     let text = std::fs::read_to_string(&ini).map_err(|why| Failure::Read { path: ini.clone(), why })?;
     cmd::write(&ini, &configured(&text, kind))?;
     cmd::write(&folder.join(format!("{kind}-trt.tbl")), "T4 P4 Z30 D10\nT17 P17 Z25 D6\nT9 P9 Z40 D4\n")?;
-    let drive = witness.root.join("xtask/interop/simulate.py");
-    cmd::write(&folder.join("ui"), &format!("#!/bin/sh\nexec /usr/bin/python3.11 {}\n", drive.display()))?;
-    let mut allow = Command::new("chmod");
-    allow.arg("+x").arg(folder.join("ui"));
-    cmd::run(allow)?;
-    let file = folder.join("ran.txt");
-    cmd::write(&file, "")?;
-    let script = "mount -t overlay overlay -o lowerdir=\"$OVER/usr\":/usr /usr && \
-                  mount -t overlay overlay -o lowerdir=\"$OVER/etc\":/etc /etc && exec linuxcnc -r \"$INI\"";
-    let mut start = Command::new("unshare");
-    start.current_dir(&folder).args(["-m", "timeout", "500", "sh", "-c", script]);
-    start.env("OVER", &witness.unpacked).env("INI", &ini).env("HOME", &folder).env_remove("DISPLAY");
-    start.env("PROGRAM", program).env("FILE", &file);
-    // The realtime part gives up root for a user that may write where all may.
-    let fifo = std::env::temp_dir().join(format!("osculate-{}-{kind}", std::process::id()));
-    start.env("RTAPI_UID", "65534").env("RTAPI_FIFO_PATH", fifo);
-    start.env("LD_LIBRARY_PATH", "/usr/lib").env("PYTHONPATH", "/usr/lib/python3/dist-packages");
-    cmd::output_quietly(start)?;
-    let text = std::fs::read_to_string(&file).map_err(|why| Failure::Read { path: file.clone(), why })?;
-    Ok(ran(&text))
-}
-
-fn ran(text: &str) -> Ran {
-    let mut out = Ran::default();
-    for line in text.lines() {
-        let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
-        let numbers: Vec<f64> = rest.split(' ').filter_map(|n| n.parse().ok()).collect();
-        match (word, &numbers[..]) {
-            ("at", [_, tool, length, joints @ ..]) => {
-                if let Ok(joints) = <[f64; 5]>::try_from(joints) {
-                    out.rows.push((*tool as u32, *length, joints));
-                }
-            }
-            ("end", [line, limits @ ..]) => {
-                out.end = Some((*line as usize, limits.iter().map(|l| *l as u32).collect()));
-            }
-            ("message", _) => out.messages.push(rest.to_owned()),
-            _ => {}
-        }
-    }
-    out
+    let headless = Headless {
+        root: &witness.root,
+        unpacked: &witness.unpacked,
+        folder: &folder,
+        ini: &ini,
+        program,
+        limit_s: LIMIT_S,
+        clock: None,
+    };
+    headless.run()
 }
 
 /// What is wrong with a run, the program having so many lines.
@@ -265,16 +214,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn runs_are_read_and_judged() {
+    fn runs_are_judged() {
         let text = "at 3 4 30.000000 1.0 2.0 3.0 4.0 5.0\nend 9 0 0 0 0 0\n";
-        let one = ran(text);
-        assert_eq!(one.rows, [(4, 30.0, [1.0, 2.0, 3.0, 4.0, 5.0])]);
+        let one = Ran::of(text);
         let limits = &SAMPLES[0].limits;
         assert_eq!(wrong(&one, 10, limits), None);
         assert!(wrong(&one, 30, limits).is_some_and(|w| w.contains("line")));
-        let said = ran(&format!("message Linear move exceeds limits\n{text}"));
+        let said = Ran::of(&format!("message Linear move exceeds limits\n{text}"));
         assert!(wrong(&said, 10, limits).is_some_and(|w| w.contains("exceeds")));
-        let out = ran(&text.replace("3.0", "121.0"));
+        let out = Ran::of(&text.replace("3.0", "121.0"));
         assert!(wrong(&out, 10, limits).is_some_and(|w| w.contains("joint 2")));
     }
 
