@@ -70,6 +70,9 @@ fn a_plan_is_written_posted_verified_and_reported() {
         let of_feed: Vec<&str> =
             notes.filter_map(|n| n.split_once("the same path takes ")).map(|n| n.1).collect();
         let now_min = number(&summary, &["control_time_min"]);
+        // A control that keeps to corners of its slides alone is said to.
+        let told = run.out.contains("where rotary joints stop or start at an end of a pass");
+        assert_eq!(told, feed != "tcp", "{}", run.out);
         if feed == "tcp" {
             assert!(of_feed.is_empty(), "{of_feed:?}");
             by_tip_min = if dialect == "linuxcnc" { now_min } else { by_tip_min };

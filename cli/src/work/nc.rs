@@ -13,8 +13,8 @@ use osculate_postproc::machine::JointValues;
 use osculate_postproc::motion::JointDemand;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::nc::WorkOffset;
-use osculate_postproc::nc::readback::{self, ControlTime, ReadError, ReadOptions};
-use osculate_postproc::{Machine, PostOptions, Setup, built_in_names};
+use osculate_postproc::nc::readback::{self, ControlTime, ReadBack, ReadBlock, ReadError, ReadOptions};
+use osculate_postproc::{FeedMode, Machine, PostOptions, Setup, built_in_names};
 use osculate_tools::CutterSpec;
 use osculate_tools::cl::{ClPath, Motion};
 use osculate_tools::removal::{GoalControl, Gravity, Program, Remark, Swept};
@@ -215,8 +215,20 @@ fn work_offset(job: &Job) -> Option<WorkOffset> {
     word.parse().or_else(|_| format!("preset {word}").parse()).ok()
 }
 
+/// What a program is told whose joints turn the part in feed moves on a control that keeps to corners of its slides alone. (Measured on LinuxCNC:
+/// where a table stops at the end of a pass its tip was up to 0.05 mm off, with corners of 0.0005 mm.)
+const ENDS: &str = "; where rotary joints stop or start at an end of a pass the control may leave the way further, which is NOT described";
+
+/// Whether a control keeps to corners of its slides alone, and the joints of a program turn in feed moves.
+fn turns(control: &Control, read: &ReadBack) -> bool {
+    let rotary = control.machine.rotary();
+    let turned = |b: &ReadBlock| !b.rapid && rotary.iter().any(|k| b.from[*k] != b.to[*k]);
+    let slides_alone = control.dialect == Dialect::LinuxCnc && !matches!(control.feed, FeedMode::Tcp);
+    slides_alone && read.blocks.iter().any(turned)
+}
+
 /// A conduct as a verdict takes it.
-fn judged(conduct: &Conduct) -> GoalControl {
+fn judged(conduct: &Conduct, turns: bool) -> GoalControl {
     let remarks = conduct.findings.iter().map(|f| {
         let (gravity, word) = match f.grade {
             Grade::Warning => (Gravity::Told, "warning: "),
@@ -228,8 +240,9 @@ fn judged(conduct: &Conduct) -> GoalControl {
     });
     let blend = match conduct.blend_line {
         Some(line) if conduct.blend_mm > 0.0 => {
+            let ends = if turns { ENDS } else { "" };
             format!(
-                "; corners are blended by up to {} mm (line {line}), which bounds have added",
+                "; corners are blended by up to {} mm (line {line}), which bounds have added{ends}",
                 conduct.blend_mm
             )
         }
@@ -305,7 +318,7 @@ pub fn read_back_tools(
             .filter(|m| !matches!(m.motion, Motion::Rapid))
             .filter_map(|m| m.tool)
             .collect(),
-        control: judged(&read.conduct(&expected)),
+        control: judged(&read.conduct(&expected), turns(control, &read)),
         diagnostics: read.diagnostics,
     };
     let mut clock = 0.0;
