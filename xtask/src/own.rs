@@ -152,7 +152,6 @@ const SHOWN: [Shown; 20] = [
     },
     Shown {
         heading: "Ways of machining side by side: real faces",
-
         text: "The same on a propeller, an impeller blade and a hull. None of the three holds the tolerance on a whole real face by itself; \
                `auto` does, and takes the least.",
         command: &["sweep", "docs/papers/own/ways-real.toml"],
