@@ -3,6 +3,8 @@
 //! LinuxCNC's `xyzac-trt-kins` with both axes of rotation through the table's reference point: with the tip at (x, y, z) above
 //! that point in the machine, the part sees it at `R_C R_A (x, y, z)`, where positive A and C turn the table right-handed.
 
+use crate::interop::apart::apart;
+
 /// Points of a CL file, mm, with the lines before them.
 pub type Way = Vec<[f64; 3]>;
 
@@ -57,17 +59,6 @@ impl<'a> Walk<'a> {
         let apart = pieces.map(|(k, w)| (k, apart(tip, &w[0], &w[1])));
         apart.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((self.at, f64::INFINITY))
     }
-}
-
-/// How far a point is off a piece.
-fn apart(p: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    let (mut along, mut length) = (0.0, 0.0);
-    for k in 0..3 {
-        along += (p[k] - a[k]) * (b[k] - a[k]);
-        length += (b[k] - a[k]).powi(2);
-    }
-    let t = if length == 0.0 { 0.0 } else { (along / length).clamp(0.0, 1.0) };
-    (0..3).map(|k| (p[k] - a[k] - t * (b[k] - a[k])).powi(2)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! `cargo xtask interop`: outside witnesses of what this workspace writes.
 
+pub(crate) mod apart;
 pub(crate) mod headless;
 mod linuxcnc;
 mod lists;

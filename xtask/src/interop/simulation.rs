@@ -9,6 +9,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use super::apart::apart;
 use super::headless::{Headless, Ran, hindrance};
 use super::linuxcnc::{Kins, Witness};
 use crate::cmd::{self, Failure};
@@ -196,17 +197,6 @@ fn off(
         pieces.fold(f64::INFINITY, f64::min)
     });
     Ok(apart.fold((0, 0.0), |(count, worst), d| (count + 1, d.max(worst))))
-}
-
-/// The distance of a point from a straight piece.
-fn apart(p: &[f64; 3], a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    let (mut along, mut length) = (0.0, 0.0);
-    for k in 0..3 {
-        along += (p[k] - a[k]) * (b[k] - a[k]);
-        length += (b[k] - a[k]).powi(2);
-    }
-    let t = if length == 0.0 { 0.0 } else { (along / length).clamp(0.0, 1.0) };
-    (0..3).map(|k| (p[k] - a[k] - t * (b[k] - a[k])).powi(2)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
