@@ -215,20 +215,31 @@ fn work_offset(job: &Job) -> Option<WorkOffset> {
     word.parse().or_else(|_| format!("preset {word}").parse()).ok()
 }
 
-/// What a program is told whose joints turn the part in feed moves on a control that keeps to corners of its slides alone. (Measured on LinuxCNC:
-/// where a table stops at the end of a pass its tip was up to 0.05 mm off, with corners of 0.0005 mm.)
-const ENDS: &str = "; where rotary joints stop or start at an end of a pass the control may leave the way further, which is NOT described";
+/// What a program is told whose rotary joints start or stop beside a feed move without coming to rest, on a control that keeps to
+/// corners of its slides alone. (Measured on LinuxCNC: where a table stopped at the end of a pass its tip was up to 0.05 mm off, with
+/// corners of 0.0005 mm.)
+const ENDS: &str = "; where rotary joints stop or start without an exact stop the control may leave the way further, which is NOT described";
 
-/// Whether a control keeps to corners of its slides alone, and the joints of a program turn in feed moves.
-fn turns(control: &Control, read: &ReadBack) -> bool {
+/// A rotary joint that turns by no more than this in a block goes too slowly for its start or stop to be seen.
+const SEEN_RAD: f64 = 2e-4;
+
+/// Whether a control keeps to corners of its slides alone, and rotary joints of a program stop or start beside a feed move otherwise
+/// than at rest.
+fn swings(control: &Control, read: &ReadBack) -> bool {
     let rotary = control.machine.rotary();
-    let turned = |b: &ReadBlock| !b.rapid && rotary.iter().any(|k| b.from[*k] != b.to[*k]);
+    let swung = |a: &ReadBlock, b: &ReadBlock| {
+        let stops = |k: &usize| {
+            let turned = [a, b].map(|one| (one.to[*k] - one.from[*k]).abs());
+            turned.contains(&0.0) && turned.into_iter().any(|t| t > SEEN_RAD)
+        };
+        !a.exact && !(a.rapid && b.rapid) && rotary.iter().any(stops)
+    };
     let slides_alone = control.dialect == Dialect::LinuxCnc && !matches!(control.feed, FeedMode::Tcp);
-    slides_alone && read.blocks.iter().any(turned)
+    slides_alone && read.blocks.windows(2).any(|pair| swung(&pair[0], &pair[1]))
 }
 
 /// A conduct as a verdict takes it.
-fn judged(conduct: &Conduct, turns: bool) -> GoalControl {
+fn judged(conduct: &Conduct, swings: bool) -> GoalControl {
     let remarks = conduct.findings.iter().map(|f| {
         let (gravity, word) = match f.grade {
             Grade::Warning => (Gravity::Told, "warning: "),
@@ -240,7 +251,7 @@ fn judged(conduct: &Conduct, turns: bool) -> GoalControl {
     });
     let blend = match conduct.blend_line {
         Some(line) if conduct.blend_mm > 0.0 => {
-            let ends = if turns { ENDS } else { "" };
+            let ends = if swings { ENDS } else { "" };
             format!(
                 "; corners are blended by up to {} mm (line {line}), which bounds have added{ends}",
                 conduct.blend_mm
@@ -318,7 +329,7 @@ pub fn read_back_tools(
             .filter(|m| !matches!(m.motion, Motion::Rapid))
             .filter_map(|m| m.tool)
             .collect(),
-        control: judged(&read.conduct(&expected), turns(control, &read)),
+        control: judged(&read.conduct(&expected), swings(control, &read)),
         diagnostics: read.diagnostics,
     };
     let mut clock = 0.0;

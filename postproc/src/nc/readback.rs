@@ -21,6 +21,7 @@ use super::state::FeedReading;
 use super::timing::Planned;
 use super::way::MOST_PIECES;
 use crate::machine::{JointValues, Machine};
+use crate::motion::linuxcnc::PathControl;
 use crate::motion::{FeedBlock, JointDemand, TimedMove, TooLong, rapid_time_min};
 use crate::setup::Setup;
 
@@ -85,6 +86,8 @@ pub struct ReadBlock {
     pub tool: Option<u32>,
     /// To a place of the machine's own frame: G53, SUPA, M91, G28.
     pub own_frame: bool,
+    /// It comes to rest at its end, or goes through it: G61, G61.1, G9, G60.
+    pub exact: bool,
 }
 
 /// What a text makes the machine do.
@@ -289,7 +292,7 @@ impl<'a> Reader<'a> {
         let tolerance = [options.tip_tol_mm, options.axis_tol_rad];
         let clock = options.timed.then(|| Planned::of_blocks(names.dialect(), machine));
         let collect =
-            Collect { out: ReadBack::default(), tolerance, unbounded: None, clock, ends: Vec::new() };
+            Collect { out: ReadBack::default(), tolerance, unbounded: None, exact: false, clock, ends: Vec::new() };
         let mut control = Interpreter::new(names.dialect(), frame, options.strict, collect);
         control.rest_unnamed(names.all());
         let flow = Flow::new(names.dialect(), names.kept());
@@ -369,6 +372,8 @@ struct Collect {
     tolerance: [f64; 2],
     /// The line of a block whose way is too long for its curvature.
     unbounded: Option<usize>,
+    /// Moves end exactly.
+    exact: bool,
     /// The control's clock, where its time is asked for, and the moves of every block of it.
     clock: Option<Planned>,
     ends: Vec<[usize; 2]>,
@@ -392,13 +397,14 @@ impl Sink for Collect {
                     own_frame: false,
                     at_nose: frame.at_nose(&known),
                 });
-                let (time_min, tip_length_mm, own_frame) = (0.0, 0.0, false);
+                let (time_min, tip_length_mm, own_frame, exact) = (0.0, 0.0, false, self.exact);
                 let first =
-                    ReadBlock { line, from, to, rapid: true, time_min, tip_length_mm, tool, own_frame };
+                    ReadBlock { line, from, to, rapid: true, time_min, tip_length_mm, tool, own_frame, exact };
                 self.out.blocks.push(first);
             }
             Event::Moved(m) => self.moved(frame, m),
-            Event::Dwell(_) | Event::Path(_) | Event::Halt => {}
+            Event::Path(control) => self.exact = !matches!(control, PathControl::Blend { .. }),
+            Event::Dwell(_) | Event::Halt => {}
         }
     }
 }
@@ -470,6 +476,7 @@ impl Collect {
             tip_length_mm,
             tool: m.tool,
             own_frame: m.own_frame,
+            exact: self.exact,
         });
     }
 }

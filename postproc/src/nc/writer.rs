@@ -16,6 +16,10 @@ pub(crate) struct Writer<'a> {
     started: bool,
     /// The plane in force, and the rotary axes there.
     plane: ([i64; 3], [i64; 2]),
+    /// The move that is not worded yet, behind the rotary axes before it: how it ends depends on the next one.
+    held: Option<([i64; 2], NcMove)>,
+    /// The control comes to rest at the end of every move.
+    resting: bool,
 }
 
 impl<'a> Writer<'a> {
@@ -43,6 +47,8 @@ impl<'a> Writer<'a> {
             words: String::new(),
             started: false,
             plane: ([0; 3], [0; 2]),
+            held: None,
+            resting: false,
         })
     }
 
@@ -51,6 +57,7 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// Where the dialect cannot say it.
     pub fn change(&mut self, program: &'a Program) -> Result<(), WriteError> {
+        self.release(None);
         let (before, lines) = (self.program, &mut self.lines);
         match self.dialect {
             Dialect::Sinumerik => sinumerik::next(before, program, lines)?,
@@ -60,12 +67,33 @@ impl<'a> Writer<'a> {
         }
         self.program = program;
         self.modal = Modal::new(program);
-        self.started = false;
+        (self.started, self.resting) = (false, false);
         Ok(())
     }
 
     /// Words the next move; the first one leads from an unknown place.
     pub fn take(&mut self, m: &NcMove) {
+        if self.started && self.dialect == Dialect::LinuxCnc && !self.program.tcp {
+            let before = self.held.map_or(self.plane.1, |h| h.1.rotary);
+            self.release(Some(m));
+            self.held = Some((before, *m));
+            return;
+        }
+        self.word(m);
+    }
+
+    /// Words the move that is held, which comes to rest where rotary axes stop or start before `next`.
+    fn release(&mut self, next: Option<&NcMove>) {
+        let Some((before, m)) = self.held.take() else { return };
+        let rests = next.is_some_and(|next| linuxcnc::rests(before, &m, next));
+        if rests != self.resting {
+            linuxcnc::corners(self.program, rests, &mut self.lines);
+            self.resting = rests;
+        }
+        self.word(&m);
+    }
+
+    fn word(&mut self, m: &NcMove) {
         let (program, modal, lines) = (self.program, &mut self.modal, &mut self.lines);
         let plane = std::mem::replace(&mut self.plane, (m.orientation, m.rotary));
         if !self.started {
@@ -108,11 +136,13 @@ impl<'a> Writer<'a> {
 
     /// Says what is done before the next move.
     pub fn say(&mut self, word: AuxiliaryWord) {
+        self.release(None);
         auxiliary::say(self.dialect, word, &mut self.lines);
     }
 
     /// The end of the program.
     pub fn finish(&mut self) {
+        self.release(None);
         let (program, lines) = (self.program, &mut self.lines);
         match self.dialect {
             Dialect::Sinumerik => sinumerik::tail(program, lines),
