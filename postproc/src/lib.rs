@@ -116,7 +116,7 @@ pub use solve_options::SolveOptions;
 pub use source::MoveSource;
 pub use suggest::{Suggestion, suggest};
 pub use travel::{in_travel, into_travel};
-pub use turn::quicker_turns;
+pub use turn::{Pace, quicker_turns};
 
 /// The example of the package's README is run with the tests.
 #[cfg(doctest)]

@@ -177,6 +177,7 @@ pub(crate) fn program_of(
             || options.auxiliary.iter().any(|a| matches!(a.word, AuxiliaryWord::Coolant(Some(_)))),
         feed_word: feed_word(options, machine),
         blend_mm: options.blend_mm,
+        joins: options.joins,
         retract: machine.retract_mm().and_then(number::counts),
         linear_names: if tcp {
             ["X", "Y", "Z"].map(String::from)

@@ -21,6 +21,9 @@ pub struct PostOptions {
     pub solve: SolveOptions,
     /// How far the control may round corners, mm.
     pub blend_mm: f64,
+    /// LinuxCNC may join straight moves of X Y Z alone into one, as far as they leave the way by `blend_mm` at most, on top of what it
+    /// rounds corners by; moves in which a rotary joint turns it never joins. Other controls are told nothing of it.
+    pub joins: bool,
     /// Name of the program.
     pub program_name: String,
     /// Number of the program, where the dialect has one (Fanuc).
@@ -69,6 +72,7 @@ impl PostOptions {
             subprogram: false,
             solve: SolveOptions::default(),
             blend_mm: SolveOptions::default().tip_tol_mm,
+            joins: true,
             program_name: "OSCULATE".into(),
             program_number: 1,
             tool_number: 1,

@@ -5,7 +5,7 @@
 //! about the vertical. Tilted by some tens of degrees the same path may need a tenth of the joint's way.
 
 use crate::feed::capped_duration;
-use crate::machine::{Machine, NearWish};
+use crate::machine::{JointValues, Machine, NearWish};
 use crate::part_turns::{axes_of, reaches_all};
 use crate::setup::Setup;
 use nalgebra::UnitQuaternion;
@@ -19,6 +19,41 @@ const MOST_MOVES: usize = 4000;
 const ALIKE: f64 = 1.01;
 /// What the tool may be off where that keeps a joint at rest, as in programs, rad.
 const CONE_RAD: f64 = 1e-4;
+
+/// How a control goes from one block to the next while rotary joints turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// Joints keep their speed where the way goes on.
+    Through,
+    /// No block is faster than its joints can start and stop within it, with half of their acceleration each and the start of one while the one
+    /// before stops: LinuxCNC.
+    ByBlocks {
+        /// How far the tip may stray in a block, mm; none where the control keeps it on its line, and its slides alone follow.
+        tip_tol_mm: Option<f64>,
+    },
+}
+
+impl Pace {
+    /// The least time of a feed move, min.
+    fn least_min(
+        self,
+        (machine, setup): (&Machine, &Setup),
+        poses: &[Pose; 2],
+        [a, b]: [&JointValues; 2],
+    ) -> f64 {
+        let Self::ByBlocks { tip_tol_mm } = self else { return 0.0 };
+        let least = |k: usize| (b[k] - a[k]).abs() / (0.5 * machine.joints()[k].drive.acceleration_per_s2);
+        let rotary = machine.rotary().iter().map(|k| least(*k)).fold(0.0, f64::max);
+        let Some(tip_tol_mm) = tip_tol_mm else { return rotary.sqrt() / 60.0 };
+        let square = machine.linear().into_iter().map(least).fold(rotary, f64::max);
+        // As many blocks as keep the tip on its line, which they leave by the square of their length.
+        let middle: JointValues = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
+        let tip = nalgebra::center(&poses[0].tip, &poses[1].tip);
+        let off = (machine.forward(&middle, setup).tip - tip).norm();
+        let blocks = (off / tip_tol_mm).sqrt().ceil().max(1.0);
+        (square * blocks).sqrt() / 60.0
+    }
+}
 
 /// A feed move: its ends, and how long it takes at the feed asked for, min.
 type Move = ([Pose; 2], f64);
@@ -37,8 +72,8 @@ fn moves_of(path: &ClPath) -> Vec<Move> {
     all.iter().step_by(every).copied().collect()
 }
 
-/// How long feed moves take when no joint is faster than it can be, min; none where the joints cannot go there.
-fn time_min(moves: &[Move], machine: &Machine, setup: &Setup) -> Option<f64> {
+/// How long feed moves take when no joint is faster than it can be at this pace, min; none where the joints cannot go there.
+fn time_min(moves: &[Move], machine: &Machine, setup: &Setup, pace: Pace) -> Option<f64> {
     let first = setup.to_table(&moves.first()?.0[0]);
     let starts = machine.orientations(&first.axis).ok()?;
     let from = |start: [f64; 2]| {
@@ -57,7 +92,8 @@ fn time_min(moves: &[Move], machine: &Machine, setup: &Setup) -> Option<f64> {
                 *end = Some(joints);
             }
             let [Some(a), Some(b)] = ends else { return None };
-            time += capped_duration(machine, &a, &b, *wanted_min).duration_min;
+            let least_min = pace.least_min((machine, setup), poses, [&a, &b]);
+            time += capped_duration(machine, &a, &b, *wanted_min).duration_min.max(least_min);
         }
         Some(time)
     };
@@ -65,8 +101,8 @@ fn time_min(moves: &[Move], machine: &Machine, setup: &Setup) -> Option<f64> {
     times.min_by(f64::total_cmp)
 }
 
-/// Those of some turns of the part on the table in which the feed moves of a path seem to take less time than with that of `setup`, by
-/// this share at least: the quickest first, of those about as quick the one that is turned least from `setup`. None for machines without two
+/// Those of some turns of the part on the table in which the feed moves of a path seem to take less time than with that of `setup` on
+/// a control of this pace, by this share at least: the quickest first, of those about as quick the one that is turned least from `setup`. None for machines without two
 /// rotary joints, and for paths that keep the tool's axis.
 ///
 /// With each of them the rotary joints reach all axes of the path within their limits; where they do not as the part stands, that counts
@@ -78,7 +114,7 @@ pub fn quicker_turns(
     machine: &Machine,
     setup: &Setup,
     turns: &[UnitQuaternion<f64>],
-    share: f64,
+    (share, pace): (f64, Pace),
 ) -> Vec<UnitQuaternion<f64>> {
     let moves = moves_of(path);
     let fixed = moves.iter().all(|m| m.0.iter().all(|p| p.axis == moves[0].0[0].axis));
@@ -87,7 +123,8 @@ pub fn quicker_turns(
     }
     let axes = axes_of(path);
     let rotation = &setup.part_zero.rotation;
-    let stands = if reaches_all(machine, rotation, &axes) { time_min(&moves, machine, setup) } else { None };
+    let stands =
+        if reaches_all(machine, rotation, &axes) { time_min(&moves, machine, setup, pace) } else { None };
     let mut turns = turns.to_vec();
     turns.sort_by(|a, b| rotation.angle_to(a).total_cmp(&rotation.angle_to(b)));
     let mut found: Vec<(f64, usize)> = turns
@@ -96,7 +133,7 @@ pub fn quicker_turns(
         .filter_map(|(k, turn)| {
             let mut turned = *setup;
             turned.part_zero.rotation = *turn;
-            let time = time_min(&moves, machine, &turned)?;
+            let time = time_min(&moves, machine, &turned, pace)?;
             let quicker = stands.is_none_or(|s| time < (1.0 - share) * s);
             // Some of the moves may be in range where others are not.
             (quicker && reaches_all(machine, turn, &axes)).then_some((time, k))
@@ -133,7 +170,7 @@ mod tests {
 
     /// Tilts of the part as it stands.
     fn tilted(path: &ClPath, machine: &Machine, setup: &Setup) -> Vec<UnitQuaternion<f64>> {
-        quicker_turns(path, machine, setup, &tilts(&setup.part_zero.rotation), 0.05)
+        quicker_turns(path, machine, setup, &tilts(&setup.part_zero.rotation), (0.05, Pace::Through))
     }
 
     #[test]
@@ -161,7 +198,7 @@ mod tests {
     fn a_cap_is_laid_on_its_side() {
         let machine = Machine::built_in("trunnion-ac").unwrap();
         let setup = Setup { gauge_length_mm: 100.0, ..Setup::default() };
-        let found = quicker_turns(&cap(), &machine, &setup, &clamped_turns(&machine), 0.05);
+        let found = quicker_turns(&cap(), &machine, &setup, &clamped_turns(&machine), (0.05, Pace::Through));
         let laid = found[0].scaled_axis();
         assert!((laid.amax() - std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{laid:?}");
         assert!((laid.norm() - laid.amax()).abs() < 1e-12, "{laid:?}");

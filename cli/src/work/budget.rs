@@ -68,13 +68,15 @@ fn words_mm(job: &Job) -> f64 {
     0.5 * 10f64.powi(-(decimals.min(16) as i32))
 }
 
-/// By how much the control of a job leaves the programmed way at corners, mm: verdicts add it.
-pub fn blend_mm(job: &Job) -> f64 {
+/// By how much the control of a job leaves the programmed way at corners, mm, with a tool whose axis turns while it feeds or with another:
+/// verdicts add it.
+pub fn blend_mm(job: &Job, turns: bool) -> f64 {
     let asked = asked_mm(job);
     match job.control().dialect {
         Dialect::Fanuc => 0.0,
         Dialect::Sinumerik | Dialect::Heidenhain => asked,
-        // It blends corners and joins short pieces, each as closely as programs ask for.
+        // It blends corners and, unless programs of tools that turn forbid it, joins short pieces, each as closely as they ask for.
+        Dialect::LinuxCnc if turns => asked,
         Dialect::LinuxCnc => 2.0 * asked,
     }
 }
@@ -84,18 +86,18 @@ pub fn leaning(job: &Job, faces: &Part, share: f64) -> Tolerance {
     let s = solve(job, FRAC_PI_2);
     let tip_mm = if keeps_tip(job) { 0.0 } else { s.tip_tol_mm };
     let ways_mm = COUNTED * (tip_mm + s.axis_tol_rad * job.cutter().radius_mm());
-    kept_back(job, faces, share, words_mm(job) + ways_mm + blend_mm(job))
+    kept_back(job, faces, share, words_mm(job) + ways_mm + blend_mm(job, true))
 }
 
 /// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
 pub fn upright(job: &Job, faces: &Part) -> Tolerance {
-    kept_back(job, faces, 1.0, words_mm(job) + blend_mm(job))
+    kept_back(job, faces, 1.0, words_mm(job) + blend_mm(job, false))
 }
 
 /// The tolerance that passes are held against where the tool may go in: verdicts add what words and blended corners may.
 pub fn left_in(job: &Job) -> Tolerance {
     let given = job.tolerance();
-    let by_mm = (words_mm(job) + blend_mm(job)).min(MOST * given.gouge_mm);
+    let by_mm = (words_mm(job) + blend_mm(job, false)).min(MOST * given.gouge_mm);
     Tolerance { gouge_mm: given.gouge_mm - by_mm, ..given }
 }
 

@@ -16,6 +16,7 @@ use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
 use osculate_productivity::plan::{CcPoint, Linked, Passes};
 use osculate_tools::Lean;
+use osculate_tools::cl::Motion;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
@@ -168,6 +169,13 @@ pub fn touch_rad(planned: &Planned<'_>) -> f64 {
     planned.passes.inclination_rad().map_or(FRAC_PI_2, |[.., most]| most.min(FRAC_PI_2))
 }
 
+/// Whether the tool's axis turns while it feeds.
+pub fn turns(planned: &Planned<'_>) -> bool {
+    let moves = &planned.linked.path.moves;
+    let turned = |a: &Unit3, b: &Unit3| (a.into_inner() - b.into_inner()).norm() > 1e-9;
+    moves.windows(2).any(|m| m[1].motion != Motion::Rapid && turned(&m[0].pose.axis, &m[1].pose.axis))
+}
+
 /// How a job's program is written for a control.
 fn options(
     job: &Job,
@@ -176,7 +184,7 @@ fn options(
     planned: &Planned<'_>,
 ) -> Result<post::PostOptions, Failure> {
     let usual = nc::job_options(job, control, &passes::title(job), touch_rad(planned));
-    Ok(post::PostOptions { blank_mm: stock::corners_of(job, faces)?, ..usual })
+    Ok(post::PostOptions { blank_mm: stock::corners_of(job, faces)?, joins: !turns(planned), ..usual })
 }
 
 /// Tool axes that are looked at for a setup.

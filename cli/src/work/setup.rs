@@ -4,15 +4,17 @@ use crate::job::Control;
 use crate::job::Job;
 use crate::job::Turns;
 use crate::part::{self, Part};
-use crate::work::nc;
+use crate::work::{budget, nc};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use osculate_geom::{Diagnostic, Point3, Unit3, Vec3};
+use osculate_postproc::nc::Dialect;
 use osculate_postproc::{
-    Machine, Orienting, Setup, axis_turns, clamped_turns, first_in_range, free_turns, into_travel,
-    quicker_turns, suggest, tilts,
+    FeedMode, Machine, Orienting, Pace, Setup, axis_turns, clamped_turns, first_in_range, free_turns,
+    into_travel, quicker_turns, suggest, tilts,
 };
 use osculate_tools::Pose;
 use osculate_tools::cl::ClPath;
+use std::f64::consts::FRAC_PI_2;
 
 /// A path for which a setup is sought.
 #[derive(Clone, Copy)]
@@ -155,7 +157,7 @@ fn note_of_place(setup: &Setup, moved: &Vec3) -> Diagnostic {
 }
 
 /// Turned parts that are posted beside the one that stands as suggested.
-const MOST_TURNS: usize = 2;
+const MOST_TURNS: usize = 3;
 /// Share of the time that a turn must seem to save to be posted, and save to be taken.
 pub const WORTH_A_TURN: f64 = 0.03;
 
@@ -172,7 +174,14 @@ pub fn turned(job: &Job, faces: &Part, path: &ClPath, control: &Control, setup: 
         Turns::Axis => clamped_turns(machine),
         Turns::Free => tilts(&setup.part_zero.rotation),
     };
-    quicker_turns(path, machine, setup, &turns, WORTH_A_TURN)
+    let pace = match (control.dialect, control.feed) {
+        (Dialect::LinuxCnc, FeedMode::Tcp) => Pace::ByBlocks { tip_tol_mm: None },
+        (Dialect::LinuxCnc, _) => {
+            Pace::ByBlocks { tip_tol_mm: Some(budget::solve(job, FRAC_PI_2).tip_tol_mm) }
+        }
+        (Dialect::Sinumerik | Dialect::Heidenhain | Dialect::Fanuc, _) => Pace::Through,
+    };
+    quicker_turns(path, machine, setup, &turns, (WORTH_A_TURN, pace))
         .into_iter()
         .take(MOST_TURNS)
         .map(|rotation| standing(rotation, &points, setup.gauge_length_mm))

@@ -101,6 +101,8 @@ pub struct Program {
     pub feed_word: FeedWord,
     /// How far the control may round corners, mm.
     pub blend_mm: f64,
+    /// LinuxCNC may join straight moves ([`crate::PostOptions::joins`]).
+    pub joins: bool,
     /// Where Z goes in the machine's own coordinates at the start, between tools and at the end; `None`: it is left alone.
     pub retract: Option<i64>,
     /// Names of the linear words.

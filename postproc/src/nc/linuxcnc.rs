@@ -6,7 +6,8 @@
 //! - Rotary axes count on through whole turns; nothing is wrapped.
 //! - `G92.1` at the start deletes offsets of `G92` that an aborted program may have left.
 //! - `G64 P` bounds how far blending may leave the programmed corner, of X Y Z: where rotary axes stop or start without
-//!   tool-centre-point control the tip would stray further, so that moves end there by `G61.1`. `G53` moves in machine coordinates.
+//!   tool-centre-point control the tip would stray further, so that moves end there by `G61.1`. Straight moves of X Y Z alone are joined
+//!   within as much again, unless `Q0` says that they are not. `G53` moves in machine coordinates.
 
 use super::Dialect;
 use super::block::{FeedWord, NcMove, Program, RotaryName, WriteError};
@@ -83,7 +84,8 @@ pub(super) fn corners(program: &Program, rests: bool, lines: &mut Lines) {
     if rests {
         lines.line("G61.1");
     } else {
-        lines.line(&format!("G64 P{:.4}", program.blend_mm));
+        let joins = if program.joins { "" } else { " Q0" };
+        lines.line(&format!("G64 P{:.4}{joins}", program.blend_mm));
     }
 }
 

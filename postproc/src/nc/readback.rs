@@ -291,8 +291,14 @@ impl<'a> Reader<'a> {
         let frame = Frame { machine, setup };
         let tolerance = [options.tip_tol_mm, options.axis_tol_rad];
         let clock = options.timed.then(|| Planned::of_blocks(names.dialect(), machine));
-        let collect =
-            Collect { out: ReadBack::default(), tolerance, unbounded: None, exact: false, clock, ends: Vec::new() };
+        let collect = Collect {
+            out: ReadBack::default(),
+            tolerance,
+            unbounded: None,
+            exact: false,
+            clock,
+            ends: Vec::new(),
+        };
         let mut control = Interpreter::new(names.dialect(), frame, options.strict, collect);
         control.rest_unnamed(names.all());
         let flow = Flow::new(names.dialect(), names.kept());
@@ -398,8 +404,17 @@ impl Sink for Collect {
                     at_nose: frame.at_nose(&known),
                 });
                 let (time_min, tip_length_mm, own_frame, exact) = (0.0, 0.0, false, self.exact);
-                let first =
-                    ReadBlock { line, from, to, rapid: true, time_min, tip_length_mm, tool, own_frame, exact };
+                let first = ReadBlock {
+                    line,
+                    from,
+                    to,
+                    rapid: true,
+                    time_min,
+                    tip_length_mm,
+                    tool,
+                    own_frame,
+                    exact,
+                };
                 self.out.blocks.push(first);
             }
             Event::Moved(m) => self.moved(frame, m),

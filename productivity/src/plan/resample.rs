@@ -12,6 +12,10 @@ use osculate_tools::{Pose, pose_with_axis};
 const MAX_TURN: f64 = 0.06;
 /// The contact may stray sideways from the chord by this part of the tool's radius: it only moves the strip.
 const SIDEWAYS: f64 = 0.01;
+/// Where the strip ends the tool may be higher or lower than it should by this part of the scallop, as its axis turns about the feed.
+/// (Tuned on a turbine blade with ripples: of 21,105 points 17,539 are left, and the control takes 5.88 min in place of 6.84; four times as
+/// much leaves 16,238 points and 5.63 min.)
+const EDGE: f64 = 0.05;
 /// Steps aim at this part of the longest that holds the tolerance: where the line bends more a little further on they hold it still.
 const AIM: f64 = 0.95;
 /// A step grows or shrinks by no more than these factors from one to the next.
@@ -202,7 +206,8 @@ impl March<'_> {
             let off = (at.point - a.point) - chord * along;
             let sideways = off - at.normal.into_inner() * off.dot(&at.normal);
             let aside = sideways.norm() / (SIDEWAYS * task.cutter.radius_mm());
-            worst = worst.max(stray(task, &now.pose, &at)).max(aside);
+            let across = Unit3::try_new(at.normal.cross(&chord), 0.0);
+            worst = worst.max(stray(task, &now.pose, &at, across)).max(aside);
             if worst > 1.0 {
                 break;
             }
@@ -236,7 +241,8 @@ fn roll(
         Some(Knot { t, v: 0.0, point, normal, pose, height: task.cutter.distance(&pose, &point) })
     };
     let motion = LinearMotion { from: a.pose, to: b.pose };
-    let mid = middle().filter(|mid| !motion.at(0.5).is_some_and(|now| stray(task, &now.pose, mid) <= 1.0));
+    let mid =
+        middle().filter(|mid| !motion.at(0.5).is_some_and(|now| stray(task, &now.pose, mid, None) <= 1.0));
     match mid {
         Some(mid) if depth < MAX_ROLLS => {
             roll(on, a, &mid, depth + 1, out);
@@ -246,20 +252,31 @@ fn roll(
     }
 }
 
-/// By how much a pose of the straight motion strays from the true pose of a knot, of what it may: at the contact, and as
-/// far to its sides as the strip reaches.
-fn stray(task: &Task<'_>, pose: &Pose, knot: &Knot) -> f64 {
-    let t = &task.tolerance;
-    let height = (task.cutter.distance(pose, &knot.point) - knot.height).abs();
+/// By how much a pose of the straight motion strays from the true pose of a knot, of what it may: at the contact, where the tool's
+/// end goes through the tangent plane, and as far to both sides along `across` as the strip reaches. Without a direction the
+/// axis alone tells what happens there.
+fn stray(task: &Task<'_>, pose: &Pose, knot: &Knot, across: Option<Unit3>) -> f64 {
+    let (t, cutter) = (&task.tolerance, task.cutter);
+    let height = (cutter.distance(pose, &knot.point) - knot.height).abs();
     // A ball is the same under any lean.
-    if task.cutter.is_ball() {
+    if cutter.is_ball() {
         return height / t.chord_mm;
     }
     // Where the contact swings round the end of the tool another part of it than the true one may go through the tangent plane.
     let down = (knot.pose.tip - pose.tip).dot(&knot.normal);
-    let radius = task.cutter.radius_mm();
+    let radius = cutter.radius_mm();
     let reach = radius.min(2.0 * (2.0 * t.scallop_mm * radius).sqrt());
-    height.max(down).max(pose.axis.angle(&knot.pose.axis) * reach) / t.chord_mm
+    let edges = match across {
+        Some(across) => [reach, -reach]
+            .map(|y| {
+                let edge = knot.point + across.into_inner() * y;
+                (cutter.distance(pose, &edge) - cutter.distance(&knot.pose, &edge)).abs()
+            })
+            .into_iter()
+            .fold(0.0, f64::max),
+        None => pose.axis.angle(&knot.pose.axis) * reach,
+    };
+    (height.max(down) / t.chord_mm).max(edges / (EDGE * t.scallop_mm))
 }
 
 /// Contact points from knots; the strip width is filled in by the caller.

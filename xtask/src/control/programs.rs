@@ -198,7 +198,7 @@ impl Setup {
             length_mm: word("(setup gauge length ").and_then(|w| number(w, 'L')).ok_or_else(lacks)?,
             named_line: named_line(text),
             tcp: text.lines().any(|l| l == "M428"),
-            blend_mm: word("G64 P").ok_or_else(lacks)?.to_owned(),
+            blend_mm: word("G64 P").and_then(|w| w.split(' ').next()).ok_or_else(lacks)?.to_owned(),
         })
     }
 }

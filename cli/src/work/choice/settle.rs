@@ -100,7 +100,8 @@ fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> 
         Answer::NotShown => {
             let text = format!("verified: {}", found.verdict.words());
             // What may stand between samples and at blended corners counts as left.
-            let left_mm = v.hidden_scallop_mm.map(|more| v.height_max_mm + more + budget::blend_mm(job));
+            let left_mm =
+                v.hidden_scallop_mm.map(|more| v.height_max_mm + more + budget::blend_mm(job, false));
             let marks_mm = v.height_max_mm - v.scallop_max_mm;
             return Ok(Some(Objection { digs_in: false, left_mm, marks_mm, text }));
         }

@@ -5,7 +5,7 @@ use crate::job::{Control, Job, Operations};
 use crate::part::Part;
 use crate::work::operations::course::Text;
 use crate::work::operations::step::Step;
-use crate::work::program::{axes_of, touch_rad};
+use crate::work::program::{axes_of, touch_rad, turns};
 use crate::work::setup::{self, Along};
 use crate::work::{budget, by_tip, nc, passes, stock};
 use osculate_geom::Diagnostic;
@@ -69,6 +69,7 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
                     options.program_number += k as u32;
                     options.blend_mm = blend_mm;
                     options.blank_mm = blank_mm;
+                    options.joins = !turns(planned);
                     Section {
                         name: operation.name.clone(),
                         path,
