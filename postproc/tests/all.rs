@@ -26,5 +26,6 @@ mod sections;
 mod solve;
 mod state_faults;
 mod state_rewrites;
+mod stops;
 mod stream;
 mod timing;
