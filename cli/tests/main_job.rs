@@ -70,9 +70,16 @@ fn a_plan_is_written_posted_verified_and_reported() {
         let of_feed: Vec<&str> =
             notes.filter_map(|n| n.split_once("the same path takes ")).map(|n| n.1).collect();
         let now_min = number(&summary, &["control_time_min"]);
-        // A control that keeps to corners of its slides alone is said to.
-        let told = run.out.contains("where rotary joints stop or start at an end of a pass");
-        assert_eq!(told, feed != "tcp", "{}", run.out);
+        // A control that keeps to corners of its slides alone is brought to rest where rotary joints stop or start: nothing is left out.
+        let text = std::fs::read_to_string(&program).unwrap();
+        assert_eq!(text.contains("G61.1"), feed != "tcp", "{}", run.out);
+        assert!(!run.out.contains("without an exact stop"), "{}", run.out);
+        if feed != "tcp" {
+            let blended = text.replace("G61.1\n", "");
+            let path_b = scratch.write("blended.ngc", &blended);
+            let verify = osculate(&["verify", "--job", path.to_str().unwrap(), path_b.to_str().unwrap()]);
+            assert!(verify.out.contains("without an exact stop"), "{}", verify.out);
+        }
         if feed == "tcp" {
             assert!(of_feed.is_empty(), "{of_feed:?}");
             by_tip_min = if dialect == "linuxcnc" { now_min } else { by_tip_min };

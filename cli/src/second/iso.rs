@@ -19,7 +19,7 @@ struct Said {
     /// `G43`, `G43.4`, `G43.5`, by ten, and the length's number.
     length: Option<i64>,
     length_number: bool,
-    /// `G64`, `G5.1`.
+    /// `G64`, with LinuxCNC its `Q` too; `G5.1`.
     blend: bool,
     smooth: bool,
     p: bool,
@@ -57,7 +57,7 @@ pub(super) fn line(s: &mut State<'_>, number: usize, text: &str) -> Result<Block
                 said.p = true;
                 true
             }
-            Word::Value("Q", _) if s.dialect == Dialect::Fanuc => {
+            Word::Value("Q", _) if !sinumerik => {
                 said.q = true;
                 true
             }
@@ -106,7 +106,7 @@ pub(super) fn line(s: &mut State<'_>, number: usize, text: &str) -> Result<Block
     }
     let alone = said.length.is_some() != said.length_number
         || said.p && !said.blend
-        || said.q && !said.smooth
+        || said.q && !(said.smooth || said.blend && s.dialect == Dialect::LinuxCnc)
         || said.length_number && asked.machine_frame;
     if alone {
         return refuse(number, text, Unread::Misplaced);
@@ -151,6 +151,8 @@ fn code(
             said.blend = true;
             return Ok(!fanuc);
         }
+        // At rest at the end of every move.
+        611 => return Ok(s.dialect == Dialect::LinuxCnc),
         51 if fanuc => said.smooth = true,
         490 if !sinumerik => {
             asked.switched = true;
