@@ -232,7 +232,7 @@ fn swings(control: &Control, read: &ReadBack) -> bool {
             let turned = [a, b].map(|one| (one.to[*k] - one.from[*k]).abs());
             turned.contains(&0.0) && turned.into_iter().any(|t| t > SEEN_RAD)
         };
-        !a.exact && !(a.rapid && b.rapid) && rotary.iter().any(stops)
+        !(a.exact || a.rapid && b.rapid) && rotary.iter().any(stops)
     };
     let slides_alone = control.dialect == Dialect::LinuxCnc && !matches!(control.feed, FeedMode::Tcp);
     slides_alone && read.blocks.windows(2).any(|pair| swung(&pair[0], &pair[1]))
