@@ -17,6 +17,7 @@ tolerance = { scallop_mm = 0.1 }
 strategy = { kind = "isoparametric", lead_deg = 10 }
 cutting = { spindle_rpm = 8000 }
 machine = { name = "trunnion-ac", dialect = "linuxcnc", feed = "tcp" }
+setup = { turns = "none" }
 "#;
 
 /// The program with one line changed, the first that `is_meant`.
