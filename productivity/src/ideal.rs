@@ -12,6 +12,10 @@
 //! searched; what is missed so makes the bound too long by as much. A dozen places tell a scatter to about a third: the error
 //! is an indication, no guarantee.
 
+mod lines;
+
+pub use lines::isoparametric_min;
+
 use crate::optimum::{self, Limits, OptimumError, Range};
 use crate::plan::Tolerance;
 use crate::rate::Caps;
@@ -20,7 +24,7 @@ use osculate_geom::{Surface, Uv};
 use osculate_tools::strip::{Chart, Within};
 use osculate_tools::{Cutter, Lean};
 use rayon::prelude::*;
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
 
 /// The greatest lead of a posture, rad.
 pub const MOST_LEAD_RAD: f64 = 1.0;
@@ -34,9 +38,13 @@ const FILL: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 const MOST_TRIES: usize = 60;
 
 /// Directions and leads of the coarse look, and how far behind the best of it a tool may be, as a factor, to be searched.
-const LOOK_DIRECTIONS: usize = 12;
+const LOOK_DIRECTIONS: usize = 24;
 const LOOK_LEADS_RAD: [f64; 12] = [0.003, 0.01, 0.02, 0.035, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.5, 0.8];
 const BEHIND: f64 = 0.7;
+/// Of how many of the widest strips the lead is searched closer, by a factor, and its roots after it.
+const LOOK_CLOSER: usize = 8;
+const LOOK_STEP: f64 = 1.2;
+const LOOK_HALVINGS: u32 = 5;
 /// Numbers that a plane takes from the places it is fitted to.
 const FREE_OF_A_PLANE: f64 = 3.0;
 /// Radius of its charts, in the cutter's radius, and misfit accepted, of the tolerance.
@@ -290,23 +298,41 @@ fn best_at(
     best
 }
 
-/// Area per minute of the widest strip of a coarse look; zero where it finds none.
+/// Area per minute of the widest strip of a coarse look; zero where it finds none. Strips of two contacts are widest at a lead of their own,
+/// a narrow peak that is searched between the leads looked at.
 fn coarse_mm2_min(surface: &dyn Surface, at: Uv, tool: &Feeding<'_>, tolerance: &Tolerance) -> f64 {
     let reach = LOOK_REACH * tool.cutter.radius_mm();
     let Ok(chart) = Chart::new(surface, at, reach, LOOK_MISFIT * tolerance.scallop_mm) else { return 0.0 };
     let within = Within { scallop_mm: tolerance.scallop_mm, gouge_mm: tolerance.gouge_mm };
     let leads: &[f64] = if tool.cutter.is_ball() { &[BALL_LEAD_RAD] } else { &LOOK_LEADS_RAD };
-    let mut widest = 0.0f64;
-    for k in 0..LOOK_DIRECTIONS {
-        let angle_rad = PI * k as f64 / LOOK_DIRECTIONS as f64;
-        for lead_rad in leads {
-            let lean = Lean { lead_rad: *lead_rad, tilt_rad: 0.0 };
-            if let Ok(strip) = chart.strip(tool.cutter, angle_rad, lean, within) {
-                widest = widest.max(strip.width_mm);
+    let width = |direction: usize, lead_rad: f64| {
+        let angle_rad = TAU * direction as f64 / LOOK_DIRECTIONS as f64;
+        let lean = Lean { lead_rad, tilt_rad: 0.0 };
+        chart.strip(tool.cutter, angle_rad, lean, within).map_or(0.0, |strip| strip.width_mm)
+    };
+    let mut seen: Vec<(f64, usize, f64)> = (0..LOOK_DIRECTIONS)
+        .flat_map(|k| leads.iter().map(move |lead| (k, *lead)))
+        .map(|(k, lead)| (width(k, lead), k, lead))
+        .collect();
+    seen.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let closer = if leads.len() > 1 { LOOK_CLOSER } else { 1 };
+    let peaks = seen.iter().take(closer).map(|(_, k, lead)| peak(|x| width(*k, x), *lead, LOOK_STEP));
+    peaks.fold(0.0, f64::max) * tool.feed_mm_min
+}
+
+/// The greatest width near a lead, within about a factor.
+fn peak(width: impl Fn(f64) -> f64, lead_rad: f64, mut factor: f64) -> f64 {
+    let (mut most, mut lead) = (width(lead_rad), lead_rad);
+    for _ in 0..LOOK_HALVINGS {
+        for near in [lead / factor, lead * factor] {
+            let here = width(near);
+            if here > most {
+                (most, lead) = (here, near);
             }
         }
+        factor = factor.sqrt();
     }
-    widest * tool.feed_mm_min
+    most
 }
 
 #[cfg(test)]
@@ -315,6 +341,7 @@ mod tests {
     use crate::closed_form::{Section, width_37};
     use osculate_geom::analytic::{Paraboloid, Sphere};
     use osculate_tools::CutterSpec;
+    use std::f64::consts::PI;
 
     const TOLERANCE: Tolerance = Tolerance { scallop_mm: 0.01, gouge_mm: 0.002, chord_mm: 0.002 };
 

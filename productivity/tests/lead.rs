@@ -190,7 +190,7 @@ fn passes_end_before_the_tool_digs_in_beyond_a_border() {
         let (first, last) = (&points[0], &points[points.len() - 1]);
         if first.uv.u > last.uv.u { begin = begin.max(beyond(first)) } else { end = end.max(beyond(last)) }
     }
-    assert!(end > 0.1 && end < 0.8 * begin && begin < 1.0, "{begin} {end}");
+    assert!(end > 0.01 && end < 0.8 * begin && begin < 1.0, "{begin} {end}");
 }
 
 /// The rates of a pose whose lead changes are those of its differences.

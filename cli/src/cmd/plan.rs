@@ -92,6 +92,9 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     }
     if let Some(i) = &s.ideal {
         row("ideal time, estimated", i.ideal.words(), "min");
+        if let Some(t) = i.ideal.isoparametric_min {
+            row("of isoparametric passes", number(t, 3), "min");
+        }
         row("efficiency", format!("{:.0}", i.efficiency_percent), "%");
     }
     let mut text = String::from("\n");

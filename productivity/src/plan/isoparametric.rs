@@ -82,10 +82,11 @@ pub fn isoparametric(task: &Task<'_>, along: Along) -> Result<Passes, PlanError>
     let task = &Task { tolerance: close_chords(task), ..*task };
     if let Leaning::Local(local) = task.lean {
         let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
-            let rough = Seat::new(task, axis).rough();
+            let seat = Seat::new(task, axis);
+            let (rough, one_way) = (seat.rough(), seat.closes(axis));
             let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
             // Beyond the border the leads of the border do as a rule.
-            let field = LeadField::find(task, local, (&feed, rough))?;
+            let field = LeadField::find(task, local, (&feed, one_way), rough)?;
             let led = &Task { lean: Leaning::Field(&field), ..*task };
             let face = Extended::of(led, None);
             let beyond = &Task { surface: &face, ..*led };

@@ -10,6 +10,9 @@ pub(super) trait PassLine: SurfaceLine {
     fn uv(&self, t: f64) -> Uv;
     /// Their rate by `t`.
     fn rate(&self, t: f64) -> Uv;
+    /// Whether it is fed against its growing parameter: isoparametric lines that of the face, level lines with the field's uphill side
+    /// to the left.
+    fn reversed(&self) -> bool;
     /// Where `t` runs; periodic where the line closes.
     fn range(&self) -> Interval;
     /// Whether the line goes on at its other end: round a face that meets itself there, smoothly or in a crease.
@@ -24,6 +27,9 @@ impl PassLine for IsoLine<'_> {
     }
     fn rate(&self, _: f64) -> Uv {
         Uv::from_axis(self.along, 1.0, 0.0)
+    }
+    fn reversed(&self) -> bool {
+        self.reversed
     }
     fn range(&self) -> Interval {
         self.surface.domain().get(self.along)

@@ -73,10 +73,11 @@ pub fn regions(task: &Task<'_>, along: Along) -> Result<Passes, PlanError> {
     let one = |axis: Axis, progress: &(dyn Fn(f64) + Sync)| {
         let task = &Task { progress, ..*task };
         let Leaning::Local(local) = task.lean else { return in_regions(task, axis, None) };
-        let rough = Seat::new(task, axis).rough();
+        let seat = Seat::new(task, axis);
+        let (rough, one_way) = (seat.rough(), seat.closes(axis));
         let feed = |_: Uv, jet: &Jet2| Some(if axis == Axis::U { jet.du } else { jet.dv });
         // The whole face says what lead keeps the tool off it, whatever region the tool is in.
-        let field = LeadField::find(task, local, (&feed, rough))?;
+        let field = LeadField::find(task, local, (&feed, one_way), rough)?;
         progress(LEADS);
         let clearance = Clearance::new(task, local, rough);
         let led = Task { lean: Leaning::Field(&field), ..*task };

@@ -2,7 +2,7 @@
 
 use super::line::PassLine;
 use super::seat::Seat;
-use super::{CcPoint, Task};
+use super::{CcPoint, Leaning, Task};
 use osculate_geom::line::LineError;
 use osculate_geom::{Point3, Unit3};
 use osculate_tools::sweep::{LinearMotion, SweptMotion};
@@ -16,6 +16,8 @@ const SIDEWAYS: f64 = 0.01;
 /// (Tuned on a turbine blade with ripples: of 21,105 points 17,539 are left, and the control takes 5.88 min in place of 6.84; four times as
 /// much leaves 16,238 points and 5.63 min.)
 const EDGE: f64 = 0.05;
+/// The far side of its end may be lower by this part of the gouge limit, where the lead is as small as the part allows.
+const HEEL: f64 = 0.3;
 /// Steps aim at this part of the longest that holds the tolerance: where the line bends more a little further on they hold it still.
 const AIM: f64 = 0.95;
 /// A step grows or shrinks by no more than these factors from one to the next.
@@ -253,8 +255,8 @@ fn roll(
 }
 
 /// By how much a pose of the straight motion strays from the true pose of a knot, of what it may: at the contact, where the tool's
-/// end goes through the tangent plane, and as far to both sides along `across` as the strip reaches. Without a direction the
-/// axis alone tells what happens there.
+/// end goes through the tangent plane, as far to both sides along `across` as the strip reaches, and under the far side of the end. Without a
+/// direction the axis alone tells what happens beside the contact.
 fn stray(task: &Task<'_>, pose: &Pose, knot: &Knot, across: Option<Unit3>) -> f64 {
     let (t, cutter) = (&task.tolerance, task.cutter);
     let height = (cutter.distance(pose, &knot.point) - knot.height).abs();
@@ -276,7 +278,15 @@ fn stray(task: &Task<'_>, pose: &Pose, knot: &Knot, across: Option<Unit3>) -> f6
             .fold(0.0, f64::max),
         None => pose.axis.angle(&knot.pose.axis) * reach,
     };
-    (height.max(down) / t.chord_mm).max(edges / (EDGE * t.scallop_mm))
+    // A lead found for a place keeps the far side of the end just off the part.
+    let heel = if matches!(task.lean, Leaning::Field(_)) {
+        let aside = knot.pose.tip - knot.point;
+        let far = knot.point + (aside - knot.normal.into_inner() * aside.dot(&knot.normal)) * 2.0;
+        (cutter.distance(&knot.pose, &far) - cutter.distance(pose, &far)).max(0.0) / (HEEL * t.gouge_mm)
+    } else {
+        0.0
+    };
+    (height.max(down) / t.chord_mm).max(edges / (EDGE * t.scallop_mm)).max(heel)
 }
 
 /// Contact points from knots; the strip width is filled in by the caller.

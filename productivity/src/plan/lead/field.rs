@@ -1,11 +1,11 @@
-//! A lead over the face as a bicubic spline whose poles are an envelope.
+//! A lead over the face as a bicubic spline that is as low as the places of a lattice allow.
 //!
 //! A value of the spline is a mean of the poles around, and its slope a mean of their differences: poles that differ by no more
-//! than a rate times their distance bound the rate of the field. Where the mean lies below what a place needs, the sixteen poles
-//! around it are raised by what is missing and the envelope is made again; the places stand closer than the nodes, and between them the
-//! need is allowed to grow as it does from node to node.
+//! than a rate times their distance bound the rate of the field. Where the lead turns out too low between the places of the lattice it is
+//! looked for there too, and the spline laid once more.
 
-use super::envelope::{Network, raise};
+use super::envelope::Network;
+use super::fit::Floors;
 use super::lean::{Feed, LeadField, LocalLead};
 use super::need::{Clearance, Stand};
 use crate::plan::{Passes, PlanError, Task};
@@ -26,16 +26,17 @@ const ROUNDS: u32 = 6;
 const ANY_WAY: f64 = 1.15;
 
 /// Poles of a spline over a face as nodes.
-struct Poles<'a> {
-    spline: &'a Spline,
+struct Poles {
+    /// How many along u and v.
+    count: [i64; 2],
     /// First fundamental form at the poles, by steps of the grid: `[E, F, G]`, mm2.
     form: Vec<[f64; 3]>,
     closes: [bool; 2],
 }
 
-impl Network for Poles<'_> {
+impl Network for Poles {
     fn around(&self, node: usize, see: &mut dyn FnMut(usize, f64)) {
-        let n = self.spline.bases.map(|b| b.count() as i64);
+        let n = self.count;
         let (i, j) = (node as i64 / n[1], node as i64 % n[1]);
         for a in -1..=1i64 {
             for b in -1..=1i64 {
@@ -56,40 +57,31 @@ impl Network for Poles<'_> {
     }
 }
 
-impl LeadField {
-    /// The field of a task for passes that run along `feed`.
-    ///
-    /// # Errors
-    /// [`PlanError::Nothing`] where the passes have no direction anywhere.
-    pub(in crate::plan) fn find(
-        task: &Task<'_>,
-        local: &LocalLead<'_>,
-        (feed, rough): (&Feed<'_>, bool),
-    ) -> Result<Self, PlanError> {
-        let rectangle = Rectangle::of(task.surface);
-        let clearance = Clearance::new(task, local, rough);
-        let mut spline = Spline::constant(&rectangle, spans(task, &rectangle), 0.0);
+/// What a lead is looked for over.
+struct Over<'a> {
+    task: &'a Task<'a>,
+    local: &'a LocalLead<'a>,
+    clearance: &'a Clearance<'a>,
+    rectangle: Rectangle,
+}
+
+impl Over<'_> {
+    /// The lowest lead that clears the contacts at all places, and at how many of them none does, and how many were asked.
+    fn spline(
+        &self,
+        stand: &(dyn Fn(Uv) -> Option<Stand> + Sync),
+    ) -> Result<(Spline, [usize; 2]), PlanError> {
+        let (task, local, rectangle) = (self.task, self.local, &self.rectangle);
+        let mut spline = Spline::constant(rectangle, spans(task, rectangle), local.least_rad);
         let spans = spline.bases.map(|b| b.spans);
-        let stands = |at: Uv| -> Vec<Stand> {
-            let way = feed(at, &task.surface.jet2(at));
-            let both = way.iter().flat_map(|w| [*w, -*w]);
-            both.filter_map(|w| clearance.stand(at, &w)).collect()
-        };
-        // Poles stand over the corners of cells, one row of them outside.
-        let corner = |k: usize, axis: usize| {
-            let n = spans[axis] as f64;
-            let x = k as f64 - 1.0;
-            if rectangle.closes[axis] { x.rem_euclid(n) / n } else { (x / n).clamp(0.0, 1.0) }
-        };
-        let columns = spline.bases[1].count();
-        let pole_at = |k: usize| rectangle.domain.at(corner(k / columns, 0), corner(k % columns, 1));
+        // Places at equal parts of the cells: where a lead is looked for, and those between them.
+        let parts = spans.map(|n| ASKED * n);
+        let place = |i: f64, j: f64| rectangle.domain.at(i / parts[0] as f64, j / parts[1] as f64);
+        let corner = |k: usize| place((k / (parts[1] + 1)) as f64, (k % (parts[1] + 1)) as f64);
         // Outside None where passes have no direction, inside where no lead does.
-        let found: Vec<Option<Option<f64>>> = (0..spline.poles.len())
+        let found: Vec<Option<Option<f64>>> = (0..(parts[0] + 1) * (parts[1] + 1))
             .into_par_iter()
-            .map(|k| {
-                let all = stands(pole_at(k));
-                (!all.is_empty()).then(|| clearance.least(&all, local.least_rad))
-            })
+            .map(|k| stand(corner(k)).map(|s| self.clearance.least(&s, local.least_rad)))
             .collect();
         if found.iter().all(Option::is_none) {
             return Err(PlanError::Nothing {
@@ -98,52 +90,86 @@ impl LeadField {
             });
         }
         let unmet = [found.iter().filter(|f| **f == Some(None)).count(), found.iter().flatten().count()];
-        let mut poles: Vec<f64> = found.into_iter().map(|f| f.flatten().unwrap_or(local.least_rad)).collect();
-        let form = (0..poles.len())
-            .map(|k| {
-                let jet = task.surface.jet2(pole_at(k));
-                let [du, dv] = [(jet.du, Axis::U, 0), (jet.dv, Axis::V, 1)]
-                    .map(|(d, axis, k)| d * (rectangle.domain.get(axis).length() / spans[k] as f64));
-                [du.dot(&du), du.dot(&dv), dv.dot(&dv)]
-            })
-            .collect();
-        let need = poles.clone();
-        let network = Poles { spline: &spline.clone(), form, closes: rectangle.closes };
+        let network = self.network(&spline);
         let rate = local.rate_rad_per_mm / ANY_WAY;
-        // Places at equal parts of the cells.
-        let halves = [0, 1].map(|k| ASKED * spans[k] + 1);
-        let part = |k: usize, axis: usize| k as f64 / (halves[axis] - 1) as f64;
-        let mut asked: Vec<Uv> = (0..halves[0] * halves[1])
-            .map(|k| rectangle.domain.at(part(k / halves[1], 0), part(k % halves[1], 1)))
-            .collect();
-        for _ in 0..ROUNDS {
-            raise(&mut poles, &network, rate);
-            spline.poles.clone_from(&poles);
+        let mut floors = Floors::new(&spline);
+        for (k, need) in found.iter().enumerate() {
+            if let Some(Some(need)) = need {
+                floors.add(&spline, corner(k), *need);
+            }
+        }
+        let between = |k: usize| place((k / parts[1]) as f64 + 0.5, (k % parts[1]) as f64 + 0.5);
+        let asked: Vec<Uv> = (0..parts[0] * parts[1]).map(between).collect();
+        for round in 0..ROUNDS {
+            floors.raise(&mut spline, &network, rate);
+            floors.lower(&mut spline, (&network, rate), local.least_rad);
             let missing: Vec<(Uv, f64)> = asked
                 .par_iter()
                 .filter_map(|at| {
                     let lead = spline.jet(*at).value;
-                    // Between two places the need may go on as it does between nodes, up to halfway.
-                    let beyond = steepest(&spline, &need, *at) * (0.5 / ASKED as f64);
-                    let short = clearance.least(&stands(*at), lead - beyond)? + beyond - lead;
-                    (short > clearance.missing_rad()).then_some((*at, short))
+                    let need = self.clearance.least(&stand(*at)?, lead)?;
+                    (need - lead > self.clearance.missing_rad()).then_some((*at, need))
                 })
                 .collect();
             if missing.is_empty() {
                 break;
             }
-            for (at, short) in &missing {
-                let (u, v) = (spline.bases[0].at(at.u), spline.bases[1].at(at.v));
-                for (i, j) in u.index.iter().flat_map(|i| v.index.map(|j| (*i, j))) {
-                    let k = spline.index(i, j);
-                    poles[k] = poles[k].max((spline.poles[k] + short).min(local.most_rad));
-                }
+            for (at, need) in &missing {
+                floors.add(&spline, *at, *need);
             }
-            asked = missing.into_iter().map(|m| m.0).collect();
+            // What was lowered elsewhere may lack something next time.
+            if round + 1 == ROUNDS {
+                floors.raise(&mut spline, &network, rate);
+            }
         }
-        raise(&mut poles, &network, rate);
-        spline.poles = poles;
-        Ok(Self { spline, rectangle, tilt_rad: local.tilt_rad, unmet })
+        spline.poles.iter_mut().for_each(|p| *p = p.min(local.most_rad));
+        Ok((spline, unmet))
+    }
+
+    fn network(&self, spline: &Spline) -> Poles {
+        let rectangle = &self.rectangle;
+        let spans = spline.bases.map(|b| b.spans);
+        // Poles stand over the corners of cells, one row of them outside.
+        let corner = |k: usize, axis: usize| {
+            let n = spans[axis] as f64;
+            let x = k as f64 - 1.0;
+            if rectangle.closes[axis] { x.rem_euclid(n) / n } else { (x / n).clamp(0.0, 1.0) }
+        };
+        let columns = spline.bases[1].count();
+        let form = (0..spline.poles.len())
+            .map(|k| {
+                let at = rectangle.domain.at(corner(k / columns, 0), corner(k % columns, 1));
+                let jet = self.task.surface.jet2(at);
+                let [du, dv] = [(jet.du, Axis::U, 0), (jet.dv, Axis::V, 1)]
+                    .map(|(d, axis, k)| d * (rectangle.domain.get(axis).length() / spans[k] as f64));
+                [du.dot(&du), du.dot(&dv), dv.dot(&dv)]
+            })
+            .collect();
+        Poles { count: spline.bases.map(|b| b.count() as i64), form, closes: rectangle.closes }
+    }
+}
+
+impl LeadField {
+    /// The field of a task for passes that run along `feed`, and against it unless they run one way alone.
+    ///
+    /// # Errors
+    /// [`PlanError::Nothing`] where the passes have no direction anywhere.
+    pub(in crate::plan) fn find(
+        task: &Task<'_>,
+        local: &LocalLead<'_>,
+        (feed, one_way): (&Feed<'_>, bool),
+        rough: bool,
+    ) -> Result<Self, PlanError> {
+        let clearance = Clearance::new(task, local, rough);
+        let over = Over { task, local, clearance: &clearance, rectangle: Rectangle::of(task.surface) };
+        let found = |sign: f64| {
+            let stand = |at: Uv| clearance.stand(at, &(feed(at, &task.surface.jet2(at))? * sign));
+            over.spline(&stand)
+        };
+        let (along, unmet) = found(1.0)?;
+        let (against, more) = if one_way { (along.clone(), [0; 2]) } else { found(-1.0)? };
+        let unmet = [0, 1].map(|k| unmet[k] + more[k]);
+        Ok(Self { senses: [along, against], rectangle: over.rectangle, tilt_rad: local.tilt_rad, unmet })
     }
 
     /// Passes with a word about the places that no lead clears.
@@ -160,16 +186,6 @@ impl LeadField {
         }
         passes
     }
-}
-
-/// The greatest difference of values at neighbouring poles around a place.
-fn steepest(spline: &Spline, values: &[f64], at: Uv) -> f64 {
-    let (u, v) = (spline.bases[0].at(at.u), spline.bases[1].at(at.v));
-    let value = |i: usize, j: usize| values[spline.index(u.index[i], v.index[j])];
-    let pairs = (0..3).flat_map(|i| (0..4).map(move |j| (i, j)));
-    pairs
-        .map(|(i, j)| (value(i + 1, j) - value(i, j)).abs().max((value(j, i + 1) - value(j, i)).abs()))
-        .fold(0.0, f64::max)
 }
 
 fn spans(task: &Task<'_>, rectangle: &Rectangle) -> [usize; 2] {

@@ -89,7 +89,7 @@ impl Leaning<'_> {
             Self::Held(lean) => *lean,
             Self::Sided(tilt) => tilt.lean(speed),
             Self::Local(l) => Lean { lead_rad: l.least_rad, tilt_rad: l.tilt_rad },
-            Self::Field(f) => f.at(at).0,
+            Self::Field(f) => f.at(at, speed < 0.0).0,
             Self::Axes(f) => Lean::of(&f.at(at).0, frame),
         }
     }
@@ -127,6 +127,7 @@ impl Leaning<'_> {
     pub(in crate::plan) fn on(&self, line: &dyn PassLine, t: f64, moved: (&Darboux, f64)) -> Lean {
         match self {
             Self::Held(lean) => *lean,
+            Self::Field(f) => f.at(line.uv(t), line.reversed()).0,
             _ => self.against(line.uv(t), moved),
         }
     }
@@ -141,7 +142,7 @@ impl Leaning<'_> {
     ) -> Moving {
         match self {
             Self::Field(f) => {
-                let ((lean, slope), rate) = (f.at(line.uv(t)), line.rate(t));
+                let ((lean, slope), rate) = (f.at(line.uv(t), line.reversed()), line.rate(t));
                 let lead_rate = slope[0] * rate.u + slope[1] * rate.v;
                 lean.moving(cutter, frame, 0.0, (speed, lead_rate))
             }
@@ -156,10 +157,11 @@ impl Leaning<'_> {
     }
 }
 
-/// Lead over a face, with a tilt that is held.
+/// Lead over a face, with a tilt that is held, for passes along the growing parameter of their line and for those against it.
 #[derive(Clone, Debug)]
 pub struct LeadField {
-    pub(super) spline: Spline,
+    /// By sense; twice the same where one lead serves both.
+    pub(super) senses: [Spline; 2],
     pub(super) rectangle: Rectangle,
     pub(super) tilt_rad: f64,
     /// Places that no lead clears, and all at which one was looked for.
@@ -167,11 +169,12 @@ pub struct LeadField {
 }
 
 impl LeadField {
-    /// Lead and tilt at a place, and the lead's derivatives by u and v; beyond the border of the face its border's.
+    /// Lead and tilt at a place of a pass along the growing parameter of its line or against it, and the lead's derivatives by u and v;
+    /// beyond the border of the face its border's.
     #[must_use]
-    pub fn at(&self, at: Uv) -> (Lean, [f64; 2]) {
+    pub fn at(&self, at: Uv, reversed: bool) -> (Lean, [f64; 2]) {
         let (place, within) = self.rectangle.held(at);
-        let jet = self.spline.jet(place);
+        let jet = self.senses[usize::from(reversed)].jet(place);
         let slope = [0, 1].map(|k| if within[k] { jet.slope[k] } else { 0.0 });
         (Lean { lead_rad: jet.value, tilt_rad: self.tilt_rad }, slope)
     }

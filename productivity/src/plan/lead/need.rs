@@ -1,8 +1,8 @@
 //! The least lead at which a tool, standing at a contact, goes nowhere into the part.
 //!
 //! Every pose of a pass is one of these, so that a pass whose poses are clear is clear: no motion has to be followed. The face is
-//! a lattice of points, dense against the tool's radius; where the distance to the tool has a minimum among them parabolas
-//! through its neighbours say whether it may be too low between, and the surface itself whether it is. Below the tool's end all points of the lattice are asked, further up
+//! a lattice of points, dense against the tool's radius; where the distance to the tool has a minimum among them its neighbours
+//! say how low it may be between, as convex as it is, and the surface itself how low it is. Below the tool's end all points of the lattice are asked, further up
 //! along its shank every few.
 //!
 //! *Limits.* Ripples that no tool follows go into it at any lead: what the tool's end meets at a great lead is accepted at any,
@@ -37,9 +37,8 @@ const HALVINGS: u32 = 10;
 const RELIEF_RAD: f64 = 0.5;
 /// Minima nearer to the contact than so many steps of the lattice are the contact's own.
 const OWN: f64 = 1.5;
-/// What a parabola says lies below a point, times this, is looked at; rounds of that look.
-const MISJUDGED: f64 = 2.0;
-const PATTERN: u32 = 10;
+/// Rounds of a look between the lattice's points.
+const PATTERN: u32 = 12;
 /// Normals of rough faces are averaged this far around, of the tool's radius.
 const AVERAGE: f64 = 0.04;
 
@@ -199,16 +198,30 @@ impl<'a> Clearance<'a> {
         let gap = |k: Option<usize>| k.and_then(|k| gaps.get(k)).copied().unwrap_or(f64::INFINITY);
         let own = OWN * APART * cutter.radius_mm();
         let limit = -enough_mm.min(self.accepted_mm);
-        // The two places that may be lowest between the points, by parabolas.
+        // The two places that may be lowest between the points.
         let mut doubtful = [(limit, 0); 2];
         for (k, here) in gaps.iter().enumerate() {
             let (i, j) = (k / width, k % width);
-            let along_u = [gap(k.checked_sub(width)), *here, gap((i + 1 < rows).then_some(k + width))];
-            let along_v = [gap((j > 0).then(|| k - 1)), *here, gap((j + 1 < width).then_some(k + 1))];
-            if !(here.is_finite() && [along_u, along_v].iter().all(|[a, b, c]| b <= a && b <= c)) {
+            let along_u = [2, 1].map(|n| gap(k.checked_sub(n * width)));
+            let along_u = [
+                along_u[0],
+                along_u[1],
+                *here,
+                gap((i + 1 < rows).then_some(k + width)),
+                gap((i + 2 < rows).then_some(k + 2 * width)),
+            ];
+            let along_v = [2, 1].map(|n| gap((j >= n).then(|| k - n)));
+            let along_v = [
+                along_v[0],
+                along_v[1],
+                *here,
+                gap((j + 1 < width).then_some(k + 1)),
+                gap((j + 2 < width).then_some(k + 2)),
+            ];
+            if !(here.is_finite() && [along_u, along_v].iter().all(|[_, b, c, d, _]| c <= b && c <= d)) {
                 continue;
             }
-            let low = here - MISJUDGED * (dip(along_u) + dip(along_v));
+            let low = here - dip(along_u) - dip(along_v);
             let apart =
                 self.point(u0 + i as i64, v0 + j as i64).map_or(0.0, |p| (p - stand.frame.point).norm());
             // The contact's own minimum is zero.
@@ -290,21 +303,21 @@ impl<'a> Clearance<'a> {
         })
     }
 
-    /// The least lead from `from_rad` on that is clear at all contacts; None where none is.
-    pub fn least(&self, stands: &[Stand], from_rad: f64) -> Option<f64> {
-        // What goes into the part next to the contact at a great lead too are ripples.
-        if stands.iter().all(|s| self.is_clear(s, from_rad, self.accepted_mm)) {
+    /// The least lead from `from_rad` on that is clear at a contact; None where none is.
+    pub fn least(&self, stand: &Stand, from_rad: f64) -> Option<f64> {
+        if self.is_clear(stand, from_rad, self.accepted_mm) {
             return Some(from_rad);
         }
+        // What goes into the part next to the contact at a great lead too are ripples.
         let relief = RELIEF_RAD.clamp(from_rad, self.local.most_rad.max(from_rad));
-        let ripple = |s: &Stand| {
-            if self.rough { self.near_mm(s, &self.pose(s, relief), f64::INFINITY).max(0.0) } else { 0.0 }
+        let ripple_mm = if self.rough {
+            self.near_mm(stand, &self.pose(stand, relief), f64::INFINITY).max(0.0)
+        } else {
+            0.0
         };
-        let ripples: Vec<f64> = stands.iter().map(ripple).collect();
         let slack = self.task.tolerance.gouge_mm + self.task.tolerance.scallop_mm;
         for accepted in [self.accepted_mm, slack] {
-            let clear =
-                |lead: f64| stands.iter().zip(&ripples).all(|(s, r)| self.is_clear(s, lead, accepted + r));
+            let clear = |lead: f64| self.is_clear(stand, lead, accepted + ripple_mm);
             let mut bad = None;
             for lead in self.leads(from_rad) {
                 if !clear(lead) {
@@ -331,8 +344,48 @@ impl<'a> Clearance<'a> {
     }
 }
 
-/// How far the lowest point of the parabola through three equally spaced values lies below the middle one.
-fn dip([a, b, c]: [f64; 3]) -> f64 {
-    let (bend, slope) = (0.5 * (a + c) - b, 0.5 * (c - a));
-    if bend.is_finite() && bend > 0.0 { 0.25 * slope * slope / bend } else { 0.0 }
+/// How far a convex function may come down below the middle one of five equally spaced values, the least of them: between two it lies above the
+/// lines through those before and behind. Values that are not known are infinite.
+fn dip([a, b, c, d, e]: [f64; 5]) -> f64 {
+    // Towards `near`, with `far` beyond it, from the middle; `other` is on the other side of that.
+    let towards = |far: f64, near: f64, other: f64| {
+        let (behind, before) = (other - c, far - near);
+        let meet = match (behind.is_finite(), before.is_finite()) {
+            _ if !near.is_finite() => return 0.0,
+            (true, true) if behind + before > 0.0 => (c - near + before) / (behind + before),
+            (true, false) => 1.0,
+            (false, true) => return (c - near + before).max(0.0),
+            _ => return 0.0,
+        };
+        behind * meet.clamp(0.0, 1.0)
+    };
+    towards(a, b, d).max(towards(e, d, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A flat bottom that falls along a line to the place 0, a rounded corner and a cone after it: nowhere between three of five values is it
+        /// lower than said, whether the outer two are known or not.
+        #[test]
+        fn a_convex_gap_comes_down_no_further(
+            from in -3.0..-1.0f64, slope in 0.0..0.3f64, radius in 0.05..3.0f64, known in prop::array::uniform2(any::<bool>()),
+        ) {
+            let gap = |x: f64| {
+                let corner = 0.8 * radius;
+                let round = |x: f64| radius - (radius * radius - x * x).sqrt();
+                if x < 0.0 { -slope * x } else if x < corner { round(x) } else { round(corner) + (x - corner) / 0.75 }
+            };
+            let mut values = [0, 1, 2, 3, 4].map(|k| gap(from + f64::from(k)));
+            prop_assume!(values[2] <= values[1] && values[2] <= values[3]);
+            let least = (0..=2000).map(|k| gap(from + 1.0 + f64::from(k) * 1e-3)).fold(f64::INFINITY, f64::min);
+            for (k, known) in [0, 4].into_iter().zip(known) {
+                values[k] = if known { values[k] } else { f64::INFINITY };
+            }
+            prop_assert!(values[2] - dip(values) <= least + 1e-12, "{values:?} {least}");
+        }
+    }
 }

@@ -164,6 +164,9 @@ impl crate::plan::line::PassLine for Near<'_> {
     fn rate(&self, t: f64) -> Uv {
         uv(self.rate.u + 2.0 * self.bend.u * t, self.rate.v + 2.0 * self.bend.v * t)
     }
+    fn reversed(&self) -> bool {
+        self.reversed
+    }
     fn range(&self) -> osculate_geom::Interval {
         osculate_geom::Interval::new(f64::MIN, f64::MAX)
     }

@@ -37,13 +37,19 @@ const LEADS: u32 = 2;
 /// Most of the scallop that the chords of the path may take.
 const CHORD: f64 = 0.03;
 
+/// Share of the scallop that is left for what lies between the cells, where the lead changes from place to place and with the sense of a pass.
+const LED: f64 = 0.02;
+
 /// How often a field is made again with widths that exact strips corrected.
 const CORRECTIONS: u32 = 2;
 
 /// The task on the continued face, with chords that leave the scallop to the passes: points cost less than passes.
 fn continued_task<'a>(task: &Task<'a>, face: &'a Extended<'_>) -> Task<'a> {
-    let chord_mm = task.tolerance.chord_mm.min(CHORD * task.tolerance.scallop_mm);
-    Task { surface: face, tolerance: Tolerance { chord_mm, ..task.tolerance }, ..*task }
+    let t = task.tolerance;
+    let chord_mm = t.chord_mm.min(CHORD * t.scallop_mm);
+    let scallop_mm =
+        if matches!(task.lean, Leaning::Field(_)) { (1.0 - LED) * t.scallop_mm } else { t.scallop_mm };
+    Task { surface: face, tolerance: Tolerance { chord_mm, scallop_mm, ..t }, ..*task }
 }
 
 /// A field over a face.
@@ -95,11 +101,11 @@ fn level_passes(
 pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
     task.check_level()?;
     if let Leaning::Local(local) = task.lean {
-        let feed = |_: Uv, jet: &Jet2| jet.normal().ok().map(|n| n.cross(&normal));
+        let feed = |_: Uv, jet: &Jet2| jet.normal().ok().map(|n| normal.cross(&n));
         // Passes run out over the border: there too the lead must do.
         let face = Extended::of(task, None);
         let task_beyond = Task { surface: &face, ..*task };
-        let field = LeadField::find(&task_beyond, local, (&feed, Seat::any(task).rough()))?;
+        let field = LeadField::find(&task_beyond, local, (&feed, false), Seat::any(task).rough())?;
         let passes = isoplanar(&Task { lean: Leaning::Field(&field), ..*task }, normal)?;
         return Ok(field.told(passes, task.face));
     }
@@ -176,7 +182,7 @@ fn lead_along(
     let continued = Task { surface: face, ..*task };
     let over = over(&continued, &even.field);
     let feed = |at: Uv, _: &Jet2| over.frame(at, false).ok().map(|f| f.0.tangent.into_inner());
-    LeadField::find(&continued, local, (&feed, Seat::any(task).rough()))
+    LeadField::find(&continued, local, (&feed, false), Seat::any(task).rough())
 }
 
 /// Passes with a word about their field.

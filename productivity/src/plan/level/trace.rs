@@ -179,6 +179,9 @@ impl PassLine for Traced<'_> {
     fn rate(&self, t: f64) -> Uv {
         self.near(t).rate
     }
+    fn reversed(&self) -> bool {
+        self.reversed
+    }
     fn range(&self) -> Interval {
         Interval { lo: 0.0, hi: self.length(), periodic: self.closed }
     }
