@@ -7,7 +7,7 @@ use osculate_geom::line::{IsoLine, SurfaceLine};
 use osculate_geom::{Axis, Point3, Surface, Vec3};
 use osculate_productivity::compare::Around;
 use osculate_productivity::plan::{
-    Along, CcPoint, Leaning, LocalLead, Passes, PlanError, Strategy, Task, Tolerance, run,
+    Along, CcPoint, Leaning, LocalLead, Pass, Passes, PlanError, Strategy, Task, Tolerance, run,
 };
 use osculate_surfaces::{Net, NurbsSurface};
 use osculate_tools::{Cutter, CutterSpec, Lean};
@@ -165,6 +165,37 @@ fn the_lead_changes_no_faster_than_the_rate_and_clears_everywhere() {
     // Chords are shorter than the way, by less than a thousandth.
     let limit = RATE_DEG_PER_MM.to_radians();
     assert!(fastest <= 1.001 * limit && fastest > 0.1 * limit, "{} deg/mm", fastest.to_degrees());
+}
+
+/// Near the hollow end the far side of the tool lies over other places when a pass runs towards the end than when it runs away from it: each
+/// sense has a lead of its own, and with the lesser of the two the other would dig in.
+#[test]
+fn each_sense_has_the_lead_that_it_needs() {
+    let (face, cutter) = (bend(), cutter());
+    let passes =
+        plan(Leaning::Local(&local()), &Strategy::Isoparametric { along: Along::Fixed(Axis::U) }).unwrap();
+    let u = 0.97;
+    let lead_rad = |reversed: bool| {
+        let runs = |p: &&Pass| (p.points[0].uv.u > 0.5) == reversed;
+        let points = passes.passes.iter().filter(runs).flat_map(|p| &p.points);
+        let near = points.min_by(|a, b| (a.uv.u - u).abs().total_cmp(&(b.uv.u - u).abs())).unwrap();
+        near.pose.axis.angle(&near.normal)
+    };
+    let leads = [false, true].map(lead_rad);
+    let domain = face.domain();
+    let part = |k: usize| (k % 301) as f64 / 300.0;
+    let points: Vec<Point3> = (0..301 * 301).map(|k| face.point(domain.at(part(k), part(k / 301)))).collect();
+    let deepest = |reversed: bool, lead_rad: f64| {
+        let line = IsoLine { surface: &face, along: Axis::U, fixed: 0.5, reversed };
+        let pose = Lean { lead_rad, tilt_rad: 0.0 }.pose(&cutter, &line.frame(u).unwrap().0, 0.0);
+        points.iter().map(|x| -cutter.distance(&pose, x)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let more = usize::from(leads[1] > leads[0]);
+    assert!(leads[more] > 1.2 * leads[1 - more], "{leads:?}");
+    for (k, reversed) in [(0, false), (1, true)] {
+        assert!(deepest(reversed, leads[k]) <= TOLERANCE.gouge_mm, "{leads:?}");
+    }
+    assert!(deepest(more == 1, leads[1 - more]) > TOLERANCE.gouge_mm, "{leads:?}");
 }
 
 /// Passes run out over an end that they meet at a slant. Where the face goes on ever more hollow there the tool with the lead of the

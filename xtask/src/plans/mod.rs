@@ -310,7 +310,7 @@ fn one(case: &Case, program: &Path, data: &Path, root: &Path) -> Result<String, 
         both.map_or("-".to_owned(), |(a, b)| format!("{:.2}", a / b))
     };
     say(format!(
-        "| | *cutting time of auto over that of isoparametric, of isoparametric with its tool, of the ball* | | | | {}, {}, {} | | | | | | | | |\n",
+        "| | *cutting time of auto over that of isoparametric, of isoparametric with its tool, of the ball* | | | | {}, {}, {} | | | | | | | | | |\n",
         share(1),
         share(2),
         share(5)
@@ -381,10 +381,10 @@ fn look(summary: &Value, cloud: &Cloud, folder: &Path) -> Option<f64> {
 const HEAD: &str = "# Plans of real faces\n\nMade by `cargo xtask plans --data FOLDER`: every face planned by `auto` over four tools in wide holders, by isoparametric lines with \
 the first of them, by isoparametric lines, constant scallop and streamlines with the one that `auto` chose (each with the best of six leads held all over), and in parallel planes with the ball on three axes; at the same \
 tolerances (gouge half the scallop, chord a fifth), feed (2000 mm/min) and machine. Scallop and gouge are measured from \
-the NC text, at samples some tenths of a strip apart, and at more of them wherever more than the limits might hide between these; a plan is *within* where everything is, with all that may hide after that, and *not shown* to be where only the samples are. *Use* is the median height of the crests between passes over the tolerance. *Ideal* is an estimate of the least time of any plan with the tools of the job, *efficiency* that time over the cutting time; `auto` chooses by the time on the control within tolerance; cutting time is by feed words, *on the control* is all of the program with accelerations and corners. The *second opinion* is how deep the cutter goes into some 40,000 points of the face at poses a fiftieth of its diameter apart, by formulas that share \
+the NC text, at samples some tenths of a strip apart, and at more of them wherever more than the limits might hide between these; a plan is *within* where everything is, with all that may hide after that, and *not shown* to be where only the samples are. *Use* is the median height of the crests between passes over the tolerance. *Ideal* is an estimate of the least time of any plan with the tools of the job, *isoparametric* that of isoparametric passes, each with the best lead at every place and as wide as its narrowest place, cut into up to four regions for nothing; *efficiency* is the ideal over the cutting time; `auto` chooses by the time on the control within tolerance; cutting time is by feed words, *on the control* is all of the program with accelerations and corners. The *second opinion* is how deep the cutter goes into some 40,000 points of the face at poses a fiftieth of its diameter apart, by formulas that share \
 no code with the verification. *Wall* is the whole run of the program; the times of a row depend on the machine.\n\n\
-| face | plan | tool, lead | passes | length mm | cutting min | on the control min | ideal min | efficiency % | scallop / gouge mm | use | second opinion mm | within | wall s |\n\
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+| face | plan | tool, lead | passes | length mm | cutting min | on the control min | ideal min | isoparametric min | efficiency % | scallop / gouge mm | use | second opinion mm | within | wall s |\n\
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 const FIGURES: &str = "\n## Around umbilics\n\nThe passes of constant scallop with the toroidal cutter of 16 mm on the surfaces of M86 that have umbilics, coloured by the width of their strips \
 (`path.svg` of the plan).\n\n![m86-3](figures/plan-m86-3.svg)\n\n![m86-4](figures/plan-m86-4.svg)\n";
@@ -406,7 +406,7 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         Ok(s) => s,
         Err(why) => {
             let why = why.rsplit("job.toml: ").next().unwrap_or(why);
-            return format!("| {name} | {kind} | not possible: {why} | | | | | | | | | | | |\n");
+            return format!("| {name} | {kind} | not possible: {why} | | | | | | | | | | | | |\n");
         }
     };
     let text = |k: &str| s[k].as_str().unwrap_or("-").to_owned();
@@ -417,7 +417,7 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         _ => format!("{} deg", n(&s["lead_deg"], 0)),
     };
     format!(
-        "| {name} | {kind}: {} | {}, {} | {} | {} | {} | {} | {} | {} | {} / {} | {} | {} | {} | {:.0} |\n",
+        "| {name} | {kind}: {} | {}, {} | {} | {} | {} | {} | {} | {} | {} | {} / {} | {} | {} | {} | {:.0} |\n",
         text("strategy"),
         text("tool_words"),
         lead(s),
@@ -426,6 +426,7 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         n(&s["cutting_time_min"], 2),
         n(&s["control_time_min"], 2),
         n(&s["ideal"]["time_min"], 2),
+        n(&s["ideal"]["isoparametric_min"], 2),
         n(&s["efficiency_percent"], 0),
         n(&v["scallop_max_mm"], 4),
         n(&v["gouge_max_mm"], 4),

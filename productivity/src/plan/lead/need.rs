@@ -37,6 +37,8 @@ const HALVINGS: u32 = 10;
 const RELIEF_RAD: f64 = 0.5;
 /// Minima nearer to the contact than so many steps of the lattice are the contact's own.
 const OWN: f64 = 1.5;
+/// A point of the lattice and those that tell how low it may be next to it.
+const BESIDE: [i64; 5] = [-2, -1, 0, 1, 2];
 /// Rounds of a look between the lattice's points.
 const PATTERN: u32 = 12;
 /// Normals of rough faces are averaged this far around, of the tool's radius.
@@ -195,30 +197,19 @@ impl<'a> Clearance<'a> {
         }
         let lowest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         let rows = gaps.len() / width;
-        let gap = |k: Option<usize>| k.and_then(|k| gaps.get(k)).copied().unwrap_or(f64::INFINITY);
+        let gap = |i: i64, j: i64| {
+            let inside = i >= 0 && j >= 0 && (i as usize) < rows && (j as usize) < width;
+            if inside { gaps[i as usize * width + j as usize] } else { f64::INFINITY }
+        };
         let own = OWN * APART * cutter.radius_mm();
         let limit = -enough_mm.min(self.accepted_mm);
         // The two places that may be lowest between the points.
         let mut doubtful = [(limit, 0); 2];
-        for (k, here) in gaps.iter().enumerate() {
+        for (k, here) in gaps.iter().enumerate().filter(|(_, here)| here.is_finite()) {
             let (i, j) = (k / width, k % width);
-            let along_u = [2, 1].map(|n| gap(k.checked_sub(n * width)));
-            let along_u = [
-                along_u[0],
-                along_u[1],
-                *here,
-                gap((i + 1 < rows).then_some(k + width)),
-                gap((i + 2 < rows).then_some(k + 2 * width)),
-            ];
-            let along_v = [2, 1].map(|n| gap((j >= n).then(|| k - n)));
-            let along_v = [
-                along_v[0],
-                along_v[1],
-                *here,
-                gap((j + 1 < width).then_some(k + 1)),
-                gap((j + 2 < width).then_some(k + 2)),
-            ];
-            if !(here.is_finite() && [along_u, along_v].iter().all(|[_, b, c, d, _]| c <= b && c <= d)) {
+            let along_u = BESIDE.map(|n| gap(i as i64 + n, j as i64));
+            let along_v = BESIDE.map(|n| gap(i as i64, j as i64 + n));
+            if ![along_u, along_v].iter().all(|[_, b, c, d, _]| c <= b && c <= d) {
                 continue;
             }
             let low = here - dip(along_u) - dip(along_v);

@@ -101,6 +101,7 @@ fn level_passes(
 pub fn isoplanar(task: &Task<'_>, normal: Unit3) -> Result<Passes, PlanError> {
     task.check_level()?;
     if let Leaning::Local(local) = task.lean {
+        // As level lines grow, uphill to the left.
         let feed = |_: Uv, jet: &Jet2| jet.normal().ok().map(|n| normal.cross(&n));
         // Passes run out over the border: there too the lead must do.
         let face = Extended::of(task, None);
