@@ -78,8 +78,9 @@ type Place = Option<Asked>;
 struct Asked {
     /// Passes that go through the lattice's cell, at the place's own width, running either way.
     passes: [f64; 2],
-    /// Length of one of them in the cell, mm.
+    /// Length of one of them in the cell, mm, and the cell's area.
     length_mm: f64,
+    area_mm2: f64,
 }
 
 /// Places of a face in rows across the passes; None where the tool leaves no strip at one of them.
@@ -107,27 +108,17 @@ fn lattice(
         let (way, other) = (step(along), step(along.other()));
         let (length_mm, area_mm2) = (way.norm(), way.cross(&other).norm());
         let widths = widths(surface, at, cutter, along, within)?;
-        Some(Some(Asked { passes: widths.map(|w| area_mm2 / length_mm / w), length_mm }))
+        Some(Some(Asked { passes: widths.map(|w| area_mm2 / length_mm / w), length_mm, area_mm2 }))
     };
     let mut all: Vec<Place> = (0..side * side).into_par_iter().map(seen).collect::<Option<_>>()?;
-    let area: f64 = all.iter().flatten().map(|p| p.passes[0] * p.length_mm).sum();
-    if area == 0.0 {
+    let cells_mm2: f64 = all.iter().flatten().map(|p| p.area_mm2).sum();
+    if cells_mm2 == 0.0 {
         return None;
     }
     // The cells' areas add up to the face's.
-    let cells: f64 =
-        (0..side * side).filter(|k| all[*k].is_some()).map(|k| cell_mm2(face, side, along, k)).sum();
-    let scale = face.area_mm2 / cells;
+    let scale = face.area_mm2 / cells_mm2;
     all.iter_mut().flatten().for_each(|p| p.passes = p.passes.map(|x| x * scale));
     Some(all)
-}
-
-fn cell_mm2(face: &Patch<'_>, side: usize, along: Axis, k: usize) -> f64 {
-    let (domain, part) = (face.surface.domain(), |k: usize| (k as f64 + 0.5) / side as f64);
-    let (t, x) = (part(k / side), part(k % side));
-    let jet = face.surface.jet2(if along == Axis::U { domain.at(t, x) } else { domain.at(x, t) });
-    let cells = (side * side) as f64;
-    jet.du.cross(&jet.dv).norm() * domain.u.length() * domain.v.length() / cells
 }
 
 /// The widest strips at a place for passes along a parameter and against it, mm; None where there is none.
@@ -203,7 +194,7 @@ mod tests {
         let side = 6;
         let place = |k: usize| {
             let many = if k / side < 3 { 1.0 } else { 3.0 };
-            Some(Asked { passes: [many; 2], length_mm: 2.0 })
+            Some(Asked { passes: [many; 2], length_mm: 2.0, area_mm2: 1.0 })
         };
         let lattice: Vec<Place> = (0..side * side).map(place).collect();
         assert!((length_mm(&lattice, side) - 6.0 * (6.0 * 1.0 + 6.0 * 3.0)).abs() < 1e-12);
