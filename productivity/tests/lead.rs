@@ -46,7 +46,7 @@ fn cutter() -> Cutter {
 
 fn local() -> LocalLead<'static> {
     LocalLead {
-        tilt_rad: 0.0,
+        tilt_rad: Some(0.0),
         least_rad: 1f64.to_radians(),
         most_rad: LocalLead::MOST_RAD,
         rate_rad_per_mm: RATE_DEG_PER_MM.to_radians(),
@@ -232,7 +232,12 @@ fn the_motion_with_a_changing_lead_meets_its_differences() {
     let lead = |t: f64| 0.1 + 0.3 * t;
     let moving = |t: f64| {
         let (frame, speed) = line.frame(t).unwrap();
-        Lean { lead_rad: lead(t), tilt_rad: 0.2 }.moving(&cutter, &frame, 0.05, (speed, 0.3))
+        Lean { lead_rad: lead(t), tilt_rad: 0.2 - 0.2 * t }.moving(
+            &cutter,
+            &frame,
+            0.05,
+            (speed, [0.3, -0.2]),
+        )
     };
     let d = 1e-5;
     for t in [0.2, 0.55, 0.9] {

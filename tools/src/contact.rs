@@ -148,26 +148,28 @@ impl Lean {
         Pose { tip, axis }
     }
 
-    /// The pose in a frame that moves by `speed` mm along its tangent while the lead grows by `lead_rate` rad, both per unit of
-    /// the motion's parameter; tilt and lift are held.
+    /// The pose in a frame that moves by `speed` mm along its tangent while lead and tilt grow by `rates` rad, all per unit of
+    /// the motion's parameter; the lift is held.
     #[must_use]
     pub fn moving(
         self,
         cutter: &Cutter,
         frame: &Darboux,
         lift_mm: f64,
-        (speed, lead_rate): (f64, f64),
+        (speed, rates): (f64, [f64; 2]),
     ) -> Moving {
         let pose = self.pose(cutter, frame, lift_mm);
-        // Lead and tilt held, the tool is rigid in the Darboux frame.
+        // Lead and tilt held, the tool is rigid in the moving frame.
         let turn = frame.turn * speed;
         let tip_rate = frame.tangent.into_inner() * speed + turn.cross(&(pose.tip - frame.point));
-        if lead_rate == 0.0 {
+        if rates == [0.0; 2] {
             return Moving { pose, tip_rate, turn };
         }
-        // The axis turns about n x heading, and the tool with it about the centre of its corner's arc above the contact:
-        // that stays where it is.
-        let about = frame.normal.cross(&self.heading(frame)) * lead_rate;
+        // With the lead the axis turns about n x heading, with the tilt about n, and the tool with it about the centre of its corner's
+        // arc above the contact: that stays where it is.
+        let [lead_rate, tilt_rate] = rates;
+        let normal = frame.normal.into_inner();
+        let about = normal.cross(&self.heading(frame)) * lead_rate + normal * tilt_rate;
         let centre =
             frame.point + frame.normal.into_inner() * (cutter.touching(self.lead_rad).radius_mm + lift_mm);
         Moving { pose, tip_rate: tip_rate + about.cross(&(pose.tip - centre)), turn: turn + about }
@@ -307,7 +309,7 @@ pub struct ContactMotion<'a> {
 impl SweptMotion for ContactMotion<'_> {
     fn at(&self, t: f64) -> Option<Moving> {
         let (frame, speed) = self.line.frame(t).ok()?;
-        Some(self.lean.moving(self.cutter, &frame, self.lift_mm, (speed, 0.0)))
+        Some(self.lean.moving(self.cutter, &frame, self.lift_mm, (speed, [0.0; 2])))
     }
 }
 

@@ -4,7 +4,7 @@ use crate::screen::{cancel, output, render};
 use osculate::failure::{Done, Failure, Outcome};
 use osculate::figure::indicatrices;
 use osculate::job::strategy::Kind;
-use osculate::job::{ContactFeed, Job, LeadKey};
+use osculate::job::{ContactFeed, Job, LeanKey};
 use osculate::part;
 use osculate::words::{Table, number};
 use osculate::work::strip::{Answer, Bends, Forms, Instant, Passing, Sharing};
@@ -44,7 +44,7 @@ pub fn run(path: &Path, out: Option<&Path>, json: bool) -> Outcome {
             ),
         ));
     }
-    if job.strategy().lead == LeadKey::Local {
+    if job.strategy().lead == LeanKey::Local {
         let why = "[strategy] lead_deg = \"local\" is for paths: one contact needs a number";
         return Err(Failure::file(job.path(), why));
     }

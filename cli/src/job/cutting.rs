@@ -5,7 +5,7 @@ use crate::job::problem::Places;
 use crate::job::raw::Raw;
 use crate::job::strategy::Strategy;
 use crate::job::tool::Tool;
-use crate::job::words::LeadKey;
+use crate::job::words::LeanKey;
 use osculate_productivity::rate::{Caps, FeedLimit};
 
 /// Feed of a job that gives none, mm/min.
@@ -42,7 +42,7 @@ pub(super) fn feed_per_tooth_mm(tool: &Tool, strategy: &Strategy, mark_mm: f64) 
         let h = mark_mm.min(r);
         return Some(2.0 * (h * (2.0 * r - h)).sqrt());
     }
-    let LeadKey::Given(deg) = strategy.lead else { return None };
+    let LeanKey::Given(deg) = strategy.lead else { return None };
     let lead_rad = strategy.side_tilt().map_or(deg.to_radians(), |side| side.lean(1.0).lead_rad);
     let slope = (lead_rad.sin() * lead_rad.cos()).abs();
     (slope > 0.0).then(|| mark_mm / slope)

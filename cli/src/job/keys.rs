@@ -4,7 +4,7 @@ use crate::job::language::Language;
 use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeadKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
+    FlankShape, Gouges, LeanKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
     Turns,
 };
 use osculate_postproc::built_in_names;
@@ -210,10 +210,11 @@ pub static TABLES: &[Table] = &[
     ]),
     table("strategy", false, "how to cut", &[
         may("kind", Kind::Word(StrategyWord::WORDS), "auto", "\"isoparametric\"", "the way of the passes; auto chooses"),
-        may("lead_deg", Kind::NumberOr(LEAN, "deg", LeadKey::WORDS), "auto", "15", "lean of the axis towards the feed"),
+        may("lead_deg", Kind::NumberOr(LEAN, "deg", LeanKey::WORDS), "auto", "15", "lean of the axis towards the feed"),
         may("lead_rate_deg_per_mm", Kind::Number(Range { least: 0.0, most: 1e3, open: [true, false] }, "deg/mm"), "1", "0.5",
             "lead_deg = \"local\": its greatest change along the face"),
-        may("tilt_deg", Kind::Number(TURN, "deg"), "0", "5", "turn of the leaning axis about the normal"),
+        may("tilt_deg", Kind::NumberOr(TURN, "deg", LeanKey::WORDS), "auto", "5",
+            "turn of the leaning axis about the normal; \"local\": strips reach as far to both sides"),
         may("side_tilt_deg", Kind::Number(ASIDE, "deg"), "none", "15",
             "isoparametric, regions: lean to the left of the growing parameter, the same for passes to and fro; lead_deg is 0 where not given"),
         may("along", Kind::Word(AlongWord::WORDS), "auto", "\"u\"", "isoparametric, regions: the parameter along the passes"),

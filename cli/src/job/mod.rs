@@ -44,7 +44,7 @@ use std::sync::Arc;
 pub use stock::{Blank, Fixture, Stock};
 pub use strategy::Strategy;
 pub use tool::Tool;
-pub use words::{Accept, Gouges, LeadKey, Normals, OperationWord, Turns};
+pub use words::{Accept, Gouges, LeanKey, Normals, OperationWord, Turns};
 
 /// Gouge and chord of a job that gives none, of the scallop.
 const SHARES: [f64; 2] = [0.5, 0.2];

@@ -2,7 +2,7 @@
 
 use crate::job::words::{
     Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeadKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
+    FlankShape, Gouges, LeanKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
     Turns,
 };
 use osculate_tools::HolderSpec;
@@ -200,9 +200,9 @@ pub struct Tolerance {
 #[non_exhaustive]
 pub struct Strategy {
     pub kind: StrategyWord,
-    pub lead_deg: LeadKey,
+    pub lead_deg: LeanKey,
     pub lead_rate_deg_per_mm: Option<f64>,
-    pub tilt_deg: f64,
+    pub tilt_deg: LeanKey,
     pub side_tilt_deg: Option<f64>,
     pub along: AlongWord,
     pub axis: Option<AxisKey>,

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::roughing::{Layers, layers};
-use crate::job::words::{AlongWord, AxisKey, ClimbWord, Gouges, LeadKey, StrategyWord};
+use crate::job::words::{AlongWord, AxisKey, ClimbWord, Gouges, LeanKey, StrategyWord};
 use osculate_geom::{Axis, Unit3, Vec3};
 use osculate_productivity::plan::{self, Along, Milling, Senses, SideTilt};
 use osculate_tools::Lean;
@@ -51,11 +51,11 @@ pub struct Strategy {
     /// The way to cut.
     pub kind: Kind,
     /// Lead; given ones in degrees.
-    pub lead: LeadKey,
+    pub lead: LeanKey,
     /// Greatest change of a local lead along a face.
     pub lead_rate_rad_per_mm: f64,
-    /// Tilt.
-    pub tilt_deg: f64,
+    /// Tilt; given ones in degrees.
+    pub tilt: LeanKey,
     /// Tilt to the left of the growing parameter on passes to and fro; the lead is then a given one.
     pub side_tilt_deg: Option<f64>,
     /// The axis of tools that keep it.
@@ -93,18 +93,29 @@ impl Strategy {
     /// Whether axes may be a field: the job asks for one, or for nothing that a field has not.
     #[must_use]
     pub fn may_be_field(&self) -> bool {
-        self.axis_field || (self.axis_open && self.lead == LeadKey::Auto && self.tilt_deg == 0.0)
+        self.axis_field || (self.axis_open && self.lead == LeanKey::Auto && !self.tilts())
     }
 
     /// The lean to one side of the faces, where the job asks for one.
     #[must_use]
     pub fn side_tilt(&self) -> Option<SideTilt> {
         match (self.side_tilt_deg, self.lead) {
-            (Some(side), LeadKey::Given(lead)) => {
+            (Some(side), LeanKey::Given(lead)) => {
                 Some(SideTilt { lead_rad: lead.to_radians(), side_rad: side.to_radians() })
             }
             _ => None,
         }
+    }
+
+    /// The tilt that is held, deg: none where it is found place by place.
+    #[must_use]
+    pub fn tilt_deg(&self) -> f64 {
+        self.tilt.given_deg().unwrap_or(0.0)
+    }
+
+    /// Whether the job wants a tilt.
+    fn tilts(&self) -> bool {
+        self.tilt == LeanKey::Local || self.tilt_deg() != 0.0
     }
 
     /// As [`crate::job::Job::lean`].
@@ -114,10 +125,10 @@ impl Strategy {
             return side.lean(1.0);
         }
         let lead_rad = match self.lead {
-            LeadKey::Auto | LeadKey::Local => auto_lead_rad,
-            LeadKey::Given(deg) => deg.to_radians(),
+            LeanKey::Auto | LeanKey::Local => auto_lead_rad,
+            LeanKey::Given(deg) => deg.to_radians(),
         };
-        Lean { lead_rad, tilt_rad: self.tilt_deg.to_radians() }
+        Lean { lead_rad, tilt_rad: self.tilt_deg().to_radians() }
     }
 
     /// Lead and tilt as the job gives them, of a lean of its passes: beside a tilt to one side that is the lead alone.
@@ -188,8 +199,8 @@ impl Strategy {
             StrategyWord::Flank => Kind::Flank,
         };
         let lead = match t.lead_deg {
-            LeadKey::Auto if t.side_tilt_deg.is_some() && !places.has(TABLE, "lead_deg") => {
-                LeadKey::Given(0.0)
+            LeanKey::Auto if t.side_tilt_deg.is_some() && !places.has(TABLE, "lead_deg") => {
+                LeanKey::Given(0.0)
             }
             lead => lead,
         };
@@ -198,7 +209,7 @@ impl Strategy {
             kind,
             lead,
             lead_rate_rad_per_mm: t.lead_rate_deg_per_mm.unwrap_or(LEAD_RATE_DEG_PER_MM).to_radians(),
-            tilt_deg: t.tilt_deg,
+            tilt: t.tilt_deg,
             side_tilt_deg: t.side_tilt_deg,
             axis,
             axis_field: t.axis == Some(AxisKey::Field),
@@ -262,16 +273,16 @@ impl Strategy {
             }
         }
         let leans = match self.lead {
-            LeadKey::Auto => false,
-            LeadKey::Local => true,
-            LeadKey::Given(deg) => deg != 0.0,
+            LeanKey::Auto => false,
+            LeanKey::Local => true,
+            LeanKey::Given(deg) => deg != 0.0,
         };
-        if self.axis_field && (leans || self.tilt_deg != 0.0) {
+        if self.axis_field && (leans || self.tilts()) {
             let key = if leans { "lead_deg" } else { "tilt_deg" };
             let what = "axis = \"field\" finds the axis at each place: leave out lead_deg and tilt_deg";
             return Err(places.refuse(TABLE, key, what.to_owned()));
         }
-        if keeps_axis && (leans || self.tilt_deg != 0.0) {
+        if keeps_axis && (leans || self.tilts()) {
             let key = if leans { "lead_deg" } else { "tilt_deg" };
             let what =
                 format!("{} keeps the tool axis on `axis`: leave out lead_deg and tilt_deg", self.name());
@@ -296,12 +307,12 @@ impl Strategy {
                     "side_tilt_deg needs along = \"u\" or \"v\": its side is left of that parameter as it grows",
                 ),
                 (
-                    !matches!(self.lead, LeadKey::Given(_)),
+                    !matches!(self.lead, LeanKey::Given(_)),
                     "lead_deg",
                     "side_tilt_deg needs lead_deg as a number, which is 0 where it is left out",
                 ),
                 (
-                    self.tilt_deg != 0.0,
+                    self.tilts(),
                     "tilt_deg",
                     "tilt_deg changes sides with the feed, side_tilt_deg does not: leave one of them out",
                 ),
@@ -309,6 +320,10 @@ impl Strategy {
             if let Some((_, key, what)) = wrong.into_iter().find(|w| w.0) {
                 return refuse(key, what.to_owned());
             }
+        }
+        if self.tilt == LeanKey::Local && self.lead != LeanKey::Local {
+            let what = "tilt_deg = \"local\" needs lead_deg = \"local\": the least lead that fits differs with the tilt";
+            return refuse("tilt_deg", what.to_owned());
         }
         if let Some(d) = self.feed_direction {
             let across = d - self.axis.into_inner() * d.dot(&self.axis);

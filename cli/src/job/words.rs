@@ -289,25 +289,34 @@ words! {
     }
 }
 
-/// A lead in degrees, "auto" or "local".
+/// An angle of the lean in degrees, "auto" or "local".
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
-pub enum LeadKey {
-    /// The program chooses one for the whole path.
+pub enum LeanKey {
+    /// The program chooses.
     #[default]
     Auto,
-    /// The least at every place.
+    /// Found at every place.
     Local,
     /// As given.
     Given(f64),
 }
 
-impl LeadKey {
-    /// The words that stand for a lead.
+impl LeanKey {
+    /// The words that stand for an angle.
     pub const WORDS: &'static [&'static str] = &["auto", "local"];
+
+    /// The angle that is given, deg; none where the program finds it.
+    #[must_use]
+    pub fn given_deg(self) -> Option<f64> {
+        match self {
+            Self::Given(deg) => Some(deg),
+            Self::Auto | Self::Local => None,
+        }
+    }
 }
 
-impl<'de> Deserialize<'de> for LeadKey {
+impl<'de> Deserialize<'de> for LeanKey {
     fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
         #[serde(untagged)]

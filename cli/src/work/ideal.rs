@@ -110,7 +110,7 @@ pub fn of_job(job: &Job, faces: &Part) -> Result<Bound, Failure> {
 /// Tilts of the bound, and in words: where the job does not tilt, nor does the bound, as the feed is free to turn instead.
 pub fn tilts(job: &Job) -> (Range, &'static str) {
     let strategy = job.strategy();
-    if strategy.tilt_deg == 0.0 && strategy.side_tilt_deg.is_none_or(|deg| deg == 0.0) {
+    if strategy.tilt_deg() == 0.0 && strategy.side_tilt_deg.is_none_or(|deg| deg == 0.0) {
         (Range::only(0.0), "no tilt")
     } else {
         (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt")

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::strategy::{Drop, Kind};
-use crate::job::{Control, Job, LeadKey};
+use crate::job::{Control, Job, LeanKey};
 use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
 use crate::work::axes::Fields;
@@ -206,10 +206,10 @@ pub fn each_face(
     let cutter = &job.cutter();
     let holder = job.holder();
     let all = faces.faces.iter().chain(&faces.check);
-    let around = (way.axes == Axes::Local)
-        .then(|| Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str()))));
+    let around =
+        way.axes.is_local().then(|| Around::of(all.map(|f| (&*f.surface as &dyn Surface, f.id.as_str()))));
     let local = LocalLead {
-        tilt_rad: way.lean.tilt_rad,
+        tilt_rad: (way.axes != Axes::Balanced).then_some(way.lean.tilt_rad),
         least_rad: way.lean.lead_rad,
         most_rad: LocalLead::MOST_RAD,
         rate_rad_per_mm: job.lead_rate_rad_per_mm(),
@@ -229,7 +229,7 @@ pub fn each_face(
             Axes::Held => {
                 plan(way.strategy, job.strategy().side_tilt().map_or(way.lean.into(), Leaning::Sided))?
             }
-            Axes::Local => plan(way.strategy, Leaning::Local(&local))?,
+            Axes::Local | Axes::Balanced => plan(way.strategy, Leaning::Local(&local))?,
             Axes::Field => {
                 let mut best: Option<Result<Passes, Failure>> = None;
                 // Each direction has a field of its own; one along which the tool does not fit leaves the other.
@@ -279,12 +279,14 @@ pub fn with_best_lead(
     if job.strategy().axis_field {
         return Ok((each_face(job, faces, &way(Lean::default(), Axes::Field), progress)?, Lean::default()));
     }
-    if job.strategy().lead == LeadKey::Local {
+    if job.strategy().lead == LeanKey::Local {
         let lean = job.lean(cutter.least_lean_rad());
-        return Ok((each_face(job, faces, &way(lean, Axes::Local), progress)?, lean));
+        let balanced = job.strategy().tilt == LeanKey::Local;
+        let axes = if balanced { Axes::Balanced } else { Axes::Local };
+        return Ok((each_face(job, faces, &way(lean, axes), progress)?, lean));
     }
     let mut leads: Vec<f64> = match job.strategy().lead {
-        LeadKey::Given(deg) => vec![deg],
+        LeanKey::Given(deg) => vec![deg],
         _ if cutter.is_ball() => vec![BALL_LEAD_DEG],
         _ => LEADS_DEG.to_vec(),
     };

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::files;
 use crate::job::strategy::Kind;
-use crate::job::{Job, LeadKey};
+use crate::job::{Job, LeanKey};
 use crate::part::{self, Part};
 use crate::report::fill::{self, Story};
 use crate::watch::{Stage, Watch};
@@ -432,7 +432,7 @@ impl Laid {
             }
             None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
         };
-        let local = job.strategy().lead == LeadKey::Local || job.strategy().axis_field;
+        let local = job.strategy().lead == LeanKey::Local || job.strategy().axis_field;
         Ok(Self { passes, skipped: Vec::new(), lean, local })
     }
 

@@ -51,8 +51,18 @@ pub enum Axes {
     Held,
     /// The least lead that fits at every place, from a given one on.
     Local,
+    /// The same, with the tilt at every place with which strips reach as far to both sides.
+    Balanced,
     /// A field in the part's frame, the same for passes to and fro.
     Field,
+}
+
+impl Axes {
+    /// Whether leads are found place by place, each for its own direction of feed.
+    #[must_use]
+    pub const fn is_local(self) -> bool {
+        matches!(self, Self::Local | Self::Balanced)
+    }
 }
 
 /// What screening says of a candidate.

@@ -91,7 +91,7 @@ fn look(setting: &Setting<'_>, spot: &Spot<'_>, candidates: &[Candidate]) -> Vec
             let here = match c.axes {
                 Axes::Held => posture(setting, spot, chart, c, &course),
                 Axes::Field if setting.line.is_some() => on_line(setting, spot, chart, c, &course),
-                Axes::Local | Axes::Field => least(setting, spot, chart, c, &course),
+                Axes::Local | Axes::Balanced | Axes::Field => least(setting, spot, chart, c, &course),
             };
             best = better(best, here);
         }
@@ -138,10 +138,12 @@ fn on_line(
     there.reduce(better).unwrap_or(There::Away)
 }
 
-/// Quotient of leads that are tried where the lead is the least that fits, and the greatest.
+/// Quotient of leads that are tried where the lead is the least that fits, and halvings between the last two: strips of two contacts
+/// are narrow peaks in the lead.
 const STEP: f64 = 1.5;
+const HALVINGS: u32 = 6;
 
-/// The posture with the least lead that fits.
+/// The widest of the postures about the least lead that fits.
 fn least(
     setting: &Setting<'_>,
     spot: &Spot<'_>,
@@ -149,15 +151,28 @@ fn least(
     candidate: &Candidate,
     course: &Course,
 ) -> There {
-    let mut lean = course.lean;
-    loop {
-        let here = posture(setting, spot, chart, candidate, &Course { lean, ..*course });
-        if matches!(here, There::Strip { .. }) || lean.lead_rad <= 0.0 || lean.lead_rad >= LocalLead::MOST_RAD
-        {
-            return here;
-        }
-        lean.lead_rad = (lean.lead_rad * STEP).min(LocalLead::MOST_RAD);
+    let with = |lead_rad: f64| {
+        let lean = Lean { lead_rad, ..course.lean };
+        posture(setting, spot, chart, candidate, &Course { lean, ..*course })
+    };
+    let fits = |there: &There| matches!(there, There::Strip { .. });
+    let (mut low, mut high) = (None, course.lean.lead_rad);
+    let mut best = with(high);
+    while !fits(&best) && high > 0.0 && high < LocalLead::MOST_RAD {
+        (low, high) = (Some(high), (high * STEP).min(LocalLead::MOST_RAD));
+        best = with(high);
     }
+    let Some(mut low) = low.filter(|_| fits(&best)) else { return best };
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let here = with(middle);
+        if fits(&here) {
+            (high, best) = (middle, better(best, here));
+        } else {
+            low = middle;
+        }
+    }
+    best
 }
 
 fn posture(

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::job::strategy::Kind;
-use crate::job::{Job, LeadKey};
+use crate::job::{Job, LeanKey};
 use crate::part::{self, Part};
 use crate::work::axes;
 use crate::work::passes::{BALL_LEAD_DEG, each_direction};
@@ -52,10 +52,15 @@ pub(super) fn of_job(job: &Job, faces: &Part, cutters: &[Cutter]) -> Result<Vec<
             if !fits {
                 continue;
             }
-            // Regions pay where leads, and with them strips, differ over the face.
-            let not_held = auto && matches!(strategy, Strategy::Regions { .. });
+            // Regions pay where leads, and with them strips, differ over the face; where they do not, there is one region of isoparametric
+            // passes.
+            let wanted = |axes: Axes| match strategy {
+                Strategy::Regions { .. } => !auto || axes != Axes::Held,
+                Strategy::Isoparametric { .. } => !auto || !axes.is_local(),
+                _ => true,
+            };
             let leans = leans(job, cutter, strategy);
-            for (lean, axes) in leans.into_iter().filter(|(_, axes)| *axes != Axes::Held || !not_held) {
+            for (lean, axes) in leans.into_iter().filter(|(_, axes)| wanted(*axes)) {
                 out.push(Candidate { tool, strategy: *strategy, lean, axes });
             }
         }
@@ -83,7 +88,13 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
     let held = |leads: &[f64]| -> Vec<(Lean, Axes)> {
         leads.iter().map(|deg| (job.lean(deg.to_radians()), Axes::Held)).collect()
     };
-    let local = || (job.lean(cutter.least_lean_rad()), Axes::Local);
+    // Before the tilt that is held, the one found.
+    let tilts: &[Axes] = match job.strategy().tilt {
+        LeanKey::Auto => &[Axes::Balanced, Axes::Local],
+        LeanKey::Local => &[Axes::Balanced],
+        LeanKey::Given(_) => &[Axes::Local],
+    };
+    let local = || tilts.iter().map(|axes| (job.lean(cutter.least_lean_rad()), *axes));
     // A field goes by the direction of passes, which level lines have not yet.
     let lined = matches!(strategy, Strategy::Regions { .. });
     // Next to the normal a sharp edge tells nothing of what lies between points: a flat end keeps to leads, unless the machine leaves it
@@ -91,11 +102,11 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
     let round = cutter.corner_mm() > 0.0 || axes::is_line(job);
     let field = (lined && round && job.strategy().may_be_field()).then(of_field);
     match job.strategy().lead {
-        LeadKey::Given(deg) => held(&[deg]),
+        LeanKey::Given(deg) => held(&[deg]),
         // A ball is the same at any lead.
-        LeadKey::Local if !cutter.is_ball() => vec![local()],
+        LeanKey::Local if !cutter.is_ball() => local().collect(),
         _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]).into_iter().chain(field).collect(),
-        _ => held(&LEADS_DEG).into_iter().chain([local()]).chain(field).collect(),
+        _ => held(&LEADS_DEG).into_iter().chain(local()).chain(field).collect(),
     }
 }
 

@@ -45,7 +45,13 @@ pub(super) struct Entry {
 impl Entry {
     /// Whether its lead is found place by place.
     pub fn is_local(&self) -> bool {
-        self.candidate.axes == Axes::Local
+        self.candidate.axes.is_local()
+    }
+
+    /// Whether it is another with its tilt held instead of found.
+    pub fn is_held_twin(&self, of: &Self) -> bool {
+        let (a, b) = (&self.candidate, &of.candidate);
+        a.axes == Axes::Local && b.axes == Axes::Balanced && (a.tool, a.strategy) == (b.tool, b.strategy)
     }
 
     /// Whether its axes are a field.

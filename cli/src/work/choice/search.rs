@@ -31,9 +31,14 @@ const MOST_LOCAL_BESIDE_FIELD: usize = 2;
 /// Plans with fields of axes, which are the first, and with those that are tried around one that holds.
 const MOST_FIELDS: usize = 3;
 const MOST_FIELDS_AROUND: usize = 4;
-/// Plans with other tools then, and with one of them.
+/// Plans with other tools then, also where a field holds, and with one of them.
 const MOST_ELSEWHERE: usize = 4;
+const MOST_ELSEWHERE_BESIDE_FIELD: usize = 2;
 const MOST_OF_ANOTHER: usize = 2;
+/// Plans with a tilt held of those whose tilt was found place by place, each where that took no more than this many times the least
+/// time: axes that turn less may be quicker than wider strips.
+const MOST_HELD_TWINS: usize = 2;
+const NEAR: f64 = 1.25;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
 /// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.
@@ -260,7 +265,10 @@ impl<'a> Choice<'a> {
     /// strategies, each with its nearest lead and the quickest first; then leads found place by place with other tools.
     fn first_around(&self, holder: &Holder) -> Option<usize> {
         let held = self.entries[holder.entry].candidate;
-        let made_local = self.locals().filter(|e| e.candidate.tool == held.tool).count();
+        let twin = |e: &Entry| self.entries.iter().find(|of| e.is_held_twin(of));
+        let twins = self.locals().filter(|e| twin(e).is_some()).count();
+        let own = |e: &&Entry| e.candidate.tool == held.tool && twin(e).is_none();
+        let made_local = self.locals().filter(own).count();
         let made = (self.plans - holder.plans).saturating_sub(self.locals().count() - holder.locals);
         let elsewhere = self.entries.iter().filter(|e| e.elsewhere && !e.is_field()).count();
         let holds = |e: &Entry| e.verified.is_some_and(|v| v.within_tolerance);
@@ -279,9 +287,13 @@ impl<'a> Choice<'a> {
             if e.is_field() {
                 return (fields < MOST_FIELDS_AROUND.max(most_alone)).then(|| (1, 0.0, e.least_min()));
             }
+            if let Some(twin) = twin(e) {
+                let near = twin.figures.is_some() && twin.least_min() < NEAR * holder.time_min;
+                return (near && twins < MOST_HELD_TWINS).then(|| (2, 0.0, twin.least_min()));
+            }
             if c.tool != held.tool {
-                let wanted =
-                    e.is_local() && !by_field && keeps_lines(&c.strategy) && elsewhere < MOST_ELSEWHERE;
+                let most = if by_field { MOST_ELSEWHERE_BESIDE_FIELD } else { MOST_ELSEWHERE };
+                let wanted = e.is_local() && keeps_lines(&c.strategy) && elsewhere < most;
                 return wanted.then(|| self.with_another(e)).flatten();
             }
             let beside = c.strategy == held.strategy;

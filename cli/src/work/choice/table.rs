@@ -40,6 +40,8 @@ pub struct Row {
     pub lead_deg: f64,
     /// Whether the lead was found place by place.
     pub local_lead: bool,
+    /// Whether the tilt was, too.
+    pub local_tilt: bool,
     /// Whether axes are measured from the `feed` or are a `field` in the part's frame.
     pub axis: String,
     /// Tilt.
@@ -90,7 +92,8 @@ fn of_entry(jobs: &[Job], entry: &Entry, leads: usize) -> Row {
         tool: jobs[c.tool].tool_words(),
         strategy: candidates::words(&c.strategy),
         lead_deg: lean.lead_rad.to_degrees(),
-        local_lead: c.axes == Axes::Local,
+        local_lead: c.axes.is_local(),
+        local_tilt: c.axes == Axes::Balanced,
         axis: if c.axes == Axes::Field { "field" } else { "feed" }.to_owned(),
         tilt_deg: lean.tilt_rad.to_degrees(),
         side_tilt_deg: jobs[c.tool].strategy().side_tilt_deg,
@@ -159,6 +162,7 @@ fn cells(row: &Row) -> [String; 9] {
         row.tool.clone(),
         row.strategy.clone(),
         match row.axis.as_str() {
+            "feed" if row.local_tilt => "local, tilt local".to_owned(),
             "feed" if row.local_lead => "local".to_owned(),
             "feed" => format!("{:.0}", row.lead_deg),
             field => field.to_owned(),

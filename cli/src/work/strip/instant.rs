@@ -138,7 +138,7 @@ fn engaged(contact: &Contact<'_>, (feed, layer_mm, teeth): (f64, f64, Option<u32
     let cutter = contact.cutter;
     let step_mm = (STEP_OF_LAYER * layer_mm).max(LEAST_STEP * cutter.radius_mm());
     let outline = Outline::new(cutter, Fineness { meridians: MERIDIANS, step_mm });
-    let moving = contact.lean.moving(cutter, &contact.frame, contact.lift_mm, (feed, 0.0));
+    let moving = contact.lean.moving(cutter, &contact.frame, contact.lift_mm, (feed, [0.0; 2]));
     let mut lost = false;
     let found = outline.engaged(&moving, |p| {
         let Ok(foot) = closest_near(contact.surface, p, contact.at) else {

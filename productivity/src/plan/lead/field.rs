@@ -4,9 +4,10 @@
 //! than a rate times their distance bound the rate of the field. Where the lead turns out too low between the places of the lattice it is
 //! looked for there too, and the spline laid once more.
 
+use super::balance;
 use super::envelope::Network;
 use super::fit::Floors;
-use super::lean::{Feed, LeadField, LocalLead};
+use super::lean::{Angles, Feed, LeadField, LocalLead};
 use super::need::{Clearance, Stand};
 use crate::plan::{Passes, PlanError, Task};
 use crate::rectangle::{Rectangle, lengths};
@@ -163,13 +164,16 @@ impl LeadField {
         let clearance = Clearance::new(task, local, rough);
         let over = Over { task, local, clearance: &clearance, rectangle: Rectangle::of(task.surface) };
         let found = |sign: f64| {
-            let stand = |at: Uv| clearance.stand(at, &(feed(at, &task.surface.jet2(at))? * sign));
-            over.spline(&stand)
+            let way = |at: Uv| Some(feed(at, &task.surface.jet2(at))? * sign);
+            let tilt = balance::tilts(task, local, &clearance, &over.rectangle, &way);
+            let stand = |at: Uv| clearance.stand(at, &way(at)?, tilt.jet(at).value);
+            let (lead, unmet) = over.spline(&stand)?;
+            Ok::<_, PlanError>((Angles { lead, tilt }, unmet))
         };
         let (along, unmet) = found(1.0)?;
         let (against, more) = if one_way { (along.clone(), [0; 2]) } else { found(-1.0)? };
         let unmet = [0, 1].map(|k| unmet[k] + more[k]);
-        Ok(Self { senses: [along, against], rectangle: over.rectangle, tilt_rad: local.tilt_rad, unmet })
+        Ok(Self { senses: [along, against], rectangle: over.rectangle, unmet })
     }
 
     /// Passes with a word about the places that no lead clears.

@@ -12,8 +12,8 @@ use osculate_tools::{ContactError, Cutter, Holder, Lean, moving_with_axis};
 /// How a local lead is found. Angles rad, rates rad/mm.
 #[derive(Clone, Copy)]
 pub struct LocalLead<'a> {
-    /// Tilt, held.
-    pub tilt_rad: f64,
+    /// Tilt, held; None: where the strip reaches as far to both sides of the contact as can be.
+    pub tilt_rad: Option<f64>,
     /// Least lead used: [`Cutter::least_lean_rad`], unless one is given.
     pub least_rad: f64,
     /// Greatest lead used.
@@ -29,6 +29,11 @@ pub struct LocalLead<'a> {
 impl LocalLead<'_> {
     /// Greatest lead, rad.
     pub const MOST_RAD: f64 = std::f64::consts::FRAC_PI_4;
+
+    /// The tilt that is held, none where it is to be found.
+    fn held_rad(&self) -> f64 {
+        self.tilt_rad.unwrap_or(0.0)
+    }
 }
 
 /// A lean with a lead towards the feed and a tilt whose side does not change with the sense of a pass, rad.
@@ -88,7 +93,7 @@ impl Leaning<'_> {
         match self {
             Self::Held(lean) => *lean,
             Self::Sided(tilt) => tilt.lean(speed),
-            Self::Local(l) => Lean { lead_rad: l.least_rad, tilt_rad: l.tilt_rad },
+            Self::Local(l) => Lean { lead_rad: l.least_rad, tilt_rad: l.held_rad() },
             Self::Field(f) => f.at(at, speed < 0.0).0,
             Self::Axes(f) => Lean::of(&f.at(at).0, frame),
         }
@@ -100,7 +105,7 @@ impl Leaning<'_> {
         let Self::Local(l) = self else { return self.against(at, (frame, 1.0)) };
         let sine = cutter.radius_mm() * (-forms.principal().k_min).max(0.0);
         let lead_rad = sine.min(1.0).asin().clamp(l.least_rad, l.most_rad);
-        Lean { lead_rad, tilt_rad: l.tilt_rad }
+        Lean { lead_rad, tilt_rad: l.held_rad() }
     }
 
     /// Refuses what is no lean.
@@ -115,7 +120,7 @@ impl Leaning<'_> {
             }
             Self::Local(l) => {
                 for lead_rad in [l.least_rad, l.most_rad] {
-                    Lean { lead_rad, tilt_rad: l.tilt_rad }.checked()?;
+                    Lean { lead_rad, tilt_rad: l.held_rad() }.checked()?;
                 }
                 Ok(())
             }
@@ -142,40 +147,47 @@ impl Leaning<'_> {
     ) -> Moving {
         match self {
             Self::Field(f) => {
-                let ((lean, slope), rate) = (f.at(line.uv(t), line.reversed()), line.rate(t));
-                let lead_rate = slope[0] * rate.u + slope[1] * rate.v;
-                lean.moving(cutter, frame, 0.0, (speed, lead_rate))
+                let ((lean, slopes), rate) = (f.at(line.uv(t), line.reversed()), line.rate(t));
+                let rates = slopes.map(|[by_u, by_v]| by_u * rate.u + by_v * rate.v);
+                lean.moving(cutter, frame, 0.0, (speed, rates))
             }
             Self::Axes(f) => {
                 let ((axis, slope), rate) = (f.at(line.uv(t)), line.rate(t));
                 moving_with_axis(cutter, frame, speed, &axis, &(slope[0] * rate.u + slope[1] * rate.v))
             }
             Self::Held(_) | Self::Sided(_) | Self::Local(_) => {
-                self.on(line, t, (frame, speed)).moving(cutter, frame, 0.0, (speed, 0.0))
+                self.on(line, t, (frame, speed)).moving(cutter, frame, 0.0, (speed, [0.0; 2]))
             }
         }
     }
 }
 
-/// Lead over a face, with a tilt that is held, for passes along the growing parameter of their line and for those against it.
+/// Lead and tilt over a face, for passes along the growing parameter of their line and for those against it.
 #[derive(Clone, Debug)]
 pub struct LeadField {
     /// By sense; twice the same where one lead serves both.
-    pub(super) senses: [Spline; 2],
+    pub(super) senses: [Angles; 2],
     pub(super) rectangle: Rectangle,
-    pub(super) tilt_rad: f64,
     /// Places that no lead clears, and all at which one was looked for.
     pub(super) unmet: [usize; 2],
 }
 
+/// Fields of lead and tilt, rad.
+#[derive(Clone, Debug)]
+pub(super) struct Angles {
+    pub lead: Spline,
+    pub tilt: Spline,
+}
+
 impl LeadField {
-    /// Lead and tilt at a place of a pass along the growing parameter of its line or against it, and the lead's derivatives by u and v;
+    /// Lead and tilt at a place of a pass along the growing parameter of its line or against it, and the derivatives of both by u and v;
     /// beyond the border of the face its border's.
     #[must_use]
-    pub fn at(&self, at: Uv, reversed: bool) -> (Lean, [f64; 2]) {
+    pub fn at(&self, at: Uv, reversed: bool) -> (Lean, [[f64; 2]; 2]) {
         let (place, within) = self.rectangle.held(at);
-        let jet = self.senses[usize::from(reversed)].jet(place);
-        let slope = [0, 1].map(|k| if within[k] { jet.slope[k] } else { 0.0 });
-        (Lean { lead_rad: jet.value, tilt_rad: self.tilt_rad }, slope)
+        let angles = &self.senses[usize::from(reversed)];
+        let [lead, tilt] = [&angles.lead, &angles.tilt].map(|s| s.jet(place));
+        let slope = |by: [f64; 2]| [0, 1].map(|k| if within[k] { by[k] } else { 0.0 });
+        (Lean { lead_rad: lead.value, tilt_rad: tilt.value }, [slope(lead.slope), slope(tilt.slope)])
     }
 }

@@ -6,6 +6,7 @@
 //! ([`field`]). Strips of two contacts are narrow peaks in the lead, a tenth of a degree wide: passes to and fro have each a field of their own. It is a problem of the whole way: a place that needs a great lead raises the lead before and after it, and where
 //! nothing is in the way the lead is as small, and the strip as wide, as can be.
 
+mod balance;
 mod envelope;
 mod field;
 mod fit;

@@ -61,10 +61,11 @@ pub(in crate::plan) struct Clearance<'a> {
     accepted_mm: f64,
 }
 
-/// A contact with one direction of feed.
+/// A contact with one direction of feed, and a tilt.
 pub(in crate::plan) struct Stand {
-    at: Uv,
-    frame: Darboux,
+    pub(super) at: Uv,
+    pub(super) frame: Darboux,
+    pub(super) tilt_rad: f64,
 }
 
 impl<'a> Clearance<'a> {
@@ -104,8 +105,8 @@ impl<'a> Clearance<'a> {
         Self { task, local, rectangle, rough, count, points, far, step_mm, accepted_mm }
     }
 
-    /// The contact at a place with the feed along `way`.
-    pub fn stand(&self, at: Uv, way: &Vec3) -> Option<Stand> {
+    /// The contact at a place with the feed along `way` and a tilt.
+    pub fn stand(&self, at: Uv, way: &Vec3, tilt_rad: f64) -> Option<Stand> {
         let surface = self.task.surface;
         let jet = surface.jet2(at);
         let forms = jet.forms().ok()?;
@@ -124,18 +125,18 @@ impl<'a> Clearance<'a> {
             let left = Unit3::new_unchecked(normal.cross(&tangent));
             frame = Darboux { normal, tangent, left, ..frame };
         }
-        frame.tangent.iter().all(|x| x.is_finite()).then_some(Stand { at, frame })
+        frame.tangent.iter().all(|x| x.is_finite()).then_some(Stand { at, frame, tilt_rad })
     }
 
     fn pose(&self, stand: &Stand, lead_rad: f64) -> Pose {
-        Lean { lead_rad, tilt_rad: self.local.tilt_rad }.pose(self.task.cutter, &stand.frame, 0.0)
+        Lean { lead_rad, tilt_rad: stand.tilt_rad }.pose(self.task.cutter, &stand.frame, 0.0)
     }
 
     /// Whether a pose of a pass at a place, or nearest to it beyond a border, goes deeper into the part than it may.
     pub fn digs_in(&self, at: Uv, pose: &Pose) -> bool {
         let way = self.task.surface.jet2(at).du;
         let most_mm = DUG * self.task.tolerance.gouge_mm;
-        self.stand(at, &way)
+        self.stand(at, &way, 0.0)
             .is_some_and(|s| self.near_mm(&s, pose, most_mm) > most_mm || self.far_mm(&s, pose) > most_mm)
     }
 

@@ -15,8 +15,12 @@ pub struct Within {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Nearly {
-    /// Width, mm.
+    /// `left_mm + right_mm`.
     pub width_mm: f64,
+    /// From the contact to the edge on the left of the feed (towards `n x t`), mm.
+    pub left_mm: f64,
+    /// From the contact to the edge on the right of the feed, mm.
+    pub right_mm: f64,
     /// Nearly the width at a tolerance that is larger by the chart's error, mm: much more than `width_mm` where a wave of the part ends
     /// the strip by less than that.
     pub most_mm: f64,

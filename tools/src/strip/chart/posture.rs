@@ -175,15 +175,18 @@ impl Chart<'_> {
                 .max(too_deep(dip(&profile.last_line(self)))?);
         }
         let lift = (undercut - within.gouge_mm).max(0.0);
-        let (mut width, mut most) = (0.0, 0.0);
-        for profile in &profiles {
+        let (mut sides, mut most) = ([0.0; 2], 0.0);
+        for (profile, reach) in profiles.iter().zip(&mut sides) {
             let [edge, higher] = side.edges(profile, within.scallop_mm - lift, self.error_mm())?;
-            (width, most) = (width + edge, most + higher);
+            (*reach, most) = (edge, most + higher);
         }
+        let [left_mm, right_mm] = sides;
+        let width_mm = left_mm + right_mm;
         if motion.beyond.get() {
             return Err(ChartError::Beyond { radius_mm: self.reach });
         }
-        Ok(Nearly { width_mm: width, most_mm: most.max(width), undercut_mm: undercut - lift, lift_mm: lift })
+        let (most_mm, undercut_mm) = (most.max(width_mm), undercut - lift);
+        Ok(Nearly { width_mm, left_mm, right_mm, most_mm, undercut_mm, lift_mm: lift })
     }
 }
 
