@@ -186,6 +186,11 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("lead_deg = 15", "lead_deg = nan", &["lead_deg = NaN"]),
     ("lead_deg = 15", "lead_deg = \"locl\"", &["lead_deg", "is \"local\" meant?"]),
     ("lead_deg = 15", "tilt_deg = inf", &["tilt_deg = inf"]),
+    (
+        "lead_deg = 15",
+        "lead_deg = 15\ntilt_deg = \"local\"",
+        &["tilt_deg = \"local\"", "lead_deg = \"local\"", "line 15"],
+    ),
     ("lead_deg = 15", "along = \"u\"\nside_tilt_deg = 61", &["side_tilt_deg = 61", "60"]),
     ("lead_deg = 15", "side_tilt_deg = 15", &["side_tilt_deg", "along = \"u\" or \"v\"", "line 14"]),
     (

@@ -161,7 +161,7 @@ fn progress_goes_on_only() {
     let cutter = &Cutter::try_from(spec).unwrap();
     let held = Lean { lead_rad: 0.1, tilt_rad: 0.0 };
     let local = LocalLead {
-        tilt_rad: 0.0,
+        tilt_rad: Some(0.0),
         least_rad: 0.05,
         most_rad: LocalLead::MOST_RAD,
         rate_rad_per_mm: 0.02,

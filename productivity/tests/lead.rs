@@ -198,6 +198,36 @@ fn each_sense_has_the_lead_that_it_needs() {
     assert!(deepest(more == 1, leads[1 - more]) > TOLERANCE.gouge_mm, "{leads:?}");
 }
 
+/// On a saddle whose hollow way lies at 45 degrees to the passes the second contact is always on one side, the other one where a pass runs
+/// back. A tilt found place by place takes strips to both sides: fewer passes, which hold, and none leans further than it may.
+#[test]
+fn a_tilt_by_place_takes_strips_to_both_sides() {
+    let (half, bent) = (0.5 * SIZE_MM, 0.02);
+    let points = (0..4).map(|k| [[-half, half][k / 2], [-half, half][k % 2]]);
+    let points = points.map(|[x, y]| Point3::new(x, y, bent * x * y)).collect();
+    let knots = [vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
+    let face = NurbsSurface::new([1, 1], knots, Net { count: [2, 2], points, weights: None }).unwrap();
+    let cutter = cutter();
+    let plan = |tilt_rad: Option<f64>| {
+        let own = LocalLead { tilt_rad, ..local() };
+        let task = Task::new("F1", &face, &cutter, Leaning::Local(&own), TOLERANCE);
+        run(&task, &Strategy::Isoparametric { along: Along::Fixed(Axis::U) }).unwrap()
+    };
+    let (upright, tilted) = (plan(Some(0.0)), plan(None));
+    let moves = motions(&face, &tilted.passes, &cutter);
+    let v = verdict(&face, &moves, &cutter, TOLERANCE, 0.25);
+    // In a corner of the face, where a pass ends before it digs in, a twentieth more is left.
+    let within = v.scallop_max_mm <= 1.05 * TOLERANCE.scallop_mm && v.gouge_max_mm <= TOLERANCE.gouge_mm;
+    assert!(within && v.uncut_samples == 0, "left {} mm, dug {} mm", v.scallop_max_mm, v.gouge_max_mm);
+    let counts = [&upright, &tilted].map(|p| p.passes.len());
+    assert!(20 * counts[1] < 18 * counts[0], "{counts:?}");
+    // Against the chord of a pass, which bends between two points.
+    let [none, some] = [&upright, &tilted].map(|p| p.tilts_rad().unwrap());
+    assert!(none.iter().all(|t| t.abs() < 0.01), "{none:?}");
+    assert!(some[0] < -0.02 || some[1] > 0.02, "{some:?}");
+    assert!(some.iter().all(|t| t.abs() < 0.36), "{some:?}");
+}
+
 /// Passes run out over an end that they meet at a slant. Where the face goes on ever more hollow there the tool with the lead of the
 /// border would dig in behind itself: a pass that leaves the face ends before that. What it has not come down to is left to the
 /// others, and no lead is greater than the border wants: `R k`, where half a strip further on k is a quarter more.

@@ -25,6 +25,7 @@ use osculate::work::passes;
 use osculate::work::plan::prove;
 use osculate::work::program::{Planned, WallS};
 use osculate_geom::{Axis, Diagnostic, Interval, Point3, Surface, uv};
+use osculate_productivity::compare::Axes;
 use osculate_tools::flank::envelope::{Envelope, Scratch};
 use osculate_tools::flank::global::Options;
 use osculate_tools::flank::{Rule, RuleError, RuledStrip};
@@ -201,7 +202,7 @@ pub fn run(path: &Path, (out, largest): (Option<&Path>, bool), json: bool) -> Ou
         linked,
         strategy,
         lean: Lean::default(),
-        local: false,
+        axes: Axes::Held,
         extras,
         with_strips: false,
     };

@@ -11,7 +11,7 @@ use crate::part::{LoadedFace, Part};
 use crate::watch::{Stage, Watch};
 use crate::work::axes::{self, Fields, Told};
 use crate::work::axis_places::{self, PlaceFigures};
-use crate::work::budget;
+use crate::work::budget::{self, Shares};
 use crate::work::passes::each_direction;
 use crate::work::setup;
 use osculate_geom::{Diagnostic, Surface, Unit3, Uv};
@@ -259,7 +259,7 @@ impl Look<'_> {
         out: &mut AxesOverFaces,
     ) -> Result<FaceFigures, Failure> {
         let (job, part, (_, face)) = (self.job, self.part, one);
-        let tolerance = budget::leaning(job, part, 1.0);
+        let tolerance = budget::leaning(job, part, Shares::WHOLE);
         let mut possible = self
             .fields
             .asked(job, part, one, tolerance, |all, wish| Ok(Possible::of(part, face, all, wish)))?;

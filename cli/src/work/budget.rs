@@ -81,17 +81,32 @@ pub fn blend_mm(job: &Job, turns: bool) -> f64 {
     }
 }
 
-/// The tolerance that `share` of the scallop leaves for passes of a tool that leans along them.
-pub fn leaning(job: &Job, faces: &Part, share: f64) -> Tolerance {
+/// The shares of scallop and gouge that passes are laid out for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Shares {
+    /// Of the scallop.
+    pub scallop: f64,
+    /// Of the gouge.
+    pub gouge: f64,
+}
+
+impl Shares {
+    /// All of both.
+    pub const WHOLE: Self = Self { scallop: 1.0, gouge: 1.0 };
+}
+
+/// The tolerance that shares leave for passes of a tool that leans along them.
+pub fn leaning(job: &Job, faces: &Part, shares: Shares) -> Tolerance {
     let s = solve(job, FRAC_PI_2);
     let tip_mm = if keeps_tip(job) { 0.0 } else { s.tip_tol_mm };
     let ways_mm = COUNTED * (tip_mm + s.axis_tol_rad * job.cutter().radius_mm());
-    kept_back(job, faces, share, words_mm(job) + ways_mm + blend_mm(job, true))
+    kept_back(job, faces, shares, words_mm(job) + ways_mm + blend_mm(job, true))
 }
 
 /// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
 pub fn upright(job: &Job, faces: &Part) -> Tolerance {
-    kept_back(job, faces, 1.0, words_mm(job) + blend_mm(job, false))
+    kept_back(job, faces, Shares::WHOLE, words_mm(job) + blend_mm(job, false))
 }
 
 /// The tolerance that passes are held against where the tool may go in: verdicts add what words and blended corners may.
@@ -131,9 +146,9 @@ fn edge_slope(job: &Job, faces: &Part) -> f64 {
 /// Hollows that come closer to the tool's corner than this are no longer of leading order: there verification tells.
 const MOST_HOLLOW: f64 = 0.5;
 
-fn kept_back(job: &Job, faces: &Part, share: f64, by_mm: f64) -> Tolerance {
+fn kept_back(job: &Job, faces: &Part, shares: Shares, by_mm: f64) -> Tolerance {
     let given = job.tolerance();
     let marks_mm = mark_mm(job, faces).min(MARKS * given.scallop_mm);
-    let scallop_mm = share * (given.scallop_mm - marks_mm - by_mm.min(MOST * given.scallop_mm));
-    Tolerance { scallop_mm, ..given }
+    let scallop_mm = shares.scallop * (given.scallop_mm - marks_mm - by_mm.min(MOST * given.scallop_mm));
+    Tolerance { scallop_mm, gouge_mm: shares.gouge * given.gouge_mm, ..given }
 }

@@ -83,7 +83,7 @@ impl Look {
         ];
         let bad = found.into_iter().enumerate().find(|(_, (_, is, limit))| is > limit);
         Ok(bad.map(|(k, (what, is, limit))| Objection {
-            digs_in: k == 0,
+            dug_mm: (k == 0).then_some(is),
             left_mm: (k == 2).then_some(is),
             marks_mm: 0.0,
             text: format!("{what} {is:.4} mm by a coarse look, {limit:.4} mm is accepted"),
@@ -94,8 +94,8 @@ impl Look {
 /// Why a path cannot be within tolerance.
 #[non_exhaustive]
 pub struct Objection {
-    /// Whether the cutter goes too deep, which a smaller lead does not make better.
-    pub digs_in: bool,
+    /// How deep the cutter goes, where that is too deep, which a smaller lead does not make better, mm.
+    pub dug_mm: Option<f64>,
     /// What it leaves, where nothing is wrong but that, mm.
     pub left_mm: Option<f64>,
     /// How much of that are marks of teeth, as far as it is known, mm.

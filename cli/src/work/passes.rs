@@ -6,7 +6,7 @@ use crate::job::{Control, Job, LeanKey};
 use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
 use crate::work::axes::Fields;
-use crate::work::budget;
+use crate::work::budget::{self, Shares};
 use crate::work::drop::names;
 use crate::work::left_out;
 use crate::work::look::Look;
@@ -189,8 +189,8 @@ pub struct Way<'a> {
     pub axes: Axes,
     /// The fields of the job's faces with its tool, as far as they are known.
     pub fields: &'a Fields,
-    /// The share of the scallop tolerance that passes are laid out for.
-    pub share: f64,
+    /// The shares of the tolerances that passes are laid out for.
+    pub shares: Shares,
     /// Who hears what is finished.
     pub watch: &'a dyn Watch,
 }
@@ -202,7 +202,7 @@ pub fn each_face(
     way: &Way<'_>,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
-    let tolerance = budget::leaning(job, faces, way.share);
+    let tolerance = budget::leaning(job, faces, way.shares);
     let cutter = &job.cutter();
     let holder = job.holder();
     let all = faces.faces.iter().chain(&faces.check);
@@ -265,6 +265,17 @@ pub fn each_face(
     Ok(out)
 }
 
+/// Whence a job has its axis.
+pub fn axes(job: &Job) -> Axes {
+    let strategy = job.strategy();
+    match (strategy.lead, strategy.tilt) {
+        _ if strategy.axis_field => Axes::Field,
+        (LeanKey::Local, LeanKey::Local) => Axes::Balanced,
+        (LeanKey::Local, _) => Axes::Local,
+        _ => Axes::Held,
+    }
+}
+
 /// Passes of a tool that leans along them: the lead is the job's, or the best of a few.
 pub fn with_best_lead(
     job: &Job,
@@ -275,14 +286,10 @@ pub fn with_best_lead(
 ) -> Result<(Passes, Lean), Failure> {
     let cutter = &job.cutter();
     let fields = &Fields::default();
-    let way = |lean: Lean, axes: Axes| Way { strategy, lean, axes, fields, share: 1.0, watch };
-    if job.strategy().axis_field {
-        return Ok((each_face(job, faces, &way(Lean::default(), Axes::Field), progress)?, Lean::default()));
-    }
-    if job.strategy().lead == LeanKey::Local {
-        let lean = job.lean(cutter.least_lean_rad());
-        let balanced = job.strategy().tilt == LeanKey::Local;
-        let axes = if balanced { Axes::Balanced } else { Axes::Local };
+    let way = |lean: Lean, axes: Axes| Way { strategy, lean, axes, fields, shares: Shares::WHOLE, watch };
+    let axes = axes(job);
+    if axes != Axes::Held {
+        let lean = if axes.is_local() { job.lean(cutter.least_lean_rad()) } else { Lean::default() };
         return Ok((each_face(job, faces, &way(lean, axes), progress)?, lean));
     }
     let mut leads: Vec<f64> = match job.strategy().lead {

@@ -2,12 +2,13 @@
 
 use crate::failure::Failure;
 use crate::files;
+use crate::job::Job;
 use crate::job::strategy::Kind;
-use crate::job::{Job, LeanKey};
 use crate::part::{self, Part};
 use crate::report::fill::{self, Story};
 use crate::watch::{Stage, Watch};
 use crate::work::axes::Fields;
+use crate::work::budget::Shares;
 use crate::work::choice::{self, Choice, Row};
 use crate::work::joints::JointFigures;
 use crate::work::nc::Motions;
@@ -345,7 +346,8 @@ pub fn summary_of(
     let left_mm2: f64 = planned.extras.left_out.iter().map(|f| f.area_mm2).sum();
     let totals = Totals { area_mm2: area_mm2 - left_mm2, time_min: times.time_min };
     let l = levels(&planned.passes.passes, job.feed_mm_min(), totals);
-    let found = if planned.local { planned.passes.inclination_rad() } else { None };
+    let found = if planned.axes == Axes::Held { None } else { planned.passes.inclination_rad() };
+    let tilted = if planned.axes == Axes::Balanced { planned.passes.tilts_rad() } else { None };
     let lean = job.strategy().as_given(planned.lean);
     let control = job.control();
     Ok(Summary {
@@ -356,6 +358,7 @@ pub fn summary_of(
         lead_deg: found.map_or(lean.lead_rad, |[_, mean, _]| mean).to_degrees(),
         lead_range_deg: found.map(|[least, _, most]| [least, most].map(f64::to_degrees)),
         tilt_deg: lean.tilt_rad.to_degrees(),
+        tilt_range_deg: tilted.map(|both| both.map(f64::to_degrees)),
         side_tilt_deg: job.strategy().side_tilt_deg,
         machine: control.machine.name().to_owned(),
         dialect: control.dialect_name.clone(),
@@ -400,8 +403,8 @@ pub struct Laid {
     pub skipped: Vec<Vec<CcPoint>>,
     /// Lead and tilt.
     pub lean: Lean,
-    /// Whether the lead was found place by place.
-    pub local: bool,
+    /// Whence the axis.
+    pub axes: Axes,
 }
 
 impl Laid {
@@ -419,21 +422,26 @@ impl Laid {
             Kind::Faces(strategy) => strategy,
             Kind::Drop(kind) => {
                 let passes = drop::passes(job, faces, *kind, progress)?;
-                return Ok(Self { passes, skipped: Vec::new(), lean: Lean::default(), local: false });
+                return Ok(Self { passes, skipped: Vec::new(), lean: Lean::default(), axes: Axes::Held });
             }
             Kind::Layers(_) | Kind::Auto | Kind::Flank => return Err(not_planned(job)),
         };
         let (passes, lean) = match strategy.fixed_axis() {
             Some(_) => {
                 let fields = &Fields::default();
-                let way =
-                    Way { strategy, lean: Lean::default(), axes: Axes::Held, fields, share: 1.0, watch };
+                let way = Way {
+                    strategy,
+                    lean: Lean::default(),
+                    axes: Axes::Held,
+                    fields,
+                    shares: Shares::WHOLE,
+                    watch,
+                };
                 (passes::each_face(job, faces, &way, progress)?, Lean::default())
             }
             None => passes::with_best_lead(job, faces, strategy, watch, progress)?,
         };
-        let local = job.strategy().lead == LeanKey::Local || job.strategy().axis_field;
-        Ok(Self { passes, skipped: Vec::new(), lean, local })
+        Ok(Self { passes, skipped: Vec::new(), lean, axes: passes::axes(job) })
     }
 
     /// The passes joined, less what the job wants left out of them.
@@ -441,11 +449,11 @@ impl Laid {
     /// # Errors
     /// Where nothing remains.
     pub fn linked(self, job: &Job, faces: &Part) -> Result<Planned<'static>, Failure> {
-        let Self { passes, skipped, lean, local } = self;
+        let Self { passes, skipped, lean, axes } = self;
         let left_out::Joined { passes, skipped, linked, extras } =
             left_out::linked(job, faces, (passes, skipped))?;
         let strategy = job.strategy().name().to_owned();
-        Ok(Planned { passes, skipped, linked, strategy, lean, local, extras, with_strips: true })
+        Ok(Planned { passes, skipped, linked, strategy, lean, axes, extras, with_strips: true })
     }
 }
 

@@ -14,6 +14,7 @@ use crate::work::stock;
 use crate::work::verify::{self, Verified};
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::{self as post, Setup};
+use osculate_productivity::compare::Axes;
 use osculate_productivity::plan::{CcPoint, Linked, Passes};
 use osculate_tools::Lean;
 use osculate_tools::cl::Motion;
@@ -54,8 +55,8 @@ pub struct Planned<'a> {
     pub strategy: String,
     /// Lead and tilt; of a local lead the least that was allowed.
     pub lean: Lean,
-    /// Whether the lead was found place by place.
-    pub local: bool,
+    /// Whence the axis.
+    pub axes: Axes,
     /// What the report shows beside what every report shows.
     pub extras: Extras<'a>,
     /// Whether the points of passes know the width of their strips, for samples that resolve them.

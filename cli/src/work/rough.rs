@@ -13,6 +13,7 @@ use crate::work::setup;
 use crate::work::stock::RawMaterial;
 use osculate_geom::{Offset, Unit3};
 use osculate_postproc::Orienting;
+use osculate_productivity::compare::Axes;
 use osculate_productivity::plan::{self, Headings, Places, RoughTask, Rows, Search, Sizes};
 use osculate_surfaces::TrimmedSurface;
 use osculate_tools::Lean;
@@ -105,7 +106,7 @@ pub fn planned(
         linked: rough.linked,
         strategy: job.strategy().name().to_owned(),
         lean: Lean::default(),
-        local: false,
+        axes: Axes::Held,
         extras: Extras::default(),
         with_strips: false,
     })

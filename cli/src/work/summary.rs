@@ -46,6 +46,9 @@ pub struct Summary {
     pub lead_range_deg: Option<[f64; 2]>,
     /// Tilt, deg.
     pub tilt_deg: f64,
+    /// Least and greatest of a tilt that was found place by place; `tilt_deg` is then 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_range_deg: Option<[f64; 2]>,
     /// Tilt to the left of the growing parameter, deg, where the job asks for one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side_tilt_deg: Option<f64>,
@@ -181,7 +184,10 @@ impl Summary {
         let aside = |deg: f64| {
             format!("{} to the {}", number(deg.abs(), 4), if deg < 0.0 { "right" } else { "left" })
         };
-        let tilt = self.side_tilt_deg.map_or_else(|| number(self.tilt_deg, 4), aside);
+        let tilt = match self.tilt_range_deg {
+            Some([least, most]) => format!("{} to {}", number(least, 3), number(most, 3)),
+            None => self.side_tilt_deg.map_or_else(|| number(self.tilt_deg, 4), aside),
+        };
         match self.lead_range_deg {
             Some([least, most]) => {
                 let [least, mean, most] = [least, self.lead_deg, most].map(|x| number(x, 3));

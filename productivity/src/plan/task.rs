@@ -148,6 +148,19 @@ impl Passes {
         (length > 0.0).then(|| [least, sum / length, most])
     }
 
+    /// Least and greatest tilt of the axis against the chords between contact points, rad: from the feed to the left of it, about the normal;
+    /// None without points.
+    #[must_use]
+    pub fn tilts_rad(&self) -> Option<[f64; 2]> {
+        let between = self.passes.iter().flat_map(|p| p.points.windows(2)).map(|w| {
+            let (normal, axis) = (&w[0].normal, &w[0].pose.axis);
+            let along = w[1].point - w[0].point;
+            axis.dot(&normal.cross(&along)).atan2(axis.dot(&(along - normal.scale(normal.dot(&along)))))
+        });
+        let all = between.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], t| [a.min(t), b.max(t)]);
+        (all[0] <= all[1]).then_some(all)
+    }
+
     /// Length along the contact points, mm.
     #[must_use]
     pub fn length_mm(&self) -> f64 {

@@ -413,7 +413,10 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
     let n = |v: &Value, digits: usize| v.as_f64().map_or("-".to_owned(), |x| format!("{x:.digits$}"));
     let v = &s["verification"];
     let lead = |s: &Value| match s["lead_range_deg"].as_array().map(Vec::as_slice) {
-        Some([least, most]) => format!("{} to {} deg, local", n(least, 0), n(most, 0)),
+        Some([least, most]) => {
+            let tilt = if s["tilt_range_deg"].is_null() { "" } else { ", tilt too" };
+            format!("{} to {} deg, local{tilt}", n(least, 0), n(most, 0))
+        }
         _ => format!("{} deg", n(&s["lead_deg"], 0)),
     };
     format!(

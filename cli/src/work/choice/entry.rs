@@ -1,6 +1,7 @@
 //! How far a candidate has come, and what is known of it.
 
 use super::measured::Measured;
+use crate::work::budget::Shares;
 use crate::work::program::{Planned, Posted};
 use osculate_productivity::compare::{Axes, Candidate, Screened};
 
@@ -35,8 +36,8 @@ pub(super) struct Entry {
     pub state: State,
     pub figures: Option<Figures>,
     pub verified: Option<Measured>,
-    /// The share of the scallop that it is laid out for.
-    pub share: f64,
+    /// The shares of the tolerances that it is laid out for.
+    pub shares: Shares,
     /// Whether it was planned, or would have been, and whether that was around a plan with another tool.
     pub tried: bool,
     pub elsewhere: bool,

@@ -9,6 +9,7 @@ use crate::job::Job;
 use crate::part::{self, Part};
 use crate::watch::Watch;
 use crate::work::axes::{self, Fields};
+use crate::work::budget::Shares;
 use crate::work::extras::Extras;
 use crate::work::look::{Look, Objection};
 use crate::work::passes::{self, Way};
@@ -16,7 +17,7 @@ use crate::work::program::{Planned, Posted, WallS};
 use osculate_geom::Surface;
 use osculate_productivity::compare::{Around, Axes, Candidate, Setting, Tool, screen};
 use osculate_productivity::ideal::Patch;
-use osculate_productivity::plan::{Passes, Strategy};
+use osculate_productivity::plan::{Passes, Strategy, Tolerance};
 
 /// Candidates that are planned at most, and while none is known to hold.
 const MOST_PLANS: usize = 16;
@@ -41,9 +42,11 @@ const MOST_HELD_TWINS: usize = 2;
 const NEAR: f64 = 1.25;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
-/// A plan that leaves no more than this many times the scallop is laid out again, for so much less and a little more.
+/// A plan that leaves no more than this many times the scallop, or goes so deep, is laid out again, for so much less and a little more: depth costs
+/// hardly any time.
 const LITTLE_TOO_MUCH: f64 = 1.8;
 const LESS: f64 = 0.97;
+const LESS_DEEP: f64 = 0.9;
 /// Leads below this many times one at which the tool dug in are left out.
 const STEEPER: f64 = 1.3;
 
@@ -130,7 +133,7 @@ impl<'a> Choice<'a> {
                     state,
                     figures: None,
                     verified: None,
-                    share: 1.0,
+                    shares: Shares::WHOLE,
                     tried: false,
                     elsewhere: false,
                 }
@@ -371,10 +374,10 @@ impl<'a> Choice<'a> {
     /// Plans a candidate and looks at what it leaves.
     fn planned(&mut self, k: usize) -> Result<State, Failure> {
         self.plans += 1;
-        let Entry { candidate: Candidate { tool, strategy, lean, axes }, share, .. } = self.entries[k];
+        let Entry { candidate: Candidate { tool, strategy, lean, axes }, shares, .. } = self.entries[k];
         let job = &self.jobs[tool];
         let fields = &self.fields[tool];
-        let way = Way { strategy: &strategy, lean, axes, fields, share, watch: &() };
+        let way = Way { strategy: &strategy, lean, axes, fields, shares, watch: &() };
         let passes = match passes::each_face(job, self.faces, &way, &|_| {}) {
             Ok(p) => p,
             Err(e) => {
@@ -394,12 +397,12 @@ impl<'a> Choice<'a> {
             cutting_min: linked.cutting_length_mm / job.feed_mm_min(),
             posted_min: None,
         });
+        let limits = job.tolerance();
         if let Some(objection) = Look::at(job, self.faces, &linked)?.objection(job)? {
-            let limit_mm = job.tolerance().scallop_mm;
-            if objection.digs_in {
+            if objection.dug_mm.is_some() {
                 self.no_smaller_lead(k);
             }
-            if self.for_less(k, &objection, limit_mm) {
+            if self.for_less(k, &objection, limits) {
                 return self.planned(k);
             }
             return Ok(State::Out(objection.text));
@@ -411,22 +414,25 @@ impl<'a> Choice<'a> {
             linked,
             strategy,
             lean,
-            local: axes != Axes::Held,
+            axes,
             extras,
             with_strips: true,
         })))
     }
 
-    /// Has a candidate that leaves a little more than the limit laid out for less, once; whether it is. Closer passes leave the marks of
-    /// teeth as they are.
-    fn for_less(&mut self, k: usize, why: &Objection, limit_mm: f64) -> bool {
-        let Some(left_mm) = why.left_mm else { return false };
-        let (left_mm, marks_mm) = (left_mm - why.marks_mm, why.marks_mm);
-        let limit_mm = limit_mm - marks_mm;
-        let again =
-            self.entries[k].share == 1.0 && left_mm > limit_mm && left_mm <= LITTLE_TOO_MUCH * limit_mm;
-        if again {
-            self.entries[k].share = LESS * limit_mm / left_mm;
+    /// Has a candidate that leaves a little more than the limit, or goes a little deeper with leads that are found for that, laid out
+    /// for less, each once; whether it is. Closer passes leave the marks of teeth as they are.
+    fn for_less(&mut self, k: usize, why: &Objection, limits: Tolerance) -> bool {
+        let entry = &mut self.entries[k];
+        let local = entry.is_local();
+        let left = why.left_mm.map(|mm| (mm - why.marks_mm, limits.scallop_mm - why.marks_mm, LESS));
+        let dug = why.dug_mm.filter(|_| local).map(|mm| (mm, limits.gouge_mm, LESS_DEEP));
+        let mut again = false;
+        for (found, share) in [(left, &mut entry.shares.scallop), (dug, &mut entry.shares.gouge)] {
+            let Some((is, limit, less)) = found else { continue };
+            if *share == 1.0 && is > limit && is <= LITTLE_TOO_MUCH * limit {
+                (*share, again) = (less * limit / is, true);
+            }
         }
         again
     }
@@ -459,8 +465,7 @@ impl<'a> Choice<'a> {
         let k = contender.entry;
         self.entries[k].verified = Some(measured);
         let Some(objection) = why else { return false };
-        let limit_mm = contender.job.tolerance().scallop_mm;
-        let again = self.for_less(k, &objection, limit_mm);
+        let again = self.for_less(k, &objection, contender.job.tolerance());
         self.entries[k].state = State::Out(objection.text);
         if again {
             self.entries[k].state = State::Open;

@@ -94,16 +94,17 @@ fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
 
 /// Why a verification does not hold.
 fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> {
-    let v = &found.summary;
+    let (v, blend_mm) = (&found.summary, budget::blend_mm(job, false));
+    // With what may be dug between samples and at blended corners.
+    let deep_mm = v.gouge_max_mm + v.hidden_gouge_mm.unwrap_or(0.0) + blend_mm;
     match found.verdict.answer() {
         Answer::Held => return Ok(None),
         Answer::NotShown => {
             let text = format!("verified: {}", found.verdict.words());
             // What may stand between samples and at blended corners counts as left.
-            let left_mm =
-                v.hidden_scallop_mm.map(|more| v.height_max_mm + more + budget::blend_mm(job, false));
+            let left_mm = v.hidden_scallop_mm.map(|more| v.height_max_mm + more + blend_mm);
             let marks_mm = v.height_max_mm - v.scallop_max_mm;
-            return Ok(Some(Objection { digs_in: false, left_mm, marks_mm, text }));
+            return Ok(Some(Objection { dug_mm: Some(deep_mm), left_mm, marks_mm, text }));
         }
         Answer::NotHeld => {}
     }
@@ -123,9 +124,10 @@ fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> 
             (k, format!("verified: {what} {is:.4} {unit}, {limit} {unit} is accepted"))
         },
     );
+    let dug_mm = (k == 0).then_some(deep_mm);
     let left_mm = (k == 4).then_some(v.height_max_mm);
     let marks_mm = v.height_max_mm - v.scallop_max_mm;
-    Ok(Some(Objection { digs_in: k == 0, left_mm, marks_mm, text }))
+    Ok(Some(Objection { dug_mm, left_mm, marks_mm, text }))
 }
 
 fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Result<Measured, Failure> {

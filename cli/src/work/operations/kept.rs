@@ -9,6 +9,7 @@ use crate::work::choice::Row;
 use crate::work::extras::{Extras, FaceLeftOut};
 use crate::work::program::Planned;
 use osculate_geom::{Diagnostic, Point3, Severity, Unit3, Uv, Vec3};
+use osculate_productivity::compare::Axes;
 use osculate_productivity::plan::{CcPoint, Linked, Pass, Passes};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use osculate_tools::{Lean, Pose};
@@ -17,6 +18,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Parameters, point, normal, tip and axis of a point of a pass, and its width where it has one: no text of a number says NaN.
 type KeptPoint = ([f64; 14], Option<f64>);
+
+/// Whence an axis can be, by the number that is kept.
+const AXES: [Axes; 4] = [Axes::Held, Axes::Local, Axes::Balanced, Axes::Field];
 
 /// A planned operation as it is kept.
 #[derive(Serialize, Deserialize)]
@@ -33,7 +37,7 @@ pub struct Kept {
     pub plan_s: f64,
     strategy: String,
     lean_rad: [f64; 2],
-    local: bool,
+    axes: u8,
     with_strips: bool,
     passes: Vec<(bool, Vec<KeptPoint>)>,
     moves: Vec<[f64; 7]>,
@@ -110,7 +114,7 @@ impl Kept {
             plan_s: 0.0,
             strategy: planned.strategy.clone(),
             lean_rad: [planned.lean.lead_rad, planned.lean.tilt_rad],
-            local: planned.local,
+            axes: AXES.iter().position(|a| *a == planned.axes).unwrap_or(0) as u8,
             with_strips: planned.with_strips,
             passes: planned
                 .passes
@@ -169,7 +173,7 @@ impl Kept {
             },
             strategy: self.strategy.clone(),
             lean: Lean { lead_rad: self.lean_rad[0], tilt_rad: self.lean_rad[1] },
-            local: self.local,
+            axes: AXES.get(usize::from(self.axes)).copied().unwrap_or(Axes::Held),
             extras: Extras {
                 left_out: left_out.collect(),
                 diagnostics: heard(of_extras),

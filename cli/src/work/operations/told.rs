@@ -22,6 +22,7 @@ use crate::work::verify::Verified;
 use crate::work::{passes, stock};
 use osculate_geom::Diagnostic;
 use osculate_postproc::nc::Dialect;
+use osculate_productivity::compare::Axes;
 use osculate_productivity::plan::{Linked, Passes};
 use osculate_tools::Lean;
 use osculate_tools::removal::Answer;
@@ -237,7 +238,7 @@ fn merged(steps: &[Step<'_>]) -> Planned<'static> {
         linked,
         strategy,
         lean: Lean::default(),
-        local: false,
+        axes: Axes::Held,
         extras,
         with_strips: true,
     }
