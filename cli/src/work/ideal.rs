@@ -6,6 +6,7 @@ use crate::part::Part;
 use crate::words::number;
 use crate::work::choice::patches;
 use crate::work::program::{Planned, Posted};
+use osculate_productivity::compare::Axes;
 use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Search};
 use osculate_productivity::optimum::{OptimumError, Range};
 use serde::Serialize;
@@ -77,13 +78,16 @@ pub struct IdealTime {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn of_job(job: &Job, faces: &Part) -> Result<Bound, Failure> {
+    with(job, faces, tilts(job))
+}
+
+fn with(job: &Job, faces: &Part, (tilt, tilts): (Range, &str)) -> Result<Bound, Failure> {
     let jobs = job.each_tool();
     let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();
     let mut tools = Vec::with_capacity(jobs.len());
     for (one, cutter) in jobs.iter().zip(&cutters) {
         tools.push(Feeding { cutter, feed_mm_min: one.feed_mm_min() });
     }
-    let (tilt, tilts) = tilts(job);
     let search = Search { places: PLACES, tilt };
     let (patches, tolerance) = (patches(faces), job.tolerance());
     let failed = |e: OptimumError| Failure::file(job.path(), e);
@@ -113,18 +117,21 @@ pub fn tilts(job: &Job) -> (Range, &'static str) {
     if strategy.tilt_deg() == 0.0 && strategy.side_tilt_deg.is_none_or(|deg| deg == 0.0) {
         (Range::only(0.0), "no tilt")
     } else {
-        (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt")
+        ANY_TILT
     }
 }
 
-/// The bound beside a plan.
+const ANY_TILT: (Range, &str) = (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt");
+
+/// The bound beside a plan: where its tilts were found place by place those of the bound are free too.
 pub fn of_plan(
     job: &Job,
     faces: &Part,
     planned: &Planned<'_>,
     posted: &Posted,
 ) -> Result<IdealTime, Failure> {
-    let ideal = of_job(job, faces)?;
+    let balanced = planned.axes == Axes::Balanced;
+    let ideal = with(job, faces, if balanced { ANY_TILT } else { tilts(job) })?;
     let contact_length_mm = planned.passes.length_mm();
     // The tip may be slower than the contact or faster: the bound is one of contacts.
     let cutting = posted.read.cutting_time_min.max(contact_length_mm / job.feed_mm_min());
