@@ -146,7 +146,7 @@ pub mod work;
 pub use osculate_geom::nalgebra;
 
 pub use failure::Failure;
-pub use job::Job;
+pub use job::{Job, Overrides};
 pub use osculate_tools::removal::{Answer, Verdict};
 pub use part::Part;
 pub use watch::Watch;

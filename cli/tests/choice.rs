@@ -238,3 +238,90 @@ fn compare_ranks_and_gives_reasons() {
     ]);
     assert!(!out.exists());
 }
+
+/// A ridge on which joints turn, so that the control does not reach the feed, with two tools that differ in their diameter alone.
+fn ridge(minor_mm: f64, end: f64, corner_mm: f64, diameters_mm: [f64; 2], lead_deg: f64) -> String {
+    let tool = |mm: f64| {
+        format!(
+            "[[tools]]\nkind = \"toroidal\"\ndiameter_mm = {mm}\ncorner_radius_mm = {corner_mm}\nlength_mm = 6\nteeth = 4\n"
+        )
+    };
+    let scallop_mm = 0.01 * corner_mm;
+    format!(
+        "format = 1\n[part]\nbuiltin = {{ kind = \"torus\", major_radius_mm = 20, minor_radius_mm = {minor_mm}, material = \"inside\", \
+         u_range = [0, {end}], v_range = [0.3, 2.8] }}\n{}[tolerance]\nscallop_mm = {scallop_mm}\ngouge_mm = {}\n[strategy]\n\
+         kind = \"isoparametric\"\nalong = \"v\"\nlead_deg = {lead_deg}\n[cutting]\nspindle_rpm = 12000\nfeed_mm_min = 2000\n[machine]\n\
+         name = \"trunnion-ac\"\ndialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[setup]\nturns = \"free\"\n[verification]\nmax_samples = 8000\n",
+        diameters_mm.map(tool).concat(),
+        0.5 * scallop_mm
+    )
+}
+
+/// Plans a text; the summary, and what `verify` says of the program.
+fn planned(text: &str, scratch: &Scratch, name: &str) -> [Value; 2] {
+    let path = scratch.write(&format!("{name}.toml"), text);
+    let out = scratch.path(name);
+    let run = osculate(&["plan", path.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+    assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+    let program = out.join("program.ngc");
+    let again = osculate(&["verify", program.to_str().unwrap(), "--job", path.to_str().unwrap(), "--json"]);
+    assert_eq!(again.code, 0, "{}{}", again.out, again.err);
+    [run.json(), again.json()]
+}
+
+/// What `plan` and `verify` say of one program, key by key.
+fn same(plan: &Value, verify: &Value) {
+    let found = plan["verification"].as_object().unwrap();
+    for (key, value) in found
+        .iter()
+        .chain([(&"verdict".to_owned(), &plan["verdict"]), (&"joints".to_owned(), &plan["joints"])])
+    {
+        assert_eq!(value, &verify[key.as_str()], "{key}");
+    }
+    assert!(found.len() > 15);
+}
+
+fn story(v: &Value) -> String {
+    let notes = v["diagnostics"].as_array().unwrap();
+    let texts = notes.iter().filter_map(Value::as_str);
+    texts.filter(|t| t.contains("candidates screened")).collect()
+}
+
+/// Where the control cannot follow, marks of teeth need less of the tolerance than a half, and the strips have the rest.
+#[test]
+fn marks_are_left_what_the_speed_needs() {
+    let scratch = Scratch::new();
+    let text = ridge(1.5, 0.03, 0.1, [1.0, 0.6], 10.0);
+    let [open, verified] = planned(&text, &scratch, "open");
+    assert!(story(&open).contains("marks of teeth are left"), "{}", story(&open));
+    // The same tool by itself is not chosen, and shares the tolerance by halves.
+    let other = text.find("[[tools]]\nkind = \"toroidal\"\ndiameter_mm = 0.6").unwrap();
+    let end = text.find("[tolerance]").unwrap();
+    let alone = text.replace(&text[other..end], "").replace("[[tools]]", "[tool]");
+    let [given, _] = planned(&alone, &scratch, "alone");
+    assert_eq!(open["tool"], given["tool"]);
+    let time = |v: &Value| number(v, &["control_time_min"]);
+    assert!(time(&open) < 0.9 * time(&given), "{} {}", time(&open), time(&given));
+    assert!(number(&open, &["passes"]) < 0.8 * number(&given, &["passes"]));
+    let mark = |v: &Value| number(v, &["verification", "tooth_mark_max_mm"]);
+    assert!(mark(&open) < 0.25 * mark(&given), "{} {}", mark(&open), mark(&given));
+    // Both are held together, whoever reads the program; joints are still what holds the feed.
+    assert!(number(&open, &["verification", "height_max_mm"]) <= 0.001);
+    same(&open, &verified);
+    let held = open["productivity"]["feed_held_by"].as_object().unwrap();
+    assert!(held.keys().any(|by| by.starts_with("joint ")), "{held:?}");
+}
+
+/// A chord tolerance that the job leaves open may grow where blocks and corners hold the control; one that is given does not.
+#[test]
+fn an_open_chord_grows_where_that_is_quicker() {
+    let scratch = Scratch::new();
+    let text = ridge(9.0, 0.2, 1.0, [6.0, 4.0], 20.0).replace("length_mm = 6\n", "length_mm = 30\n");
+    let [open, verified] = planned(&text, &scratch, "open");
+    assert!(story(&open).contains("the chord tolerance is 0.0040 mm"), "{}", story(&open));
+    same(&open, &verified);
+    let [given, _] = planned(&text.replace("gouge_mm", "chord_mm = 0.002\ngouge_mm"), &scratch, "given");
+    assert!(!story(&given).contains("chord"), "{}", story(&given));
+    let (free, kept) = (number(&open, &["control_time_min"]), number(&given, &["control_time_min"]));
+    assert!(free < kept, "{free} {kept}");
+}

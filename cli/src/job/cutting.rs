@@ -16,8 +16,10 @@ const LAYER_SCALLOPS: f64 = 20.0;
 const LEAST_LAYER_MM: f64 = 0.5;
 /// ... but no more than this share of the approach height, at which rapid moves end.
 pub(super) const LAYER_OF_APPROACH: f64 = 0.75;
-/// The share of the scallop tolerance that tooth marks take at most.
-const MARK_SHARE: f64 = 0.5;
+/// The share of the scallop tolerance that tooth marks take at most, unless a search lets them take less. Half is best where the feed
+/// is free: the width of a strip goes with the square root of what is left for it, and so does the feed with what is left for the
+/// mark [R97, eq. 41].
+pub(super) const MARK_SHARE: f64 = 0.5;
 
 /// How high material stands on the faces to machine, mm: what is declared, or else what approaches leave room for.
 pub(super) fn layer_mm(raw: &Raw, tool: &Tool) -> f64 {
@@ -59,25 +61,28 @@ pub(super) fn caps(tool: &Tool) -> Option<Caps> {
     })
 }
 
-/// The feed of a tool, capped by the feed per tooth where the job gives both, and what sets it.
-pub(super) fn feed_mm_min(
-    places: &Places,
-    raw: &Raw,
+/// A feed and what sets it, or a lesser one, mm/min.
+fn lesser(feed: (f64, FeedLimit), other: f64, by: FeedLimit) -> (f64, FeedLimit) {
+    if other < feed.0 { (other, by) } else { feed }
+}
+
+/// That feed, and no more than at which the marks of teeth take this share of the scallop tolerance on a plane. Layers of a roughing
+/// stand higher than marks.
+pub(super) fn marked(
+    feed: (f64, FeedLimit),
     (tool, strategy): (&Tool, &Strategy),
-) -> Result<(f64, FeedLimit), Failure> {
+    (share, scallop_mm): (f64, f64),
+) -> (f64, FeedLimit) {
+    let (Some(rpm), None) = (tool.feeding().spindle_rpm, strategy.layers()) else { return feed };
+    let teeth = f64::from(tool.teeth().unwrap_or(1));
+    let per_tooth = feed_per_tooth_mm(tool, strategy, share * scallop_mm);
+    per_tooth.map_or(feed, |mm| lesser(feed, mm * teeth * rpm, FeedLimit::ToothMark))
+}
+
+/// The feed of a tool, capped by the feed per tooth where the job gives both, and what sets it.
+pub(super) fn feed_mm_min(places: &Places, tool: &Tool) -> Result<(f64, FeedLimit), Failure> {
     let c = tool.feeding();
-    let lesser = |feed: (f64, FeedLimit), other: f64, by| if other < feed.0 { (other, by) } else { feed };
-    let mut feed = (c.feed_mm_min.unwrap_or(FEED_MM_MIN), FeedLimit::Feed);
-    // The feed at which the marks of teeth take half of the scallop tolerance on a plane. Half is best where the feed is free: the
-    // width of a strip goes with the square root of what is left for it, and so does the feed with what is left for the mark [R97,
-    // eq. 41]. Layers of a roughing stand higher than marks.
-    if let (Some(rpm), None) = (c.spindle_rpm, strategy.layers()) {
-        let mark_mm = MARK_SHARE * raw.tolerance.scallop_mm;
-        let teeth = f64::from(tool.teeth().unwrap_or(1));
-        if let Some(per_tooth) = feed_per_tooth_mm(tool, strategy, mark_mm) {
-            feed = lesser(feed, per_tooth * teeth * rpm, FeedLimit::ToothMark);
-        }
-    }
+    let feed = (c.feed_mm_min.unwrap_or(FEED_MM_MIN), FeedLimit::Feed);
     match (c.feed_per_tooth_mm, c.spindle_rpm, tool.teeth()) {
         (None, ..) => Ok(feed),
         (Some(f), Some(n), Some(z)) => Ok(lesser(feed, f * n * f64::from(z), FeedLimit::FeedPerTooth)),

@@ -204,7 +204,7 @@ pub static TABLES: &[Table] = &[
     table("tolerance", true, "what must hold", &[
         must("scallop_mm", SMALL, "0.01", "highest material left standing"),
         may("gouge_mm", SMALL, "half of scallop_mm", "0.005", "deepest undercut that is accepted"),
-        may("chord_mm", SMALL, "a fifth of scallop_mm", "0.002", "how far straight moves may be off the path"),
+        may("chord_mm", SMALL, "a fifth of scallop_mm", "0.002", "how far straight moves may be off the path; `auto` takes twice the default where that is quicker"),
         may("unreached_mm2", Kind::Number(Range { least: 0.0, most: 1e9, open: [false; 2] }, "mm2"), "0", "2.5",
             "area that no tool reaches and that is accepted"),
     ]),

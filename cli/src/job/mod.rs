@@ -55,6 +55,17 @@ pub struct Job {
     told: Arc<Told>,
     /// None until one of them is taken: the first, which is the only one of most jobs.
     hand: Option<usize>,
+    /// What a search gives it of its own.
+    own: Overrides,
+}
+
+/// What a search may give a job in place of what a file leaves open.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Overrides {
+    /// The share of the scallop that the marks of teeth take at most on a plane, less than a half: the feed is held down for that.
+    pub mark_share: Option<f64>,
+    /// The chord tolerance, mm.
+    pub chord_mm: Option<f64>,
 }
 
 /// What a file tells.
@@ -63,11 +74,12 @@ struct Told {
     places: Places,
     part: Part,
     tools: Vec<Tool>,
-    /// Of each tool.
+    /// Of each tool, whatever the marks of its teeth.
     feeds_mm_min: Vec<(f64, FeedLimit)>,
     /// With each tool.
     layers_mm: Vec<f64>,
     tolerance: Tolerance,
+    gives_chord: bool,
     unreached_mm2: f64,
     strategy: Strategy,
     control: Control,
@@ -164,8 +176,7 @@ impl Told {
         let tools = tools(&places, raw)?;
         let strategy = Strategy::of(&places, &raw.strategy, tools.len())?;
         let t = &raw.tolerance;
-        let feeds_mm_min =
-            tools.iter().map(|t| feed_mm_min(&places, raw, (t, &strategy))).collect::<Result<_, _>>()?;
+        let feeds_mm_min = tools.iter().map(|t| feed_mm_min(&places, t)).collect::<Result<_, _>>()?;
         // What operations before left is known place by place: links ask it how high it stands.
         let layers = || tools.iter().map(|tool| layer_mm(raw, tool)).fold(0.0, f64::max);
         let highest_mm = if raw.standing_mm.is_some() { 0.0 } else { layers() };
@@ -195,6 +206,7 @@ impl Told {
                 gouge_mm: t.gouge_mm.unwrap_or(SHARES[0] * t.scallop_mm),
                 chord_mm: t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm),
             },
+            gives_chord: places.has("tolerance", "chord_mm"),
             unreached_mm2: t.unreached_mm2.unwrap_or(0.0),
             strategy,
             names_machine: machine.is_some(),
@@ -255,7 +267,7 @@ impl Job {
 
     /// The job of the tables of a file.
     fn of(places: Places, raw: &Raw) -> Result<Self, Failure> {
-        Ok(Self { told: Arc::new(Told::of(places, raw)?), hand: None })
+        Ok(Self { told: Arc::new(Told::of(places, raw)?), hand: None, own: Overrides::default() })
     }
 
     /// The job of a file.

@@ -1,8 +1,9 @@
 //! What a job says, value by value: its tools, its tolerances, how to cut, for which machine.
 
-use super::cutting::{caps, feed_per_tooth_mm};
+use super::cutting::{MARK_SHARE, caps, feed_per_tooth_mm, marked};
 use super::{
-    Contact, Control, Fixture, Flank, Job, Part, Setup, Stock, Strategy, Tool, Verification, control,
+    Contact, Control, Fixture, Flank, Job, Overrides, Part, Setup, Stock, Strategy, Tool, Verification,
+    control,
 };
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_postproc::nc::Coolant;
@@ -38,7 +39,7 @@ impl Job {
     #[must_use]
     pub fn each_tool(&self) -> Vec<Self> {
         (0..self.told.tools.len())
-            .map(|hand| Self { told: Arc::clone(&self.told), hand: Some(hand) })
+            .map(|hand| Self { told: Arc::clone(&self.told), hand: Some(hand), own: Overrides::default() })
             .collect()
     }
 
@@ -46,7 +47,7 @@ impl Job {
     #[must_use]
     pub fn in_hand(&self, number: u32) -> Self {
         let hand = self.told.tools.iter().position(|t| t.number() == number);
-        Self { told: Arc::clone(&self.told), hand }
+        Self { told: Arc::clone(&self.told), hand, own: Overrides::default() }
     }
 
     /// The file it came from.
@@ -106,7 +107,45 @@ impl Job {
     /// The tolerances.
     #[must_use]
     pub fn tolerance(&self) -> Tolerance {
-        self.told.tolerance
+        let told = self.told.tolerance;
+        Tolerance { chord_mm: self.own.chord_mm.unwrap_or(told.chord_mm), ..told }
+    }
+
+    /// Whether the file says how far straight moves may be off the path.
+    #[must_use]
+    pub fn gives_chord(&self) -> bool {
+        self.told.gives_chord
+    }
+
+    /// What a search gave it.
+    #[must_use]
+    pub const fn overrides(&self) -> Overrides {
+        self.own
+    }
+
+    /// The job with what a search gives it. [`Job::each_tool`] and [`Job::in_hand`] are without it again.
+    ///
+    /// ```
+    /// use osculate::{Job, Overrides};
+    /// use std::path::Path;
+    ///
+    /// let text = r#"
+    /// format = 1
+    /// part = { builtin = { kind = "plane", half_size_mm = 5 } }
+    /// tool = { kind = "ball", diameter_mm = 6, length_mm = 40, teeth = 2 }
+    /// tolerance = { scallop_mm = 0.001 }
+    /// cutting = { spindle_rpm = 8000, feed_mm_min = 5000 }
+    /// "#;
+    /// let job = Job::from_toml(text, Path::new("plane.toml"))?;
+    /// // Marks of a quarter of the height: half the feed, to leading order.
+    /// let share = Some(0.25 * job.mark_share());
+    /// let less = job.with(Overrides { mark_share: share, ..Overrides::default() });
+    /// assert!((less.feed_mm_min() / job.feed_mm_min() - 0.5).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with(&self, own: Overrides) -> Self {
+        Self { own, ..self.clone() }
     }
 
     /// Area that no tool reaches and that is accepted.
@@ -166,13 +205,24 @@ impl Job {
     /// ```
     #[must_use]
     pub fn feed_mm_min(&self) -> f64 {
-        self.told.feeds_mm_min[self.hand.unwrap_or(0)].0
+        self.feed().0
+    }
+
+    fn feed(&self) -> (f64, FeedLimit) {
+        let shared = (self.mark_share(), self.tolerance().scallop_mm);
+        marked(self.told.feeds_mm_min[self.hand.unwrap_or(0)], (self.tool(), self.strategy()), shared)
+    }
+
+    /// The share of the scallop that the marks of teeth take at most: a half, unless [`Job::with`] gives another.
+    #[must_use]
+    pub fn mark_share(&self) -> f64 {
+        self.own.mark_share.unwrap_or(MARK_SHARE)
     }
 
     /// What sets that feed: the one that is given, the feed per tooth, or the height of the marks of teeth.
     #[must_use]
     pub fn feed_limit(&self) -> FeedLimit {
-        self.told.feeds_mm_min[self.hand.unwrap_or(0)].1
+        self.feed().1
     }
 
     /// What holds the feed down besides the marks of teeth; None without a spindle speed.

@@ -90,6 +90,8 @@ pub fn tools(job: &Job) -> Table {
     ];
     let row = |one: &Job| {
         let (tool, cutter) = (one.tool(), one.cutter());
+        // A plan may go slower than its job lets the tool in hand go.
+        let fed = if tool.number() == job.tool().number() { job } else { one };
         vec![
             format!("T{}", tool.number()),
             one.tool_words(),
@@ -99,7 +101,7 @@ pub fn tools(job: &Job) -> Table {
             number(cutter.length_mm(), 5),
             tool.teeth().map_or_else(|| "\u{2013}".to_owned(), |n| n.to_string()),
             one.spindle_rpm().map_or_else(|| "\u{2013}".to_owned(), |n| number(n, 6)),
-            number(one.feed_mm_min(), 6),
+            number(fed.feed_mm_min(), 6),
             match one.coolant() {
                 None => "none",
                 Some(Coolant::Flood) => "flood",

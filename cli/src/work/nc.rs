@@ -162,6 +162,12 @@ impl Motions {
         self.on_control.as_ref().map_or(self.time_min, |c| c.time_min)
     }
 
+    /// The time of its feed moves on the same clock, min.
+    #[must_use]
+    pub fn cutting_min(&self) -> f64 {
+        self.on_control.as_ref().map_or(self.cutting_time_min, |c| c.cutting_min)
+    }
+
     /// The motions as a verdict takes them, all with one tool.
     pub fn reading(&self, source: &'static str) -> Reading<'_> {
         Reading {

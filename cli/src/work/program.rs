@@ -127,8 +127,9 @@ impl Posted {
             }
         }
         let (program, _) = best?;
-        // The verdict is on what its text does, read as everybody reads it: from the place that its head says.
-        let (read, _) = reading::program(&program.text, &control, job, faces, false)?;
+        // The verdict is on what its text does, read as everybody reads it: from the place that its head says, beside the job of the file.
+        let told = job.in_hand(job.tool().number());
+        let (read, _) = reading::program(&program.text, &control, &told, faces, false)?;
         wall_s.post += stage.end();
         let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
         let diagnostics = notes.into_iter().flatten().cloned().collect();

@@ -174,11 +174,10 @@ fn job(case: &Case, kind: &str, data: &str, chosen: Option<&str>) -> String {
     let holder = format!("holder = {{ diameter_mm = {wide}, length_mm = {long} }}");
     let tools: String = tools.iter().map(|t| format!("  {{ {t}, teeth = {TEETH}, {holder} }},\n")).collect();
     format!(
-        "format = 1\ntools = [\n{tools}]\n[part]\n{part}\n[tolerance]\nscallop_mm = {h}\ngouge_mm = {}\nchord_mm = {}\n\
+        "format = 1\ntools = [\n{tools}]\n[part]\n{part}\n[tolerance]\nscallop_mm = {h}\ngouge_mm = {}\n\
          [strategy]\n{strategy}\n[cutting]\nspindle_rpm = 12000\nfeed_mm_min = 2000\n[machine]\nname = \"trunnion-ac\"\n\
          dialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n[setup]\nturns = \"free\"\n[verification]\nmax_samples = 600000\n",
-        0.5 * h,
-        0.2 * h
+        0.5 * h
     )
 }
 

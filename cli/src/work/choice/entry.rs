@@ -1,6 +1,7 @@
 //! How far a candidate has come, and what is known of it.
 
 use super::measured::Measured;
+use crate::job::Overrides;
 use crate::work::budget::Shares;
 use crate::work::program::{Planned, Posted};
 use osculate_productivity::compare::{Axes, Candidate, Screened};
@@ -38,6 +39,8 @@ pub(super) struct Entry {
     pub verified: Option<Measured>,
     /// The shares of the tolerances that it is laid out for.
     pub shares: Shares,
+    /// Of one that is another laid out again: which, and what its job is given for that.
+    pub again: Option<(usize, Overrides)>,
     /// Whether it was planned, or would have been, and whether that was around a plan with another tool.
     pub tried: bool,
     pub elsewhere: bool,
@@ -68,4 +71,13 @@ impl Entry {
             None => self.screened.layout_min,
         }
     }
+}
+
+/// What is told of a plan that is another laid out again.
+pub(super) fn words(own: Overrides) -> String {
+    let marks =
+        own.mark_share.map(|share| format!("marks of teeth are left {:.1} % of the scallop", 100.0 * share));
+    let chord = own.chord_mm.map(|mm| format!("the chord tolerance is {mm:.4} mm"));
+    let both: Vec<String> = marks.into_iter().chain(chord).collect();
+    format!("; the control does not reach the feed: {}", both.join(", "))
 }

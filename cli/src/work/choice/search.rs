@@ -1,7 +1,7 @@
 //! The candidates of a job in the order of the least time known of them, and what takes the first of them a level further.
 
 use super::candidates;
-use super::entry::{Entry, Figures, State};
+use super::entry::{self, Entry, Figures, State};
 use super::measured::Measured;
 use super::table::{self, Row, text_table};
 use crate::failure::Failure;
@@ -17,7 +17,7 @@ use crate::work::program::{Planned, Posted, WallS};
 use osculate_geom::Surface;
 use osculate_productivity::compare::{Around, Axes, Candidate, Setting, Tool, screen};
 use osculate_productivity::ideal::Patch;
-use osculate_productivity::plan::{Passes, Strategy, Tolerance};
+use osculate_productivity::plan::{Passes, Strategy};
 
 /// Candidates that are planned at most, and while none is known to hold.
 const MOST_PLANS: usize = 16;
@@ -42,18 +42,13 @@ const MOST_HELD_TWINS: usize = 2;
 const NEAR: f64 = 1.25;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
-/// A plan that leaves no more than this many times the scallop, or goes so deep, is laid out again, for so much less and a little more: depth costs
-/// hardly any time.
-const LITTLE_TOO_MUCH: f64 = 1.8;
-const LESS: f64 = 0.97;
-const LESS_DEEP: f64 = 0.9;
 /// Leads below this many times one at which the tool dug in are left out.
 const STEEPER: f64 = 1.3;
 
 /// A plan that promises the least time of all.
 pub struct Contender {
     /// Which entry it is.
-    entry: usize,
+    pub(super) entry: usize,
     /// The job with its tool.
     pub job: Job,
     /// The plan.
@@ -64,13 +59,13 @@ pub struct Contender {
 
 /// The plan that holds and is to be undercut.
 #[derive(Clone, Copy)]
-struct Holder {
-    entry: usize,
+pub(super) struct Holder {
+    pub entry: usize,
     /// Its time, min.
-    time_min: f64,
+    pub time_min: f64,
     /// Plans that were made before, and those of them with leads found place by place.
-    plans: usize,
-    locals: usize,
+    pub plans: usize,
+    pub locals: usize,
 }
 
 /// The candidates of a job.
@@ -79,13 +74,13 @@ pub struct Choice<'a> {
     pub(super) faces: &'a Part,
     /// The job with each of its tools.
     pub(super) jobs: Vec<Job>,
-    entries: Vec<Entry>,
-    plans: usize,
+    pub(super) entries: Vec<Entry>,
+    pub(super) plans: usize,
     /// For each tool the greatest lead at which it dug in, whatever the strategy, rad.
     dug_in_rad: Vec<f64>,
     /// For each tool its fields of axes over the faces.
     fields: Vec<Fields>,
-    holder: Option<Holder>,
+    pub(super) holder: Option<Holder>,
 }
 
 /// Areas of the faces to machine, with the faces.
@@ -134,6 +129,7 @@ impl<'a> Choice<'a> {
                     figures: None,
                     verified: None,
                     shares: Shares::WHOLE,
+                    again: None,
                     tried: false,
                     elsewhere: false,
                 }
@@ -254,8 +250,8 @@ impl<'a> Choice<'a> {
     }
 
     /// Plans with leads found place by place that were tried.
-    fn locals(&self) -> impl Iterator<Item = &Entry> {
-        self.entries.iter().filter(|e| e.is_local() && e.tried)
+    pub(super) fn locals(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().filter(|e| e.is_local() && e.tried && e.again.is_none())
     }
 
     const fn waiting(entry: &Entry) -> bool {
@@ -272,7 +268,9 @@ impl<'a> Choice<'a> {
         let twins = self.locals().filter(|e| twin(e).is_some()).count();
         let own = |e: &&Entry| e.candidate.tool == held.tool && twin(e).is_none();
         let made_local = self.locals().filter(own).count();
-        let made = (self.plans - holder.plans).saturating_sub(self.locals().count() - holder.locals);
+        let again = self.entries.iter().filter(|e| e.again.is_some() && e.tried).count();
+        let others = self.locals().count() - holder.locals + again;
+        let made = (self.plans - holder.plans).saturating_sub(others);
         let elsewhere = self.entries.iter().filter(|e| e.elsewhere && !e.is_field()).count();
         let holds = |e: &Entry| e.verified.is_some_and(|v| v.within_tolerance);
         let by_field = self.entries.iter().any(|e| e.is_field() && holds(e));
@@ -286,6 +284,10 @@ impl<'a> Choice<'a> {
             // What is open and was tried left a little too much, and is laid out for less.
             if e.figures.is_some() || e.tried {
                 return Some((0, 0.0, e.least_min()));
+            }
+            // After all others, of the one that holds then.
+            if let Some((of, _)) = e.again {
+                return (of == holder.entry).then(|| (7, 0.0, e.least_min()));
             }
             if e.is_field() {
                 return (fields < MOST_FIELDS_AROUND.max(most_alone)).then(|| (1, 0.0, e.least_min()));
@@ -322,16 +324,6 @@ impl<'a> Choice<'a> {
             .map(|(_, k)| k)
     }
 
-    /// From here on only what may take less time than this contender, which holds, is looked at.
-    pub fn undercut(&mut self, contender: &Contender) {
-        let time_min = contender.posted.time_min();
-        let (plans, locals) =
-            self.holder.map_or_else(|| (self.plans, self.locals().count()), |h| (h.plans, h.locals));
-        if self.holder.is_none_or(|h| time_min < h.time_min) {
-            self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals });
-        }
-    }
-
     /// The next contender for verification; None where no candidate is left.
     pub fn next(
         &mut self,
@@ -342,7 +334,7 @@ impl<'a> Choice<'a> {
         while let Some(k) = self.first() {
             progress((self.plans as f64 / MOST_PLANS as f64).min(1.0));
             let state = std::mem::replace(&mut self.entries[k].state, State::Taken);
-            let job = &self.jobs[self.entries[k].candidate.tool];
+            let job = self.job_of(k);
             self.entries[k].state = match state {
                 State::Open => {
                     let held = self.holder.map(|h| self.entries[h.entry].candidate.tool);
@@ -352,7 +344,7 @@ impl<'a> Choice<'a> {
                     // One that fails is a loser with a reason.
                     self.planned(k).unwrap_or_else(|e| State::Out(e.message().to_owned()))
                 }
-                State::Planned(planned) => match Posted::of(job, self.faces, &planned, wall_s, watch) {
+                State::Planned(planned) => match Posted::of(&job, self.faces, &planned, wall_s, watch) {
                     Ok(posted) => {
                         if let Some(f) = &mut self.entries[k].figures {
                             f.posted_min = Some(posted.time_min());
@@ -363,7 +355,7 @@ impl<'a> Choice<'a> {
                 },
                 State::Posted(both) => {
                     let (planned, posted) = *both;
-                    return Ok(Some(Contender { entry: k, job: job.clone(), planned, posted }));
+                    return Ok(Some(Contender { entry: k, job, planned, posted }));
                 }
                 done => done,
             };
@@ -371,11 +363,18 @@ impl<'a> Choice<'a> {
         Ok(None)
     }
 
+    /// The job of an entry: with its tool, and what it is given.
+    fn job_of(&self, k: usize) -> Job {
+        let Entry { candidate, again, .. } = &self.entries[k];
+        let job = &self.jobs[candidate.tool];
+        again.map_or_else(|| job.clone(), |(_, own)| job.with(own))
+    }
+
     /// Plans a candidate and looks at what it leaves.
     fn planned(&mut self, k: usize) -> Result<State, Failure> {
         self.plans += 1;
         let Entry { candidate: Candidate { tool, strategy, lean, axes }, shares, .. } = self.entries[k];
-        let job = &self.jobs[tool];
+        let job = &self.job_of(k);
         let fields = &self.fields[tool];
         let way = Way { strategy: &strategy, lean, axes, fields, shares, watch: &() };
         let passes = match passes::each_face(job, self.faces, &way, &|_| {}) {
@@ -418,23 +417,6 @@ impl<'a> Choice<'a> {
             extras,
             with_strips: true,
         })))
-    }
-
-    /// Has a candidate that leaves a little more than the limit, or goes a little deeper with leads that are found for that, laid out
-    /// for less, each once; whether it is. Closer passes leave the marks of teeth as they are.
-    fn for_less(&mut self, k: usize, why: &Objection, limits: Tolerance) -> bool {
-        let entry = &mut self.entries[k];
-        let local = entry.is_local();
-        let left = why.left_mm.map(|mm| (mm - why.marks_mm, limits.scallop_mm - why.marks_mm, LESS));
-        let dug = why.dug_mm.filter(|_| local).map(|mm| (mm, limits.gouge_mm, LESS_DEEP));
-        let mut again = false;
-        for (found, share) in [(left, &mut entry.shares.scallop), (dug, &mut entry.shares.gouge)] {
-            let Some((is, limit, less)) = found else { continue };
-            if *share == 1.0 && is > limit && is <= LITTLE_TOO_MUCH * limit {
-                (*share, again) = (less * limit / is, true);
-            }
-        }
-        again
     }
 
     /// Leaves out the smaller leads of a candidate that digs in: the heel comes down with the lead.
@@ -482,12 +464,14 @@ impl<'a> Choice<'a> {
     /// What was done, in words.
     pub fn story(&self) -> String {
         let count = |is: &dyn Fn(&Entry) -> bool| self.entries.iter().filter(|e| is(e)).count();
-        format!(
+        let story = format!(
             "{} candidates screened, {} planned, {} posted, {} verified",
             self.entries.len(),
             self.plans,
             count(&|e| e.figures.is_some_and(|f| f.posted_min.is_some())),
             count(&|e| e.verified.is_some())
-        )
+        );
+        let own = self.holder.and_then(|h| self.entries[h.entry].again);
+        story + &own.map_or_else(String::new, |(_, own)| entry::words(own))
     }
 }

@@ -1,0 +1,108 @@
+//! What is laid out again: what left a little too much, for less, and what the control goes slower along than it may, with less of the
+//! tolerance for the marks of teeth.
+
+use super::entry::{Entry, State};
+use super::search::{Choice, Contender, Holder};
+use crate::job::Overrides;
+use crate::work::look::Objection;
+use osculate_productivity::plan::Tolerance;
+use osculate_productivity::rate::FeedLimit;
+use osculate_productivity::split::best_share;
+
+/// A plan that leaves no more than this many times the scallop, or goes so deep, is laid out again, for so much
+/// less and a little more: depth costs hardly any time.
+const LITTLE_TOO_MUCH: f64 = 1.8;
+const LESS: f64 = 0.97;
+const LESS_DEEP: f64 = 0.9;
+/// Where the marks of teeth cap the feed they are made for this many times the mean speed of the control: it goes faster along some of
+/// the way. (Tuned on a patch of the teapot by the time on LinuxCNC.) Less than so much of the share that marks had is worth another plan.
+const FASTER: f64 = 6.0;
+const WORTH: f64 = 0.7;
+/// Where feed moves take the control more than this many times what their words ask for, blocks and corners hold it: the chord tolerance
+/// is tried this many times as great. (On nine of thirteen real faces that took 3 to 12 % less of LinuxCNC's time; four times as great took no less.)
+const BRAKED: f64 = 1.1;
+const COARSER: f64 = 2.0;
+/// Plans of one thing again, each for other shares of the tolerance.
+const MOST_AGAIN: usize = 4;
+
+impl Choice<'_> {
+    /// From here on only what may take less time than this contender, which holds, is looked at.
+    pub fn undercut(&mut self, contender: &Contender) {
+        let time_min = contender.posted.time_min();
+        let (plans, locals) =
+            self.holder.map_or_else(|| (self.plans, self.locals().count()), |h| (h.plans, h.locals));
+        if self.holder.is_none_or(|h| time_min < h.time_min) {
+            self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals });
+            for own in [less_marks(contender), coarser(contender)].into_iter().flatten() {
+                self.again(contender, own);
+            }
+        }
+    }
+
+    /// Adds the plan of this contender laid out again.
+    fn again(&mut self, contender: &Contender, own: Overrides) {
+        if self.entries.iter().filter(|e| e.again.is_some()).count() >= MOST_AGAIN {
+            return;
+        }
+        let Contender { entry: k, job, .. } = contender;
+        let Entry { candidate, screened, shares, .. } = &self.entries[*k];
+        let (candidate, mut screened, shares) = (*candidate, screened.clone(), *shares);
+        // Marks that take less leave room for fewer passes, each at a lesser feed.
+        let given = job.with(own);
+        let wider = ((1.0 - job.mark_share()) / (1.0 - given.mark_share())).sqrt();
+        screened.layout_min *= wider * job.feed_mm_min() / given.feed_mm_min();
+        self.entries.push(Entry {
+            candidate,
+            screened,
+            state: State::Open,
+            figures: None,
+            verified: None,
+            shares,
+            again: Some((*k, own)),
+            tried: false,
+            elsewhere: false,
+        });
+    }
+
+    /// Has a candidate that leaves a little more than the limit, or goes a little deeper with leads that are found for that, laid out
+    /// for less, each once; whether it is. Closer passes leave the marks of teeth as they are.
+    pub(super) fn for_less(&mut self, k: usize, why: &Objection, limits: Tolerance) -> bool {
+        let entry = &mut self.entries[k];
+        let local = entry.is_local();
+        let left = why.left_mm.map(|mm| (mm - why.marks_mm, limits.scallop_mm - why.marks_mm, LESS));
+        let dug = why.dug_mm.filter(|_| local).map(|mm| (mm, limits.gouge_mm, LESS_DEEP));
+        let mut again = false;
+        for (found, share) in [(left, &mut entry.shares.scallop), (dug, &mut entry.shares.gouge)] {
+            let Some((is, limit, less)) = found else { continue };
+            if *share == 1.0 && is > limit && is <= LITTLE_TOO_MUCH * limit {
+                (*share, again) = (less * limit / is, true);
+            }
+        }
+        again
+    }
+}
+
+/// Where the marks of teeth cap the feed and the control does not reach it: with just as much of the tolerance for marks as its speed
+/// needs strips become wider.
+fn less_marks(of: &Contender) -> Option<Overrides> {
+    let job = &of.job;
+    if job.feed_limit() != FeedLimit::ToothMark {
+        return None;
+    }
+    let per_min = job.spindle_rpm()? * f64::from(job.tool().teeth().unwrap_or(1));
+    let cap_mm = FASTER * of.planned.linked.cutting_length_mm / (of.posted.read.cutting_min() * per_min);
+    // By leading orders: how wide strips are for what is left goes with its root.
+    let along = |h_mm: f64| job.feed_per_tooth_mm(h_mm).ok_or(());
+    let best = best_share(job.tolerance().scallop_mm, cap_mm, along, |h_mm| Ok(h_mm.sqrt())).ok()?;
+    let less = best.capped && best.share.chi < WORTH * job.mark_share();
+    less.then(|| Overrides { mark_share: Some(best.share.chi), ..job.overrides() })
+}
+
+/// Where blocks and corners hold the control, and the job leaves the chord open, once: longer blocks and rounder corners.
+fn coarser(of: &Contender) -> Option<Overrides> {
+    let (job, read) = (&of.job, &of.posted.read);
+    let braked = read.cutting_min() > BRAKED * read.cutting_time_min;
+    let open = !job.gives_chord() && job.overrides().chord_mm.is_none();
+    (braked && open)
+        .then(|| Overrides { chord_mm: Some(COARSER * job.tolerance().chord_mm), ..job.overrides() })
+}
