@@ -1,5 +1,5 @@
-//! What is laid out again: what left a little too much, for less, and what the control goes slower along than it may, with less of the
-//! tolerance for the marks of teeth.
+//! What is laid out again: what left a little too much, for less; and what the control goes slower along than it may, with less of
+//! the tolerance for the marks of teeth, or a coarser chord.
 
 use super::entry::{Entry, State};
 use super::search::{Choice, Contender, Holder};
