@@ -212,7 +212,8 @@ fn compare_ranks_and_gives_reasons() {
         let why = r["why"].as_str().unwrap();
         let percent: f64 = why.split_whitespace().nth(3).unwrap().parse().unwrap();
         // Contour lines leave so small a face at its corners before the ball comes down on it.
-        let least = if r["strategy"] == "contour_2cl" { 90.0 } else { 100.0 };
+        let lines = r["strategy"].as_str().unwrap();
+        let least = if ["contour_2cl", "waterline_3c"].contains(&lines) { 90.0 } else { 100.0 };
         assert!(why.starts_with("too large for ") && percent >= least, "{why}");
         assert!(why.contains("largest diameter"), "{why}");
         let largest: f64 =
@@ -324,4 +325,70 @@ fn an_open_chord_grows_where_that_is_quicker() {
     assert!(!story(&given).contains("chord"), "{}", story(&given));
     let (free, kept) = (number(&open, &["control_time_min"]), number(&given, &["control_time_min"]));
     assert!(free < kept, "{free} {kept}");
+}
+
+/// A plane of 8 by 8 mm on three axes, with a flat end and a ball.
+const PLANE: &str = r#"
+format = 1
+part = { builtin = { kind = "plane", half_size_mm = 4 } }
+tolerance = { scallop_mm = 0.01 }
+strategy = { kind = "auto" }
+cutting = { spindle_rpm = 12000, feed_mm_min = 2000 }
+machine = { name = "3-axis", dialect = "linuxcnc", feed = "none" }
+verification = { max_samples = 60000 }
+[[tools]]
+kind = "flat"
+diameter_mm = 6
+length_mm = 40
+teeth = 4
+[[tools]]
+kind = "ball"
+diameter_mm = 6
+length_mm = 40
+teeth = 4
+"#;
+
+/// On three axes a flat end stands on a plane: no end that must lean is as quick, and only ways that keep the axis have it stand.
+#[test]
+fn a_tool_that_keeps_its_axis_is_among_what_is_chosen_from() {
+    let scratch = Scratch::new();
+    let [v, verified] = planned(PLANE, &scratch, "three");
+    let strategy = v["strategy"].as_str().unwrap();
+    assert!(["isoplanar_3c", "gradient_3c"].contains(&strategy), "{strategy}");
+    assert_eq!(v["tool"]["kind"], "flat");
+    assert_eq!(v["verdict"]["answer"], "held");
+    // 8 mm by strips of 6 mm, or by half of that beyond its rims.
+    assert!([2.0, 3.0].contains(&number(&v, &["passes"])));
+    assert!(number(&v, &["verification", "scallop_max_mm"]) < 1e-6);
+    same(&v, &verified);
+    // A ball would need passes half a millimetre apart.
+    let rows = v["compared"].as_array().unwrap();
+    let balls = rows.iter().filter(|r| r["tool"] == "ball 6").filter_map(|r| r["layout_min"].as_f64());
+    assert!(balls.clone().count() > 4);
+    assert!(balls.fold(f64::INFINITY, f64::min) > 2.0 * number(&v, &["control_cutting_time_min"]));
+}
+
+/// A quick search plans less and a long one more, and neither is worse than what it leaves out.
+#[test]
+fn an_effort_says_how_much_is_tried() {
+    let scratch = Scratch::new();
+    let plans = |v: &Value| -> f64 {
+        let told = story(v);
+        let before = told.split(" planned").next().unwrap();
+        before.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    let [quick, normal, long] = ["quick", "normal", "long"].map(|effort| {
+        let key = format!("kind = \"auto\", effort = \"{effort}\"");
+        let [v, _] = planned(&PLANE.replace("kind = \"auto\"", &key), &scratch, effort);
+        assert_eq!(v["verdict"]["answer"], "held", "{effort}");
+        (plans(&v), number(&v, &["control_time_min"]))
+    });
+    assert!(quick.0 < normal.0 && normal.0 <= long.0 && quick.0 < long.0, "{quick:?} {normal:?} {long:?}");
+    assert!(long.1 <= normal.1 && normal.1 <= quick.1, "{quick:?} {normal:?} {long:?}");
+    // Where nothing is left to choose the key says nothing.
+    let one = PLANE.split("[[tools]]\nkind = \"ball\"").next().unwrap().replace("[[tools]]", "[tool]");
+    let given = one.replace("kind = \"auto\"", "kind = \"isoplanar_3c\", effort = \"long\"");
+    let path = scratch.write("given.toml", &given);
+    let run = osculate(&["check", path.to_str().unwrap()]);
+    run.refused(&["[strategy] effort is for kind = \"auto\" or several tools", "isoplanar_3c"]);
 }

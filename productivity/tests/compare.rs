@@ -1,12 +1,15 @@
 //! Screening of candidates: against closed forms where strips have one, and the reasons for what is not possible.
 
-use osculate_geom::analytic::{Paraboloid, Sphere};
-use osculate_geom::{Axis, Surface};
+use osculate_geom::analytic::{Paraboloid, Plane, Sphere};
+use osculate_geom::{Axis, Domain, Interval, Surface, Unit3, Vec3};
 use osculate_productivity::closed_form::{Section, width_37};
 use osculate_productivity::compare::{Around, Axes, Candidate, Reason, Screened, Setting, Tool, screen};
 use osculate_productivity::ideal::{Feeding, Patch, Search, ideal};
 use osculate_productivity::optimum::Range;
-use osculate_productivity::plan::{Along, Strategy, Tolerance};
+use osculate_productivity::plan::{
+    Along, DropTask, Named, Strategy, Task, ThreeAxis, ThreeAxisLines, Tolerance, drop_cutter, gradient_3c,
+    run, waterline_3c,
+};
 use osculate_tools::{Cutter, CutterSpec, Holder, Lean};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -59,6 +62,69 @@ fn meridians_overlap_and_parallels_do_not() {
     let tools = [Feeding { cutter: &cutter, feed_mm_min: FEED }];
     let least = ideal(&[Patch { surface: &sphere, area_mm2 }], &tools, &TOLERANCE, search).unwrap();
     assert!(found.iter().all(|s| s.pointwise_min > 0.995 * least.time_min));
+}
+
+/// On a plane that slopes strips of a ball are as wide whatever the axis: planes and heights cost no overlap.
+#[test]
+fn a_tool_that_keeps_its_axis_lays_strips_side_by_side_on_a_slope() {
+    let plane = Plane::new(Domain { u: Interval::new(0.0, 30.0), v: Interval::new(0.0, 20.0) });
+    let cutter = ball(8.0);
+    let tool = Tool { cutter: &cutter, holder: None, feed_mm_min: FEED };
+    let section = Section { part_per_mm: 0.0, tool_per_mm: 0.25, scallop_mm: TOLERANCE.scallop_mm };
+    let bare_min = 600.0 / (width_37(section).unwrap() * FEED);
+    let way = |lines: ThreeAxisLines, axis: Vec3, feed: Vec3| Candidate {
+        tool: 0,
+        strategy: Strategy::ThreeAxis(ThreeAxis { lines, axis: Unit3::new_normalize(axis), feed }),
+        axes: Axes::Held,
+        lean: Lean::default(),
+    };
+    for slope in [0.1_f64, 0.6, 1.2] {
+        let axis = Vec3::new(slope.sin(), 0.0, slope.cos());
+        let ways = [
+            way(ThreeAxisLines::Planes, axis, Vec3::y()),
+            way(ThreeAxisLines::Planes, axis, Vec3::x()),
+            way(ThreeAxisLines::Gradient, axis, Vec3::x()),
+            way(ThreeAxisLines::Waterlines, axis, Vec3::x()),
+        ];
+        for s in screened(Patch { surface: &plane, area_mm2: 600.0 }, tool, &Around::default(), &ways) {
+            assert!(s.out.is_none(), "{s:?}");
+            for min in [s.pointwise_min, s.layout_min] {
+                assert!((min / bare_min - 1.0).abs() < 5e-3, "{slope}: {s:?} {bare_min}");
+            }
+        }
+    }
+    // From below nothing is reached.
+    let below = [way(ThreeAxisLines::Planes, -Vec3::z(), Vec3::x())];
+    let found = screened(Patch { surface: &plane, area_mm2: 600.0 }, tool, &Around::default(), &below);
+    assert_eq!(found[0].out, Some(Reason::Away { percent: 100.0 }));
+}
+
+/// Planned on one face by name, such a way is what its own function makes.
+#[test]
+fn the_ways_of_a_tool_that_keeps_its_axis_are_strategies() {
+    let plane = Plane::new(Domain { u: Interval::new(0.0, 12.0), v: Interval::new(0.0, 8.0) });
+    let cutter = toroidal(6.0);
+    let (axis, feed) = (Unit3::new_normalize(Vec3::new(1.0, 0.0, 1.0)), Vec3::x());
+    let faces = [Named { face: "top", surface: &plane }];
+    let drop = DropTask {
+        faces: &faces,
+        check: &[],
+        cutter: &cutter,
+        axis,
+        feed,
+        tolerance: TOLERANCE,
+        progress: &|_| {},
+    };
+    let own = [drop_cutter(&drop), gradient_3c(&drop), waterline_3c(&drop)];
+    let all = [ThreeAxisLines::Planes, ThreeAxisLines::Gradient, ThreeAxisLines::Waterlines];
+    for (lines, own) in all.into_iter().zip(own) {
+        let strategy = Strategy::ThreeAxis(ThreeAxis { lines, axis, feed });
+        let task = Task::new("top", &plane, &cutter, Lean::default(), TOLERANCE);
+        let [by_name, own] = [run(&task, &strategy).unwrap(), own.unwrap()].map(|p| p.passes);
+        assert_eq!(strategy.fixed_axis(), Some(axis));
+        assert_eq!(strategy.name(), lines.name());
+        assert!(!own.is_empty() && by_name == own, "{lines:?}");
+    }
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use crate::job::language::Language;
 use crate::job::schema::{Key, Kind, Range, Schema, TOOLS, Table};
 use crate::job::words::{
-    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeanKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
-    Turns,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EffortWord, EntryWord,
+    FeedWord, FlankShape, Gouges, LeanKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip,
+    ToolKind, Turns,
 };
 use osculate_postproc::built_in_names;
 use std::sync::LazyLock;
@@ -210,6 +210,7 @@ pub static TABLES: &[Table] = &[
     ]),
     table("strategy", false, "how to cut", &[
         may("kind", Kind::Word(StrategyWord::WORDS), "auto", "\"isoparametric\"", "the way of the passes; auto chooses"),
+        may("effort", Kind::Word(EffortWord::WORDS), "normal", "\"long\"", "auto, or several tools: how much is tried; quick: little around the first that holds"),
         may("lead_deg", Kind::NumberOr(LEAN, "deg", LeanKey::WORDS), "auto", "15", "lean of the axis towards the feed"),
         may("lead_rate_deg_per_mm", Kind::Number(Range { least: 0.0, most: 1e3, open: [true, false] }, "deg/mm"), "1", "0.5",
             "lead_deg = \"local\": its greatest change along the face"),
@@ -219,7 +220,7 @@ pub static TABLES: &[Table] = &[
             "isoparametric, regions: lean to the left of the growing parameter, the same for passes to and fro; lead_deg is 0 where not given"),
         may("along", Kind::Word(AlongWord::WORDS), "auto", "\"u\"", "isoparametric, regions: the parameter along the passes"),
         may("axis", Kind::DirectionOr(AxisKey::WORDS), "\"feed\", or [0, 0, 1]", "\"field\"",
-            "\"feed\": it leans along the feed; \"field\": the same for passes to and fro; a direction: contour_2cl, gradient_3c, isoplanar_3c, waterline_3c, z_level keep it"),
+            "\"feed\": it leans along the feed; \"field\": the same for passes to and fro; a direction: contour_2cl, gradient_3c, isoplanar_3c, waterline_3c, z_level keep it; auto: its ways that keep one, the nearest to the mean normal where not given"),
         may("one_way", Kind::Flag, "false", "true", "axis = \"field\": neighbouring passes all run the same way"),
         may("climb", Kind::Word(ClimbWord::WORDS), "any", "\"climb\"",
             "waterline_3c, axis = \"field\": chips from thick to thin (M3: what is still to be cut on the right of the feed), or the other way"),

@@ -32,7 +32,7 @@ use cutting::{feed_mm_min, layer_mm};
 pub use flank::Flank;
 pub use operations::{Clamping, Operation, Operations};
 use osculate_geom::Axis;
-use osculate_productivity::plan::Tolerance;
+use osculate_productivity::plan::{ThreeAxis, Tolerance};
 use osculate_productivity::rate::FeedLimit;
 pub use part::{FaceChoice, Part, Source};
 use problem::Places;
@@ -44,7 +44,7 @@ use std::sync::Arc;
 pub use stock::{Blank, Fixture, Stock};
 pub use strategy::Strategy;
 pub use tool::Tool;
-pub use words::{Accept, Gouges, LeanKey, Normals, OperationWord, Turns};
+pub use words::{Accept, EffortWord, Gouges, LeanKey, Normals, OperationWord, Turns};
 
 /// Gouge and chord of a job that gives none, of the scallop.
 const SHARES: [f64; 2] = [0.5, 0.2];
@@ -57,6 +57,8 @@ pub struct Job {
     hand: Option<usize>,
     /// What a search gives it of its own.
     own: Overrides,
+    /// The strategy then, where that is another than the file's.
+    kept: Option<Strategy>,
 }
 
 /// What a search may give a job in place of what a file leaves open.
@@ -66,6 +68,8 @@ pub struct Overrides {
     pub mark_share: Option<f64>,
     /// The chord tolerance, mm.
     pub chord_mm: Option<f64>,
+    /// Passes of a tool that keeps its axis.
+    pub three_axis: Option<ThreeAxis>,
 }
 
 /// What a file tells.
@@ -267,7 +271,7 @@ impl Job {
 
     /// The job of the tables of a file.
     fn of(places: Places, raw: &Raw) -> Result<Self, Failure> {
-        Ok(Self { told: Arc::new(Told::of(places, raw)?), hand: None, own: Overrides::default() })
+        Ok(Self { told: Arc::new(Told::of(places, raw)?), hand: None, own: Overrides::default(), kept: None })
     }
 
     /// The job of a file.

@@ -1,9 +1,9 @@
 //! The tables of a job file as written; what they mean is made of them in [`crate::job::Job`].
 
 use crate::job::words::{
-    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EntryWord, FeedWord,
-    FlankShape, Gouges, LeanKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip, ToolKind,
-    Turns,
+    Accept, AlongWord, AxisKey, AxisWord, ClimbWord, CoolantWord, DirectionsKey, EffortWord, EntryWord,
+    FeedWord, FlankShape, Gouges, LeanKey, MaterialWord, Method, Normals, OperationWord, StrategyWord, Tip,
+    ToolKind, Turns,
 };
 use osculate_tools::HolderSpec;
 use serde::Deserialize;
@@ -204,6 +204,7 @@ pub struct Strategy {
     pub lead_rate_deg_per_mm: Option<f64>,
     pub tilt_deg: LeanKey,
     pub side_tilt_deg: Option<f64>,
+    pub effort: EffortWord,
     pub along: AlongWord,
     pub axis: Option<AxisKey>,
     #[serde(default)]

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::job::problem::Places;
 use crate::job::raw;
 use crate::job::roughing::{Layers, layers};
-use crate::job::words::{AlongWord, AxisKey, ClimbWord, Gouges, LeanKey, StrategyWord};
+use crate::job::words::{AlongWord, AxisKey, ClimbWord, EffortWord, Gouges, LeanKey, StrategyWord};
 use osculate_geom::{Axis, Unit3, Vec3};
 use osculate_productivity::plan::{self, Along, Milling, Senses, SideTilt};
 use osculate_tools::Lean;
@@ -25,23 +25,11 @@ pub enum Kind {
     /// Passes along each face.
     Faces(plan::Strategy),
     /// Passes over all faces together, the tool dropped along an axis that it keeps.
-    Drop(Drop),
+    Drop(plan::ThreeAxisLines),
     /// Roughing in layers.
     Layers(Layers),
     /// The side of the cutter on a ruled face, for `flank`.
     Flank,
-}
-
-/// Passes by dropping the cutter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Drop {
-    /// In parallel planes.
-    Planes,
-    /// Up and down the slope.
-    Gradient,
-    /// At constant heights.
-    Waterlines,
 }
 
 /// How a job cuts.
@@ -50,6 +38,8 @@ pub struct Strategy {
     word: StrategyWord,
     /// The way to cut.
     pub kind: Kind,
+    /// How much is tried where something is left to be chosen.
+    pub effort: EffortWord,
     /// Lead; given ones in degrees.
     pub lead: LeanKey,
     /// Greatest change of a local lead along a face.
@@ -64,6 +54,8 @@ pub struct Strategy {
     pub axis_field: bool,
     /// Whether the job leaves open how axes are found.
     axis_open: bool,
+    /// Whether it gives the axis of a tool that keeps it.
+    pub gives_axis: bool,
     /// In which senses passes are run.
     pub senses: Senses,
     /// The way of passes of a tool that keeps its axis, across the axis; the longest side of the faces where not given.
@@ -79,6 +71,26 @@ impl Strategy {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         self.word.word()
+    }
+
+    /// The same with passes of a tool that keeps its axis.
+    pub(super) fn kept(&self, way: &plan::ThreeAxis) -> Self {
+        let word = match way.lines {
+            plan::ThreeAxisLines::Gradient => StrategyWord::Gradient3c,
+            plan::ThreeAxisLines::Waterlines => StrategyWord::Waterline3c,
+            plan::ThreeAxisLines::Planes => StrategyWord::Isoplanar3c,
+        };
+        Self { word, kind: Kind::Drop(way.lines), axis: way.axis, feed_direction: Some(way.feed), ..*self }
+    }
+
+    /// Whether the job asks for nothing that a tool has not which keeps its axis.
+    #[must_use]
+    pub fn may_keep_axis(&self) -> bool {
+        (self.axis_open || self.gives_axis)
+            && self.lead == LeanKey::Auto
+            && !self.tilts()
+            && self.side_tilt_deg.is_none()
+            && self.senses == Senses::default()
     }
 
     /// The sizes of a roughing, where it is one.
@@ -192,9 +204,9 @@ impl Strategy {
             StrategyWord::Streamline => Kind::Faces(plan::Strategy::Streamline),
             StrategyWord::Curvature5c => Kind::Faces(plan::Strategy::Curvature5c),
             StrategyWord::Contour2cl => Kind::Faces(plan::Strategy::Contour2cl { axis }),
-            StrategyWord::Gradient3c => Kind::Drop(Drop::Gradient),
-            StrategyWord::Isoplanar3c => Kind::Drop(Drop::Planes),
-            StrategyWord::Waterline3c => Kind::Drop(Drop::Waterlines),
+            StrategyWord::Gradient3c => Kind::Drop(plan::ThreeAxisLines::Gradient),
+            StrategyWord::Isoplanar3c => Kind::Drop(plan::ThreeAxisLines::Planes),
+            StrategyWord::Waterline3c => Kind::Drop(plan::ThreeAxisLines::Waterlines),
             StrategyWord::ZLevel => Kind::Layers(layers(places, t)?),
             StrategyWord::Flank => Kind::Flank,
         };
@@ -207,6 +219,7 @@ impl Strategy {
         let found = Self {
             word: t.kind,
             kind,
+            effort: t.effort,
             lead,
             lead_rate_rad_per_mm: t.lead_rate_deg_per_mm.unwrap_or(LEAD_RATE_DEG_PER_MM).to_radians(),
             tilt: t.tilt_deg,
@@ -214,6 +227,7 @@ impl Strategy {
             axis,
             axis_field: t.axis == Some(AxisKey::Field),
             axis_open: t.axis.is_none(),
+            gives_axis: matches!(t.axis, Some(AxisKey::Given(_))),
             senses: Senses {
                 one_way: t.one_way,
                 milling: match t.climb {
@@ -332,6 +346,13 @@ impl Strategy {
                 let what = format!("feed_direction = {given:?} must point across the tool axis");
                 return refuse("feed_direction", what);
             }
+        }
+        if places.has(TABLE, "effort") && tools < 2 && !self.is_open() {
+            let what = format!(
+                "effort is for kind = \"auto\" or several tools, not for one by {}: leave it out",
+                self.name()
+            );
+            return refuse("effort", what);
         }
         if tools > 1 && matches!(self.kind, Kind::Drop(_) | Kind::Layers(_) | Kind::Flank) {
             return refuse("kind", format!("{} takes one [tool], not [[tools]]", self.name()));

@@ -5,7 +5,7 @@ use super::{
     Contact, Control, Fixture, Flank, Job, Overrides, Part, Setup, Stock, Strategy, Tool, Verification,
     control,
 };
-use osculate_geom::{Diagnostic, Unit3};
+use osculate_geom::Diagnostic;
 use osculate_postproc::nc::Coolant;
 use osculate_productivity::plan::Tolerance;
 use osculate_productivity::rate::{Caps, FeedLimit};
@@ -38,16 +38,19 @@ impl Job {
     /// ```
     #[must_use]
     pub fn each_tool(&self) -> Vec<Self> {
-        (0..self.told.tools.len())
-            .map(|hand| Self { told: Arc::clone(&self.told), hand: Some(hand), own: Overrides::default() })
-            .collect()
+        (0..self.told.tools.len()).map(|hand| self.plain(Some(hand))).collect()
     }
 
     /// The job with the tool of this number in hand; the first where there is none.
     #[must_use]
     pub fn in_hand(&self, number: u32) -> Self {
         let hand = self.told.tools.iter().position(|t| t.number() == number);
-        Self { told: Arc::clone(&self.told), hand, own: Overrides::default() }
+        self.plain(hand)
+    }
+
+    /// What the file tells, with a tool in hand.
+    fn plain(&self, hand: Option<usize>) -> Self {
+        Self { told: Arc::clone(&self.told), hand, own: Overrides::default(), kept: None }
     }
 
     /// The file it came from.
@@ -145,7 +148,8 @@ impl Job {
     /// ```
     #[must_use]
     pub fn with(&self, own: Overrides) -> Self {
-        Self { own, ..self.clone() }
+        let kept = own.three_axis.map(|way| self.told.strategy.kept(&way));
+        Self { own, kept, ..self.clone() }
     }
 
     /// Area that no tool reaches and that is accepted.
@@ -157,7 +161,7 @@ impl Job {
     /// How to cut.
     #[must_use]
     pub fn strategy(&self) -> &Strategy {
-        &self.told.strategy
+        self.kept.as_ref().unwrap_or(&self.told.strategy)
     }
 
     /// Whether something is left to be chosen: the strategy, or one of several tools.
@@ -177,12 +181,6 @@ impl Job {
     #[must_use]
     pub fn lead_rate_rad_per_mm(&self) -> f64 {
         self.strategy().lead_rate_rad_per_mm
-    }
-
-    /// The tool axis of passes that keep it.
-    #[must_use]
-    pub fn contour_axis(&self) -> Unit3 {
-        self.strategy().axis
     }
 
     /// The feed of the tool in hand, capped by the feed per tooth where the job gives one.

@@ -133,6 +133,19 @@ words! {
 }
 
 words! {
+    /// How much is tried where the program chooses.
+    EffortWord {
+        /// The first that holds, and a little around it.
+        Quick = "quick",
+        /// What is worth its time on most parts.
+        #[default]
+        Normal = "normal",
+        /// Several times as much.
+        Long = "long",
+    }
+}
+
+words! {
     /// How a roughing comes into the material.
     EntryWord {
         /// From outside, else by a helix, else down a ramp, else straight down with a tool that plunges.

@@ -104,9 +104,9 @@ pub fn leaning(job: &Job, faces: &Part, shares: Shares) -> Tolerance {
     kept_back(job, faces, shares, words_mm(job) + ways_mm + blend_mm(job, true))
 }
 
-/// The tolerance for passes of a tool that keeps its axis: its straight ways are those of the machine.
-pub fn upright(job: &Job, faces: &Part) -> Tolerance {
-    kept_back(job, faces, Shares::WHOLE, words_mm(job) + blend_mm(job, false))
+/// The tolerance that shares leave for passes of a tool that keeps its axis: its straight ways are those of the machine.
+pub fn upright(job: &Job, faces: &Part, shares: Shares) -> Tolerance {
+    kept_back(job, faces, shares, words_mm(job) + blend_mm(job, false))
 }
 
 /// The tolerance that passes are held against where the tool may go in: verdicts add what words and blended corners may.

@@ -2,19 +2,19 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::job::strategy::Drop;
 use crate::part::{self, LoadedFace, Part};
 use crate::words::{self, number};
-use crate::work::budget;
+use crate::work::budget::{self, Shares};
 use osculate_geom::{Box3, Diagnostic, Unit3, Vec3};
-use osculate_productivity::plan::{DropTask, Milling, Named, Passes, drop_cutter, gradient_3c, waterline_3c};
+use osculate_productivity::plan::{DropTask, Milling, Named, Passes, ThreeAxisLines};
 use osculate_surfaces::lines::{Chart, LineTolerance, turned};
 
 /// Passes over all faces of the job, with its check faces kept clear.
 pub fn passes(
     job: &Job,
     faces: &Part,
-    kind: Drop,
+    lines: ThreeAxisLines,
+    shares: Shares,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Passes, Failure> {
     let (axis, feed) = directions(job, faces);
@@ -24,20 +24,15 @@ pub fn passes(
         cutter: &job.cutter(),
         axis,
         feed,
-        tolerance: budget::upright(job, faces),
+        tolerance: budget::upright(job, faces, shares),
         progress,
     };
-    let plan = match kind {
-        Drop::Planes => drop_cutter,
-        Drop::Gradient => gradient_3c,
-        Drop::Waterlines => waterline_3c,
-    };
-    let mut found = plan(&task).map_err(|e| Failure::file(job.path(), e))?;
-    if kind != Drop::Waterlines && !job.cutter().is_ball() {
+    let mut found = lines.passes(&task).map_err(|e| Failure::file(job.path(), e))?;
+    if lines != ThreeAxisLines::Waterlines && !job.cutter().is_ball() {
         found.diagnostics.extend(faces.faces.iter().filter_map(|face| minima(face, axis)));
     }
     // Waterlines have material on the right.
-    if kind == Drop::Waterlines && job.strategy().senses.milling == Milling::Conventional {
+    if lines == ThreeAxisLines::Waterlines && job.strategy().senses.milling == Milling::Conventional {
         found.passes.iter_mut().for_each(|p| p.points.reverse());
     }
     Ok(found)
@@ -80,7 +75,7 @@ pub fn names(faces: &[LoadedFace]) -> Vec<Named<'_>> {
 }
 
 /// The longest side of the box around the faces that lies across the axis: fewest turns.
-fn longest(faces: &[LoadedFace], axis: &Unit3) -> Vec3 {
+pub fn longest(faces: &[LoadedFace], axis: &Unit3) -> Vec3 {
     let bounds = faces.iter().map(part::bounds).fold(Box3::empty(), |a, b| a.union(&b));
     let size = bounds.max - bounds.min;
     [Vec3::x(), Vec3::y(), Vec3::z()]

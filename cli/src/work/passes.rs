@@ -1,7 +1,7 @@
 //! Passes over the faces of a job by one strategy, joined to a path.
 
 use crate::failure::Failure;
-use crate::job::strategy::{Drop, Kind};
+use crate::job::strategy::Kind;
 use crate::job::{Control, Job, LeanKey};
 use crate::part::{self, LoadedFace, Part};
 use crate::watch::Watch;
@@ -17,7 +17,8 @@ use osculate_postproc::machine::{Drive, JointKind};
 use osculate_productivity::compare::{Around, Axes};
 use osculate_productivity::plan::{
     Along, Freedom, Keeping, Leaning, Linked, Links, LocalLead, Milling, Passes, Rates, Senses, Strategy,
-    Stretches, Task, Walls, link, link_stretches, ordered, predicted_length_mm, run as plan_face, run_in,
+    Stretches, Task, ThreeAxisLines, Walls, link, link_stretches, ordered, predicted_length_mm,
+    run as plan_face, run_in,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::removal::{Sample, sample_boundary};
@@ -44,7 +45,7 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
     links.clearance_mm = setup.clearance_mm;
     links.approach_mm = setup.approach_mm;
     links.hop_mm = setup.hop_mm;
-    links.contacts = !matches!(kind, Kind::Drop(Drop::Waterlines));
+    links.contacts = !matches!(kind, Kind::Drop(ThreeAxisLines::Waterlines));
     links.dropped = matches!(kind, Kind::Drop(_));
     links.dip_mm = INTO_WALLS * job.tolerance().gouge_mm;
     links.layer_mm = job.layer_mm();
@@ -123,7 +124,7 @@ fn freedom(job: &Job) -> Freedom {
     let strategy = job.strategy();
     let wishes = strategy.senses != Senses::default();
     let same = strategy.is_same_either_way();
-    let from_above = matches!(strategy.kind, Kind::Drop(Drop::Waterlines));
+    let from_above = matches!(strategy.kind, Kind::Drop(ThreeAxisLines::Waterlines));
     Freedom { turned: same && !wishes, in_turn: strategy.senses.milling != Milling::Any || from_above }
 }
 

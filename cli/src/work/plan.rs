@@ -420,8 +420,8 @@ impl Laid {
     ) -> Result<Self, Failure> {
         let strategy = match &job.strategy().kind {
             Kind::Faces(strategy) => strategy,
-            Kind::Drop(kind) => {
-                let passes = drop::passes(job, faces, *kind, progress)?;
+            Kind::Drop(lines) => {
+                let passes = drop::passes(job, faces, *lines, Shares::WHOLE, progress)?;
                 return Ok(Self { passes, skipped: Vec::new(), lean: Lean::default(), axes: Axes::Held });
             }
             Kind::Layers(_) | Kind::Auto | Kind::Flank => return Err(not_planned(job)),

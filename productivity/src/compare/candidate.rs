@@ -2,7 +2,7 @@
 
 use super::around::Around;
 use crate::ideal::Patch;
-use crate::plan::{Strategy, Tolerance};
+use crate::plan::{Strategy, ThreeAxis, Tolerance};
 use osculate_geom::Unit3;
 use osculate_tools::{Cutter, Holder, Lean};
 
@@ -42,6 +42,14 @@ pub struct Candidate {
     pub lean: Lean,
     /// How the axis is found.
     pub axes: Axes,
+}
+
+impl Candidate {
+    /// How its tool is led, where that keeps its axis and is dropped onto the faces.
+    #[must_use]
+    pub const fn three_axis(&self) -> Option<&ThreeAxis> {
+        if let Strategy::ThreeAxis(way) = &self.strategy { Some(way) } else { None }
+    }
 }
 
 /// How the axes of a tool that leans are found.

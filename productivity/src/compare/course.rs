@@ -1,13 +1,16 @@
 //! Which way the passes of a strategy run at a place, and which way the tool leans there.
 
 use super::Candidate;
-use crate::plan::{Along, Strategy};
+use crate::plan::{Along, Strategy, ThreeAxis, ThreeAxisLines};
 use osculate_geom::{Axis, Forms, Jet2, SymEigen, Unit3, Vec3};
 use osculate_tools::Lean;
 use std::f64::consts::PI;
 
 /// Directions tried where the strategy is free to choose.
 const FREE: usize = 8;
+
+/// A face that slopes no more than this has no way up.
+const LEVEL: f64 = 1e-9;
 
 /// A posture of a strategy at a place.
 #[derive(Clone, Copy)]
@@ -35,8 +38,18 @@ pub(super) fn level(strategy: &Strategy) -> Level {
     match *strategy {
         Strategy::Isoparametric { along: Along::Fixed(axis) } => Level::Parameter(axis),
         Strategy::Isoplanar { normal } => Level::Planes(normal),
+        Strategy::ThreeAxis(way) => match way.lines {
+            ThreeAxisLines::Planes => across(&way).map_or(Level::Free, Level::Planes),
+            ThreeAxisLines::Waterlines => Level::Planes(way.axis),
+            ThreeAxisLines::Gradient => Level::Free,
+        },
         _ => Level::Free,
     }
+}
+
+/// The normal of the planes in which passes of a tool that keeps its axis run; None where the way along them is that axis.
+fn across(way: &ThreeAxis) -> Option<Unit3> {
+    Unit3::try_new(way.axis.cross(&way.feed), 1e-12)
 }
 
 fn angle_of(jet: &Jet2, forms: &Forms, direction: &Vec3) -> f64 {
@@ -76,6 +89,20 @@ pub(super) fn courses(candidate: &Candidate, jet: &Jet2, forms: &Forms) -> Vec<C
             vec![Course { angle_rad, lean: candidate.lean, across_per_mm: None }]
         }
         Strategy::Contour2cl { axis } => axial(&axis, n.cross(&axis), jet, forms),
+        Strategy::ThreeAxis(way) => {
+            let of_planes = |normal: Unit3| (n.cross(&normal), Some(n.cross(&normal).norm()));
+            let (direction, across_per_mm) = match way.lines {
+                ThreeAxisLines::Planes => across(&way).map_or((way.feed, None), of_planes),
+                ThreeAxisLines::Waterlines => of_planes(way.axis),
+                // Up the slope, where there is any.
+                ThreeAxisLines::Gradient => {
+                    let up = way.axis.into_inner() - n.into_inner() * n.dot(&way.axis);
+                    (if up.norm() > LEVEL { up } else { way.feed }, None)
+                }
+            };
+            let along = direction - n.into_inner() * n.dot(&direction);
+            axial(&way.axis, along, jet, forms).into_iter().map(|c| Course { across_per_mm, ..c }).collect()
+        }
         _ => {
             let d = SymEigen::of(&forms.curvature).d_max;
             let first = d[1].atan2(d[0]) * jet.side.sign();

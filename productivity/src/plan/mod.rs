@@ -34,8 +34,8 @@ mod walk;
 
 pub use contour::contour_2cl;
 pub use drop::{
-    DropTask, Entry, Heading, Headings, Places, RoughTask, Roughing, Rows, Search, Sizes, drop_cutter,
-    gradient_3c, rough, waterline_3c,
+    DropTask, Entry, Heading, Headings, Places, RoughTask, Roughing, Rows, Search, Sizes, ThreeAxis,
+    ThreeAxisLines, drop_cutter, gradient_3c, rough, waterline_3c,
 };
 pub use isoparametric::isoparametric;
 pub use lead::{LeadField, Leaning, LocalLead, SideTilt};

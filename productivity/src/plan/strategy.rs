@@ -1,8 +1,8 @@
 //! The strategies by name, and the one call that plans by any of them.
 
 use super::{
-    Along, Passes, PlanError, Task, contour_2cl, curvature_5c, isoparametric, isoplanar, isoscallop, regions,
-    streamline,
+    Along, DropTask, Named, Passes, PlanError, Task, ThreeAxis, contour_2cl, curvature_5c, isoparametric,
+    isoplanar, isoscallop, regions, streamline,
 };
 use osculate_geom::Unit3;
 
@@ -36,6 +36,8 @@ pub enum Strategy {
     Streamline,
     /// Along lines of curvature with a toroidal or flat cutter (5C, M86).
     Curvature5c,
+    /// Any cutter dropped along an axis that it keeps (3C); [`run`] sees no face but its own.
+    ThreeAxis(ThreeAxis),
 }
 
 impl Strategy {
@@ -50,6 +52,7 @@ impl Strategy {
             Self::Isoscallop => "isoscallop",
             Self::Streamline => "streamline",
             Self::Curvature5c => "curvature_5c",
+            Self::ThreeAxis(way) => way.lines.name(),
         }
     }
 
@@ -57,7 +60,7 @@ impl Strategy {
     #[must_use]
     pub const fn fixed_axis(&self) -> Option<Unit3> {
         match self {
-            Self::Contour2cl { axis } => Some(*axis),
+            Self::Contour2cl { axis } | Self::ThreeAxis(ThreeAxis { axis, .. }) => Some(*axis),
             Self::Isoparametric { .. }
             | Self::Regions { .. }
             | Self::Isoplanar { .. }
@@ -100,5 +103,14 @@ pub fn run(task: &Task<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {
         Strategy::Isoscallop => isoscallop(task),
         Strategy::Streamline => streamline(task),
         Strategy::Curvature5c => curvature_5c(task),
+        Strategy::ThreeAxis(ThreeAxis { lines, axis, feed }) => lines.passes(&DropTask {
+            faces: &[Named { face: task.face, surface: task.surface }],
+            check: &[],
+            cutter: task.cutter,
+            axis,
+            feed,
+            tolerance: task.tolerance,
+            progress: task.progress,
+        }),
     }
 }

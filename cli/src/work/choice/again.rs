@@ -23,17 +23,17 @@ const WORTH: f64 = 0.7;
 /// of LinuxCNC's time; on the compressor's four times as great took no less.)
 const BRAKED: f64 = 1.1;
 const COARSER: f64 = 2.0;
-/// Plans of one thing again, each for other shares of the tolerance.
-const MOST_AGAIN: usize = 4;
 
 impl Choice<'_> {
     /// From here on only what may take less time than this contender, which holds, is looked at.
     pub fn undercut(&mut self, contender: &Contender) {
         let time_min = contender.posted.time_min();
-        let (plans, locals) =
-            self.holder.map_or_else(|| (self.plans, self.locals().count()), |h| (h.plans, h.locals));
+        let (plans, locals, kept) = self.holder.map_or_else(
+            || (self.plans, self.locals().count(), self.kept().count()),
+            |h| (h.plans, h.locals, h.kept),
+        );
         if self.holder.is_none_or(|h| time_min < h.time_min) {
-            self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals });
+            self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals, kept });
             for own in [less_marks(contender), coarser(contender)].into_iter().flatten() {
                 self.again(contender, own);
             }
@@ -42,7 +42,7 @@ impl Choice<'_> {
 
     /// Adds the plan of this contender laid out again.
     fn again(&mut self, contender: &Contender, own: Overrides) {
-        if self.entries.iter().filter(|e| e.again.is_some() && e.tried).count() >= MOST_AGAIN {
+        if self.entries.iter().filter(|e| e.again.is_some() && e.tried).count() >= self.most.again {
             return;
         }
         let Contender { entry: k, job, .. } = contender;

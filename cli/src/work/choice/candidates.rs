@@ -6,9 +6,11 @@ use crate::job::{Job, LeanKey};
 use crate::part::{self, Part};
 use crate::work::axes;
 use crate::work::passes::{BALL_LEAD_DEG, each_direction};
+use crate::work::{drop, setup};
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
+use osculate_postproc::Orienting;
 use osculate_productivity::compare::{Axes, Candidate};
-use osculate_productivity::plan::{Along, Strategy};
+use osculate_productivity::plan::{Along, Strategy, ThreeAxis, ThreeAxisLines};
 use osculate_tools::{Cutter, Lean};
 
 /// Leads tried, degrees: small ones for wide strips, great ones to keep heel and holder off.
@@ -47,6 +49,7 @@ pub(super) fn of_job(job: &Job, faces: &Part, cutters: &[Cutter]) -> Result<Vec<
             let fits = match strategy {
                 Strategy::Contour2cl { .. } => cutter.is_ball(),
                 Strategy::Curvature5c => !cutter.is_ball(),
+                Strategy::ThreeAxis(way) => way.lines != ThreeAxisLines::Gradient || !cutter.is_ball(),
                 _ => true,
             };
             if !fits {
@@ -113,6 +116,7 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
 /// Every strategy that can be chosen.
 fn every(job: &Job, faces: &Part) -> Vec<Strategy> {
     let [first, second] = plane_normals(faces);
+    let axis = kept_axis(job, faces);
     vec![
         Strategy::Isoparametric { along: Along::Auto },
         Strategy::Regions { along: Along::Auto },
@@ -121,15 +125,48 @@ fn every(job: &Job, faces: &Part) -> Vec<Strategy> {
         Strategy::Isoscallop,
         Strategy::Streamline,
         Strategy::Curvature5c,
-        Strategy::Contour2cl { axis: job.contour_axis() },
+        Strategy::Contour2cl { axis },
     ]
+    .into_iter()
+    .chain(three_axis(job, faces, axis).into_iter().map(Strategy::ThreeAxis))
+    .collect()
+}
+
+/// Ways over the faces of a tool that keeps its axis, where the job asks for nothing else: in planes along and across the longest side
+/// of the faces, up and down the slope, and at constant heights.
+fn three_axis(job: &Job, faces: &Part, axis: Unit3) -> Vec<ThreeAxis> {
+    if !job.strategy().may_keep_axis() {
+        return Vec::new();
+    }
+    let along = drop::longest(&faces.faces, &axis);
+    let way = |lines: ThreeAxisLines, feed: Vec3| ThreeAxis { lines, axis, feed };
+    vec![
+        way(ThreeAxisLines::Planes, along),
+        way(ThreeAxisLines::Planes, axis.cross(&along)),
+        way(ThreeAxisLines::Gradient, along),
+        way(ThreeAxisLines::Waterlines, along),
+    ]
+}
+
+/// The axis of tools that keep one: that of the job, or else of those that the machine has the nearest to the mean normal.
+fn kept_axis(job: &Job, faces: &Part) -> Unit3 {
+    if job.strategy().gives_axis {
+        return job.strategy().axis;
+    }
+    let (stands, _) = setup::of(job, faces, None);
+    Orienting::new(&job.control().machine, &stands.part_zero.rotation).nearest(&mean_normal(faces))
+}
+
+/// The mean normal of the faces; z where they have none.
+fn mean_normal(faces: &Part) -> Unit3 {
+    let all = faces.faces.iter().flat_map(|f| part::grid(&*f.surface, GRID));
+    let sum = all.fold(Vec3::zeros(), |s, (_, _, n)| s + n.into_inner());
+    Unit3::try_new(sum, 1e-9).unwrap_or_else(Vec3::z_axis)
 }
 
 /// Two normals of planes across the faces, at right angles to their mean normal and to each other.
 fn plane_normals(faces: &Part) -> [Unit3; 2] {
-    let all = faces.faces.iter().flat_map(|f| part::grid(&*f.surface, GRID));
-    let sum = all.fold(Vec3::zeros(), |s, (_, _, n)| s + n.into_inner());
-    let up = Unit3::try_new(sum, 1e-9).unwrap_or_else(Vec3::z_axis);
+    let up = mean_normal(faces);
     let first = any_perpendicular(&up);
     [first, Unit3::new_unchecked(up.cross(&first))]
 }
@@ -141,6 +178,11 @@ pub(super) fn words(strategy: &Strategy) -> String {
             format!("{} {}", strategy.name(), if *a == Axis::U { "u" } else { "v" })
         }
         Strategy::Isoplanar { normal: n } => format!("isoplanar ({:.2}, {:.2}, {:.2})", n.x, n.y, n.z),
+        Strategy::ThreeAxis(ThreeAxis { lines: ThreeAxisLines::Planes, axis, feed }) => {
+            let normal = axis.cross(feed);
+            let n = normal / normal.norm().max(f64::MIN_POSITIVE);
+            format!("{} ({:.2}, {:.2}, {:.2})", strategy.name(), n.x, n.y, n.z)
+        }
         other => other.name().to_owned(),
     }
 }

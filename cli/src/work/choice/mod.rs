@@ -12,6 +12,7 @@
 
 mod again;
 mod candidates;
+mod effort;
 mod entry;
 mod measured;
 mod search;

@@ -1,15 +1,17 @@
 //! The candidates of a job in the order of the least time known of them, and what takes the first of them a level further.
 
 use super::candidates;
+use super::effort::Most;
 use super::entry::{self, Entry, Figures, State};
 use super::measured::Measured;
 use super::table::{self, Row, text_table};
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Job, Overrides};
 use crate::part::{self, Part};
 use crate::watch::Watch;
 use crate::work::axes::{self, Fields};
 use crate::work::budget::Shares;
+use crate::work::drop;
 use crate::work::extras::Extras;
 use crate::work::look::{Look, Objection};
 use crate::work::passes::{self, Way};
@@ -19,26 +21,8 @@ use osculate_productivity::compare::{Around, Axes, Candidate, Setting, Tool, scr
 use osculate_productivity::ideal::Patch;
 use osculate_productivity::plan::{Passes, Strategy};
 
-/// Candidates that are planned at most, and while none is known to hold.
-const MOST_PLANS: usize = 16;
-const MOST_IN_NEED: usize = 28;
-/// Plans around one that holds: with its tool and leads found place by place, with leads beside its own, and with other strategies.
-const MOST_LOCAL: usize = 6;
-const MOST_BESIDE: usize = 3;
-const MOST_OTHERS: usize = 3;
-/// The same where one with a field of axes holds; nothing else is tried then, nor lines of curvature: on none of thirteen real faces
-/// was a plan along them the quickest that held.
-const MOST_LOCAL_BESIDE_FIELD: usize = 2;
-/// Plans with fields of axes, which are the first, and with those that are tried around one that holds.
-const MOST_FIELDS: usize = 3;
-const MOST_FIELDS_AROUND: usize = 4;
-/// Plans with other tools then, also where a field holds, and with one of them.
-const MOST_ELSEWHERE: usize = 4;
-const MOST_ELSEWHERE_BESIDE_FIELD: usize = 2;
-const MOST_OF_ANOTHER: usize = 2;
-/// Plans with a tilt held of those whose tilt was found place by place, each where that took no more than this many times the least
-/// time: axes that turn less may be quicker than wider strips.
-const MOST_HELD_TWINS: usize = 2;
+/// Tilts are held too where they were found place by place and that took no more than this many times the least time: axes that turn
+/// less may be quicker than wider strips.
 const NEAR: f64 = 1.25;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
@@ -63,9 +47,10 @@ pub(super) struct Holder {
     pub entry: usize,
     /// Its time, min.
     pub time_min: f64,
-    /// Plans that were made before, and those of them with leads found place by place.
+    /// Plans that were made before, and those of them with leads found place by place, and of tools that keep their axis.
     pub plans: usize,
     pub locals: usize,
+    pub kept: usize,
 }
 
 /// The candidates of a job.
@@ -76,6 +61,8 @@ pub struct Choice<'a> {
     pub(super) jobs: Vec<Job>,
     pub(super) entries: Vec<Entry>,
     pub(super) plans: usize,
+    /// How much is tried.
+    pub(super) most: Most,
     /// For each tool the greatest lead at which it dug in, whatever the strategy, rad.
     dug_in_rad: Vec<f64>,
     /// For each tool its fields of axes over the faces.
@@ -137,7 +124,8 @@ impl<'a> Choice<'a> {
             .collect();
         let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
         let fields = jobs.iter().map(|_| Fields::default()).collect();
-        let choice = Self { faces, jobs, entries, plans: 0, dug_in_rad, fields, holder: None };
+        let most = Most::of(job.strategy().effort);
+        let choice = Self { faces, jobs, entries, plans: 0, most, dug_in_rad, fields, holder: None };
         choice.any_left(job)?;
         Ok(choice)
     }
@@ -169,8 +157,8 @@ impl<'a> Choice<'a> {
             return Some(field);
         }
         let holds = self.entries.iter().any(|e| e.verified.is_some_and(|v| v.within_tolerance));
-        let more = self.plans < MOST_PLANS;
-        let in_need = !more && !holds && self.plans < MOST_IN_NEED;
+        let more = self.plans < self.most.plans;
+        let in_need = !more && !holds && self.plans < self.most.in_need;
         // Leads found place by place wait for a plan that holds, where one is held elsewhere.
         let only_local = self.entries.iter().all(|e| e.candidate.axes != Axes::Held);
         let waiting = |e: &Entry| {
@@ -222,7 +210,7 @@ impl<'a> Choice<'a> {
         let fields = || self.entries.iter().enumerate().filter(|(_, e)| e.is_field() && Self::waiting(e));
         let planned = fields().filter(|(_, e)| e.figures.is_some() || e.tried).min_by(least);
         let quicker = |e: &Entry| planned.is_none_or(|(_, p)| e.least_min() < p.least_min());
-        let most = if self.entries.iter().all(Entry::is_field) { MOST_PLANS } else { MOST_FIELDS };
+        let most = if self.entries.iter().all(Entry::is_field) { self.most.plans } else { self.most.fields };
         let more = self.fields_made() < most;
         let open = fields().filter(|(_, e)| more && !e.tried && quicker(e)).min_by(least);
         open.or(planned).map(|(k, _)| k)
@@ -235,7 +223,7 @@ impl<'a> Choice<'a> {
         let c = &entry.candidate;
         let planned: Vec<&Entry> =
             self.entries.iter().filter(|e| e.candidate.tool == c.tool && e.tried).collect();
-        if planned.iter().filter(|e| e.is_local()).count() >= MOST_OF_ANOTHER {
+        if planned.iter().filter(|e| e.is_local()).count() >= self.most.of_another {
             return None;
         }
         let quickest = planned
@@ -254,6 +242,11 @@ impl<'a> Choice<'a> {
         self.entries.iter().filter(|e| e.is_local() && e.tried && e.again.is_none())
     }
 
+    /// Plans of tools that keep their axis that were tried.
+    pub(super) fn kept(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().filter(|e| e.candidate.three_axis().is_some() && e.tried && e.again.is_none())
+    }
+
     const fn waiting(entry: &Entry) -> bool {
         matches!(entry.state, State::Open | State::Planned(_) | State::Posted(_))
     }
@@ -261,7 +254,8 @@ impl<'a> Choice<'a> {
     /// The candidate to go on with that may take less time than one that holds: first what is planned already or to be laid out
     /// for less, whatever its tool; then with the tool that holds leads found place by place, along parameter lines and lines of
     /// curvature first, as these keep their lines whatever the lead; then of its strategy the nearest leads; then other
-    /// strategies, each with its nearest lead and the quickest first; then leads found place by place with other tools.
+    /// strategies, each with its nearest lead and the quickest first; then leads found place by place with other tools; then tools that
+    /// keep their axis.
     fn first_around(&self, holder: &Holder) -> Option<usize> {
         let held = self.entries[holder.entry].candidate;
         let twin = |e: &Entry| self.entries.iter().find(|of| e.is_held_twin(of));
@@ -270,12 +264,13 @@ impl<'a> Choice<'a> {
         let made_local = self.locals().filter(own).count();
         let again = self.entries.iter().filter(|e| e.again.is_some() && e.tried).count();
         let others = self.locals().count() - holder.locals + again;
-        let made = (self.plans - holder.plans).saturating_sub(others);
+        let kept = self.kept().count() - holder.kept;
+        let made = (self.plans - holder.plans).saturating_sub(others + kept);
         let elsewhere = self.entries.iter().filter(|e| e.elsewhere && !e.is_field()).count();
         let holds = |e: &Entry| e.verified.is_some_and(|v| v.within_tolerance);
         let by_field = self.entries.iter().any(|e| e.is_field() && holds(e));
         let fields = self.fields_made();
-        let most_alone = if self.entries.iter().all(Entry::is_field) { MOST_PLANS } else { 0 };
+        let most_alone = if self.entries.iter().all(Entry::is_field) { self.most.plans } else { 0 };
         let order = |e: &Entry| {
             let c = &e.candidate;
             if !Self::waiting(e) || e.least_min() >= holder.time_min {
@@ -287,27 +282,34 @@ impl<'a> Choice<'a> {
             }
             // After all others, of the one that holds then.
             if let Some((of, _)) = e.again {
-                return (of == holder.entry).then(|| (7, 0.0, e.least_min()));
+                return (of == holder.entry).then(|| (8, 0.0, e.least_min()));
+            }
+            if c.three_axis().is_some() {
+                let failed =
+                    self.kept().filter(|k| k.candidate.tool == c.tool && matches!(k.state, State::Out(_)));
+                return (kept < self.most.kept).then(|| (7, failed.count() as f64, e.least_min()));
             }
             if e.is_field() {
-                return (fields < MOST_FIELDS_AROUND.max(most_alone)).then(|| (1, 0.0, e.least_min()));
+                return (fields < self.most.fields_around.max(most_alone)).then(|| (1, 0.0, e.least_min()));
             }
             if let Some(twin) = twin(e) {
                 let near = twin.figures.is_some() && twin.least_min() < NEAR * holder.time_min;
-                return (near && twins < MOST_HELD_TWINS).then(|| (2, 0.0, twin.least_min()));
+                return (near && twins < self.most.held_twins).then(|| (2, 0.0, twin.least_min()));
             }
             if c.tool != held.tool {
-                let most = if by_field { MOST_ELSEWHERE_BESIDE_FIELD } else { MOST_ELSEWHERE };
+                let most = if by_field { self.most.elsewhere_beside_field } else { self.most.elsewhere };
                 let wanted = e.is_local() && keeps_lines(&c.strategy) && elsewhere < most;
                 return wanted.then(|| self.with_another(e)).flatten();
             }
             let beside = c.strategy == held.strategy;
             let (made, most) = match (e.is_local(), beside) {
                 (true, _) if by_field && matches!(c.strategy, Strategy::Curvature5c) => return None,
-                (true, _) => (made_local, if by_field { MOST_LOCAL_BESIDE_FIELD } else { MOST_LOCAL }),
+                (true, _) => {
+                    (made_local, if by_field { self.most.local_beside_field } else { self.most.local })
+                }
                 (false, _) if by_field => return None,
-                (false, true) => (made, MOST_BESIDE),
-                (false, false) => (made, MOST_BESIDE + MOST_OTHERS),
+                (false, true) => (made, self.most.beside),
+                (false, false) => (made, self.most.beside + self.most.others),
             };
             let kind = match e.is_local() {
                 false => 3 + usize::from(!beside),
@@ -332,7 +334,7 @@ impl<'a> Choice<'a> {
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Option<Contender>, Failure> {
         while let Some(k) = self.first() {
-            progress((self.plans as f64 / MOST_PLANS as f64).min(1.0));
+            progress((self.plans as f64 / self.most.plans as f64).min(1.0));
             let state = std::mem::replace(&mut self.entries[k].state, State::Taken);
             let job = self.job_of(k);
             self.entries[k].state = match state {
@@ -367,7 +369,8 @@ impl<'a> Choice<'a> {
     fn job_of(&self, k: usize) -> Job {
         let Entry { candidate, again, .. } = &self.entries[k];
         let job = &self.jobs[candidate.tool];
-        again.map_or_else(|| job.clone(), |(_, own)| job.with(own))
+        let three_axis = candidate.three_axis().copied();
+        job.with(again.map_or(Overrides { three_axis, ..Overrides::default() }, |(_, own)| own))
     }
 
     /// Plans a candidate and looks at what it leaves.
@@ -377,7 +380,12 @@ impl<'a> Choice<'a> {
         let job = &self.job_of(k);
         let fields = &self.fields[tool];
         let way = Way { strategy: &strategy, lean, axes, fields, shares, watch: &() };
-        let passes = match passes::each_face(job, self.faces, &way, &|_| {}) {
+        let laid = match &strategy {
+            // Over all faces together.
+            Strategy::ThreeAxis(kept) => drop::passes(job, self.faces, kept.lines, shares, &|_| {}),
+            _ => passes::each_face(job, self.faces, &way, &|_| {}),
+        };
+        let passes = match laid {
             Ok(p) => p,
             Err(e) => {
                 let why = e.message().to_owned();

@@ -14,11 +14,6 @@ use crate::work::verify::{Verification, Verified};
 use osculate_productivity::levels::{Totals, levels};
 use osculate_tools::removal::{Answer, Limits};
 
-/// Contenders that hold at their samples only, and closer passes too, after which the best of them is taken: finer looks are for the job to ask for.
-const MOST_NOT_SHOWN: usize = 2;
-/// Contenders that are verified at most.
-const MOST_VERIFIED: usize = 9;
-
 /// The plan that is chosen.
 pub struct Settled {
     /// The job with its tool.
@@ -45,7 +40,8 @@ pub fn settle(
 ) -> Result<Settled, Failure> {
     let mut best: Option<(f64, Settled)> = None;
     let (mut holding, mut verified, mut not_shown) = (0, 0, 0);
-    while verified < MOST_VERIFIED && not_shown < MOST_NOT_SHOWN {
+    let most = choice.most;
+    while verified < most.verified && not_shown < most.not_shown {
         let Some(contender) = choice.next(watch, wall_s, progress)? else { break };
         verified += 1;
         let found = match contender.posted.verify(&contender.job, choice.faces, wall_s, watch) {

@@ -4,13 +4,13 @@
 //! program. Numbers come back bit by bit.
 
 use crate::failure::{Failure, beside, read};
-use crate::job::Operations;
+use crate::job::{Job, Operations, Overrides};
 use crate::work::choice::Row;
 use crate::work::extras::{Extras, FaceLeftOut};
 use crate::work::program::Planned;
 use osculate_geom::{Diagnostic, Point3, Severity, Unit3, Uv, Vec3};
 use osculate_productivity::compare::Axes;
-use osculate_productivity::plan::{CcPoint, Linked, Pass, Passes};
+use osculate_productivity::plan::{CcPoint, Linked, Pass, Passes, ThreeAxis, ThreeAxisLines};
 use osculate_tools::cl::{ClMove, ClPath, Motion};
 use osculate_tools::{Lean, Pose};
 use serde::{Deserialize, Serialize};
@@ -22,13 +22,22 @@ type KeptPoint = ([f64; 14], Option<f64>);
 /// Whence an axis can be, by the number that is kept.
 const AXES: [Axes; 4] = [Axes::Held, Axes::Local, Axes::Balanced, Axes::Field];
 
+/// What a search gave a job, as it is kept: the share of marks, the chord tolerance, and of a tool that keeps its axis the lines of its
+/// passes, that axis and the way.
+type KeptOverrides = (Option<f64>, Option<f64>, Option<(u8, [f64; 6])>);
+
+/// Lines of passes of a tool that keeps its axis, by the number that is kept.
+const LINES: [ThreeAxisLines; 3] =
+    [ThreeAxisLines::Planes, ThreeAxisLines::Gradient, ThreeAxisLines::Waterlines];
+
 /// A planned operation as it is kept.
 #[derive(Serialize, Deserialize)]
 pub struct Kept {
     /// Of job, files and version.
     key: u64,
     /// The number of the tool in hand.
-    pub tool: u32,
+    tool: u32,
+    own: KeptOverrides,
     /// How high material stood, mm.
     pub standing_mm: Option<f64>,
     /// Of rest, the area that stood too high, mm2.
@@ -93,7 +102,13 @@ fn flat(parts: [Vec3; 4]) -> impl Iterator<Item = f64> {
 
 impl Kept {
     /// Of a plan.
-    pub fn of(key: u64, tool: u32, planned: &Planned<'_>) -> Self {
+    pub fn of(key: u64, job: &Job, planned: &Planned<'_>) -> Self {
+        let own = job.overrides();
+        let three_axis = own.three_axis.map(|way| {
+            let (a, f) = (way.axis, way.feed);
+            let lines = LINES.iter().position(|l| *l == way.lines).unwrap_or(0) as u8;
+            (lines, [a.x, a.y, a.z, f.x, f.y, f.z])
+        });
         let point = |c: &CcPoint| {
             let mut out = [0.0; 14];
             let own = flat([c.point.coords, *c.normal, c.pose.tip.coords, *c.pose.axis]);
@@ -108,7 +123,8 @@ impl Kept {
         let linked = &planned.linked;
         Self {
             key,
-            tool,
+            tool: job.tool().number(),
+            own: (own.mark_share, own.chord_mm, three_axis),
             standing_mm: None,
             too_high_mm2: None,
             plan_s: 0.0,
@@ -140,6 +156,18 @@ impl Kept {
     /// What was written, where it is for the same list.
     pub fn read(bytes: &[u8], key: u64) -> Option<Self> {
         serde_json::from_slice::<Self>(bytes).ok().filter(|kept| kept.key == key)
+    }
+
+    /// A job with the tool that was in hand, and what a search gave it.
+    pub fn job(&self, job: Job) -> Job {
+        let (mark_share, chord_mm, three_axis) = self.own;
+        let three_axis = three_axis.map(|(lines, [x, y, z, u, v, w])| ThreeAxis {
+            lines: LINES[usize::from(lines).min(LINES.len() - 1)],
+            axis: Unit3::new_unchecked(Vec3::new(x, y, z)),
+            feed: Vec3::new(u, v, w),
+        });
+        let job = if job.tools().len() > 1 { job.in_hand(self.tool) } else { job };
+        job.with(Overrides { mark_share, chord_mm, three_axis })
     }
 
     /// The plan.
@@ -180,6 +208,45 @@ impl Kept {
                 ..Extras::default()
             },
             with_strips: self.with_strips,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn what_a_search_gave_comes_back() {
+        let text = "format = 1\npart = { builtin = { kind = \"plane\", half_size_mm = 2 } }\ntolerance = { scallop_mm = 0.1 }\n\
+            strategy = { kind = \"auto\" }\n[[tools]]\nkind = \"ball\"\ndiameter_mm = 6\nlength_mm = 40\n[[tools]]\nkind = \"ball\"\ndiameter_mm = 4\n\
+            length_mm = 40\n";
+        let file = Job::from_toml(text, Path::new("two.toml")).unwrap();
+        let planned = Planned {
+            passes: Passes::default(),
+            skipped: Vec::new(),
+            linked: Linked::default(),
+            strategy: "gradient_3c".to_owned(),
+            lean: Lean::default(),
+            axes: Axes::Held,
+            extras: Extras::default(),
+            with_strips: true,
+        };
+        let axis = Unit3::new_normalize(Vec3::new(0.1, 0.2, 0.3));
+        for lines in LINES {
+            let three_axis = Some(ThreeAxis { lines, axis, feed: Vec3::new(1.0, -2.0, 1.0 / 3.0) });
+            let own = Overrides { mark_share: Some(0.1), chord_mm: Some(1.0 / 7.0), three_axis };
+            for own in [own, Overrides::default()] {
+                let job = file.each_tool()[1].with(own);
+                let bytes = Kept::of(7, &job, &planned).bytes();
+                let back = Kept::read(&bytes, 7).unwrap().job(file.clone());
+                assert_eq!(back.overrides(), own);
+                assert_eq!(back.tool().number(), job.tool().number());
+                assert_eq!(back.strategy().name(), job.strategy().name());
+                assert_eq!(back.strategy().kept_axis(), own.three_axis.map(|w| w.axis));
+                assert!(Kept::read(&bytes, 8).is_none());
+            }
         }
     }
 }

@@ -44,7 +44,7 @@ pub struct Step<'a> {
 impl<'a> Step<'a> {
     /// As it is kept for a run that goes on.
     pub fn kept(&self, key: u64) -> Kept {
-        let mut kept = Kept::of(key, self.job.tool().number(), &self.planned);
+        let mut kept = Kept::of(key, &self.job, &self.planned);
         (kept.standing_mm, kept.too_high_mm2) = (self.standing_mm, self.too_high_mm2);
         kept.plan_s = self.plan_s;
         kept.compared.clone_from(&self.compared);
@@ -56,8 +56,7 @@ impl<'a> Step<'a> {
     /// # Errors
     /// Where the operation is none of the part.
     pub fn of_kept(operation: &'a Operation, whole: &Part, kept: Kept) -> Result<Self, Failure> {
-        let job = operation.planned(kept.standing_mm)?;
-        let job = if job.tools().len() > 1 { job.in_hand(kept.tool) } else { job };
+        let job = kept.job(operation.planned(kept.standing_mm)?);
         let places = Passages::of(operation, &operation.judged()?, whole)?;
         Ok(Self {
             operation,
