@@ -57,8 +57,9 @@ usage: cargo xtask COMMAND
                 the pages of papers in docs/papers, all where none is named: r97 and m86, with docs/closed-forms.md, closed forms of strip
                 width against the exact strip; z17 the feed modes side by side on a real blade, with plots of K and F by block; d98 the
                 values, errata and figures, ours beside theirs
-  plans --data FOLDER [--only TEXT] [--program FILE]
-                docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar
+  plans --data FOLDER [--where] [--only TEXT] [--program FILE]
+                docs/plans.md: real faces of a reference collection planned by auto, isoparametric and ball isoplanar; --where by auto
+                alone, and the examples that are whole parts: where their time goes
   plans --speed [--only TEXT] [--program FILE]
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
   control [--only TEXT] [--program FILE]
@@ -112,7 +113,7 @@ fn main() -> ExitCode {
             Some(options) => plans::run(&options),
             None => {
                 return wrong_usage(
-                    "plans takes --data FOLDER, --only TEXT and --program FILE; with --speed no --data",
+                    "plans takes --data FOLDER, --where, --only TEXT and --program FILE; with --speed neither --data nor --where",
                 );
             }
         },

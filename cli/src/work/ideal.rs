@@ -5,7 +5,7 @@ use crate::job::Job;
 use crate::part::Part;
 use crate::words::number;
 use crate::work::choice::patches;
-use crate::work::program::{Planned, Posted};
+use crate::work::program::Planned;
 use osculate_productivity::compare::Axes;
 use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Search};
 use osculate_productivity::optimum::{OptimumError, Range};
@@ -55,6 +55,33 @@ pub struct IdealTime {
     pub contact_length_mm: f64,
     /// The bound over the longer of cutting time and contact length over feed.
     pub efficiency_percent: f64,
+    /// That time, min.
+    #[serde(skip)]
+    pub cutting_min: f64,
+}
+
+impl IdealTime {
+    fn of(ideal: Bound, contact_length_mm: f64, cutting_min: f64) -> Self {
+        let efficiency_percent = if cutting_min > 0.0 { 100.0 * ideal.time_min / cutting_min } else { 0.0 };
+        Self { ideal, contact_length_mm, efficiency_percent, cutting_min }
+    }
+
+    /// Those of several operations together, each of them over its own faces; None where there are none.
+    pub fn of_all(each: &[&Self]) -> Option<Self> {
+        let first = each.first()?;
+        let sum = |of: &dyn Fn(&Self) -> f64| each.iter().map(|i| of(i)).sum::<f64>();
+        let isoparametric: Option<Vec<f64>> = each.iter().map(|i| i.ideal.isoparametric_min).collect();
+        let n = each.len();
+        let ideal = Bound {
+            time_min: sum(&|i| i.ideal.time_min),
+            error_min: sum(&|i| i.ideal.error_min.powi(2)).sqrt(),
+            places: each.iter().map(|i| i.ideal.places).sum(),
+            unreached_mm2: sum(&|i| i.ideal.unreached_mm2),
+            assumes: format!("{n} operations that finish whole faces, of each {}", first.ideal.assumes),
+            isoparametric_min: isoparametric.map(|all| all.iter().sum()),
+        };
+        Some(Self::of(ideal, sum(&|i| i.contact_length_mm), sum(&|i| i.cutting_min)))
+    }
 }
 
 /// The bound over the faces of a job with all its tools.
@@ -123,18 +150,21 @@ pub fn tilts(job: &Job) -> (Range, &'static str) {
 
 const ANY_TILT: (Range, &str) = (Range { least_rad: -FRAC_PI_2, most_rad: FRAC_PI_2 }, "any tilt");
 
-/// The bound beside a plan: where its tilts were found place by place those of the bound are free too.
+/// The bound beside a plan whose feed moves take this time, min: where its tilts were found place by place those of the bound are free
+/// too. None beside a plan that leaves some of the faces out, or does not know its strips: the least time for whole faces says nothing of it.
 pub fn of_plan(
     job: &Job,
     faces: &Part,
     planned: &Planned<'_>,
-    posted: &Posted,
-) -> Result<IdealTime, Failure> {
+    cutting_min: f64,
+) -> Result<Option<IdealTime>, Failure> {
+    if !planned.with_strips || !planned.extras.left_out.is_empty() {
+        return Ok(None);
+    }
     let balanced = planned.axes == Axes::Balanced;
     let ideal = with(job, faces, if balanced { ANY_TILT } else { tilts(job) })?;
     let contact_length_mm = planned.passes.length_mm();
     // The tip may be slower than the contact or faster: the bound is one of contacts.
-    let cutting = posted.read.cutting_time_min.max(contact_length_mm / job.feed_mm_min());
-    let efficiency_percent = if cutting > 0.0 { 100.0 * ideal.time_min / cutting } else { 0.0 };
-    Ok(IdealTime { ideal, contact_length_mm, efficiency_percent })
+    let cutting_min = cutting_min.max(contact_length_mm / job.feed_mm_min());
+    Ok(Some(IdealTime::of(ideal, contact_length_mm, cutting_min)))
 }

@@ -228,13 +228,7 @@ impl Proved<'_> {
     fn told(self, job: &Job, faces: &Part, mut wall_s: WallS, watch: &dyn Watch) -> Result<Plan, Failure> {
         let Proved { planned, posted, verified, compared } = self;
         let stage = Stage::begin(watch, "ideal");
-        // The least time for whole faces says nothing of a plan that leaves some of them out.
-        let whole = planned.extras.left_out.is_empty();
-        let ideal = if planned.with_strips && whole {
-            Some(ideal::of_plan(job, faces, &planned, &posted)?)
-        } else {
-            None
-        };
+        let ideal = ideal::of_plan(job, faces, &planned, posted.read.cutting_time_min)?;
         wall_s.ideal = stage.end();
         let stage = Stage::begin(watch, "report");
         let of_feed = posted.note_of_feed(job, faces, &planned);

@@ -2,14 +2,19 @@
 //!
 //! Every face is planned with the same tolerances, feeds and machine: by `auto` over a list of tools, by plain isoparametric
 //! lines with the first tool, by them, by constant scallop and by streamlines with the tool that `auto` chose, and in parallel
-//! planes with the ball. Jobs and results stay below `target/plans`.
+//! planes with the ball. A second table, which `--where` makes alone, says where the time of `auto` goes, of whole parts too. Jobs and
+//! results stay below `target/plans`.
 
 mod dense;
+mod page;
 mod speed;
+mod spent;
 
 use crate::cmd::{Failure, program, root, write};
 use dense::{Cloud, Cutter};
+use page::Page;
 use serde_json::Value;
+use spent::PARTS;
 use std::path::Path;
 use std::process::Command;
 
@@ -188,14 +193,16 @@ pub struct Options<'a> {
     only: &'a str,
     program: Option<&'a str>,
     speed: bool,
+    spent: bool,
 }
 
 impl<'a> Options<'a> {
-    /// Pairs of option and value, and `--speed` among them where it is meant; None where one is unknown or the folder of data is
+    /// Pairs of option and value, and `--speed` or `--where` among them where it is meant; None where one is unknown or the folder of data is
     /// missing where it is needed.
     pub fn of(words: &[&'a str]) -> Option<Self> {
-        let mut out = Self { speed: words.contains(&"--speed"), ..Self::default() };
-        let rest: Vec<&str> = words.iter().copied().filter(|w| *w != "--speed").collect();
+        let has = |word: &str| words.contains(&word);
+        let mut out = Self { speed: has("--speed"), spent: has("--where"), ..Self::default() };
+        let rest: Vec<&str> = words.iter().copied().filter(|w| !["--speed", "--where"].contains(w)).collect();
         for pair in rest.chunks(2) {
             match *pair {
                 ["--data", v] if !out.speed => out.data = Some(v),
@@ -204,7 +211,7 @@ impl<'a> Options<'a> {
                 _ => return None,
             }
         }
-        (out.speed || out.data.is_some()).then_some(out)
+        (out.speed != out.data.is_some() && !(out.speed && out.spent)).then_some(out)
     }
 }
 
@@ -218,55 +225,45 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
         return speed::run(only, &program, &root);
     }
     let to = root.join("docs/plans.md");
-    let mut made: Vec<&str> = Vec::new();
-    for case in CASES.iter().filter(|c| c.name.contains(only)) {
-        let rows = one(case, &program, &data, &root)?;
-        made.push(case.name);
-        // After each case, as all of them take long: what was made so far stays.
+    let (mut made, mut timed): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    // After each case, as all of them take long: what was made so far stays.
+    let keep = |name: &str, rows: Option<String>, times: String, made: [&[&str]; 2]| {
         let before = std::fs::read_to_string(&to).unwrap_or_default();
-        write(&to, &page(&before, case.name, &rows, &made))?;
+        let mut page = Page::read(&before, &PARTS);
+        if let Some(rows) = rows {
+            page.set_plans(name, rows);
+        }
+        page.set_times(name, times);
+        write(&to, &page.text(HEAD, &PARTS, made, FIGURES))
+    };
+    for case in CASES.iter().filter(|c| c.name.contains(only)) {
+        let place = root.join("target/plans").join(case.name.replace([' ', ','], "-"));
+        let rows = if options.spent {
+            let folder = place.join("auto");
+            let file = folder.join("job.toml");
+            write(&file, &job(case, "auto", &data.to_string_lossy(), None))?;
+            // What is not possible has no summary, which the row says.
+            let _ = plan(&program, &file, &folder);
+            None
+        } else {
+            made.push(case.name);
+            Some(one(case, &program, &data, &root)?)
+        };
+        timed.push(case.name);
+        keep(case.name, rows, said(spent::row(case.name, &place.join("auto"))?), [&made, &timed])?;
+    }
+    for part in PARTS.iter().filter(|p| options.spent && p.contains(only)) {
+        let folder = root.join("target/plans").join(part);
+        let _ = plan(&program, &root.join("examples").join(part).join("job.toml"), &folder);
+        timed.push(part);
+        keep(part, None, said(spent::row(part, &folder)?), [&made, &timed])?;
     }
     Ok(())
 }
 
-/// The page with new rows of a case; rows of other cases stay, and those that this run has not made are named.
-fn page(before: &str, name: &str, rows: &str, made: &[&str]) -> String {
-    let (mut table, mut kept, mut missing) = (String::new(), Vec::new(), Vec::new());
-    for case in &CASES {
-        let old = rows_of(before, case.name);
-        if case.name == name {
-            table.push_str(rows);
-        } else if old.is_empty() {
-            missing.push(case.name);
-        } else {
-            table.push_str(&old);
-            if !made.contains(&case.name) {
-                kept.push(case.name);
-            }
-        }
-    }
-    let list = |what: &str, names: &[&str]| match names {
-        [] => String::new(),
-        names => format!("\n{what}: {}.\n", names.join("; ")),
-    };
-    let notes = list("Rows of an earlier run", &kept) + &list("Not in the table yet", &missing);
-    format!("{HEAD}{table}{notes}{FIGURES}")
-}
-
-/// The rows of a case on a page, with their line of shares.
-fn rows_of(page: &str, name: &str) -> String {
-    let start = format!("| {name} | ");
-    let mut out = String::new();
-    let mut inside = false;
-    for line in page.lines() {
-        // The line of shares belongs to the rows above it.
-        inside = line.starts_with(&start) || (inside && line.starts_with("| | "));
-        if inside {
-            out.push_str(line);
-            out.push('\n');
-        }
-    }
-    out
+fn said(row: String) -> String {
+    print!("{row}");
+    row
 }
 
 /// The rows of a case.
@@ -404,6 +401,15 @@ fn plan(program: &Path, job: &Path, out: &Path) -> Result<Value, String> {
     serde_json::from_str(&text).map_err(|e| e.to_string())
 }
 
+/// Whether a plan is within tolerance.
+fn answer(summary: &Value) -> &'static str {
+    match summary["verdict"]["answer"].as_str() {
+        Some("held") => "yes",
+        Some("not_shown") => "not shown",
+        _ => "**no**",
+    }
+}
+
 fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f64>) -> String {
     let s = match summary {
         Ok(s) => s,
@@ -438,29 +444,7 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         n(&v["gouge_max_mm"], 4),
         n(&v["scallop_use"], 2),
         second.map_or("-".to_owned(), |d| format!("{d:.4}")),
-        match s["verdict"]["answer"].as_str() {
-            Some("held") => "yes",
-            Some("not_shown") => "not shown",
-            _ => "**no**",
-        },
+        answer(s),
         s["wall_s"]["total"].as_f64().unwrap_or(f64::NAN)
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_of_other_cases_stay_on_the_page() {
-        let rows = |of: &str, time: &str| format!("| {of} | auto | {time} |\n| | *share* | 1.00 |\n");
-        let first = page("", "m86-2", &rows("m86-2", "1"), &["m86-2"]);
-        let second = page(&first, "m86-1", &rows("m86-1", "2"), &["m86-1"]);
-        assert_eq!(rows_of(&second, "m86-1"), rows("m86-1", "2"));
-        assert_eq!(rows_of(&second, "m86-2"), rows("m86-2", "1"));
-        assert!(second.contains("Rows of an earlier run: m86-2.") && second.contains("impeller hub"));
-        let third = page(&second, "m86-2", &rows("m86-2", "3"), &["m86-1", "m86-2"]);
-        assert!(third.contains("| m86-2 | auto | 3 |") && !third.contains("| m86-2 | auto | 1 |"));
-        assert!(!third.contains("earlier run"));
-    }
 }

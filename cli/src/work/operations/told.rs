@@ -1,13 +1,14 @@
 //! What is told of a list of operations: figures of each and of the whole, report, pictures, programs, and the material left.
 
 use crate::failure::Failure;
-use crate::job::Operations;
+use crate::job::{OperationWord, Operations};
 use crate::part::Part;
 use crate::report::fill;
 use crate::report::{Column, Table};
 use crate::watch::{Stage, Watch};
 use crate::words::number;
 use crate::work::extras::Extras;
+use crate::work::ideal::{self, IdealTime};
 use crate::work::nc;
 use crate::work::operations::Judged;
 use crate::work::operations::course::Course;
@@ -64,17 +65,25 @@ pub struct Known<'a> {
 /// Where figures or paths cannot be written as text.
 pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let Known { list, part, steps, programs, course, judged, whole, notes, mut wall_s, begin } = known;
-    let stage = Stage::begin(watch, "report");
+    let stage = Stage::begin(watch, "ideal");
     let mut operations = Vec::with_capacity(steps.len());
     let timed = Timed { motions: &course.motions, times_min: &course.on_control.times_min, joints: None };
     let in_time = InTime::of(list.whole(), timed, &whole);
     for ((step, judged), section) in steps.iter().zip(&judged).zip(&course.sections) {
         let times = times(&course, &section.motions);
         let part = (section.motions.clone(), times.on_control_min.map_or(times.time_min, |t| t[0]));
+        let cutting_min = times.cutting_min;
         let mut told = operation(list, step, judged, times)?;
+        // Roughings and what stands here and there have no least time by strips.
+        if step.operation.kind == OperationWord::Finish {
+            let found = ideal::of_plan(&step.job, &step.part, &step.planned, cutting_min);
+            told.figures.ideal = found.map_err(|why| why.in_operation(&step.operation.name))?;
+        }
         told.figures.productivity = in_time.told(&step.job, part);
         operations.push(told);
     }
+    wall_s.ideal = stage.end();
+    let stage = Stage::begin(watch, "report");
     let hands = steps.iter().zip(&course.sections).map(|(step, section)| {
         let mut tool = fill::tool(&step.job);
         tool.label = format!("{}: T{} {}", step.operation.name, step.job.tool().number(), tool.label);
@@ -115,6 +124,8 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         tables.push(standing::table(&summary.left_standing));
     }
     let extras = Extras { tables, ..Extras::default() };
+    let ideals: Vec<_> = operations.iter().filter_map(|o| o.figures.ideal.as_ref()).collect();
+    summary.ideal = IdealTime::of_all(&ideals);
     summary.operations = operations;
     summary.wall_s = wall_s;
     let clamped = course.setups.iter().zip(&programs).map(|(range, p)| (range.start, p.setup)).collect();
@@ -254,6 +265,7 @@ fn table(operations: &[OperationSummary], steps: &[Step<'_>]) -> Table {
         "rpm",
         "feed mm/min",
         "time min",
+        "efficiency %",
         "cut mm",
         "air mm",
         "area mm2",
@@ -270,6 +282,7 @@ fn table(operations: &[OperationSummary], steps: &[Step<'_>]) -> Table {
             step.job.spindle_rpm().map_or_else(|| "\u{2013}".to_owned(), |n| number(n, 6)),
             number(step.job.feed_mm_min(), 6),
             format!("{:.2}", f.time_min),
+            f.ideal.as_ref().map_or_else(String::new, |i| format!("{:.0}", i.efficiency_percent)),
             format!("{:.0}", f.cutting_length_mm),
             format!("{:.0}", f.air_length_mm),
             format!("{:.1}", f.area_mm2),
