@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{LoadedFace, Part, area};
 use crate::work::budget;
+use osculate_geom::Surface;
 use osculate_productivity::plan::Linked;
 use osculate_tools::removal::{self, Limits, Sample, Swept};
 
@@ -28,12 +29,13 @@ impl Look {
     /// Looks at a path.
     pub fn at(job: &Job, faces: &Part, linked: &Linked) -> Result<Self, Failure> {
         let (cutter, holder, tolerance) = (job.cutter(), job.holder(), job.tolerance());
-        let mut samples = Vec::new();
+        let (mut samples, mut apart_mm) = (Vec::new(), 0.0_f64);
         let mut number = 0;
         for (all, count, check_only) in [(&faces.faces, SAMPLES, false), (&faces.check, CHECK_SAMPLES, true)]
         {
             let total: f64 = all.iter().map(area).sum();
             let spacing = (total / count as f64).sqrt();
+            apart_mm = apart_mm.max(spacing);
             for face in all {
                 let found = sampled(face, number, spacing, count)?;
                 number += 1;
@@ -50,7 +52,12 @@ impl Look {
             stock_mm: 5.0 * tolerance.scallop_mm,
             depth_mm: cutter.radius_mm(),
         };
-        let cuts = removal::cut(&work, &|_| {}).map_err(Failure::job)?;
+        let mut cuts = removal::cut(&work, &|_| {}).map_err(Failure::job)?;
+        // Where a tool goes over an edge, the depth along the normal of the wall below it says nothing.
+        let surfaces: Vec<&dyn Surface> =
+            faces.faces.iter().chain(&faces.check).map(|f| &*f.surface as &dyn Surface).collect();
+        let limit_mm = budget::left_in(job).gouge_mm;
+        removal::measure_beside_edges(&surfaces, (&samples, apart_mm), &mut cuts, limit_mm);
         let mut heights: Vec<(f64, f64)> = samples
             .iter()
             .zip(&cuts)

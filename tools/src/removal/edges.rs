@@ -59,6 +59,17 @@ pub fn beside_edges(
     samples.par_iter().map(|s| edges.is_beside((&s.point, &s.normal), s.face, depth_mm(s))).collect()
 }
 
+/// Measures anew the depths of cuts that seem deeper than a share of the limit, beside sharp outer edges of these faces, as verdicts have
+/// them. Samples name their faces by number, and are no farther apart than `apart_mm`.
+pub fn measure_beside_edges(
+    surfaces: &[&dyn Surface],
+    (samples, apart_mm): (&[Sample], f64),
+    cuts: &mut [Cut],
+    limit_mm: f64,
+) {
+    Edges::new(surfaces, &[], samples, apart_mm).measure(samples, cuts, limit_mm);
+}
+
 /// All faces of a goal, found by place.
 pub(super) struct Edges<'a> {
     surfaces: &'a [&'a dyn Surface],

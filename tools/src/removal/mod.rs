@@ -82,7 +82,7 @@ pub use crest::crests;
 pub use cut::{cut, cut_on};
 pub use density::{Density, Hidden};
 pub use digs::DIVISIONS;
-pub use edges::beside_edges;
+pub use edges::{beside_edges, measure_beside_edges};
 pub use goal::{
     Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Gravity, Looks, Program,
     Remark, Unseen,
