@@ -4,7 +4,7 @@ use crate::cutting;
 
 use cutting::{motions, verdict};
 use osculate_geom::analytic::Cone;
-use osculate_geom::{Axis, Domain, Interval, Patch, Side};
+use osculate_geom::{Axis, Domain, Interval, Patch, Side, Surface, Uv, forward_surface};
 use osculate_productivity::plan::{Along, Pass, Passes, Strategy, Task, Tolerance, run};
 use osculate_tools::{Cutter, CutterSpec, Lean};
 
@@ -63,4 +63,36 @@ fn where_all_columns_are_alike_there_is_one_region() {
         plan(lean, &Strategy::Regions { along }).passes,
         plan(lean, &Strategy::Isoparametric { along }).passes
     );
+}
+
+/// The cone of which only the middle is inside.
+struct Middle(Patch<Cone>);
+
+impl Middle {
+    const RANGE: Interval = Interval::new(20.0, 50.0);
+}
+
+impl Surface for Middle {
+    forward_surface!(domain | s | s.0);
+    forward_surface!(shape | s | s.0);
+    fn contains(&self, at: Uv) -> bool {
+        Self::RANGE.contains(at.v) && self.0.contains(at)
+    }
+}
+
+/// What of the parameters lies beside the inside needs no passes, and is no region by itself.
+#[test]
+fn regions_of_a_face_that_is_less_than_its_parameters() {
+    let (face, cutter) = (Middle(cone()), cutter());
+    let lean = Lean { lead_rad: 0.1, tilt_rad: 0.0 };
+    let task = Task::new("F1", &face, &cutter, lean, TOLERANCE);
+    let [whole, parts] = [
+        Strategy::Isoparametric { along: Along::Fixed(Axis::V) },
+        Strategy::Regions { along: Along::Fixed(Axis::V) },
+    ]
+    .map(|strategy| run(&task, &strategy).unwrap());
+    assert!(parts.length_mm() <= whole.length_mm(), "{} of {}", parts.length_mm(), whole.length_mm());
+    let v = verdict(&face, &motions(&face, &parts.passes, &cutter), &cutter, TOLERANCE, 0.25);
+    assert!(v.scallop_max_mm <= TOLERANCE.scallop_mm && v.gouge_max_mm <= TOLERANCE.gouge_mm);
+    assert_eq!(v.uncut_samples, 0);
 }

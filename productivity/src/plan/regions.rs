@@ -172,7 +172,9 @@ fn needs(task: &Task<'_>, ends: &Ends) -> Result<Vec<Need>, PlanError> {
             }
             column.advance(to, slack);
         }
-        let length_mm = 0.5 * (place((k + 1).min(COLUMNS)) - place(k.saturating_sub(1))).norm();
+        // Beside the inside there is nothing to go along, and no region of it alone.
+        let beside = if passes == 0 { 0.0 } else { 0.5 };
+        let length_mm = beside * (place((k + 1).min(COLUMNS)) - place(k.saturating_sub(1))).norm();
         Ok(Need { t: column.t, passes, length_mm })
     };
     let found: Result<Vec<Need>, LineError> = (0..=COLUMNS).into_par_iter().map(need).collect();
@@ -224,6 +226,18 @@ mod tests {
 
     fn column(k: usize, passes: u32) -> Need {
         Need { t: k as f64, passes, length_mm: 1.0 }
+    }
+
+    #[test]
+    fn no_region_lies_beside_the_inside_alone() {
+        let beside = Need { t: 0.0, passes: 0, length_mm: 0.0 };
+        for n in 1..6 {
+            let mut needs = vec![beside; n];
+            needs.extend((n..n + 4).map(|k| column(k, 40)).chain((n + 4..n + 8).map(|k| column(k, 5))));
+            needs.extend(vec![beside; n]);
+            needs.iter_mut().enumerate().for_each(|(k, need)| need.t = k as f64);
+            assert_eq!(borders(&needs, 0.1, 8.0), [n as f64 + 3.5]);
+        }
     }
 
     /// Length of path with borders after the columns marked by bits.
