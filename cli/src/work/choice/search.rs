@@ -198,6 +198,11 @@ impl<'a> Choice<'a> {
         })
     }
 
+    /// Whether tools that do not keep their axis have it from a field alone.
+    fn only_fields(&self) -> bool {
+        self.entries.iter().all(|e| e.is_field() || e.candidate.strategy.fixed_axis().is_some())
+    }
+
     /// Plans with fields of axes that were tried.
     fn fields_made(&self) -> usize {
         self.entries.iter().filter(|e| e.is_field() && e.tried).count()
@@ -210,7 +215,7 @@ impl<'a> Choice<'a> {
         let fields = || self.entries.iter().enumerate().filter(|(_, e)| e.is_field() && Self::waiting(e));
         let planned = fields().filter(|(_, e)| e.figures.is_some() || e.tried).min_by(least);
         let quicker = |e: &Entry| planned.is_none_or(|(_, p)| e.least_min() < p.least_min());
-        let most = if self.entries.iter().all(Entry::is_field) { self.most.plans } else { self.most.fields };
+        let most = if self.only_fields() { self.most.plans } else { self.most.fields };
         let more = self.fields_made() < most;
         let open = fields().filter(|(_, e)| more && !e.tried && quicker(e)).min_by(least);
         open.or(planned).map(|(k, _)| k)
@@ -270,7 +275,7 @@ impl<'a> Choice<'a> {
         let holds = |e: &Entry| e.verified.is_some_and(|v| v.within_tolerance);
         let by_field = self.entries.iter().any(|e| e.is_field() && holds(e));
         let fields = self.fields_made();
-        let most_alone = if self.entries.iter().all(Entry::is_field) { self.most.plans } else { 0 };
+        let most_alone = if self.only_fields() { self.most.plans } else { 0 };
         let order = |e: &Entry| {
             let c = &e.candidate;
             if !Self::waiting(e) || e.least_min() >= holder.time_min {
