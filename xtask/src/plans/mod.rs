@@ -12,7 +12,7 @@ mod spent;
 
 use crate::cmd::{Failure, program, root, write};
 use dense::{Cloud, Cutter};
-use page::Page;
+use page::{Names, Page};
 use serde_json::Value;
 use spent::PARTS;
 use std::path::Path;
@@ -226,15 +226,17 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     }
     let to = root.join("docs/plans.md");
     let (mut made, mut timed): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    let faces = CASES.map(|c| c.name);
+    let names = Names { faces: &faces, parts: &PARTS };
     // After each case, as all of them take long: what was made so far stays.
     let keep = |name: &str, rows: Option<String>, times: String, made: [&[&str]; 2]| {
         let before = std::fs::read_to_string(&to).unwrap_or_default();
-        let mut page = Page::read(&before, &PARTS);
+        let mut page = Page::read(&before, names);
         if let Some(rows) = rows {
             page.set_plans(name, rows);
         }
         page.set_times(name, times);
-        write(&to, &page.text(HEAD, &PARTS, made, FIGURES))
+        write(&to, &page.text(HEAD, names, made, FIGURES))
     };
     for case in CASES.iter().filter(|c| c.name.contains(only)) {
         let place = root.join("target/plans").join(case.name.replace([' ', ','], "-"));
@@ -401,15 +403,6 @@ fn plan(program: &Path, job: &Path, out: &Path) -> Result<Value, String> {
     serde_json::from_str(&text).map_err(|e| e.to_string())
 }
 
-/// Whether a plan is within tolerance.
-fn answer(summary: &Value) -> &'static str {
-    match summary["verdict"]["answer"].as_str() {
-        Some("held") => "yes",
-        Some("not_shown") => "not shown",
-        _ => "**no**",
-    }
-}
-
 fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f64>) -> String {
     let s = match summary {
         Ok(s) => s,
@@ -444,7 +437,7 @@ fn row(name: &str, kind: &str, summary: &Result<Value, String>, second: Option<f
         n(&v["gouge_max_mm"], 4),
         n(&v["scallop_use"], 2),
         second.map_or("-".to_owned(), |d| format!("{d:.4}")),
-        answer(s),
+        spent::answer(s),
         s["wall_s"]["total"].as_f64().unwrap_or(f64::NAN)
     )
 }

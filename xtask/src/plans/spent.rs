@@ -46,6 +46,15 @@ pub fn row(name: &str, folder: &Path) -> Result<String, Failure> {
         if whole { "several" } else { s["tool_words"].as_str().unwrap_or("-") },
         cells.map(minutes).join(" | "),
         s["efficiency_percent"].as_f64().map_or_else(|| "-".to_owned(), |p| format!("{p:.0}")),
-        super::answer(&s)
+        answer(&s)
     ))
+}
+
+/// Whether a plan is within tolerance.
+pub fn answer(summary: &Value) -> &'static str {
+    match summary["verdict"]["answer"].as_str() {
+        Some("held") => "yes",
+        Some("not_shown") => "not shown",
+        _ => "**no**",
+    }
 }
