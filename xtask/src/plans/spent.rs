@@ -18,8 +18,9 @@ fn feed_mm_min(folder: &Path) -> Option<f64> {
 /// Numbers of these keys over the operations that have an ideal.
 fn of_finishing(summary: &Value, key: &str) -> Option<f64> {
     let all = summary["operations"].as_array()?;
-    let finishing = all.iter().filter(|o| o["ideal"].is_object());
-    finishing.map(|o| o[key].as_f64()).sum()
+    let finishing: Vec<&Value> = all.iter().filter(|o| o["ideal"].is_object()).collect();
+    finishing.first()?;
+    finishing.iter().map(|o| o[key].as_f64()).sum()
 }
 
 /// The row of a face or part by its summary in a folder.
