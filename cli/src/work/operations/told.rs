@@ -74,8 +74,9 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         let part = (section.motions.clone(), times.on_control_min.map_or(times.time_min, |t| t[0]));
         let cutting_min = times.cutting_min;
         let mut told = operation(list, step, judged, times)?;
-        // Roughings and what stands here and there have no least time by strips.
-        if step.operation.kind == OperationWord::Finish {
+        // The least time for whole faces says nothing of what leaves some of them to others, as roughings and rests do.
+        let finishes = step.operation.kind == OperationWord::Finish;
+        if finishes && judged.verified.summary.uncut_area_mm2 <= 0.0 {
             let found = ideal::of_plan(&step.job, &step.part, &step.planned, cutting_min);
             told.figures.ideal = found.map_err(|why| why.in_operation(&step.operation.name))?;
         }
@@ -124,8 +125,9 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         tables.push(standing::table(&summary.left_standing));
     }
     let extras = Extras { tables, ..Extras::default() };
-    let ideals: Vec<_> = operations.iter().filter_map(|o| o.figures.ideal.as_ref()).collect();
-    summary.ideal = IdealTime::of_all(&ideals);
+    let finishing = operations.iter().filter(|o| o.kind == OperationWord::Finish.word());
+    let ideals: Option<Vec<&IdealTime>> = finishing.map(|o| o.figures.ideal.as_ref()).collect();
+    summary.ideal = ideals.and_then(|all| IdealTime::of_all(&all));
     summary.operations = operations;
     summary.wall_s = wall_s;
     let clamped = course.setups.iter().zip(&programs).map(|(range, p)| (range.start, p.setup)).collect();
