@@ -3,6 +3,7 @@
 use osculate_geom::{Diagnostic, Point3};
 use osculate_tools::cl::Motion;
 
+use crate::linearize::Stray;
 use crate::machine::JointValues;
 
 /// Why a block is there.
@@ -41,6 +42,8 @@ pub struct JointBlock {
 pub struct SolveSummary {
     /// Blocks of kind [`BlockKind::Inserted`].
     pub inserted_points: usize,
+    /// CL points that blocks go on over (`SolveOptions::join`).
+    pub joined_points: usize,
     /// Rewinds.
     pub rewinds: usize,
     /// Length of the tip's way during which the outer rotary joint was held near a pole, mm.
@@ -49,6 +52,14 @@ pub struct SolveSummary {
     pub tip_error_mm: f64,
     /// Greatest angle of the tool axis from the CL's in feed moves, rad.
     pub axis_error_rad: f64,
+}
+
+impl SolveSummary {
+    /// Counts what a block of a feed move strays by.
+    pub(crate) fn add_stray(&mut self, stray: &Stray) {
+        self.tip_error_mm = self.tip_error_mm.max(stray.tip_mm);
+        self.axis_error_rad = self.axis_error_rad.max(stray.axis_rad);
+    }
 }
 
 /// A whole path in joints. The first block leads from an unknown place.
@@ -69,6 +80,7 @@ impl JointPath {
         self.diagnostics.append(&mut piece.diagnostics);
         let (s, p) = (&mut self.summary, piece.summary);
         s.inserted_points += p.inserted_points;
+        s.joined_points += p.joined_points;
         s.rewinds += p.rewinds;
         s.singular_mm += p.singular_mm;
         s.tip_error_mm = s.tip_error_mm.max(p.tip_error_mm);

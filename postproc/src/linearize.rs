@@ -19,7 +19,7 @@ use crate::solve_error::SolveError;
 use crate::solve_options::SolveOptions;
 
 /// Rotary joints never move further in one block, rad. Controls that take the shortest way need less than half a turn.
-const LARGEST_ROTARY_STEP_RAD: f64 = 0.5 * std::f64::consts::PI;
+pub(crate) const LARGEST_ROTARY_STEP_RAD: f64 = 0.5 * std::f64::consts::PI;
 
 /// Parts per block at which the deviation is looked at.
 const PARTS: u32 = 8;
@@ -73,6 +73,17 @@ pub(crate) struct Stray {
     pub axis_rad: f64,
 }
 
+impl Stray {
+    /// The worse of both.
+    pub fn or(self, other: Self) -> Self {
+        Self { tip_mm: self.tip_mm.max(other.tip_mm), axis_rad: self.axis_rad.max(other.axis_rad) }
+    }
+
+    pub fn within(&self, options: &SolveOptions) -> bool {
+        self.tip_mm <= options.tip_tol_mm && self.axis_rad <= options.axis_tol_rad
+    }
+}
+
 /// A pose with the joints chosen for it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed {
@@ -116,7 +127,7 @@ impl Liner<'_> {
         let near = if rapid {
             stray.tip_mm <= o.rapid_tol_mm
         } else {
-            stray.tip_mm <= o.tip_tol_mm && stray.axis_rad <= o.axis_tol_rad
+            stray.within(o)
         };
         let (qa, qb) = (self.machine.rotary_of(&a.1), self.machine.rotary_of(&b.1));
         let turns = (0..2).map(|k| (qb[k] - qa[k]).abs()).fold(0.0, f64::max);
@@ -202,14 +213,21 @@ impl Liner<'_> {
             for (i, v) in q.iter_mut().enumerate() {
                 *v += (b.1[i] - a.1[i]) * s;
             }
-            let pose = self.machine.forward(&q, self.setup);
-            if !self.options.tcp {
-                let off = pose.tip - want.tip;
-                worst.tip_mm = worst.tip_mm.max(towards(&off, &want.axis, self.options.touch_rad));
+            let mut pose = self.machine.forward(&q, self.setup);
+            if self.options.tcp {
+                pose.tip = want.tip;
             }
-            worst.axis_rad = worst.axis_rad.max(angle_between(&pose.axis, &want.axis));
+            worst = worst.or(self.off(&pose, &want));
         }
         worst
+    }
+
+    /// How far a pose is from the one that is wanted.
+    pub(crate) fn off(&self, pose: &Pose, want: &Pose) -> Stray {
+        Stray {
+            tip_mm: towards(&(pose.tip - want.tip), &want.axis, self.options.touch_rad),
+            axis_rad: angle_between(&pose.axis, &want.axis),
+        }
     }
 
     fn push(&mut self, line: &Line, t: f64, end: (f64, JointValues), stray: &Stray) {
@@ -221,8 +239,7 @@ impl Liner<'_> {
         let summary = &mut self.path.summary;
         summary.inserted_points += usize::from(kind == BlockKind::Inserted);
         if line.label.motion != Motion::Rapid {
-            summary.tip_error_mm = summary.tip_error_mm.max(stray.tip_mm);
-            summary.axis_error_rad = summary.axis_error_rad.max(stray.axis_rad);
+            summary.add_stray(stray);
         }
         self.path.blocks.push(JointBlock {
             joints: end.1,

@@ -202,7 +202,9 @@ where
     PostError: From<S::Error>,
 {
     let mut draft = Draft::new(machine, setup, options);
-    let solve = SolveOptions { tcp: options.feed == FeedMode::Tcp, ..options.solve };
+    // What is said between two points is said at the end of a block.
+    let join = options.solve.join && options.auxiliary.iter().all(|a| a.before == 0);
+    let solve = SolveOptions { tcp: options.feed == FeedMode::Tcp, join, ..options.solve };
     let mut blocks = 0;
     let mut auxiliary = options.auxiliary.iter().peekable();
     let mut word = |draft: &mut Draft, writer: &mut Writer, block: &JointBlock, fastest: Option<f64>| {

@@ -232,8 +232,19 @@ impl Run<'_> {
     /// The blocks of the moves behind these choices.
     fn moves(&self, liner: &mut Liner, range: std::ops::Range<usize>) -> Result<(), SolveError> {
         let mut at = self.placed(liner, range.start)?;
-        for i in range {
-            at = self.move_to(liner, &at, i + 1)?;
+        let mut i = range.start;
+        while i < range.end {
+            let ahead = i + 1..range.end + 1;
+            let joined = if liner.options.join {
+                let next = (&self.moves[ahead.clone()], &self.choices[ahead.clone()]);
+                liner.join(&at, next, self.first + ahead.start)?
+            } else {
+                None
+            };
+            (at, i) = match joined {
+                Some((to, count)) => (to, i + count),
+                None => (self.move_to(liner, &at, i + 1)?, i + 1),
+            };
         }
         Ok(())
     }

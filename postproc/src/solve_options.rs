@@ -20,13 +20,16 @@ pub struct SolveOptions {
     pub rapid_tol_mm: f64,
     /// Within this angle of a pole the outer rotary joint is held and the axis errs by at most this, rad.
     pub singular_cone_rad: f64,
+    /// Blocks go on over CL points between which the axis turns, for as long as they stay within the tolerances of the tip and the axis: as
+    /// few blocks as these need. What of a path's shape its own chords leave out comes on top.
+    pub join: bool,
     /// How far the tool leaves the part along its axis for a rewind, mm.
     pub rewind_retract_mm: f64,
 }
 
 impl Default for SolveOptions {
     /// No tool-centre-point control; 2 um and 0.02 deg, held within 0.005 deg of a pole; rapids within 0.1 mm;
-    /// rewinds 50 mm away from the part.
+    /// every CL point ends a block; rewinds 50 mm away from the part.
     fn default() -> Self {
         Self {
             tcp: false,
@@ -34,6 +37,7 @@ impl Default for SolveOptions {
             touch_rad: FRAC_PI_2,
             axis_tol_rad: 0.02f64.to_radians(),
             rapid_tol_mm: 0.1,
+            join: false,
             singular_cone_rad: 0.005f64.to_radians(),
             rewind_retract_mm: 50.0,
         }

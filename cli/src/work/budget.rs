@@ -46,7 +46,7 @@ pub fn solve(job: &Job, touch_rad: f64) -> SolveOptions {
     let axis_mm = (AXIS[usize::from(keeps_tip(job))] * t.chord_mm).clamp(LEAST_TIP_MM, coarse.tip_tol_mm);
     let axis_tol_rad = (axis_mm / radius_mm).min(coarse.axis_tol_rad);
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
-    SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, ..coarse }
+    SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join: true, ..coarse }
 }
 
 /// Whether the control keeps the tip on its line.
