@@ -1,5 +1,5 @@
 //! As few blocks as the tolerances need: a block goes on over the CL points between its ends for as long as the tool
-//! passes each of them, and the middle of each move, as closely as a block between two CL points keeps to its line.
+//! passes each of them, and what lies between them, as closely as a block between two CL points keeps to its line.
 //!
 //! Where the axis turns, every block costs a control that brakes between blocks about sqrt(2 angle / acceleration):
 //! half as many take it 0.7 times as long.
@@ -14,10 +14,14 @@ use crate::machine::angle_between;
 use crate::solve_error::SolveError;
 
 /// Moves that one block takes at most: bounds the work, and how far a block is from those that it stands for.
-const MOST_MOVES: usize = 64;
+const MOST_MOVES: usize = 512;
 
 /// Axes that turn by less than this do not, rad: their straight ways are those of the machine already.
 const TURNS_RAD: f64 = 1e-9;
+
+/// Parts of a block, and of each of its moves, at the ends of which it is looked at, at least.
+const PARTS: usize = 8;
+const LEAST_PARTS: usize = 2;
 
 /// A place on one of the moves that a block stands for.
 struct Passed {
@@ -38,7 +42,8 @@ impl Liner<'_> {
         let count = alike(from, moves, choices);
         let place = |k: usize| {
             let pose = moves[k - 1].pose;
-            self.checked(&choices[k - 1].rotary_rad, &pose, first + k - 1).map(|joints| Placed { pose, joints })
+            self.checked(&choices[k - 1].rotary_rad, &pose, first + k - 1)
+                .map(|joints| Placed { pose, joints })
         };
         // Twice as far each time, then between the last that was near enough and the first that was not.
         let (mut good, mut near, mut step, mut beyond) = (None, 1, 1, count + 1);
@@ -74,12 +79,13 @@ impl Liner<'_> {
         }
         let mut worst = Stray::default();
         let whole: f64 = lengths(from, moves).sum();
+        let parts = PARTS.div_ceil(moves.len()).max(LEAST_PARTS);
         let (mut before, mut done) = (from.pose, 0.0);
         for (m, length) in moves.iter().zip(lengths(from, moves)) {
-            let middle =
-                Passed { pose: pose_between(&before, &m.pose, 0.5), share: (done + 0.5 * length) / whole };
-            let end = Passed { pose: m.pose, share: (done + length) / whole };
-            for at in [middle, end] {
+            for k in 1..=parts {
+                let t = k as f64 / parts as f64;
+                let at =
+                    Passed { pose: pose_between(&before, &m.pose, t), share: (done + t * length) / whole };
                 let stray = self.abreast(from, to, &at);
                 if !stray.within(self.options) {
                     return None;

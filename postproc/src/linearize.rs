@@ -124,11 +124,7 @@ impl Liner<'_> {
         let rapid = line.label.motion == Motion::Rapid;
         let stray = self.stray(line, a, b);
         let o = self.options;
-        let near = if rapid {
-            stray.tip_mm <= o.rapid_tol_mm
-        } else {
-            stray.within(o)
-        };
+        let near = if rapid { stray.tip_mm <= o.rapid_tol_mm } else { stray.within(o) };
         let (qa, qb) = (self.machine.rotary_of(&a.1), self.machine.rotary_of(&b.1));
         let turns = (0..2).map(|k| (qb[k] - qa[k]).abs()).fold(0.0, f64::max);
         if near && turns <= LARGEST_ROTARY_STEP_RAD {

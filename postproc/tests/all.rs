@@ -13,6 +13,7 @@ mod common;
 mod dialect_files;
 mod feed_metrics;
 mod flow;
+mod join;
 mod machine_data;
 mod meetings;
 #[path = "mutation/main.rs"]

@@ -222,7 +222,7 @@ impl<'a> Choice<'a> {
     }
 
     /// The rank of leads found place by place with another tool than the one that holds: along the lines on which that tool was the
-    /// quickest so far, if it was planned along any that keep theirs, then along those on which it was not planned yet; None for
+    /// quickest so far that is not out, if it was planned along any that keep theirs, then along those on which it was not planned yet; None for
     /// others.
     fn with_another(&self, entry: &Entry) -> Option<(usize, f64, f64)> {
         let c = &entry.candidate;
@@ -233,7 +233,7 @@ impl<'a> Choice<'a> {
         }
         let quickest = planned
             .iter()
-            .filter(|e| e.figures.is_some() && keeps_lines(&e.candidate.strategy))
+            .filter(|e| e.figures.is_some() && Self::waiting(e) && keeps_lines(&e.candidate.strategy))
             .min_by(|a, b| a.least_min().total_cmp(&b.least_min()));
         if let Some(quickest) = quickest.filter(|q| q.candidate.strategy == c.strategy) {
             return Some((5, 0.0, quickest.least_min()));
