@@ -20,7 +20,7 @@ use std::f64::consts::FRAC_PI_2;
 /// leaves its share to the axis. (Tuned on surfaces 3 and 4 of M86 by the time on LinuxCNC: twice as much asks for one pass more.)
 const TIP: f64 = 0.5;
 const AXIS: [f64; 2] = [0.25, 0.5];
-/// What controls are asked to keep to at corners, of the chords.
+/// What controls are asked to keep to at corners, of the chords; no more than what posts keep to without a job, as verdicts count all of it everywhere.
 const BLEND: f64 = 0.25;
 /// None of these is less than this, mm, which programs can just say.
 const LEAST_TIP_MM: f64 = 0.5e-4;
@@ -58,7 +58,7 @@ fn keeps_tip(job: &Job) -> bool {
 
 /// How closely the control of a job is asked to keep to corners, mm.
 pub fn asked_mm(job: &Job) -> f64 {
-    (BLEND * job.tolerance().chord_mm).max(LEAST_TIP_MM)
+    (BLEND * job.tolerance().chord_mm).clamp(LEAST_TIP_MM, SolveOptions::default().tip_tol_mm)
 }
 
 /// Half a unit of the last decimal of the coarsest slide, mm.
