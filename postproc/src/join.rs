@@ -59,7 +59,7 @@ impl Liner<'_> {
         let tip_length_mm = lengths(from, &moves[..k]).sum();
         let summary = &mut self.path.summary;
         summary.joined_points += k - 1;
-        summary.add_stray(&stray);
+        summary.add_stray(stray.tip_mm, stray.axis_rad);
         self.path.blocks.push(JointBlock {
             joints: to.joints,
             tip: to.pose.tip,

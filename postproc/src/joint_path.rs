@@ -3,7 +3,6 @@
 use osculate_geom::{Diagnostic, Point3};
 use osculate_tools::cl::Motion;
 
-use crate::linearize::Stray;
 use crate::machine::JointValues;
 
 /// Why a block is there.
@@ -56,9 +55,9 @@ pub struct SolveSummary {
 
 impl SolveSummary {
     /// Counts what a block of a feed move strays by.
-    pub(crate) fn add_stray(&mut self, stray: &Stray) {
-        self.tip_error_mm = self.tip_error_mm.max(stray.tip_mm);
-        self.axis_error_rad = self.axis_error_rad.max(stray.axis_rad);
+    pub(crate) const fn add_stray(&mut self, tip_mm: f64, axis_rad: f64) {
+        self.tip_error_mm = self.tip_error_mm.max(tip_mm);
+        self.axis_error_rad = self.axis_error_rad.max(axis_rad);
     }
 }
 

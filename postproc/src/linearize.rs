@@ -235,7 +235,7 @@ impl Liner<'_> {
         let summary = &mut self.path.summary;
         summary.inserted_points += usize::from(kind == BlockKind::Inserted);
         if line.label.motion != Motion::Rapid {
-            summary.add_stray(stray);
+            summary.add_stray(stray.tip_mm, stray.axis_rad);
         }
         self.path.blocks.push(JointBlock {
             joints: end.1,

@@ -3,9 +3,9 @@
 //! Passes are laid out for the scallop less two terms. *Words*: positions are rounded to the last decimal of the machine's axes; half
 //! a unit of it at a crest, which lies between two passes that are rounded each for itself. *Ways*: between CL points the joints
 //! move, and the tool's end strays from the straight motion that was planned, as far as the post allows: its tip, and what its axis
-//! turns about the tip at the cutter's radius; across the axis, where it does not go towards the part, up to four times as far. Such a stray is greatest in the middle of a block, points any way, and at a crest is the
-//! mean of two passes that stray to either side: a quarter of the most that the post allows is counted. What teeth leave at the
-//! feed of the job is kept back before both.
+//! turns about the tip at the cutter's radius; across the axis, where it does not go towards the part, up to four times as far. Such a stray is
+//! greatest in the middle of a block, and blocks are as long as it allows; at a crest it is the mean of two passes, which may stray to either
+//! side: half of the most that the post allows is counted. What teeth leave at the feed of the job is kept back before both.
 
 use crate::job::Job;
 use crate::part::{self, Part};
@@ -24,7 +24,7 @@ const AXIS: [f64; 2] = [0.25, 0.5];
 const BLEND: f64 = 0.25;
 /// None of these is less than this, mm, which programs can just say.
 const LEAST_TIP_MM: f64 = 0.5e-4;
-/// The tip strays by no more than this share of the gouge limit: most of what it strays may go towards the part. (Above half of it plans of
+/// Tip and axis stray by no more than this share of the gouge limit: most of what the tip strays may go towards the part. (Above half of it plans of
 /// compressor and impeller blades dig in, and gain 1 % of LinuxCNC's time: what the axis may stray and corners gain more.)
 const DEEP: f64 = 0.5;
 /// The share of both that is counted.
@@ -45,8 +45,9 @@ const MARKS: f64 = 0.6;
 /// How closely the joints follow the path of a job whose tool touches the part at no more than `touch_rad` from its axis.
 pub fn solve(job: &Job, touch_rad: f64) -> SolveOptions {
     let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter().radius_mm(), job.tolerance());
-    let tip_tol_mm = (TIP * t.chord_mm).min(DEEP * t.gouge_mm).max(LEAST_TIP_MM);
-    let axis_tol_rad = (AXIS[usize::from(keeps_tip(job))] * t.chord_mm).max(LEAST_TIP_MM) / radius_mm;
+    let of_chord = |share: f64| (share * t.chord_mm).min(DEEP * t.gouge_mm).max(LEAST_TIP_MM);
+    let tip_tol_mm = of_chord(TIP);
+    let axis_tol_rad = of_chord(AXIS[usize::from(keeps_tip(job))]) / radius_mm;
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
     SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join: true, ..coarse }
 }
