@@ -13,7 +13,6 @@ use crate::work::axes;
 use osculate_postproc::nc::Dialect;
 use osculate_postproc::{FeedMode, SolveOptions};
 use osculate_productivity::plan::Tolerance;
-use std::f64::consts::FRAC_PI_2;
 
 /// How far the tip may stray, of the chords, and the axis at the cutter's radius. Joints that turn a part bend the way of the tip
 /// several times as much as faces do: most of the chord is theirs, and blocks become longer. A control that keeps the tip itself
@@ -27,6 +26,9 @@ const LEAST_TIP_MM: f64 = 0.5e-4;
 /// Tip and axis stray by no more than this share of the gouge limit: most of what the tip strays may go towards the part. (Above half of it plans of
 /// compressor and impeller blades dig in, and gain 1 % of LinuxCNC's time: what the axis may stray and corners gain more.)
 const DEEP: f64 = 0.5;
+/// A tool that touches further from its axis than this cuts with its side, of which the axis moves most far from the tip: there posts stray by no
+/// more than without a job.
+const SIDE_RAD: f64 = 80.0 / 180.0 * std::f64::consts::PI;
 /// The share of both that is counted. (Tuned on blades of a turbine, a compressor and an impeller: a quarter leaves too much between joined blocks, half
 /// asks for passes that nothing needs.)
 const COUNTED: f64 = 0.45;
@@ -47,8 +49,12 @@ const MARKS: f64 = 0.6;
 pub fn solve(job: &Job, touch_rad: f64) -> SolveOptions {
     let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter().radius_mm(), job.tolerance());
     let of_chord = |share: f64| (share * t.chord_mm).min(DEEP * t.gouge_mm).max(LEAST_TIP_MM);
-    let tip_tol_mm = of_chord(TIP);
-    let axis_tol_rad = of_chord(AXIS[usize::from(keeps_tip(job))]) / radius_mm;
+    let (mut tip_tol_mm, mut axis_tol_rad) =
+        (of_chord(TIP), of_chord(AXIS[usize::from(keeps_tip(job))]) / radius_mm);
+    if touch_rad > SIDE_RAD {
+        (tip_tol_mm, axis_tol_rad) =
+            (tip_tol_mm.min(coarse.tip_tol_mm), axis_tol_rad.min(coarse.axis_tol_rad));
+    }
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
     SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join: true, ..coarse }
 }
@@ -102,7 +108,7 @@ impl Shares {
 
 /// The tolerance that shares leave for passes of a tool that leans along them.
 pub fn leaning(job: &Job, faces: &Part, shares: Shares) -> Tolerance {
-    let s = solve(job, FRAC_PI_2);
+    let s = solve(job, 0.0);
     let tip_mm = if keeps_tip(job) { 0.0 } else { s.tip_tol_mm };
     let ways_mm = COUNTED * (tip_mm + s.axis_tol_rad * job.cutter().radius_mm());
     kept_back(job, faces, shares, words_mm(job) + ways_mm + blend_mm(job, true))

@@ -14,7 +14,6 @@ use osculate_postproc::{
 };
 use osculate_tools::Pose;
 use osculate_tools::cl::ClPath;
-use std::f64::consts::FRAC_PI_2;
 
 /// A path for which a setup is sought.
 #[derive(Clone, Copy)]
@@ -176,9 +175,7 @@ pub fn turned(job: &Job, faces: &Part, path: &ClPath, control: &Control, setup: 
     };
     let pace = match (control.dialect, control.feed) {
         (Dialect::LinuxCnc, FeedMode::Tcp) => Pace::ByBlocks { tip_tol_mm: None },
-        (Dialect::LinuxCnc, _) => {
-            Pace::ByBlocks { tip_tol_mm: Some(budget::solve(job, FRAC_PI_2).tip_tol_mm) }
-        }
+        (Dialect::LinuxCnc, _) => Pace::ByBlocks { tip_tol_mm: Some(budget::solve(job, 0.0).tip_tol_mm) },
         (Dialect::Sinumerik | Dialect::Heidenhain | Dialect::Fanuc, _) => Pace::Through,
     };
     quicker_turns(path, machine, setup, &turns, (WORTH_A_TURN, pace))
