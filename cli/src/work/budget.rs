@@ -27,7 +27,7 @@ const LEAST_TIP_MM: f64 = 0.5e-4;
 /// compressor and impeller blades dig in, and gain 1 % of LinuxCNC's time: what the axis may stray and corners gain more.)
 const DEEP: f64 = 0.5;
 /// A tool that touches further from its axis than this cuts with its side, of which the axis moves most far from the tip: there posts stray by no
-/// more than without a job.
+/// more than without a job, and join nothing.
 const SIDE_RAD: f64 = 80.0 / 180.0 * std::f64::consts::PI;
 /// The share of both that is counted. (Tuned on blades of a turbine, a compressor and an impeller: a quarter leaves too much between joined blocks, half
 /// asks for passes that nothing needs.)
@@ -51,12 +51,13 @@ pub fn solve(job: &Job, touch_rad: f64) -> SolveOptions {
     let of_chord = |share: f64| (share * t.chord_mm).min(DEEP * t.gouge_mm).max(LEAST_TIP_MM);
     let (mut tip_tol_mm, mut axis_tol_rad) =
         (of_chord(TIP), of_chord(AXIS[usize::from(keeps_tip(job))]) / radius_mm);
-    if touch_rad > SIDE_RAD {
+    let join = touch_rad <= SIDE_RAD;
+    if !join {
         (tip_tol_mm, axis_tol_rad) =
             (tip_tol_mm.min(coarse.tip_tol_mm), axis_tol_rad.min(coarse.axis_tol_rad));
     }
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
-    SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join: true, ..coarse }
+    SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join, ..coarse }
 }
 
 /// Whether the control keeps the tip on its line.
