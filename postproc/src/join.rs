@@ -31,15 +31,15 @@ struct Passed {
 }
 
 impl Liner<'_> {
-    /// Appends one block for as many of the moves as it can stand for, two at least; where it ends, and after how many moves. `None`
-    /// where it can stand for one alone. The first of the moves starts at `from`.
+    /// Appends one block for as many of the moves, which are alike, as it can stand for, two at least; where it ends, and after how many
+    /// moves. `None` where it can stand for one alone. The first of the moves starts at `from`.
     pub(crate) fn join(
         &mut self,
         from: &Placed,
         (moves, choices): (&[ClMove], &[Choice]),
         first: usize,
     ) -> Result<Option<(Placed, usize)>, SolveError> {
-        let count = alike(from, moves, choices);
+        let count = moves.len().min(MOST_MOVES);
         let place = |k: usize| {
             let pose = moves[k - 1].pose;
             self.checked(&choices[k - 1].rotary_rad, &pose, first + k - 1)
@@ -123,7 +123,7 @@ impl Liner<'_> {
 }
 
 /// How many of the moves are alike: turning feed moves at one feed, without rewinds or poles.
-fn alike(from: &Placed, moves: &[ClMove], choices: &[Choice]) -> usize {
+pub(crate) fn alike(from: &Placed, moves: &[ClMove], choices: &[Choice]) -> usize {
     let Some(first) = moves.first() else { return 0 };
     let mut axis = from.pose.axis;
     let fits = |(m, choice): (&ClMove, &Choice)| {
@@ -131,7 +131,7 @@ fn alike(from: &Placed, moves: &[ClMove], choices: &[Choice]) -> usize {
         axis = m.pose.axis;
         turns && m.motion == first.motion && m.motion != Motion::Rapid && !choice.rewind && !choice.singular
     };
-    moves.iter().zip(choices).take(MOST_MOVES).map(fits).take_while(|fit| *fit).count()
+    moves.iter().zip(choices).map(fits).take_while(|fit| *fit).count()
 }
 
 /// Lengths of the tip's ways of the moves, mm.

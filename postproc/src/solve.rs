@@ -14,6 +14,7 @@ use osculate_tools::cl::{ClMove, ClPath, Motion};
 use rayon::prelude::*;
 
 use crate::choices::{Choice, Choices};
+use crate::join::alike;
 use crate::joint_path::{BlockKind, JointBlock, JointPath};
 use crate::linearize::{Label, Liner, Placed, pose_between};
 use crate::machine::{JointValues, Machine, angle_between, nearest_turn};
@@ -232,15 +233,22 @@ impl Run<'_> {
     /// The blocks of the moves behind these choices.
     fn moves(&self, liner: &mut Liner, range: std::ops::Range<usize>) -> Result<(), SolveError> {
         let mut at = self.placed(liner, range.start)?;
-        let mut i = range.start;
+        // Moves up to the last of those that are alike may become one.
+        let (mut i, mut last) = (range.start, range.start);
         while i < range.end {
-            let ahead = i + 1..range.end + 1;
-            let joined = if liner.options.join {
-                let next = (&self.moves[ahead.clone()], &self.choices[ahead.clone()]);
-                liner.join(&at, next, self.first + ahead.start)?
-            } else {
-                None
-            };
+            let mut joined = None;
+            if liner.options.join {
+                if last <= i {
+                    let rest = i + 1..range.end + 1;
+                    last = i + alike(&at, &self.moves[rest.clone()], &self.choices[rest]).max(1);
+                }
+                let next = i + 1..last + 1;
+                joined = liner.join(
+                    &at,
+                    (&self.moves[next.clone()], &self.choices[next.clone()]),
+                    self.first + next.start,
+                )?;
+            }
             (at, i) = match joined {
                 Some((to, count)) => (to, i + count),
                 None => (self.move_to(liner, &at, i + 1)?, i + 1),

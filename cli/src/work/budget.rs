@@ -18,6 +18,8 @@ use osculate_productivity::plan::Tolerance;
 /// several times as much as faces do: most of the chord is theirs, and blocks become longer. A control that keeps the tip itself
 /// leaves its share to the axis. (Tuned on the blades of `COUNTED` by the time on LinuxCNC: more of either takes a pass more where blocks gain least.)
 const TIP: f64 = 0.4;
+/// The tip's share where a cutting side joins no blocks: there what the axis strays keeps to fixed caps, which leave the tip more.
+const SIDE_TIP: f64 = 0.5;
 const AXIS: [f64; 2] = [0.25, 0.5];
 /// What controls are asked to keep to at corners, of the chords; no more than what posts keep to without a job, as verdicts count all of it everywhere.
 const BLEND: f64 = 0.25;
@@ -49,13 +51,13 @@ const MARKS: f64 = 0.6;
 pub fn solve(job: &Job, touch_rad: f64) -> SolveOptions {
     let (coarse, radius_mm, t) = (SolveOptions::default(), job.cutter().radius_mm(), job.tolerance());
     let of_chord = |share: f64| (share * t.chord_mm).min(DEEP * t.gouge_mm).max(LEAST_TIP_MM);
-    let (mut tip_tol_mm, mut axis_tol_rad) =
-        (of_chord(TIP), of_chord(AXIS[usize::from(keeps_tip(job))]) / radius_mm);
     let join = touch_rad <= SIDE_RAD;
-    if !join {
-        (tip_tol_mm, axis_tol_rad) =
-            (tip_tol_mm.min(coarse.tip_tol_mm), axis_tol_rad.min(coarse.axis_tol_rad));
-    }
+    let axis = of_chord(AXIS[usize::from(keeps_tip(job))]) / radius_mm;
+    let (tip_tol_mm, axis_tol_rad) = if join {
+        (of_chord(TIP), axis)
+    } else {
+        (of_chord(SIDE_TIP).min(coarse.tip_tol_mm), axis.min(coarse.axis_tol_rad))
+    };
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
     SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join, ..coarse }
 }
