@@ -62,7 +62,7 @@ usage: cargo xtask COMMAND
                 alone, and the examples that are whole parts: where their time goes
   plans --speed [--only TEXT] [--program FILE]
                 seconds and memory of planning: a plane by every strategy, auto over five tools, a million points
-  control [--only TEXT] [--program FILE]
+  control [--only TEXT] [--posts yes|no] [--program FILE]
                 docs/control-time.md: programs on LinuxCNC's own motion planner, in servo cycles, beside what plan and time say, and feed
                 modes of the same path with what they ask of the joints (Debian: apt-get, dpkg, gcc, tcl8.6, python3.11, root)
   parts [--only TEXT] [--program FILE]

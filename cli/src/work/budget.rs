@@ -23,6 +23,8 @@ const SIDE_TIP: f64 = 0.5;
 const AXIS: [f64; 2] = [0.25, 0.5];
 /// What controls are asked to keep to at corners, of the chords; no more than what posts keep to without a job, as verdicts count all of it everywhere.
 const BLEND: f64 = 0.25;
+/// And of the scallop, where chords are coarser than usual. (Tuned on a blade of an impeller by the time on LinuxCNC.)
+const CORNER: f64 = 0.1;
 /// None of these is less than this, mm, which programs can just say.
 const LEAST_TIP_MM: f64 = 0.5e-4;
 /// Tip and axis stray by no more than this share of the gouge limit: most of what the tip strays may go towards the part. (Above half of it plans of
@@ -69,7 +71,8 @@ fn keeps_tip(job: &Job) -> bool {
 
 /// How closely the control of a job is asked to keep to corners, mm.
 pub fn asked_mm(job: &Job) -> f64 {
-    (BLEND * job.tolerance().chord_mm).clamp(LEAST_TIP_MM, SolveOptions::default().tip_tol_mm)
+    let t = job.tolerance();
+    (BLEND * t.chord_mm).min(CORNER * t.scallop_mm).clamp(LEAST_TIP_MM, SolveOptions::default().tip_tol_mm)
 }
 
 /// Half a unit of the last decimal of the coarsest slide, mm.

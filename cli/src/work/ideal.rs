@@ -2,14 +2,16 @@
 
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::part::Part;
+use crate::part::{self, LoadedFace, Part};
 use crate::words::number;
 use crate::work::choice::patches;
 use crate::work::program::Planned;
 use osculate_productivity::compare::Axes;
-use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Search};
+use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Patch, Search};
 use osculate_productivity::optimum::{OptimumError, Range};
+use osculate_productivity::plan::Tolerance;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// Places over all faces at which the best posture is searched.
@@ -55,32 +57,12 @@ pub struct IdealTime {
     pub contact_length_mm: f64,
     /// The bound over the longer of cutting time and contact length over feed.
     pub efficiency_percent: f64,
-    /// That time, min.
-    #[serde(skip)]
-    pub cutting_min: f64,
 }
 
 impl IdealTime {
     fn of(ideal: Bound, contact_length_mm: f64, cutting_min: f64) -> Self {
         let efficiency_percent = if cutting_min > 0.0 { 100.0 * ideal.time_min / cutting_min } else { 0.0 };
-        Self { ideal, contact_length_mm, efficiency_percent, cutting_min }
-    }
-
-    /// Those of several operations together, each of them over its own faces; None where there are none.
-    pub fn of_all(each: &[&Self]) -> Option<Self> {
-        let first = each.first()?;
-        let sum = |of: &dyn Fn(&Self) -> f64| each.iter().map(|i| of(i)).sum::<f64>();
-        let isoparametric: Option<Vec<f64>> = each.iter().map(|i| i.ideal.isoparametric_min).collect();
-        let n = each.len();
-        let ideal = Bound {
-            time_min: sum(&|i| i.ideal.time_min),
-            error_min: sum(&|i| i.ideal.error_min.powi(2)).sqrt(),
-            places: each.iter().map(|i| i.ideal.places).sum(),
-            unreached_mm2: sum(&|i| i.ideal.unreached_mm2),
-            assumes: format!("{n} operations that finish whole faces, of each {}", first.ideal.assumes),
-            isoparametric_min: isoparametric.map(|all| all.iter().sum()),
-        };
-        Some(Self::of(ideal, sum(&|i| i.contact_length_mm), sum(&|i| i.cutting_min)))
+        Self { ideal, contact_length_mm, efficiency_percent }
     }
 }
 
@@ -108,19 +90,28 @@ pub fn of_job(job: &Job, faces: &Part) -> Result<Bound, Failure> {
     with(job, faces, tilts(job))
 }
 
-fn with(job: &Job, faces: &Part, (tilt, tilts): (Range, &str)) -> Result<Bound, Failure> {
-    let jobs = job.each_tool();
+fn with(job: &Job, faces: &Part, tilt: (Range, &str)) -> Result<Bound, Failure> {
+    over(&job.each_tool(), &patches(faces), &job.tolerance(), tilt)
+}
+
+/// The bound over faces with the tools of these jobs, one at least.
+fn over(
+    jobs: &[Job],
+    patches: &[Patch<'_>],
+    tolerance: &Tolerance,
+    (tilt, tilts): (Range, &str),
+) -> Result<Bound, Failure> {
     let cutters = jobs.iter().map(Job::cutter).collect::<Vec<_>>();
-    let mut tools = Vec::with_capacity(jobs.len());
-    for (one, cutter) in jobs.iter().zip(&cutters) {
-        tools.push(Feeding { cutter, feed_mm_min: one.feed_mm_min() });
-    }
+    let tools: Vec<Feeding<'_>> = jobs
+        .iter()
+        .zip(&cutters)
+        .map(|(one, cutter)| Feeding { cutter, feed_mm_min: one.feed_mm_min() })
+        .collect();
     let search = Search { places: PLACES, tilt };
-    let (patches, tolerance) = (patches(faces), job.tolerance());
-    let failed = |e: OptimumError| Failure::file(job.path(), e);
-    let found = ideal::ideal(&patches, &tools, &tolerance, search).map_err(failed)?;
+    let failed = |e: OptimumError| Failure::file(jobs[0].path(), e);
+    let found = ideal::ideal(patches, &tools, tolerance, search).map_err(failed)?;
     let isoparametric_min = if patches.len() <= MOST_FACES {
-        ideal::isoparametric_min(&patches, &tools, &tolerance, SIDE).map_err(failed)?
+        ideal::isoparametric_min(patches, &tools, tolerance, SIDE).map_err(failed)?
     } else {
         None
     };
@@ -136,6 +127,62 @@ fn with(job: &Job, faces: &Part, (tilt, tilts): (Range, &str)) -> Result<Bound, 
         ),
         isoparametric_min,
     })
+}
+
+/// What an operation has of a part's finishing.
+#[derive(Clone, Copy)]
+pub struct Share<'a> {
+    /// Its job, with the tool in hand.
+    pub job: &'a Job,
+    /// Its faces.
+    pub part: &'a Part,
+    /// Length of its passes, mm.
+    pub contact_length_mm: f64,
+    /// Time of its feed moves, min.
+    pub cutting_min: f64,
+}
+
+/// The bound beside operations that finish a part together: each face counts once, with whichever of its operations' tools is quickest and
+/// to the loosest of their tolerances. None where there is none.
+pub fn of_part(shares: &[Share<'_>]) -> Result<Option<IdealTime>, Failure> {
+    // Faces by the operations that have them.
+    let mut having: BTreeMap<&str, (&LoadedFace, Vec<usize>)> = BTreeMap::new();
+    for (k, share) in shares.iter().enumerate() {
+        for face in &share.part.faces {
+            having.entry(face.id.as_str()).or_insert((face, Vec::new())).1.push(k);
+        }
+    }
+    let mut groups: BTreeMap<Vec<usize>, Vec<Patch<'_>>> = BTreeMap::new();
+    for (face, of) in having.into_values() {
+        let patch = Patch { surface: &*face.surface, area_mm2: part::area(face) };
+        groups.entry(of).or_default().push(patch);
+    }
+    let mut each = Vec::with_capacity(groups.len());
+    for (of, patches) in &groups {
+        let jobs: Vec<Job> = of.iter().flat_map(|k| shares[*k].job.each_tool()).collect();
+        let all = jobs.iter().map(Job::tolerance);
+        let loosest = all.reduce(|a, b| Tolerance {
+            scallop_mm: a.scallop_mm.max(b.scallop_mm),
+            gouge_mm: a.gouge_mm.max(b.gouge_mm),
+            chord_mm: a.chord_mm.max(b.chord_mm),
+        });
+        let Some(tolerance) = loosest else { continue };
+        each.push(over(&jobs, patches, &tolerance, ANY_TILT)?);
+    }
+    let Some(first) = each.first() else { return Ok(None) };
+    let sum = |of: &dyn Fn(&Bound) -> f64| each.iter().map(of).sum::<f64>();
+    let isoparametric: Option<Vec<f64>> = each.iter().map(|b| b.isoparametric_min).collect();
+    let bound = Bound {
+        time_min: sum(&|b| b.time_min),
+        error_min: sum(&|b| b.error_min.powi(2)).sqrt(),
+        places: each.iter().map(|b| b.places).sum(),
+        unreached_mm2: sum(&|b| b.unreached_mm2),
+        assumes: format!("every face once by {} operations that finish it, {}", shares.len(), first.assumes),
+        isoparametric_min: isoparametric.map(|all| all.iter().sum()),
+    };
+    let length_mm = shares.iter().map(|s| s.contact_length_mm).sum();
+    let time = |s: &Share<'_>| s.cutting_min.max(s.contact_length_mm / s.job.feed_mm_min());
+    Ok(Some(IdealTime::of(bound, length_mm, shares.iter().map(time).sum())))
 }
 
 /// Tilts of the bound, and in words: where the job does not tilt, nor does the bound, as the feed is free to turn instead.

@@ -5,6 +5,7 @@
 //! does not matter how fast the computer is. A quicker clock for the realtime part saves waiting: the page compares runs with
 //! and without. Programs, samples and results stay below `target/control`.
 
+mod driven;
 mod kept;
 mod machine;
 mod page;
@@ -24,6 +25,8 @@ use std::path::Path;
 #[derive(Default)]
 pub struct Options<'a> {
     only: &'a str,
+    /// Without the posts in every feed mode.
+    planned: bool,
     program: Option<&'a str>,
 }
 
@@ -34,6 +37,8 @@ impl<'a> Options<'a> {
         for pair in words.chunks(2) {
             match *pair {
                 ["--only", v] => out.only = v,
+                ["--posts", "no"] => out.planned = true,
+                ["--posts", "yes"] => out.planned = false,
                 ["--program", v] => out.program = Some(v),
                 _ => return None,
             }
@@ -51,13 +56,18 @@ pub fn run(options: &Options<'_>) -> Result<(), Failure> {
     let program = program(&root, options.program)?;
     let control = Control::new(&root)?;
     for part in PARTS.iter().filter(|p| p.name.contains(options.only)) {
-        each(part, &(&root, &program), &control)?;
+        each(part, options.planned, &(&root, &program), &control)?;
     }
     Ok(())
 }
 
 /// The programs of a part.
-fn each(part: &Part, (root, osculate): &(&Path, &Path), control: &Control<'_>) -> Result<(), Failure> {
+fn each(
+    part: &Part,
+    planned: bool,
+    (root, osculate): &(&Path, &Path),
+    control: &Control<'_>,
+) -> Result<(), Failure> {
     let place = place(root, part);
     let mut first = None;
     for feed in part.planned {
@@ -70,7 +80,7 @@ fn each(part: &Part, (root, osculate): &(&Path, &Path), control: &Control<'_>) -
         }
         first.get_or_insert(made);
     }
-    let Some(plan) = first.filter(|_| part.every_mode) else { return Ok(()) };
+    let Some(plan) = first.filter(|_| part.every_mode && !planned) else { return Ok(()) };
     for feed in MODES {
         let made = programs::post(part, feed, (root, osculate), &plan)?;
         look(part, &Which { feed, posted: true, rate: RATE }, (root, osculate), (control, &made))?;
@@ -94,7 +104,14 @@ fn look(
     let run = place(root, part).join("run");
     let pace = Pace { folder: &run, rate: which.rate, expected_s: seconds("time_min") };
     let (shown, rate) = control.shown(&drives, made, &pace)?;
+    // Joints of programs of the tip are not those words.
+    let driven = if !which.posted && which.feed == "inverse_time" && which.rate == RATE {
+        driven::judged(osculate, made, (&run.join("samples.txt"), drives.top_mm()))?
+    } else {
+        Value::Null
+    };
     let value = serde_json::json!({
+        "driven": driven,
         "blocks": told["joints"]["blocks"],
         "plan_s": made.planned_s,
         "time_s": seconds("time_min"), "time_feed_s": seconds("cutting_min"),

@@ -20,6 +20,11 @@ with `none`. Joints' largest speed, acceleration and jerk in feed moves are per 
 limits the tip's axes but not the joints. `fastest` goes as fast as the joints can, beyond the job's F where they can: it is no candidate for the best mode. *Tip* is how far the tip is off the straight pieces between CL points, by forward kinematics of the sampled joints: the most, and 99 of 100 cycles.\n";
 const COLUMNS: &str = "\n| part | feed mode | blocks | LinuxCNC feed s | our feed s | off % | share % | speed % | acceleration % | jerk % | tip, most mm | tip, 99 % mm |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
+const DRIVEN: &str = "\n## What is left by the joints as they moved\n\nThe samples of a program without tool-centre-point control are a program of their own: every servo cycle a straight move of 1 ms, nothing blended. \
+`verify` says what it leaves, beside what `plan` said of the blocks: *scallop* with tooth marks and *gouge* at samples, each with what may hide between them as *at most*. Verdicts on blocks add all of P everywhere; \
+what blended corners really add is the difference.\n\n\
+| part | P mm | scallop: blocks mm | as driven mm | gouge: blocks mm | as driven mm | scallop at most: blocks mm | as driven mm | gouge at most: blocks mm | as driven mm | held: blocks | as driven |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+
 /// Writes the page.
 pub fn write(root: &Path) -> Result<(), Failure> {
     let kept = |part: &Part, which: &Which<'_>| -> Option<Value> {
@@ -37,6 +42,16 @@ fn page(kept: &dyn Fn(&Part, &Which<'_>) -> Option<Value>) -> String {
                 Some(v) => out += &planned(part.name, feed, &v),
                 None => missing.push(format!("{} {feed}", part.name)),
             }
+        }
+    }
+    out += DRIVEN;
+    for part in &PARTS {
+        let found = part.planned.iter().find_map(|feed| {
+            let v = kept(part, &Which { feed, posted: false, rate: RATE })?;
+            v["driven"].is_object().then_some(v)
+        });
+        if let Some(v) = found {
+            out += &driven(part.name, &v["driven"]);
         }
     }
     out += FEEDS;
@@ -90,6 +105,27 @@ fn planned(name: &str, feed: &str, v: &Value) -> String {
         number(v, "approach_s"),
         number(v, "idle_s"),
         v["lost"]
+    )
+}
+
+/// What the blocks of a program leave, and the way that they were driven.
+fn driven(name: &str, v: &Value) -> String {
+    let of = |which: &str| {
+        let mm = |k: usize| v[which]["mm"][k].as_f64().unwrap_or(f64::NAN);
+        let blend_mm = v["blend_mm"].as_str().and_then(|w| w.parse().ok()).unwrap_or(f64::NAN);
+        let more = if which == "planned" { blend_mm } else { 0.0 };
+        ([mm(0), mm(2)], [mm(0) + mm(1) + more, mm(2) + mm(3) + more])
+    };
+    let ((is, most), (drove, drove_most)) = (of("planned"), of("driven"));
+    let held = |which: &str| if v[which]["answer"] == "held" { "yes" } else { "**no**" };
+    let numbers = [is[0], drove[0], is[1], drove[1], most[0], drove_most[0], most[1], drove_most[1]];
+    let cells: Vec<String> = numbers.iter().map(|x| format!("{x:.4}")).collect();
+    format!(
+        "| {name} | {} | {} | {} | {} |\n",
+        v["blend_mm"].as_str().unwrap_or("-"),
+        cells.join(" | "),
+        held("planned"),
+        held("driven")
     )
 }
 

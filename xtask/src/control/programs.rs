@@ -168,6 +168,8 @@ pub fn drives(part: &Part, root: &Path) -> Result<Drives, Failure> {
 #[derive(Debug, PartialEq)]
 pub struct Setup {
     pub part_zero_mm: [f64; 3],
+    /// The unit quaternion i j k w that turns the part into place.
+    pub turn: [f64; 4],
     pub length_mm: f64,
     /// Whether X Y Z are the tip in the part.
     pub tcp: bool,
@@ -191,10 +193,17 @@ impl Setup {
         let number =
             |w: &str, letter: char| w.trim_end_matches(')').strip_prefix(letter)?.parse::<f64>().ok();
         let zero = word("(setup part zero ").ok_or_else(lacks)?;
-        let parts: Vec<f64> =
-            zero.split(' ').zip(['X', 'Y', 'Z']).filter_map(|(w, l)| number(w, l)).collect();
+        let numbers = |words: &str, letters: &[char]| -> Vec<f64> {
+            words.split(' ').zip(letters).filter_map(|(w, l)| number(w, *l)).collect()
+        };
+        let parts = numbers(zero, &['X', 'Y', 'Z']);
+        let turn = match word("(setup turn ") {
+            Some(words) => numbers(words, &['I', 'J', 'K', 'W']).try_into().map_err(|_| lacks())?,
+            None => [0.0, 0.0, 0.0, 1.0],
+        };
         Ok(Self {
             part_zero_mm: parts.try_into().map_err(|_| lacks())?,
+            turn,
             length_mm: word("(setup gauge length ").and_then(|w| number(w, 'L')).ok_or_else(lacks)?,
             named_line: named_line(text),
             tcp: text.lines().any(|l| l == "M428"),
@@ -234,13 +243,14 @@ mod tests {
 
     #[test]
     fn heads_say_their_setup() {
-        let text = "(setup part zero X-1.5 Y2 Z0.25)\n(setup gauge length L80.0)\nG64 P0.0013\nG53 G0 Z0\n\
+        let text = "(setup part zero X-1.5 Y2 Z0.25)\n(setup turn I0.6 J0 K0 W0.8)\n(setup gauge length L80.0)\nG64 P0.0013\nG53 G0 Z0\n\
                     G0 A1 C2\nM428\nX3 Y4\nZ5\nX6\n";
         let want = Setup {
             part_zero_mm: [-1.5, 2.0, 0.25],
+            turn: [0.6, 0.0, 0.0, 0.8],
             length_mm: 80.0,
             tcp: true,
-            named_line: 8,
+            named_line: 9,
             blend_mm: "0.0013".to_owned(),
         };
         assert_eq!(Setup::of(text, Path::new("a.ngc")).unwrap(), want);

@@ -3,7 +3,7 @@
 use super::machine::Drives;
 use super::programs::{Made, Setup};
 use super::samples::{Place, Shown, read};
-use super::tip::way;
+use super::tip::{turned, way};
 use crate::cmd::{self, Failure};
 use crate::interop::headless::{Clock, Headless, hindrance};
 use crate::interop::unpacked;
@@ -120,7 +120,7 @@ impl<'a> Control<'a> {
             );
             return Err(Failure::Answer { line: line(), why });
         }
-        let way = way(&read_text(&made.cl)?);
+        let way = turned(way(&read_text(&made.cl)?), setup.turn);
         let z_mm = drives.top_mm() - setup.length_mm;
         let place = Place { z_mm, named_line: setup.named_line, part_zero_mm: setup.part_zero_mm, way: &way };
         read(&folder.join("samples.txt"), &place)

@@ -42,12 +42,22 @@ impl Shown {
     }
 }
 
+/// Kinds of motion: rapid, and feed on a line or an arc.
+pub const RAPID: u32 = 1;
+pub const CUT: [u32; 2] = [2, 3];
+
 /// One row.
-struct Row {
+pub struct Row {
     number: u64,
-    joints: [f64; 5],
-    kind: u32,
+    /// X Y Z A C, mm and deg.
+    pub joints: [f64; 5],
+    pub kind: u32,
     line: usize,
+}
+
+/// The rows of a file of samples; what is no row is passed over.
+pub fn rows(text: &str) -> impl Iterator<Item = Row> {
+    text.lines().filter_map(row)
 }
 
 fn row(line: &str) -> Option<Row> {
@@ -130,8 +140,8 @@ impl<'a> Counted<'a> {
             self.before.clear();
         }
         match row.kind {
-            2 | 3 => self.feed(row.joints),
-            1 => {
+            kind if CUT.contains(&kind) => self.feed(row.joints),
+            RAPID => {
                 let named = row.line > self.place.named_line;
                 *(if named { &mut self.rapid } else { &mut self.approach }) += 1;
                 self.before.clear();

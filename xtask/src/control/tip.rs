@@ -24,6 +24,19 @@ pub fn way(cl: &str) -> Way {
     cl.lines().filter_map(point).collect()
 }
 
+/// A path turned by a unit quaternion i j k w.
+pub fn turned(way: Way, [i, j, k, w]: [f64; 4]) -> Way {
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let turn = |p: [f64; 3]| {
+        let once = cross([i, j, k], p);
+        let twice = cross([i, j, k], once);
+        std::array::from_fn(|n| p[n] + 2.0 * (w * once[n] + twice[n]))
+    };
+    way.into_iter().map(turn).collect()
+}
+
 /// The tip in the table's frame; joints X Y Z A C with X Y Z above the table's reference point, mm and deg.
 pub fn tip(joints: &[f64; 5]) -> [f64; 3] {
     let [x, y, z, a, c] = *joints;
@@ -73,6 +86,14 @@ mod tests {
         assert!(near(tip(&[1.0, 2.0, 3.0, 0.0, 0.0]), [1.0, 2.0, 3.0]));
         assert!(near(tip(&[1.0, 0.0, 0.0, 0.0, 90.0]), [0.0, -1.0, 0.0]));
         assert!(near(tip(&[0.0, 0.0, 1.0, 90.0, 0.0]), [0.0, 1.0, 0.0]));
+    }
+
+    /// A quarter turn about z takes x to y.
+    #[test]
+    fn paths_turn_with_the_part() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let [x, y, z] = turned(vec![[1.0, 0.0, 2.0]], [0.0, 0.0, half, half])[0];
+        assert!(x.abs() < 1e-12 && (y - 1.0).abs() < 1e-12 && (z - 2.0).abs() < 1e-12);
     }
 
     #[test]

@@ -15,10 +15,10 @@ fn feed_mm_min(folder: &Path) -> Option<f64> {
     feeds.fold(None, |most: Option<f64>, f: f64| Some(most.map_or(f, |m| m.max(f))))
 }
 
-/// Numbers of this key over the operations that finish.
+/// Numbers of this key over the operations that finish, and cut rest.
 fn of_finishing(summary: &Value, key: &str) -> Option<f64> {
     let all = summary["operations"].as_array()?;
-    all.iter().filter(|o| o["kind"] == "finish").map(|o| o[key].as_f64()).sum()
+    all.iter().filter(|o| o["kind"] == "finish" || o["kind"] == "rest").map(|o| o[key].as_f64()).sum()
 }
 
 /// The row of a face or part by its summary in a folder.

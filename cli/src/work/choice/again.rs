@@ -1,10 +1,12 @@
-//! What is laid out again: what left a little too much, for less; and what the control goes slower along than it may, with less of
-//! the tolerance for the marks of teeth, or a coarser chord.
+//! What is laid out again: what left a little too much, for less; what left less than it may, for more; and what the control goes slower
+//! along than it may, with less of the tolerance for the marks of teeth, or a coarser chord.
 
 use super::entry::{Entry, State};
 use super::search::{Choice, Contender, Holder};
 use crate::job::Overrides;
+use crate::work::budget::{self, Shares};
 use crate::work::look::Objection;
+use crate::work::verify::Verification;
 use osculate_productivity::plan::Tolerance;
 use osculate_productivity::rate::FeedLimit;
 use osculate_productivity::split::best_share;
@@ -25,10 +27,14 @@ const WORTH: f64 = 0.7;
 const BRAKED: f64 = 1.1;
 const COARSER: f64 = 2.0;
 const COARSEST: f64 = 1.0;
+/// What planning keeps back of scallop and gouge is a guess, and verification says what was left: it is given too, up to so many times what was,
+/// where that is more than this.
+const MOST_MORE: f64 = 1.5;
+const WORTH_MORE: f64 = 1.03;
 
 impl Choice<'_> {
     /// From here on only what may take less time than this contender, which holds, is looked at.
-    pub fn undercut(&mut self, contender: &Contender) {
+    pub fn undercut(&mut self, contender: &Contender, found: &Verification) {
         let time_min = contender.posted.time_min();
         let (plans, locals, kept) = self.holder.map_or_else(
             || (self.plans, self.locals().count(), self.kept().count()),
@@ -36,20 +42,45 @@ impl Choice<'_> {
         );
         if self.holder.is_none_or(|h| time_min < h.time_min) {
             self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals, kept });
+            let shares = self.entries[contender.entry].shares;
             for own in [less_marks(contender), coarser(contender)].into_iter().flatten() {
-                self.again(contender, own);
+                self.again(contender, own, shares);
+            }
+            if let Some(more) = self.more(contender, found) {
+                self.again(contender, contender.job.overrides(), more);
             }
         }
     }
 
+    /// By how much the control may leave the way of a contender at corners, mm.
+    pub(super) fn blend_mm(&self, contender: &Contender) -> f64 {
+        budget::blend_mm(&contender.job, self.entries[contender.entry].candidate.three_axis().is_none())
+    }
+
+    /// The shares of scallop and gouge for a plan that leaves what it may, where one that holds leaves less at its samples.
+    fn more(&self, contender: &Contender, found: &Verification) -> Option<Shares> {
+        let Contender { entry: k, job, .. } = contender;
+        let (entry, limits) = (&self.entries[*k], job.tolerance());
+        let blend_mm = self.blend_mm(contender);
+        let marks_mm = found.height_max_mm - found.scallop_max_mm;
+        let may = |limit_mm: f64, is_mm: f64, less: f64| {
+            let more = less * (limit_mm - blend_mm) / is_mm;
+            if more > WORTH_MORE { more.min(MOST_MORE) } else { 1.0 }
+        };
+        let scallop = may(limits.scallop_mm - marks_mm, found.scallop_max_mm, LESS);
+        let gouge = if entry.is_local() { may(limits.gouge_mm, found.gouge_max_mm, LESS_DEEP) } else { 1.0 };
+        let Shares { scallop: s, gouge: g, .. } = entry.shares;
+        (scallop > 1.0 || gouge > 1.0).then_some(Shares { scallop: s * scallop, gouge: g * gouge })
+    }
+
     /// Adds the plan of this contender laid out again.
-    fn again(&mut self, contender: &Contender, own: Overrides) {
+    fn again(&mut self, contender: &Contender, own: Overrides, shares: Shares) {
         if self.entries.iter().filter(|e| e.again.is_some() && e.tried).count() >= self.most.again {
             return;
         }
         let Contender { entry: k, job, .. } = contender;
-        let Entry { candidate, screened, shares, .. } = &self.entries[*k];
-        let (candidate, mut screened, shares) = (*candidate, screened.clone(), *shares);
+        let Entry { candidate, screened, .. } = &self.entries[*k];
+        let (candidate, mut screened) = (*candidate, screened.clone());
         // Marks that take less leave room for fewer passes, each at a lesser feed.
         let given = job.with(own);
         let wider = ((1.0 - job.mark_share()) / (1.0 - given.mark_share())).sqrt();
@@ -61,6 +92,7 @@ impl Choice<'_> {
             figures: None,
             verified: None,
             shares,
+            lessened: [false; 2],
             again: Some((*k, own)),
             tried: false,
             elsewhere: false,
@@ -75,10 +107,12 @@ impl Choice<'_> {
         let left = why.left_mm.map(|mm| (mm - why.marks_mm, limits.scallop_mm - why.marks_mm, LESS));
         let dug = why.dug_mm.filter(|_| local).map(|mm| (mm, limits.gouge_mm, LESS_DEEP));
         let mut again = false;
-        for (found, share) in [(left, &mut entry.shares.scallop), (dug, &mut entry.shares.gouge)] {
+        let shares = [&mut entry.shares.scallop, &mut entry.shares.gouge];
+        for ((found, share), done) in [left, dug].into_iter().zip(shares).zip(&mut entry.lessened) {
             let Some((is, limit, less)) = found else { continue };
-            if *share == 1.0 && is > limit && is <= LITTLE_TOO_MUCH * limit {
-                (*share, again) = (less * limit / is, true);
+            if !*done && is > limit && is <= LITTLE_TOO_MUCH * limit {
+                *share *= less * limit / is;
+                (*done, again) = (true, true);
             }
         }
         again

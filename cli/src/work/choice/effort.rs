@@ -49,7 +49,7 @@ const NORMAL: Most = Most {
     of_another: 2,
     held_twins: 2,
     kept: 3,
-    again: 4,
+    again: 6,
     verified: 9,
     not_shown: 2,
 };

@@ -116,6 +116,7 @@ impl<'a> Choice<'a> {
                     figures: None,
                     verified: None,
                     shares: Shares::WHOLE,
+                    lessened: [false; 2],
                     again: None,
                     tried: false,
                     elsewhere: false,

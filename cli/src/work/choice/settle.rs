@@ -7,7 +7,6 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part;
 use crate::watch::Watch;
-use crate::work::budget;
 use crate::work::look::Objection;
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::verify::{Verification, Verified};
@@ -51,13 +50,13 @@ pub fn settle(
                 continue;
             }
         };
-        let why = objection(&contender.job, &found)?;
+        let why = objection(&contender, choice.blend_mm(&contender), &found)?;
         holding += usize::from(why.is_none());
         let measured = measured(choice, &contender, &found.summary)?;
         let again = choice.record(&contender, measured, why);
         not_shown += usize::from(found.verdict.answer() == Answer::NotShown && !again);
         if holding >= enough && found.summary.within_tolerance {
-            choice.undercut(&contender);
+            choice.undercut(&contender, &found.summary);
         }
         let off = off_by(&contender.job, &found)?;
         let rank = (off, contender.posted.time_min());
@@ -89,8 +88,8 @@ fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
 }
 
 /// Why a verification does not hold.
-fn objection(job: &Job, found: &Verified) -> Result<Option<Objection>, Failure> {
-    let (v, blend_mm) = (&found.summary, budget::blend_mm(job, false));
+fn objection(contender: &Contender, blend_mm: f64, found: &Verified) -> Result<Option<Objection>, Failure> {
+    let (v, job) = (&found.summary, &contender.job);
     // With what may be dug between samples and at blended corners.
     let deep_mm = v.gouge_max_mm + v.hidden_gouge_mm.unwrap_or(0.0) + blend_mm;
     match found.verdict.answer() {

@@ -8,7 +8,7 @@ use crate::report::{Column, Table};
 use crate::watch::{Stage, Watch};
 use crate::words::number;
 use crate::work::extras::Extras;
-use crate::work::ideal::{self, IdealTime};
+use crate::work::ideal::{self, Share};
 use crate::work::nc;
 use crate::work::operations::Judged;
 use crate::work::operations::course::Course;
@@ -67,6 +67,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let Known { list, part, steps, programs, course, judged, whole, notes, mut wall_s, begin } = known;
     let stage = Stage::begin(watch, "ideal");
     let mut operations = Vec::with_capacity(steps.len());
+    let mut shares = Vec::new();
     let timed = Timed { motions: &course.motions, times_min: &course.on_control.times_min, joints: None };
     let in_time = InTime::of(list.whole(), timed, &whole);
     for ((step, judged), section) in steps.iter().zip(&judged).zip(&course.sections) {
@@ -80,9 +81,17 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
             let found = ideal::of_plan(&step.job, &step.part, &step.planned, cutting_min);
             told.figures.ideal = found.map_err(|why| why.in_operation(&step.operation.name))?;
         }
+        if finishes || step.operation.kind == OperationWord::Rest {
+            let contact_length_mm = step.planned.passes.length_mm();
+            shares.push(Share { job: &step.job, part: &step.part, contact_length_mm, cutting_min });
+        }
         told.figures.productivity = in_time.told(&step.job, part);
         operations.push(told);
     }
+    let left_standing = standing::left(list, part, &steps, &whole);
+    // The least time for whole faces says nothing of a part that is left with something on them.
+    let finished = left_standing.is_empty() && whole.summary.uncut_area_mm2 <= 0.0;
+    let ideal = if finished { ideal::of_part(&shares)? } else { None };
     wall_s.ideal = stage.end();
     let stage = Stage::begin(watch, "report");
     let hands = steps.iter().zip(&course.sections).map(|(step, section)| {
@@ -119,15 +128,13 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     diagnostics.extend(course.diagnostics.iter().cloned());
     diagnostics.extend(whole.diagnostics.iter().cloned());
     summary.diagnostics = diagnostics.iter().map(ToString::to_string).collect();
-    summary.left_standing = standing::left(list, part, &steps, &whole);
+    summary.left_standing = left_standing;
+    summary.ideal = ideal;
     let mut tables = vec![table(&operations, &steps)];
     if !summary.left_standing.is_empty() {
         tables.push(standing::table(&summary.left_standing));
     }
     let extras = Extras { tables, ..Extras::default() };
-    let finishing = operations.iter().filter(|o| o.kind == OperationWord::Finish.word());
-    let ideals: Option<Vec<&IdealTime>> = finishing.map(|o| o.figures.ideal.as_ref()).collect();
-    summary.ideal = ideals.and_then(|all| IdealTime::of_all(&all));
     summary.operations = operations;
     summary.wall_s = wall_s;
     let clamped = course.setups.iter().zip(&programs).map(|(range, p)| (range.start, p.setup)).collect();
