@@ -43,10 +43,14 @@ impl Choice<'_> {
         if self.holder.is_none_or(|h| time_min < h.time_min) {
             self.holder = Some(Holder { entry: contender.entry, time_min, plans, locals, kept });
             let shares = self.entries[contender.entry].shares;
-            for own in [less_marks(contender), coarser(contender)].into_iter().flatten() {
+            let marks = less_marks(contender);
+            for own in marks.into_iter().chain(coarser(contender)) {
                 self.again(contender, own, shares);
             }
-            if let Some(more) = self.more(contender, found) {
+            // What marks are left beyond need shows as room for scallops.
+            if marks.is_none()
+                && let Some(more) = self.more(contender, found)
+            {
                 self.again(contender, contender.job.overrides(), more);
             }
         }
