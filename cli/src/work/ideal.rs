@@ -5,6 +5,7 @@ use crate::job::Job;
 use crate::part::{self, LoadedFace, Part};
 use crate::words::number;
 use crate::work::choice::patches;
+use crate::work::operations::standing::LeftStanding;
 use crate::work::program::Planned;
 use osculate_productivity::compare::Axes;
 use osculate_productivity::ideal::{self, Feeding, MOST_LEAD_RAD, Patch, Search};
@@ -142,9 +143,10 @@ pub struct Share<'a> {
     pub cutting_min: f64,
 }
 
-/// The bound beside operations that finish a part together: each face counts once, with whichever of its operations' tools is quickest and
-/// to the loosest of their tolerances. None where there is none.
-pub fn of_part(shares: &[Share<'_>]) -> Result<Option<IdealTime>, Failure> {
+/// The bound beside operations that finish a part together: each face counts once, less what is left standing on it, with whichever of its
+/// operations' tools is quickest and to the loosest of their tolerances. None where there is none.
+pub fn of_part(shares: &[Share<'_>], standing: &[LeftStanding]) -> Result<Option<IdealTime>, Failure> {
+    let left = |id: &str| standing.iter().filter(|l| l.face == id).map(|l| l.area_mm2).sum::<f64>();
     // Faces by the operations that have them.
     let mut having: BTreeMap<&str, (&LoadedFace, Vec<usize>)> = BTreeMap::new();
     for (k, share) in shares.iter().enumerate() {
@@ -154,8 +156,10 @@ pub fn of_part(shares: &[Share<'_>]) -> Result<Option<IdealTime>, Failure> {
     }
     let mut groups: BTreeMap<Vec<usize>, Vec<Patch<'_>>> = BTreeMap::new();
     for (face, of) in having.into_values() {
-        let patch = Patch { surface: &*face.surface, area_mm2: part::area(face) };
-        groups.entry(of).or_default().push(patch);
+        let area_mm2 = part::area(face) - left(&face.id);
+        if area_mm2 > 0.0 {
+            groups.entry(of).or_default().push(Patch { surface: &*face.surface, area_mm2 });
+        }
     }
     let mut each = Vec::with_capacity(groups.len());
     for (of, patches) in &groups {
@@ -177,7 +181,11 @@ pub fn of_part(shares: &[Share<'_>]) -> Result<Option<IdealTime>, Failure> {
         error_min: sum(&|b| b.error_min.powi(2)).sqrt(),
         places: each.iter().map(|b| b.places).sum(),
         unreached_mm2: sum(&|b| b.unreached_mm2),
-        assumes: format!("every face once by {} operations that finish it, {}", shares.len(), first.assumes),
+        assumes: format!(
+            "every face once but what is left standing, by {} operations that finish it, {}",
+            shares.len(),
+            first.assumes
+        ),
         isoparametric_min: isoparametric.map(|all| all.iter().sum()),
     };
     let length_mm = shares.iter().map(|s| s.contact_length_mm).sum();

@@ -2,7 +2,7 @@
 
 /// Between the two tables.
 const WHERE: &str = "\n## Where the time goes\n\nOf the plans by `auto` above, and of whole parts by the lists of operations in `examples` (their finishing and rest cutting together, each face \
-once in the ideal, with whichever of their tools is quickest there; without an ideal where something is left standing): the *ideal*, an estimate of the least time of any plan; strips of the chosen tool *along its lines*, with the least lead that fits at each place and none that overlap; \
+once in the ideal, less what is left standing, with whichever of their tools is quickest there): the *ideal*, an estimate of the least time of any plan; strips of the chosen tool *along its lines*, with the least lead that fits at each place and none that overlap; \
 the estimate for *isoparametric* passes, each as wide as its narrowest place, in up to four regions; the length of *its path* over the job's feed; its feed moves *by feed words*, which joints slow down; \
 the same *on the control*, with accelerations and corners; and *all* of the program on the control, of whole parts with roughing and tool changes. Minutes.\n\n\
 | face or part | tool | ideal | along its lines | isoparametric | its path | by feed words | on the control | all | ideal over feed words % | within |\n\

@@ -89,9 +89,9 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         operations.push(told);
     }
     let left_standing = standing::left(list, part, &steps, &whole);
-    // The least time for whole faces says nothing of a part that is left with something on them.
-    let finished = left_standing.is_empty() && whole.summary.uncut_area_mm2 <= 0.0;
-    let ideal = if finished { ideal::of_part(&shares)? } else { None };
+    // The least time for faces says nothing of a part that is left with something on them nobody knows where.
+    let known = !left_standing.is_empty() || whole.summary.uncut_area_mm2 <= 0.0;
+    let ideal = if known { ideal::of_part(&shares, &left_standing)? } else { None };
     wall_s.ideal = stage.end();
     let stage = Stage::begin(watch, "report");
     let hands = steps.iter().zip(&course.sections).map(|(step, section)| {
