@@ -286,9 +286,10 @@ impl<'a> Choice<'a> {
             if e.figures.is_some() || e.tried {
                 return Some((0, 0.0, e.least_min()));
             }
-            // After all others, of the one that holds then.
+            // After all others, of the one that holds then, and last of those that did.
             if let Some((of, _)) = e.again {
-                return (of == holder.entry).then(|| (8, 0.0, e.least_min()));
+                let rank = if of == holder.entry { 8 } else { 9 };
+                return (again < self.most.again).then(|| (rank, 0.0, e.least_min()));
             }
             if c.three_axis().is_some() {
                 let failed =
