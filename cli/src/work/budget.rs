@@ -23,7 +23,8 @@ const SIDE_TIP: f64 = 0.5;
 const AXIS: [f64; 2] = [0.25, 0.5];
 /// What controls are asked to keep to at corners, of the chords; no more than what posts keep to without a job, as verdicts count all of it everywhere.
 const BLEND: f64 = 0.25;
-/// And of the scallop, where chords are coarser than usual. (Tuned on a blade of an impeller by the time on LinuxCNC.)
+/// And of the scallop, where chords are coarser than usual. (Tried on blades of an impeller and a propeller, which take 2 and 4 % less of LinuxCNC's
+/// time, as their verdicts have room for a coarser chord; a hub takes 5 % more.)
 const CORNER: f64 = 0.1;
 /// None of these is less than this, mm, which programs can just say.
 const LEAST_TIP_MM: f64 = 0.5e-4;
