@@ -100,6 +100,33 @@ fn parallel_planes_on_round_faces() {
     wide.holds("valley", &valley, &isoplanar([0.0, 0.0, 1.0]));
 }
 
+/// Where a plane touches the inner side of a ring the lines of the planes beside it bend sharply, and the straight way uphill may miss
+/// them: each stays in its plane, and none fails, wherever the planes lie.
+#[test]
+fn planes_beside_a_saddle_are_kept_to() {
+    let normal = [1.0, 0.4, 0.2];
+    let job = Job {
+        tolerance: Tolerance { scallop_mm: 0.05, gouge_mm: 0.02, chord_mm: 0.005 },
+        ..Job::new(ball(6.0), 0.15)
+    };
+    for k in 0..24 {
+        let radius_mm = 14.0 + 6.0 * (0.2 + 0.4 * f64::from(k) / 24.0);
+        let hollow = patch(Flipped(Torus::new(40.0, radius_mm).unwrap()), [0.0, 0.4], [2.6, 3.5]);
+        let passes = job.plan(&hollow, &isoplanar(normal)).passes;
+        let d = Vec3::from(normal).normalize();
+        for pass in &passes {
+            let height = |p: &CcPoint| p.point.coords.dot(&d);
+            let mut heights: Vec<f64> = pass.points.iter().map(height).collect();
+            heights.sort_by(f64::total_cmp);
+            let middle = heights[heights.len() / 2];
+            let off = heights.iter().map(|h| (h - middle).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-6, "radius {radius_mm}: {off} off the plane {middle}");
+        }
+    }
+    let hollow = patch(Flipped(Torus::new(40.0, 17.2302).unwrap()), [0.0, 0.4], [2.6, 3.5]);
+    job.holds("beside a saddle", &hollow, &isoplanar(normal));
+}
+
 #[test]
 fn even_passes_on_round_and_free_faces() {
     let saddle = Paraboloid::new([0.01, -0.006], 8.0).unwrap();

@@ -47,6 +47,8 @@ pub(crate) struct Face<'a> {
 
 /// Newton steps onto a level; quadratic convergence needs three or four.
 const NEWTON: u32 = 12;
+/// Steps up or down to a level, of which four times as many as Newton's may be shortened.
+const LED: u32 = 5 * NEWTON;
 /// Distance from the level that counts as on it, mm, as a share of one over the sampling of curvature: far below any
 /// chord tolerance, far above rounding.
 const ON_LEVEL_MM: f64 = 1e-8;
@@ -77,6 +79,23 @@ impl<'a> Face<'a> {
             }
             here = uv(here.u + way.u * step, here.v + way.v * step);
             if length <= ON_LEVEL_MM {
+                return Ok(here);
+            }
+        }
+        Err(Degenerate { at: here, sin_uv: 0.0 }.into())
+    }
+
+    /// The place with `level` that the steepest way up or down from `at` leads to, in steps of at most `step_mm`: next to where the field
+    /// turns back, or has a saddle, straight ways may pass the level by.
+    pub fn led(&self, at: Uv, level: f64, step_mm: f64) -> Result<Uv, LineError> {
+        let mut here = at;
+        for _ in 0..LED {
+            let (_, jet, phi) = self.at(here).ok_or(Self::outside(here))?;
+            let (uphill, slope) = Self::ascent(&jet, &phi)?;
+            let by_mm = (level - phi.value) / slope;
+            let step = by_mm.clamp(-step_mm, step_mm);
+            here = uv(here.u + uphill.u * step, here.v + uphill.v * step);
+            if by_mm.abs() <= ON_LEVEL_MM {
                 return Ok(here);
             }
         }

@@ -7,6 +7,9 @@ use crate::plan::march::Grid;
 use osculate_geom::line::{LineError, SurfaceLine};
 use osculate_geom::{Darboux, Interval, Point3, Uv, uv};
 
+/// Steps up or down to the level where the straight way misses it, of the piece between two nodes.
+const LED: f64 = 0.25;
+
 /// A place on a level line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
@@ -159,6 +162,7 @@ impl<'a> Traced<'a> {
         let (uphill, _) = Face::ascent(&jet, &phi)?;
         match self.face.settle(guess, uphill, self.level) {
             Err(LineError::Outside { .. }) => Ok(guess),
+            Err(_) => self.face.led(guess, self.level, LED * h),
             other => other,
         }
     }
