@@ -68,6 +68,8 @@ pub struct Overrides {
     pub mark_share: Option<f64>,
     /// The chord tolerance, mm.
     pub chord_mm: Option<f64>,
+    /// How far controls may leave the way at corners, mm.
+    pub blend_mm: Option<f64>,
     /// Passes of a tool that keeps its axis.
     pub three_axis: Option<ThreeAxis>,
 }

@@ -23,8 +23,8 @@ const SIDE_TIP: f64 = 0.5;
 const AXIS: [f64; 2] = [0.25, 0.5];
 /// What controls are asked to keep to at corners, of the chords; no more than what posts keep to without a job, as verdicts count all of it everywhere.
 const BLEND: f64 = 0.25;
-/// And of the scallop, where chords are coarser than usual. (Tried on blades of an impeller and a propeller, which take 2 and 4 % less of LinuxCNC's
-/// time, as their verdicts have room for a coarser chord; a hub takes 5 % more.)
+/// And of the scallop, where chords are coarser than usual and a job is given nothing else. (Tried on blades of an impeller and a propeller, which
+/// take 2 and 4 % less of LinuxCNC's time, as their verdicts have room for a coarser chord; a hub takes 5 % more.)
 const CORNER: f64 = 0.1;
 /// None of these is less than this, mm, which programs can just say.
 const LEAST_TIP_MM: f64 = 0.5e-4;
@@ -72,8 +72,17 @@ fn keeps_tip(job: &Job) -> bool {
 
 /// How closely the control of a job is asked to keep to corners, mm.
 pub fn asked_mm(job: &Job) -> f64 {
-    let t = job.tolerance();
-    (BLEND * t.chord_mm).min(CORNER * t.scallop_mm).clamp(LEAST_TIP_MM, SolveOptions::default().tip_tol_mm)
+    let usual_mm = || (BLEND * job.tolerance().chord_mm).min(CORNER * job.tolerance().scallop_mm);
+    within_post(job.overrides().blend_mm.unwrap_or_else(usual_mm))
+}
+
+/// How closely it may be asked to as corners take the same share of a chord as usual, whatever its share of the scallop, mm.
+pub fn rounder_mm(job: &Job) -> f64 {
+    within_post(BLEND * job.tolerance().chord_mm)
+}
+
+fn within_post(mm: f64) -> f64 {
+    mm.clamp(LEAST_TIP_MM, SolveOptions::default().tip_tol_mm)
 }
 
 /// Half a unit of the last decimal of the coarsest slide, mm.

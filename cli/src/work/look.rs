@@ -90,23 +90,33 @@ impl Look {
         ];
         let bad = found.into_iter().enumerate().find(|(_, (_, is, limit))| is > limit);
         Ok(bad.map(|(k, (what, is, limit))| Objection {
-            dug_mm: (k == 0).then_some(is),
-            left_mm: (k == 2).then_some(is),
-            marks_mm: 0.0,
+            dug: (k == 0).then_some(Excess { is_mm: is, may_mm: limit }),
+            left: (k == 2).then_some(Excess { is_mm: is, may_mm: limit }),
+            hidden: false,
             text: format!("{what} {is:.4} mm by a coarse look, {limit:.4} mm is accepted"),
         }))
     }
 }
 
+/// What a path leaves or takes, and what it may, mm: without what another layout of passes leaves as it is, as far as that is known (marks of teeth,
+/// blended corners).
+#[derive(Clone, Copy, Debug)]
+pub struct Excess {
+    /// What it leaves or takes.
+    pub is_mm: f64,
+    /// What it may.
+    pub may_mm: f64,
+}
+
 /// Why a path cannot be within tolerance.
 #[non_exhaustive]
 pub struct Objection {
-    /// How deep the cutter goes, where that is too deep, which a smaller lead does not make better, mm.
-    pub dug_mm: Option<f64>,
-    /// What it leaves, where nothing is wrong but that, mm.
-    pub left_mm: Option<f64>,
-    /// How much of that are marks of teeth, as far as it is known, mm.
-    pub marks_mm: f64,
+    /// How deep the cutter goes, where that is too deep, which a smaller lead does not make better.
+    pub dug: Option<Excess>,
+    /// What it leaves, where nothing is wrong but that.
+    pub left: Option<Excess>,
+    /// Whether that is what may be hidden between samples, and not what was found at one.
+    pub hidden: bool,
     /// In words.
     pub text: String,
 }

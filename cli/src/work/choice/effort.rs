@@ -49,8 +49,8 @@ const NORMAL: Most = Most {
     of_another: 2,
     held_twins: 2,
     kept: 3,
-    again: 6,
-    verified: 9,
+    again: 8,
+    verified: 12,
     not_shown: 2,
 };
 

@@ -39,8 +39,8 @@ pub(super) struct Entry {
     pub verified: Option<Measured>,
     /// The shares of the tolerances that it is laid out for.
     pub shares: Shares,
-    /// Whether it is laid out for less of the scallop than at first, and of the gouge.
-    pub lessened: [bool; 2],
+    /// How often it was laid out for less of the scallop, and of the gouge.
+    pub lessened: [usize; 2],
     /// Of one that is another laid out again: which, and what its job is given for that.
     pub again: Option<(usize, Overrides)>,
     /// Whether it was planned, or would have been, and whether that was around a plan with another tool.
@@ -80,9 +80,10 @@ pub(super) fn words(own: Overrides) -> String {
     let marks =
         own.mark_share.map(|share| format!("marks of teeth are left {:.1} % of the scallop", 100.0 * share));
     let chord = own.chord_mm.map(|mm| format!("the chord tolerance is {mm:.4} mm"));
-    let both: Vec<String> = marks.into_iter().chain(chord).collect();
-    if both.is_empty() {
+    let blend = own.blend_mm.map(|mm| format!("corners are rounded by up to {mm:.4} mm"));
+    let given: Vec<String> = marks.into_iter().chain(chord).chain(blend).collect();
+    if given.is_empty() {
         return "; laid out again for what the first left".to_owned();
     }
-    format!("; the control does not reach the feed: {}", both.join(", "))
+    format!("; laid out again: {}", given.join(", "))
 }

@@ -7,7 +7,8 @@
 //! little too much is laid out once more for less. Where none holds, tools and strategies that failed least are tried further;
 //! around one that holds, leads beside its own and other strategies with its tool are planned for less time, and plans whose
 //! lead is found place by place, with other tools too: those take long to plan, and little else gains as much; then a few of tools that keep their axis. Last the plan
-//! that holds then is laid out again for what it left of its limits, and where the control does not reach the feed for other shares of the tolerance. The work is
+//! that holds then is laid out again for what it left of its limits, and where the control does not reach the feed for other shares of the tolerance; one that
+//! would hold but for a little depth along its chords, along shorter ones. The work is
 //! bounded by counts, not by time: the same job gives the same choice everywhere.
 
 mod again;

@@ -116,7 +116,7 @@ impl<'a> Choice<'a> {
                     figures: None,
                     verified: None,
                     shares: Shares::WHOLE,
-                    lessened: [false; 2],
+                    lessened: [0; 2],
                     again: None,
                     tried: false,
                     elsewhere: false,
@@ -411,12 +411,11 @@ impl<'a> Choice<'a> {
             cutting_min: linked.cutting_length_mm / job.feed_mm_min(),
             posted_min: None,
         });
-        let limits = job.tolerance();
         if let Some(objection) = Look::at(job, self.faces, &linked)?.objection(job)? {
-            if objection.dug_mm.is_some() {
+            if objection.dug.is_some() {
                 self.no_smaller_lead(k);
             }
-            if self.for_less(k, &objection, limits) {
+            if self.for_less(k, &objection) {
                 return self.planned(k);
             }
             return Ok(State::Out(objection.text));
@@ -462,13 +461,14 @@ impl<'a> Choice<'a> {
         let k = contender.entry;
         self.entries[k].verified = Some(measured);
         let Some(objection) = why else { return false };
-        let again = self.for_less(k, &objection, contender.job.tolerance());
+        let again = self.for_less(k, &objection);
+        let finer = !again && self.finer(contender, &objection);
         self.entries[k].state = State::Out(objection.text);
         if again {
             self.entries[k].state = State::Open;
             self.entries[k].figures = None;
         }
-        again
+        again || finer
     }
 
     /// The candidates for tables, fastest first, of each tool and strategy the lead that came furthest.

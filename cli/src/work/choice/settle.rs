@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::job::Job;
 use crate::part;
 use crate::watch::Watch;
-use crate::work::look::Objection;
+use crate::work::look::{Excess, Objection};
 use crate::work::program::{Planned, Posted, WallS};
 use crate::work::verify::{Verification, Verified};
 use osculate_productivity::levels::{Totals, levels};
@@ -90,20 +90,23 @@ fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
 /// Why a verification does not hold.
 fn objection(contender: &Contender, blend_mm: f64, found: &Verified) -> Result<Option<Objection>, Failure> {
     let (v, job) = (&found.summary, &contender.job);
-    // With what may be dug between samples and at blended corners.
-    let deep_mm = v.gouge_max_mm + v.hidden_gouge_mm.unwrap_or(0.0) + blend_mm;
+    let t = job.tolerance();
+    // What may be hidden between samples counts where nothing is too much without it: it is not looked for elsewhere.
+    let excess = |is_mm: f64, may_mm: f64, hidden_mm: Option<f64>| {
+        let hidden_mm = if is_mm > may_mm { 0.0 } else { hidden_mm? };
+        Some(Excess { is_mm: is_mm + hidden_mm, may_mm })
+    };
+    let marks_mm = v.height_max_mm - v.scallop_max_mm;
+    let dug = excess(v.gouge_max_mm, t.gouge_mm - blend_mm, v.hidden_gouge_mm);
+    let left = excess(v.scallop_max_mm, t.scallop_mm - marks_mm - blend_mm, v.hidden_scallop_mm);
     match found.verdict.answer() {
         Answer::Held => return Ok(None),
         Answer::NotShown => {
             let text = format!("verified: {}", found.verdict.words());
-            // What may stand between samples and at blended corners counts as left.
-            let left_mm = v.hidden_scallop_mm.map(|more| v.height_max_mm + more + blend_mm);
-            let marks_mm = v.height_max_mm - v.scallop_max_mm;
-            return Ok(Some(Objection { dug_mm: Some(deep_mm), left_mm, marks_mm, text }));
+            return Ok(Some(Objection { dug, left, hidden: true, text }));
         }
         Answer::NotHeld => {}
     }
-    let t = job.tolerance();
     let collision = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
     let figures = [
         ("gouge", v.gouge_max_mm, t.gouge_mm, "mm"),
@@ -119,10 +122,8 @@ fn objection(contender: &Contender, blend_mm: f64, found: &Verified) -> Result<O
             (k, format!("verified: {what} {is:.4} {unit}, {limit} {unit} is accepted"))
         },
     );
-    let dug_mm = (k == 0).then_some(deep_mm);
-    let left_mm = (k == 4).then_some(v.height_max_mm);
-    let marks_mm = v.height_max_mm - v.scallop_max_mm;
-    Ok(Some(Objection { dug_mm, left_mm, marks_mm, text }))
+    let (dug, left) = (dug.filter(|_| k == 0), left.filter(|_| k == 4));
+    Ok(Some(Objection { dug, left, hidden: false, text }))
 }
 
 fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Result<Measured, Failure> {

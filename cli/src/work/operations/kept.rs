@@ -24,7 +24,7 @@ const AXES: [Axes; 4] = [Axes::Held, Axes::Local, Axes::Balanced, Axes::Field];
 
 /// What a search gave a job, as it is kept: the share of marks, the chord tolerance, and of a tool that keeps its axis the lines of its
 /// passes, that axis and the way.
-type KeptOverrides = (Option<f64>, Option<f64>, Option<(u8, [f64; 6])>);
+type KeptOverrides = (Option<f64>, Option<f64>, Option<f64>, Option<(u8, [f64; 6])>);
 
 /// Lines of passes of a tool that keeps its axis, by the number that is kept.
 const LINES: [ThreeAxisLines; 3] =
@@ -124,7 +124,7 @@ impl Kept {
         Self {
             key,
             tool: job.tool().number(),
-            own: (own.mark_share, own.chord_mm, three_axis),
+            own: (own.mark_share, own.chord_mm, own.blend_mm, three_axis),
             standing_mm: None,
             too_high_mm2: None,
             plan_s: 0.0,
@@ -160,14 +160,14 @@ impl Kept {
 
     /// A job with the tool that was in hand, and what a search gave it.
     pub fn job(&self, job: Job) -> Job {
-        let (mark_share, chord_mm, three_axis) = self.own;
+        let (mark_share, chord_mm, blend_mm, three_axis) = self.own;
         let three_axis = three_axis.map(|(lines, [x, y, z, u, v, w])| ThreeAxis {
             lines: LINES[usize::from(lines).min(LINES.len() - 1)],
             axis: Unit3::new_unchecked(Vec3::new(x, y, z)),
             feed: Vec3::new(u, v, w),
         });
         let job = if job.tools().len() > 1 { job.in_hand(self.tool) } else { job };
-        job.with(Overrides { mark_share, chord_mm, three_axis })
+        job.with(Overrides { mark_share, chord_mm, blend_mm, three_axis })
     }
 
     /// The plan.
@@ -236,7 +236,12 @@ mod tests {
         let axis = Unit3::new_normalize(Vec3::new(0.1, 0.2, 0.3));
         for lines in LINES {
             let three_axis = Some(ThreeAxis { lines, axis, feed: Vec3::new(1.0, -2.0, 1.0 / 3.0) });
-            let own = Overrides { mark_share: Some(0.1), chord_mm: Some(1.0 / 7.0), three_axis };
+            let own = Overrides {
+                mark_share: Some(0.1),
+                chord_mm: Some(1.0 / 7.0),
+                blend_mm: Some(1.0 / 70.0),
+                three_axis,
+            };
             for own in [own, Overrides::default()] {
                 let job = file.each_tool()[1].with(own);
                 let bytes = Kept::of(7, &job, &planned).bytes();
