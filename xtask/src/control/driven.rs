@@ -69,3 +69,19 @@ fn program(text: &str, samples: &str, z_mm: f64) -> String {
     }
     out + "G94\nM5\nG53 G0 Z0\nM30\n"
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_become_a_program_of_moves_one_by_one() {
+        let text = "G21 G90\nG64 P0.001\nG53 G0 Z0\nG43 H1\nS9000 M3\nG0 X1 Y2 Z3 A0 C0\nG93\nG1 X2 Y2 Z3 A0 C0 F60\nG94\nG53 G0 Z0\nM30\n";
+        // A rapid, two feed moves about an arc, a row at rest, and a rapid.
+        let samples = "1 1 2 13 0 0 1 6\n2 1.5 2 13 0 0 2 8\n3 2 2 13 1.25 -0.5 3 8\n4 2 2 13 1.25 -0.5 0 8\n5 2 2 20 1.25 -0.5 1 10\n";
+        let want = "G21 G90\nG53 G0 Z0\nG43 H1\nS9000 M3\nG61\nG94\nG0 X1.0000 Y2.0000 Z3.0000 A0.0000 C0.0000\n\
+                    G93\nG1 X1.5000 Y2.0000 Z3.0000 A0.0000 C0.0000 F60000\nX2.0000 Y2.0000 Z3.0000 A1.2500 C-0.5000 F60000\n\
+                    G94\nG0 X2.0000 Y2.0000 Z10.0000 A1.2500 C-0.5000\nG94\nM5\nG53 G0 Z0\nM30\n";
+        assert_eq!(program(text, samples, -10.0), want);
+    }
+}

@@ -205,4 +205,12 @@ mod tests {
         assert!(page.contains("| 70.0 | X 50, Y 50"), "{page}");
         assert!(page.contains("eee-hpt-rotor2 kz, posted"), "{page}");
     }
+
+    #[test]
+    fn what_was_driven_stands_beside_what_blocks_say_with_the_allowance_on_one_side() {
+        let v = serde_json::json!({ "blend_mm": "0.0010", "planned": { "mm": [0.008, 0.001, 0.003, 0.0005], "answer": "held" },
+            "driven": { "mm": [0.0081, 0.0012, 0.0032, 0.0004], "answer": "not_shown" } });
+        let row = "| blade | 0.0010 | 0.0080 | 0.0081 | 0.0030 | 0.0032 | 0.0100 | 0.0093 | 0.0045 | 0.0036 | yes | **no** |\n";
+        assert_eq!(driven("blade", &v), row);
+    }
 }

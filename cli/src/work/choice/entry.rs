@@ -76,14 +76,19 @@ impl Entry {
 }
 
 /// What is told of a plan that is another laid out again.
-pub(super) fn words(own: Overrides) -> String {
+pub(super) fn words(own: Overrides, shares: Shares) -> String {
     let marks =
         own.mark_share.map(|share| format!("marks of teeth are left {:.1} % of the scallop", 100.0 * share));
     let chord = own.chord_mm.map(|mm| format!("the chord tolerance is {mm:.4} mm"));
     let blend = own.blend_mm.map(|mm| format!("corners are rounded by up to {mm:.4} mm"));
-    let given: Vec<String> = marks.into_iter().chain(chord).chain(blend).collect();
-    if given.is_empty() {
-        return "; laid out again for what the first left".to_owned();
-    }
+    let Shares { scallop, gouge, .. } = shares;
+    let other = (shares != Shares::WHOLE).then(|| {
+        format!(
+            "passes are for {:.0} % of the scallop and {:.0} % of the gouge that planning leaves first",
+            100.0 * scallop,
+            100.0 * gouge
+        )
+    });
+    let given: Vec<String> = marks.into_iter().chain(chord).chain(blend).chain(other).collect();
     format!("; laid out again: {}", given.join(", "))
 }

@@ -486,7 +486,7 @@ impl<'a> Choice<'a> {
             count(&|e| e.figures.is_some_and(|f| f.posted_min.is_some())),
             count(&|e| e.verified.is_some())
         );
-        let own = self.holder.and_then(|h| self.entries[h.entry].again);
-        story + &own.map_or_else(String::new, |(_, own)| entry::words(own))
+        let again = self.holder.map(|h| &self.entries[h.entry]).and_then(|e| Some((e.again?.1, e.shares)));
+        story + &again.map_or_else(String::new, |(own, shares)| entry::words(own, shares))
     }
 }
