@@ -281,6 +281,47 @@ fn cl_data_is_posted_for_other_machines() {
     .refused(&["bad.cl", "line 1"]);
 }
 
+/// Blocks go on over the points of any CL file as far as the tolerance lets them, and end at every point without.
+#[test]
+fn points_of_cl_data_are_joined_where_that_is_asked_for() {
+    let scratch = Scratch::new();
+    let arc = |k: u32| {
+        let angle = f64::from(k) * 0.3_f64.to_radians();
+        let [y, z] = [25.0 * angle.sin(), 25.0 * angle.cos() - 25.0];
+        format!("GOTO/{:.6},{y:.6},{z:.6},0,{:.9},{:.9}\n", 0.1 * f64::from(k), angle.sin(), angle.cos())
+    };
+    let cl = |cutter: &str| {
+        let points: String = (0..=120).map(arc).collect();
+        format!(
+            "PARTNO/A\nUNITS/MM\n{cutter}MULTAX/ON\nSPINDL/8000,CLW\nRAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/500\n{points}END\nFINI\n"
+        )
+    };
+    let post = |name: &str, text: &str, more: &[&str]| {
+        let (file, out) = (scratch.write(name, text), scratch.path("out.ngc"));
+        let fixed = ["--machine", "trunnion-ac", "--dialect", "linuxcnc", "--feed", "inverse_time", "--json"];
+        let paths = ["post", file.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        osculate(&[&paths[..], &fixed, more].concat())
+    };
+    let with = cl("CUTTER/6,3,0,3,0,0,50\n");
+    let each = post("a.cl", &with, &[]).json();
+    assert_eq!(each["joined_points"], 0);
+    let count = |v: &Value, key: &str| number(v, &[key]);
+    let mut before = count(&each, "blocks");
+    for mm in ["0.002", "0.01", "0.05"] {
+        let joined = post("a.cl", &with, &["--join-mm", mm]).json();
+        let blocks = count(&joined, "blocks");
+        assert!(blocks < 0.7 * before, "{mm}: {blocks} of {before}");
+        assert!(count(&joined, "tip_error_mm") <= mm.parse::<f64>().unwrap(), "{joined}");
+        // Each of the points ends a block, or has one go on over it.
+        let points = |v: &Value| count(v, "blocks") + count(v, "joined_points") - count(v, "inserted_points");
+        assert_eq!(points(&joined), points(&each));
+        before = blocks;
+    }
+    post("b.cl", &cl(""), &["--join-mm", "0.01"]).refused(&["b.cl", "--join-mm", "CUTTER/"]);
+    let wide = post("a.cl", &with, &["--join-mm", "3"]);
+    assert!(wide.code == 2 && wide.err.contains("0.0001 to 1 mm"), "{}", wide.err);
+}
+
 /// A lens between two sides that bulge towards +y (ss) and -y (ps), as point sections.
 fn lens() -> String {
     let mut text = "span_index,ss_x,ss_y,ss_z,ps_x,ps_y,ps_z\n".to_owned();

@@ -35,6 +35,8 @@ pub struct PostSummary {
     pub singular_mm: f64,
     /// Points put in to keep the tool on its line.
     pub inserted_points: usize,
+    /// CL points over which blocks go on ([`SolveOptions::join`]).
+    pub joined_points: usize,
     /// Greatest distance of the tip from the CL line in feed moves, without the rounding of the output, mm: what of it counts
     /// (`SolveOptions::touch_rad`).
     pub tip_error_mm: f64,
@@ -244,6 +246,7 @@ where
         rewinds: s.rewinds,
         singular_mm: s.singular_mm,
         inserted_points: s.inserted_points,
+        joined_points: s.joined_points,
         tip_error_mm: s.tip_error_mm,
         axis_error_deg: s.axis_error_rad.to_degrees(),
     };

@@ -12,8 +12,8 @@ use osculate::work::nc;
 use osculate_geom::{Diagnostic, Severity, Vec3};
 use osculate_postproc::cldata::{ClPart, ClReadOptions, ClSection, ClStream, known_words};
 use osculate_postproc::{
-    Auxiliary, AuxiliaryWord, Orientation, PostOptions, PostReport, PostSummary, Section, Setup, Spindle,
-    WorkOffset, built_in_names, post_from, post_sections_to,
+    Auxiliary, AuxiliaryWord, Orientation, PostOptions, PostReport, PostSummary, Section, Setup,
+    SolveOptions, Spindle, WorkOffset, built_in_names, post_from, post_sections_to,
 };
 use osculate_tools::Cutter;
 use serde::Serialize;
@@ -27,6 +27,7 @@ struct Answer {
     rewinds: usize,
     singular_mm: f64,
     inserted_points: usize,
+    joined_points: usize,
     tip_error_mm: f64,
     axis_error_deg: f64,
     tools: Vec<ToolAnswer>,
@@ -113,6 +114,18 @@ fn gauge(args: &PostArgs, section: &ClSection, notes: &mut Vec<Diagnostic>) -> R
     Ok(Cutter::try_from(spec).map_err(here)?.length_mm())
 }
 
+/// How closely the joints follow a section: where points are to be joined, the axis at the cutter's radius as closely as the tip.
+fn joining(args: &PostArgs, section: &ClSection, usual: SolveOptions) -> Result<SolveOptions, Failure> {
+    let Some(tip_tol_mm) = args.join_mm else { return Ok(usual) };
+    let here = |e: &dyn std::fmt::Display| {
+        Failure::file(&args.clfile, format!("line {}: --join-mm needs a cutter: {e}", section.line))
+    };
+    let spec = section.tool.cutter.ok_or_else(|| here(&"the CL data has none (CUTTER/ gives it)"))?;
+    let axis_tol_rad = tip_tol_mm / Cutter::try_from(spec).map_err(|e| here(&e))?.radius_mm();
+    let singular_cone_rad = usual.singular_cone_rad.min(0.5 * axis_tol_rad);
+    Ok(SolveOptions { tip_tol_mm, axis_tol_rad, singular_cone_rad, join: true, ..usual })
+}
+
 /// What is done between the moves of a section, with the stop before it that is asked for.
 fn stopping(args: &PostArgs, k: usize, section: &ClSection) -> Vec<Auxiliary> {
     let word = AuxiliaryWord::OptionalStop;
@@ -173,6 +186,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
             orientation,
             subprogram: args.subprogram,
             work_offset,
+            solve: joining(args, section, usual.solve)?,
             blank_mm: args.blank_mm.map(|[a, b, c, d, e, f]| [[a, b, c], [d, e, f]]),
             program_number: args.program_number.unwrap_or(usual.program_number),
             ..usual.clone()
@@ -238,6 +252,7 @@ pub fn run(args: &PostArgs, json: bool) -> Outcome {
         rewinds: s.rewinds,
         singular_mm: s.singular_mm,
         inserted_points: s.inserted_points,
+        joined_points: s.joined_points,
         tip_error_mm: s.tip_error_mm,
         axis_error_deg: s.axis_error_deg,
         tools: tools.collect(),
@@ -259,6 +274,7 @@ fn total(reports: &[PostReport]) -> PostSummary {
         rewinds: a.rewinds + b.rewinds,
         singular_mm: a.singular_mm + b.singular_mm,
         inserted_points: a.inserted_points + b.inserted_points,
+        joined_points: a.joined_points + b.joined_points,
         tip_error_mm: a.tip_error_mm.max(b.tip_error_mm),
         axis_error_deg: a.axis_error_deg.max(b.axis_error_deg),
     })
@@ -272,6 +288,7 @@ fn show(answer: &Answer, notes: &[Diagnostic], out: &Path) -> Result<(), Failure
     row("rewinds", answer.rewinds.to_string(), "");
     row("near a pole", number(answer.singular_mm, 4), "mm");
     row("points put in", answer.inserted_points.to_string(), "");
+    row("points joined", answer.joined_points.to_string(), "");
     row("tip error", number(answer.tip_error_mm, 3), "mm");
     row("axis error", number(answer.axis_error_deg, 3), "deg");
     render::text(&format!("\n{}\n  {}\n", t.render(), out.display()))?;

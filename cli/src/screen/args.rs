@@ -409,6 +409,10 @@ pub struct PostArgs {
     /// By how much the control may leave the way at corners and in smoothing (`G64 P`, `CYCLE832`, cycle 32), mm; 0.002 where not given.
     #[arg(long, value_name = "MM", value_parser = blend)]
     pub blend_mm: Option<f64>,
+    /// Let blocks go on over points between which the axis turns, for as long as the tip, and the axis at the cutter's radius, keep within
+    /// so much of the lines between them, mm: fewer blocks, at which controls brake less. Not for paths that the cutter's side cuts.
+    #[arg(long, value_name = "MM", value_parser = blend)]
+    pub join_mm: Option<f64>,
     /// Stop before each further tool where the operator asks for it (`M1`).
     #[arg(long)]
     pub stops: bool,
