@@ -213,7 +213,6 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("lead_deg = 15", "keep_off_mm = 1", &["keep_off_mm", "leave_out"]),
     ("lead_deg = 15", "gouges = \"leave out\"", &["gouges", "is \"leave_out\" meant?"]),
     ("lead_deg = 15", "hop_mm = 1", &["hop_mm", "[setup] hop_mm"]),
-    ("kind = \"isoparametric\"", "kind = \"auto\"\ngouges = \"leave_out\"", &["gouges", "strategy by name"]),
     ("spindle_rpm = 8000", "spindle_rpm = 0", &["spindle_rpm = 0"]),
     ("feed_mm_min = 2000", "feed_mm_min = nan", &["feed_mm_min = NaN"]),
     ("feed_mm_min = 2000", "feed_per_tooth_mm = 0.1", &["feed_per_tooth_mm", "teeth"]),

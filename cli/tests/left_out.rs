@@ -71,7 +71,6 @@ fn keys_that_say_nothing_are_refused() {
         osculate(&["plan", job.to_str().expect("UTF-8"), "--out", out.to_str().expect("UTF-8")])
             .refused(words);
     };
-    refused("kind = \"auto\"\ngouges = \"leave_out\"\n", &["leave_out", "by name"]);
     refused("kind = \"z_level\"\ngouges = \"leave_out\"\n", &["leave_out", "z_level"]);
     refused("kind = \"isoparametric\"\nkeep_off_mm = 1\n", &["keep_off_mm", "leave_out"]);
     refused("kind = \"isoparametric\"\ngouges = \"leave_out\"\nkeep_off_mm = -1\n", &["keep_off_mm", "-1"]);

@@ -155,3 +155,57 @@ fn a_fillet_is_cleared_by_smaller_and_smaller_balls() {
     let lengths: Vec<f64> = all.iter().map(|o| number(&o["cutting_length_mm"])).collect();
     assert!(lengths[3] < 0.5 * lengths[2], "{lengths:?}");
 }
+
+/// The wall by what is chosen for a toroidal cutter that is too wide for its foot, the rest of it and the other faces with a ball.
+fn chosen(gouges: &str) -> String {
+    let own = |name: &str, keys: &str, strategy: &str| {
+        format!("[[operation]]\nname = \"{name}\"\n{keys}\nstrategy = {{ {strategy} }}\n")
+    };
+    let planes = "kind = \"isoplanar_3c\", feed_direction = [0, 1, 0]";
+    let job = job();
+    let (begin, _) = job.split_once("[[operation]]\nname = \"finish\"").unwrap();
+    let tool = "[[tool]]\nnumber = 6\nkind = \"toroidal\"\ndiameter_mm = 6\ncorner_radius_mm = 1\nlength_mm = 30\n\
+                teeth = 2\ncutting = { spindle_rpm = 12000, feed_mm_min = 1200 }\n[[operation]]";
+    begin.replacen("[[operation]]", tool, 1)
+        + &own(
+            "wall",
+            "kind = \"finish\"\ntools = [6]\nfaces = [\"wall\"]",
+            &format!("kind = \"auto\", effort = \"quick\"{gouges}"),
+        )
+        + &own("others", "kind = \"finish\"\ntools = [4]\nfaces = [\"fillet\", \"floor\"]", planes)
+        + &own("foot", "kind = \"rest\"\ntools = [4]", planes)
+}
+
+#[test]
+fn what_is_chosen_leaves_to_others_what_its_tool_does_not_reach() {
+    let scratch = Scratch::new();
+    scratch.write("trough.json", &trough());
+    let plan = |name: &str, gouges: &str| {
+        let job = scratch.write(&format!("{name}.toml"), &chosen(gouges));
+        osculate(&["plan", job.to_str().unwrap(), "--out", scratch.path(name).to_str().unwrap(), "--json"])
+    };
+    let planned = |name: &str, gouges: &str| {
+        let run = plan(name, gouges);
+        let v = run.json();
+        assert_eq!((run.code, &v["verdict"]["answer"]), (0, &"held".into()), "{}", v["verdict"]);
+        assert!(v["diagnostics"].to_string().contains("auto: wall: "), "{}", v["diagnostics"]);
+        v["operations"].as_array().unwrap().clone()
+    };
+    let high = |operation: &Value| {
+        let faces = operation["on_faces"].as_array().unwrap();
+        number(&faces.iter().find(|f| f["face"] == "wall").unwrap()["after"]["too_high_mm2"])
+    };
+    let all = planned("left", "");
+    let names: Vec<_> = all.iter().map(|o| o["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["rough", "wall", "others", "foot"]);
+    // Its foot is left, and the rest clears it; a tool of 6 mm across the wall comes no nearer to the floor than half of that.
+    let wall = LONG_MM * (6.0 - FILLET_MM / half_rad().tan());
+    let left = high(&all[1]);
+    assert!(left > 0.02 * wall && left < 0.5 * wall, "{left} of {wall}");
+    assert!(high(&all[3]) < 1e-9, "{}", high(&all[3]));
+    // Where nothing may be left out all of it is cut, by leads that stay off the floor: longer passes.
+    let whole = planned("whole", ", gouges = \"report\"");
+    assert!(high(&whole[1]) < 0.02 * wall, "{}", high(&whole[1]));
+    let length = |all: &[Value]| number(&all[1]["cutting_length_mm"]);
+    assert!(length(&all) < length(&whole), "{} {}", length(&all), length(&whole));
+}

@@ -1,6 +1,6 @@
 //! Moves of a program made from joints: rounded to the output's counts, with the F that each block needs.
 
-use osculate_geom::{Diagnostic, Vec3};
+use osculate_geom::{Diagnostic, Unit3, Vec3};
 use osculate_tools::cl::Motion;
 
 use crate::feed::{FeedMode, PathMetric, Step, capped_duration, duration_min, inverse_time_per_min};
@@ -163,7 +163,21 @@ impl<'a> Draft<'a> {
             let decimals = self.machine.joints()[*place].decimals;
             *to = number::to_decimals(counts(block.joints[*place].to_degrees())?, decimals);
         }
-        Ok(NcMove { rapid: block.motion == Motion::Rapid, linear, rotary, orientation, feed: 0.0 })
+        let (rapid, along) = (block.motion == Motion::Rapid, self.along(&axis()));
+        Ok(NcMove { rapid, linear, rotary, orientation, along, feed: 0.0 })
+    }
+
+    /// Which linear word goes most along the tool, which points along `axis` in the part.
+    fn along(&self, axis: &Unit3) -> Option<usize> {
+        if self.options.feed != FeedMode::Tcp {
+            let joints = self.machine.joints();
+            return self.machine.linear().iter().position(|place| joints[*place].letter == "Z");
+        }
+        // In a tilted plane the tool stands along Z.
+        let turns = self.options.orientation != Orientation::Planes;
+        let most = |k: usize| if turns { axis[k].abs() } else { 0.0 };
+        // Z where it is as good as another.
+        (0..3).max_by(|a, b| most(*a).total_cmp(&most(*b)))
     }
 
     /// F of a block that shall take this long.

@@ -147,3 +147,30 @@ fn gaps_of_machine_files() {
     let all = head + &body("table", "bed");
     assert_eq!(keys(&Machine::from_toml(&all).unwrap()), Vec::<String>::new());
 }
+
+/// The first pose is reached across the tool first and along it last, wherever the table has turned the part: X Y Z are the tip's.
+#[test]
+fn programs_of_the_tip_come_along_the_tool() {
+    let machine = Machine::built_in("trunnion-ac").unwrap();
+    for (axis, last) in
+        [([0.0, 0.5, 1.0], 'Z'), ([0.2, -1.0, 0.4], 'Y'), ([0.0, 1.0, -0.14], 'Y'), ([1.0, 0.3, -0.2], 'X')]
+    {
+        let way = path((0..=5).map(|k| pose([1.0 + f64::from(k), 2.0, 3.0], axis)), 900.0);
+        for dialect in Dialect::ALL {
+            let options = PostOptions::new(dialect, FeedMode::Tcp);
+            let text =
+                post(&way, &machine, &Setup::at(osculate_geom::Vec3::zeros(), 80.0), &options).unwrap().text;
+            let words = |l: &str| {
+                let block = if dialect == Dialect::Heidenhain { l.split_once(' ').unwrap().1 } else { l };
+                let is = |w: &&str| w.starts_with(['X', 'Y', 'Z']) && w[1..].parse::<f64>().is_ok();
+                block.split(' ').filter(is).map(|w| w.chars().next().unwrap()).collect::<String>()
+            };
+            // Behind the turn of the rotary axes: two blocks, and the second names one axis.
+            let turned = text.lines().position(|l| l.contains(" A") || l.starts_with("A")).unwrap();
+            let blocks: Vec<String> =
+                text.lines().skip(turned + 1).map(words).filter(|w| !w.is_empty()).take(2).collect();
+            let across: String = "XYZ".chars().filter(|c| *c != last).collect();
+            assert_eq!(blocks, [across, last.to_string()], "{dialect:?} {axis:?}\n{text}");
+        }
+    }
+}

@@ -29,9 +29,19 @@ pub(super) fn layer_mm(raw: &Raw, tool: &Tool) -> f64 {
     if let Some(allowance) = raw.stock.as_ref().and_then(|s| s.allowance_mm.filter(|_| s.file.is_none())) {
         return allowance;
     }
-    let layer =
-        (LAYER_SCALLOPS * raw.tolerance.scallop_mm).max(LEAST_LAYER_MM).min(0.5 * tool.cutter().radius_mm());
-    raw.setup.approach_mm.map_or(layer, |approach| layer.min(LAYER_OF_APPROACH * approach))
+    thin_mm(
+        raw.tolerance.scallop_mm,
+        tool.cutter().radius_mm(),
+        raw.setup.approach_mm.unwrap_or(f64::INFINITY),
+    )
+}
+
+/// A layer that tells heights far above what is accepted, and below the height at which rapid moves end, mm.
+pub(super) fn thin_mm(scallop_mm: f64, radius_mm: f64, approach_mm: f64) -> f64 {
+    (LAYER_SCALLOPS * scallop_mm)
+        .max(LEAST_LAYER_MM)
+        .min(0.5 * radius_mm)
+        .min(LAYER_OF_APPROACH * approach_mm)
 }
 
 /// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.

@@ -72,6 +72,8 @@ pub struct Overrides {
     pub blend_mm: Option<f64>,
     /// Passes of a tool that keeps its axis.
     pub three_axis: Option<ThreeAxis>,
+    /// Area that passes leave to other operations and that is accepted, mm2.
+    pub unreached_mm2: Option<f64>,
 }
 
 /// What a file tells.

@@ -61,16 +61,18 @@ impl Operation {
         Job::of(self.places.clone(), &self.raw)
     }
 
-    /// The job that is planned. Passes of a finishing care for what stands on their faces, which is so high at most; where nothing
-    /// is said of it a layer is assumed. A roughing cares for the raw material.
+    /// The job that is planned, on a part turned by `rotate_deg` where the file says nothing. Passes of a finishing care for what stands
+    /// on their faces, so high at most; where that is not said a layer is assumed. A roughing cares for the raw material.
     ///
     /// # Errors
     /// As [`Job::from_toml`].
-    pub fn planned(&self, standing_mm: Option<f64>) -> Result<Job, Failure> {
+    pub fn planned(&self, standing_mm: Option<f64>, rotate_deg: Option<[f64; 3]>) -> Result<Job, Failure> {
         if self.kind == OperationWord::Rough {
             return self.judged();
         }
-        Job::of(self.places.clone(), &Raw { standing_mm, stock: None, ..self.raw.clone() })
+        let setup =
+            raw::Setup { rotate_deg: self.raw.setup.rotate_deg.or(rotate_deg), ..self.raw.setup.clone() };
+        Job::of(self.places.clone(), &Raw { standing_mm, stock: None, setup, ..self.raw.clone() })
     }
 
     /// A failure at a key of its table.
@@ -467,29 +469,26 @@ type Wrong = (&'static str, String);
 
 /// Finishing, and what is left of it.
 fn fine(places: &Places, raw: &mut Raw, own: &raw::Operation) -> Result<(), Wrong> {
-    if own.allowance_mm.is_some_and(|a| a > 0.0) {
-        let what = format!(
-            "allowance_mm = {}: only kind = \"rough\" leaves an allowance; a finishing brings faces to their tolerance",
-            number(own.allowance_mm.unwrap_or(0.0), 4)
-        );
+    use StrategyWord as W;
+    if let Some(a) = own.allowance_mm.filter(|a| *a > 0.0) {
+        let why = "only kind = \"rough\" leaves an allowance; a finishing brings faces to their tolerance";
+        let what = format!("allowance_mm = {}: {why}", number(a, 4));
         return Err(("allowance_mm", what));
     }
     if let Some(key) = roughing::own_key(own) {
         return Err((key, format!("{key} is for kind = \"rough\": leave it out")));
     }
     let (s, t) = (&mut raw.strategy, &mut raw.tolerance);
-    if matches!(s.kind, StrategyWord::ZLevel | StrategyWord::Flank) {
+    if matches!(s.kind, W::ZLevel | W::Flank) {
         return Err(("kind", format!("{} is no way of finishing here", s.kind.word())));
     }
-    if s.kind == StrategyWord::Auto
-        && (own.kind == OperationWord::Rest || matches!(s.axis, Some(AxisKey::Given(_))))
-    {
-        s.kind = StrategyWord::Isoplanar3c;
+    let given = matches!(s.axis, Some(AxisKey::Given(_)));
+    if s.kind == W::Auto && (own.kind == OperationWord::Rest || given) {
+        s.kind = W::Isoplanar3c;
     }
     // What a tool cannot reach without harm is for the next operation.
-    let drops =
-        matches!(s.kind, StrategyWord::Isoplanar3c | StrategyWord::Waterline3c | StrategyWord::Gradient3c);
-    if s.kind != StrategyWord::Auto && !drops && !places.has("strategy", "gouges") {
+    if !matches!(s.kind, W::Isoplanar3c | W::Waterline3c | W::Gradient3c) && !places.has("strategy", "gouges")
+    {
         s.gouges = Gouges::LeaveOut;
     }
     // An operation that leaves more on purpose is no less exact.

@@ -80,7 +80,10 @@ impl Strategy {
             plan::ThreeAxisLines::Waterlines => StrategyWord::Waterline3c,
             plan::ThreeAxisLines::Planes => StrategyWord::Isoplanar3c,
         };
-        Self { word, kind: Kind::Drop(way.lines), axis: way.axis, feed_direction: Some(way.feed), ..*self }
+        let kind = Kind::Drop(way.lines);
+        // A tool that drops on all faces goes into none.
+        let gouges = Gouges::Report;
+        Self { word, kind, axis: way.axis, feed_direction: Some(way.feed), gouges, ..*self }
     }
 
     /// Whether the job asks for nothing that a tool has not which keeps its axis.
@@ -182,7 +185,7 @@ impl Strategy {
 
     /// The strategy of a table, for so many tools.
     pub(super) fn of(places: &Places, t: &raw::Strategy, tools: usize) -> Result<Self, Failure> {
-        left_out(places, t, tools)?;
+        left_out(places, t)?;
         let axis = direction(match t.axis {
             Some(AxisKey::Given(axis)) => axis,
             Some(AxisKey::Feed | AxisKey::Field) | None => [0.0, 0.0, 1.0],
@@ -362,18 +365,13 @@ impl Strategy {
 }
 
 /// Refuses places to be left out where nothing can be.
-fn left_out(places: &Places, t: &raw::Strategy, tools: usize) -> Result<(), Failure> {
+fn left_out(places: &Places, t: &raw::Strategy) -> Result<(), Failure> {
     use StrategyWord as W;
     let refuse = |key: &str, what: String| Err(places.refuse(TABLE, key, what));
     match (t.gouges, t.keep_off_mm) {
         (Gouges::Report, Some(_)) => {
             refuse("keep_off_mm", "keep_off_mm needs gouges = \"leave_out\"".to_owned())
         }
-        (Gouges::LeaveOut, _) if t.kind == W::Auto || tools > 1 => refuse(
-            "gouges",
-            "gouges = \"leave_out\" needs one tool and a strategy by name: what is chosen from leaves nothing out"
-                .to_owned(),
-        ),
         (Gouges::LeaveOut, _) if [W::ZLevel, W::Flank].contains(&t.kind) => refuse(
             "gouges",
             format!("gouges = \"leave_out\" is for passes of finishing, not for {}", t.kind.word()),

@@ -1,6 +1,6 @@
 //! What a job says, value by value: its tools, its tolerances, how to cut, for which machine.
 
-use super::cutting::{MARK_SHARE, caps, feed_per_tooth_mm, marked};
+use super::cutting::{MARK_SHARE, caps, feed_per_tooth_mm, marked, thin_mm};
 use super::{
     Contact, Control, Fixture, Flank, Job, Overrides, Part, Setup, Stock, Strategy, Tool, Verification,
     control,
@@ -155,7 +155,7 @@ impl Job {
     /// Area that no tool reaches and that is accepted.
     #[must_use]
     pub fn unreached_mm2(&self) -> f64 {
-        self.told.unreached_mm2
+        self.own.unreached_mm2.unwrap_or(self.told.unreached_mm2)
     }
 
     /// How to cut.
@@ -233,6 +233,12 @@ impl Job {
     #[must_use]
     pub fn layer_mm(&self) -> f64 {
         self.told.layers_mm[self.hand.unwrap_or(0)]
+    }
+
+    /// The thickness of a layer in which heights are judged where raw material itself is known, mm.
+    #[must_use]
+    pub fn thin_layer_mm(&self) -> f64 {
+        thin_mm(self.tolerance().scallop_mm, self.cutter().radius_mm(), self.setup().approach_mm)
     }
 
     /// The feed per tooth whose mark on a plane is as high as this, mm; None for an edge that leans by an unknown lead.

@@ -23,6 +23,7 @@ use osculate_surfaces::facets::mesh_format;
 use osculate_surfaces::sides::open_rims;
 use osculate_surfaces::structure::Structure;
 use osculate_tools::removal::Unseen;
+use osculate_tools::removal::stock::Stock;
 use rayon::prelude::*;
 use sides::Told;
 use std::collections::BTreeMap;
@@ -181,6 +182,8 @@ pub struct LeftMaterial {
     pub points: Arc<[Point3]>,
     /// How far they are apart, mm.
     pub cell_mm: f64,
+    /// All of it.
+    pub stock: Arc<Stock>,
 }
 
 /// The part of a job: its faces, and which of them the job works on.

@@ -107,7 +107,9 @@ impl<'a> Aim<'a> {
         let machined: Vec<GoalFace<'_>> =
             self.faces.faces.iter().enumerate().map(|(k, f)| face(k, f)).collect();
         let checked = self.faces.check.iter().map(|f| face(usize::MAX, f)).collect();
-        let layer_mm = job.layer_mm();
+        // What operations before have left tells what moves take, wherever it stands.
+        let known = self.faces.left.is_some();
+        let layer_mm = if known { job.thin_layer_mm() } else { job.layer_mm() };
         let stock = match self.raw.as_ref().map(|raw| raw.goal(layer_mm)) {
             None => GoalStock::Assumed { layer_mm },
             Some(GoalStock::Declared { blank, resolution, layer_mm, words }) => GoalStock::Declared {

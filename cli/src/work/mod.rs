@@ -26,6 +26,7 @@ pub mod operations;
 pub mod opinion;
 pub mod passes;
 pub mod plan;
+pub mod plunges;
 pub mod ply;
 pub mod posted_setup;
 pub mod productivity;

@@ -211,8 +211,12 @@ fn chosen(
     planned.extras.tables.push(choice::page_table(&compared, caption));
     // Programs and verifications on the way have times of their own.
     wall_s.plan = stage.end() - wall_s.post - wall_s.verify;
-    let proved = Proved { planned, posted: settled.posted, verified: settled.verified, compared };
-    Ok((settled.job, proved))
+    let (job, posted, mut verified) = (settled.job, settled.posted, settled.verified);
+    if left_out::is_wanted(&job) {
+        // Here no operation follows that what is left out could be left to.
+        verified = posted.verify(&job, faces, wall_s, watch)?;
+    }
+    Ok((job, Proved { planned, posted, verified, compared }))
 }
 
 /// A plan with its program and what was measured, and what it was chosen from.

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, read};
 use crate::job::{Blank as Raw, Job, Source};
-use crate::part::{self, Part};
+use crate::part::{self, LeftMaterial, Part};
 use crate::triangles::triangles;
 use osculate_geom::convex::Convex;
 use osculate_geom::{Box3, Diagnostic, Point3, Unit3, any_perpendicular};
@@ -11,6 +11,7 @@ use osculate_tools::removal::stock::{Blank, Resolution, Stock};
 use osculate_tools::removal::{Body, GoalStock, Sample, StockFound, sample_triangles};
 use serde::Serialize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Cells along the longest side of the stock where the job gives none.
 const DEFAULT_CELLS: f64 = 256.0;
@@ -268,23 +269,28 @@ fn round_leaves(axis: &Unit3, (radius, [low, high]): (f64, [f64; 2]), from: &Poi
 
 /// Raw material as the job declares it, ready to be filled.
 pub struct RawMaterial<'a> {
-    blank: &'a Raw,
+    /// What the job declares.
+    blank: Option<&'a Raw>,
     triangles: Vec<[Point3; 3]>,
     /// The box around it.
     bounds: Box3,
-    saved: Option<Stock>,
+    /// What a run before has saved, or operations before have left.
+    left: Option<Arc<Stock>>,
     resolution: Resolution,
     words: String,
 }
 
 impl<'a> RawMaterial<'a> {
-    /// The raw material of a job, where it declares one.
+    /// The raw material of a job: what operations before have left, or what it declares, if it does.
     pub fn of(job: &'a Job, faces: &Part) -> Result<Option<Self>, Failure> {
+        if let Some(left) = &faces.left {
+            return Ok(Some(Self::left(left)));
+        }
         let Some(given) = job.stock() else { return Ok(None) };
         let mut left = None;
         let (triangles, words) = match &given.blank {
             Raw::Saved(path) => {
-                left = Some(saved(path, job, faces)?);
+                left = Some(Arc::new(saved(path, job, faces)?));
                 let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
                 (Vec::new(), format!("what was left as {name} has it"))
             }
@@ -309,14 +315,14 @@ impl<'a> RawMaterial<'a> {
                 (out, format!("a layer of {thickness} mm on the faces to machine"))
             }
         };
-        let size = match &given.blank {
-            Raw::Box(b) => *b,
-            Raw::Saved(_) => left.as_ref().map_or_else(Box3::empty, |stock| *stock.bounds()),
+        let size = match (&left, &given.blank) {
+            (Some(stock), _) => *stock.bounds(),
+            (None, Raw::Box(b)) => *b,
             _ => Box3::around(triangles.iter().flatten()),
         };
         let cells = || (size.max - size.min).amax() / DEFAULT_CELLS;
         let resolution = Resolution {
-            cell_mm: given.cell_mm.or(left.as_ref().map(Stock::cell_mm)).unwrap_or_else(cells),
+            cell_mm: given.cell_mm.or(left.as_ref().map(|stock| stock.cell_mm())).unwrap_or_else(cells),
             tri: true,
             // Beyond what a machine can address there is no limit.
             budget_bytes: (given.memory_mb * 1e6).min(1e15) as usize,
@@ -325,7 +331,19 @@ impl<'a> RawMaterial<'a> {
             Raw::File { layer_mm, .. } => size.grown(layer_mm.unwrap_or(0.0)),
             _ => size,
         };
-        Ok(Some(Self { blank: &given.blank, triangles, bounds, saved: left, resolution, words }))
+        Ok(Some(Self { blank: Some(&given.blank), triangles, bounds, left, resolution, words }))
+    }
+
+    fn left(left: &LeftMaterial) -> Self {
+        Self {
+            blank: None,
+            triangles: Vec::new(),
+            bounds: *left.stock.bounds(),
+            left: Some(left.stock.clone()),
+            // It is filled already.
+            resolution: Resolution { cell_mm: left.cell_mm, tri: true, budget_bytes: usize::MAX },
+            words: "what operations before have left".to_owned(),
+        }
     }
 
     /// In words.
@@ -337,14 +355,16 @@ impl<'a> RawMaterial<'a> {
     /// How far it goes from a point within it along a direction at most, mm.
     #[must_use]
     pub fn beyond_mm(&self, from: &Point3, along: &Unit3) -> f64 {
+        if let Some(stock) = &self.left {
+            return stock.beyond_mm(from, along);
+        }
         match self.blank {
-            Raw::Layer(thickness_mm) => *thickness_mm,
-            Raw::Box(b) => leaves(b, from, along),
-            Raw::Cylinder { axis, diameter_mm, along_mm } => {
+            Some(Raw::Layer(thickness_mm)) => *thickness_mm,
+            Some(Raw::Box(b)) => leaves(b, from, along),
+            Some(Raw::Cylinder { axis, diameter_mm, along_mm }) => {
                 round_leaves(axis, (0.5 * diameter_mm, *along_mm), from, along)
             }
-            Raw::File { .. } => leaves(&self.bounds, from, along),
-            Raw::Saved(_) => self.saved.as_ref().map_or(0.0, |stock| stock.beyond_mm(from, along)),
+            Some(Raw::File { .. } | Raw::Saved(_)) | None => leaves(&self.bounds, from, along),
         }
     }
 
@@ -352,15 +372,15 @@ impl<'a> RawMaterial<'a> {
     #[must_use]
     pub fn members(&self) -> Vec<Convex> {
         let all = |triangles: &[[Point3; 3]]| triangles.iter().map(|t| Convex::Triangle(*t)).collect();
+        if let Some(stock) = &self.left {
+            let mesh = stock.mesh(SEEN_CUBES);
+            let at = |k: u32| mesh.points[k as usize];
+            return all(&mesh.triangles.iter().map(|t| t.map(at)).collect::<Vec<_>>());
+        }
         match self.blank {
-            Raw::Box(b) => vec![Convex::cuboid(b)],
-            Raw::Cylinder { .. } | Raw::File { .. } => all(&self.triangles),
-            Raw::Saved(_) => self.saved.as_ref().map_or_else(Vec::new, |stock| {
-                let mesh = stock.mesh(SEEN_CUBES);
-                let at = |k: u32| mesh.points[k as usize];
-                all(&mesh.triangles.iter().map(|t| t.map(at)).collect::<Vec<_>>())
-            }),
-            Raw::Layer(_) => Vec::new(),
+            Some(Raw::Box(b)) => vec![Convex::cuboid(b)],
+            Some(Raw::Layer(_)) => Vec::new(),
+            Some(Raw::Cylinder { .. } | Raw::File { .. } | Raw::Saved(_)) | None => all(&self.triangles),
         }
     }
 
@@ -382,12 +402,14 @@ impl<'a> RawMaterial<'a> {
             thickness_mm,
             filled,
         };
-        let blank = match self.blank {
-            Raw::Box(b) => Blank::Box(*b),
-            Raw::File { layer_mm: Some(thickness_mm), .. } => layer(*thickness_mm, true),
-            Raw::Layer(thickness_mm) => layer(*thickness_mm, false),
-            Raw::Saved(_) => self.saved.as_ref().map_or(Blank::Mesh(&self.triangles), Blank::Left),
-            Raw::Cylinder { .. } | Raw::File { .. } => Blank::Mesh(&self.triangles),
+        let blank = match (&self.left, self.blank) {
+            (Some(stock), _) => Blank::Left(stock),
+            (None, Some(Raw::Box(b))) => Blank::Box(*b),
+            (None, Some(Raw::File { layer_mm: Some(thickness_mm), .. })) => layer(*thickness_mm, true),
+            (None, Some(Raw::Layer(thickness_mm))) => layer(*thickness_mm, false),
+            (None, Some(Raw::Cylinder { .. } | Raw::File { .. } | Raw::Saved(_)) | None) => {
+                Blank::Mesh(&self.triangles)
+            }
         };
         GoalStock::Declared { blank, resolution: self.resolution, layer_mm, words: &self.words }
     }

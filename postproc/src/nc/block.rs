@@ -29,6 +29,8 @@ pub struct NcMove {
     pub rotary: [i64; 2],
     /// The tool's direction or the angles of the plane across it, where the program says those.
     pub orientation: [i64; 3],
+    /// The linear word that goes most along the tool, if one does.
+    pub along: Option<usize>,
     /// F; not read in rapid moves.
     pub feed: f64,
 }

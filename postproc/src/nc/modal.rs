@@ -65,8 +65,8 @@ impl Modal {
             for i in self.order.0 {
                 let name = &program.linear_names[i];
                 let skipped = match which {
-                    Which::Across => name == "Z",
-                    Which::Along => name != "Z",
+                    Which::Across => m.along == Some(i),
+                    Which::Along => m.along != Some(i),
                     _ => false,
                 };
                 if !skipped && self.linear[i] != Some(m.linear[i]) {
@@ -174,9 +174,9 @@ pub(super) enum Which {
     All,
     /// Rotary ones.
     Rotary,
-    /// Linear ones other than Z.
+    /// Linear ones other than the one that goes most along the tool.
     Across,
-    /// Z.
+    /// That one.
     Along,
 }
 

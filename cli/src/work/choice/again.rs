@@ -38,9 +38,8 @@ const MOST_MORE: f64 = 1.5;
 const WORTH_MORE: f64 = 1.03;
 
 impl Choice<'_> {
-    /// From here on only what may take less time than this contender, which holds, is looked at.
-    pub fn undercut(&mut self, contender: &Contender, found: &Verification) {
-        let time_min = contender.posted.time_min();
+    /// From here on only what may take less time than this contender, which holds and counts for so much, is looked at.
+    pub fn undercut(&mut self, contender: &Contender, found: &Verification, time_min: f64) {
         let (plans, locals, kept) = self.holder.map_or_else(
             || (self.plans, self.locals().count(), self.kept().count()),
             |h| (h.plans, h.locals, h.kept),

@@ -83,8 +83,8 @@ const LONG: Most = Most {
     of_another: 4,
     held_twins: 6,
     kept: 8,
-    again: 8,
-    verified: 27,
+    again: 16,
+    verified: 30,
     not_shown: 4,
 };
 

@@ -28,6 +28,31 @@ pub(super) struct Figures {
     pub cutting_length_mm: f64,
     pub cutting_min: f64,
     pub posted_min: Option<f64>,
+    /// What it leaves to other operations, by a coarse look or as it was measured.
+    pub left: Left,
+}
+
+/// What a plan leaves to other operations.
+#[derive(Clone, Copy)]
+pub(super) struct Left {
+    /// Area, mm2.
+    pub area_mm2: f64,
+    /// Of all of it.
+    pub of_mm2: f64,
+    /// What a small ball needs for it, min/mm2.
+    pub min_per_mm2: f64,
+}
+
+impl Left {
+    /// What a plan that takes so long itself counts for: with the time that others are taken to need for what it leaves, of which they make no more
+    /// in a minute than it does, min.
+    pub fn counted(self, own_min: f64) -> f64 {
+        if self.area_mm2 <= 0.0 {
+            return own_min;
+        }
+        let own_min_per_mm2 = own_min / (self.of_mm2 - self.area_mm2).max(0.0);
+        own_min + self.area_mm2 * own_min_per_mm2.max(self.min_per_mm2)
+    }
 }
 
 /// One candidate's story.
@@ -65,13 +90,10 @@ impl Entry {
         self.candidate.axes == Axes::Field
     }
 
-    /// The least time known of a candidate, min.
+    /// The least time known of a candidate, min, with that of others for what it leaves to them.
     pub fn least_min(&self) -> f64 {
-        match self.figures {
-            Some(Figures { posted_min: Some(t), .. }) => t,
-            Some(f) => f.cutting_min,
-            None => self.screened.layout_min,
-        }
+        self.figures
+            .map_or(self.screened.layout_min, |f| f.left.counted(f.posted_min.unwrap_or(f.cutting_min)))
     }
 }
 
@@ -91,4 +113,20 @@ pub(super) fn words(own: Overrides, shares: Shares) -> String {
     });
     let given: Vec<String> = marks.into_iter().chain(chord).chain(blend).chain(other).collect();
     format!("; laid out again: {}", given.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Left;
+
+    #[test]
+    fn what_is_left_counts_as_others_need_for_it() {
+        let left = |area_mm2: f64| Left { area_mm2, of_mm2: 100.0, min_per_mm2: 0.01 };
+        assert!((left(0.0).counted(2.0) - 2.0).abs() < 1e-12);
+        // A small ball is slower than a plan of 0.5 min for 90 mm2, and no quicker than one of 2 min for 50.
+        assert!((left(10.0).counted(0.5) - 0.6).abs() < 1e-12);
+        assert!((left(50.0).counted(2.0) - 4.0).abs() < 1e-12);
+        // One that cuts hardly anything in no time is worth nothing.
+        assert!(left(99.0).counted(0.1) > 9.0 && left(100.0).counted(0.1).is_infinite());
+    }
 }

@@ -15,6 +15,7 @@ mod again;
 mod candidates;
 mod effort;
 mod entry;
+mod layout;
 mod measured;
 mod search;
 mod settle;

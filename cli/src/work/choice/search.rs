@@ -2,7 +2,7 @@
 
 use super::candidates;
 use super::effort::Most;
-use super::entry::{self, Entry, Figures, State};
+use super::entry::{self, Entry, State};
 use super::measured::Measured;
 use super::table::{self, Row, text_table};
 use crate::failure::Failure;
@@ -11,24 +11,18 @@ use crate::part::{self, Part};
 use crate::watch::Watch;
 use crate::work::axes::{self, Fields};
 use crate::work::budget::Shares;
-use crate::work::drop;
-use crate::work::extras::Extras;
-use crate::work::look::{Look, Objection};
-use crate::work::passes::{self, Way};
+use crate::work::look::Objection;
 use crate::work::program::{Planned, Posted, WallS};
 use osculate_geom::Surface;
-use osculate_productivity::compare::{Around, Axes, Candidate, Setting, Tool, screen};
+use osculate_productivity::compare::{Around, Axes, Setting, Tool, screen};
 use osculate_productivity::ideal::Patch;
-use osculate_productivity::plan::{Passes, Strategy};
+use osculate_productivity::plan::Strategy;
 
 /// Tilts are held too where they were found place by place and that took no more than this many times the least time: axes that turn
 /// less may be quicker than wider strips.
 const NEAR: f64 = 1.25;
 /// By how much of its time a candidate is put back for each plan of its tool and strategy that failed.
 const SET_BACK: f64 = 0.3;
-/// Leads below this many times one at which the tool dug in are left out.
-const STEEPER: f64 = 1.3;
-
 /// A plan that promises the least time of all.
 pub struct Contender {
     /// Which entry it is.
@@ -64,15 +58,27 @@ pub struct Choice<'a> {
     /// How much is tried.
     pub(super) most: Most,
     /// For each tool the greatest lead at which it dug in, whatever the strategy, rad.
-    dug_in_rad: Vec<f64>,
+    pub(super) dug_in_rad: Vec<f64>,
     /// For each tool its fields of axes over the faces.
-    fields: Vec<Fields>,
+    pub(super) fields: Vec<Fields>,
     pub(super) holder: Option<Holder>,
+    /// What a mm2 that is left to other operations counts for, min.
+    pub(super) others_min_per_mm2: f64,
 }
 
 /// Areas of the faces to machine, with the faces.
 pub fn patches(faces: &Part) -> Vec<Patch<'_>> {
     faces.faces.iter().map(|f| Patch { surface: &*f.surface, area_mm2: part::area(f) }).collect()
+}
+
+/// What a tool is taken to leave to one of another operation: a ball of this share of its radius, on three axes.
+const SMALLER: f64 = 0.25;
+
+/// How long that needs for a mm2 of a plane, min.
+fn others_min_per_mm2(job: &Job) -> f64 {
+    let (r, h) = (SMALLER * job.cutter().radius_mm(), job.tolerance().scallop_mm);
+    let width_mm = 2.0 * (h * (2.0 * r - h)).max(h * r).sqrt();
+    1.0 / (width_mm * job.feed_mm_min())
 }
 
 const fn keeps_lines(strategy: &Strategy) -> bool {
@@ -126,7 +132,18 @@ impl<'a> Choice<'a> {
         let dug_in_rad = vec![f64::NEG_INFINITY; jobs.len()];
         let fields = jobs.iter().map(|_| Fields::default()).collect();
         let most = Most::of(job.strategy().effort);
-        let choice = Self { faces, jobs, entries, plans: 0, most, dug_in_rad, fields, holder: None };
+        let others_min_per_mm2 = jobs.iter().map(others_min_per_mm2).fold(f64::INFINITY, f64::min);
+        let choice = Self {
+            faces,
+            jobs,
+            entries,
+            plans: 0,
+            most,
+            dug_in_rad,
+            fields,
+            holder: None,
+            others_min_per_mm2,
+        };
         choice.any_left(job)?;
         Ok(choice)
     }
@@ -154,7 +171,9 @@ impl<'a> Choice<'a> {
         if let Some(holder) = &self.holder {
             return self.first_around(holder);
         }
-        if let Some(field) = self.first_field() {
+        // Where places may be left out other axes do as well.
+        let leaves_out = self.leaves_out();
+        if let Some(field) = self.first_field().filter(|_| !leaves_out) {
             return Some(field);
         }
         let holds = self.entries.iter().any(|e| e.verified.is_some_and(|v| v.within_tolerance));
@@ -163,11 +182,11 @@ impl<'a> Choice<'a> {
         // Leads found place by place wait for a plan that holds, where one is held elsewhere.
         let only_local = self.entries.iter().all(|e| e.candidate.axes != Axes::Held);
         let waiting = |e: &Entry| {
-            !e.is_field()
+            (leaves_out || !e.is_field())
                 && Self::waiting(e)
                 && (!e.is_local() || in_need || only_local || e.figures.is_some())
         };
-        let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy);
+        let group = |e: &Entry| (e.candidate.tool, e.candidate.strategy, e.is_field());
         let mut open: Vec<usize> = Vec::new();
         for (k, e) in self.entries.iter().enumerate().filter(|(_, e)| waiting(e)) {
             // Once one lead is planned it stands for its group until it is out; then those above the leads at which the
@@ -274,7 +293,7 @@ impl<'a> Choice<'a> {
         let made = (self.plans - holder.plans).saturating_sub(others + kept);
         let elsewhere = self.entries.iter().filter(|e| e.elsewhere && !e.is_field()).count();
         let holds = |e: &Entry| e.verified.is_some_and(|v| v.within_tolerance);
-        let by_field = self.entries.iter().any(|e| e.is_field() && holds(e));
+        let by_field = !self.leaves_out() && self.entries.iter().any(|e| e.is_field() && holds(e));
         let fields = self.fields_made();
         let most_alone = if self.only_fields() { self.most.plans } else { 0 };
         let order = |e: &Entry| {
@@ -373,82 +392,11 @@ impl<'a> Choice<'a> {
     }
 
     /// The job of an entry: with its tool, and what it is given.
-    fn job_of(&self, k: usize) -> Job {
+    pub(super) fn job_of(&self, k: usize) -> Job {
         let Entry { candidate, again, .. } = &self.entries[k];
         let job = &self.jobs[candidate.tool];
         let three_axis = candidate.three_axis().copied();
         job.with(again.map_or(Overrides { three_axis, ..Overrides::default() }, |(_, own)| own))
-    }
-
-    /// Plans a candidate and looks at what it leaves.
-    fn planned(&mut self, k: usize) -> Result<State, Failure> {
-        self.plans += 1;
-        let Entry { candidate: Candidate { tool, strategy, lean, axes }, shares, .. } = self.entries[k];
-        let job = &self.job_of(k);
-        let fields = &self.fields[tool];
-        let way = Way { strategy: &strategy, lean, axes, fields, shares, watch: &() };
-        let laid = match &strategy {
-            // Over all faces together.
-            Strategy::ThreeAxis(kept) => drop::passes(job, self.faces, kept.lines, shares, &|_| {}),
-            _ => passes::each_face(job, self.faces, &way, &|_| {}),
-        };
-        let passes = match laid {
-            Ok(p) => p,
-            Err(e) => {
-                let why = e.message().to_owned();
-                self.no_smaller_lead(k);
-                return Ok(State::Out(why));
-            }
-        };
-        let Passes { passes, diagnostics } = passes;
-        let ordered = passes::in_order(job, self.faces, passes.into())?;
-        let linked = passes::linked(job, self.faces, &ordered)?;
-        let passes = Passes { passes: ordered.passes, diagnostics };
-        self.entries[k].figures = Some(Figures {
-            passes: passes.passes.len(),
-            points: linked.path.moves.len(),
-            cutting_length_mm: linked.cutting_length_mm,
-            cutting_min: linked.cutting_length_mm / job.feed_mm_min(),
-            posted_min: None,
-        });
-        if let Some(objection) = Look::at(job, self.faces, &linked)?.objection(job)? {
-            if objection.dug.is_some() {
-                self.no_smaller_lead(k);
-            }
-            if self.for_less(k, &objection) {
-                return self.planned(k);
-            }
-            return Ok(State::Out(objection.text));
-        }
-        let (strategy, extras) = (strategy.name().to_owned(), Extras::default());
-        Ok(State::Planned(Box::new(Planned {
-            passes,
-            skipped: ordered.skipped,
-            linked,
-            strategy,
-            lean,
-            axes,
-            extras,
-            with_strips: true,
-        })))
-    }
-
-    /// Leaves out the smaller leads of a candidate that digs in: the heel comes down with the lead.
-    fn no_smaller_lead(&mut self, k: usize) {
-        let Candidate { tool, strategy, lean, axes } = self.entries[k].candidate;
-        if axes != Axes::Held {
-            return;
-        }
-        self.dug_in_rad[tool] = self.dug_in_rad[tool].max(lean.lead_rad);
-        for e in &mut self.entries {
-            let c = &e.candidate;
-            let same = (c.tool, c.strategy, c.lean.tilt_rad) == (tool, strategy, lean.tilt_rad);
-            let near = c.lean.lead_rad < STEEPER * lean.lead_rad;
-            if same && near && c.axes == Axes::Held && matches!(e.state, State::Open) {
-                let why = format!("a lead of {:.0} deg does not fit already", lean.lead_rad.to_degrees());
-                e.state = State::Out(why);
-            }
-        }
     }
 
     /// Records that a contender could not be verified.

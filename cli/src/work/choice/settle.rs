@@ -21,7 +21,7 @@ pub struct Settled {
     pub planned: Planned<'static>,
     /// Its program.
     pub posted: Posted,
-    /// What the program leaves.
+    /// What the program leaves, where what its passes leave to other operations is accepted.
     pub verified: Verified,
 }
 
@@ -37,32 +37,33 @@ pub fn settle(
     wall_s: &mut WallS,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Settled, Failure> {
-    let mut best: Option<(f64, Settled)> = None;
+    let mut best: Option<((f64, f64), Settled)> = None;
     let (mut holding, mut verified, mut not_shown) = (0, 0, 0);
     let most = choice.most;
     while verified < most.verified && not_shown < most.not_shown {
         let Some(contender) = choice.next(watch, wall_s, progress)? else { break };
         verified += 1;
-        let found = match contender.posted.verify(&contender.job, choice.faces, wall_s, watch) {
+        let judged = choice.judged(&contender);
+        let found = match contender.posted.verify(&judged, choice.faces, wall_s, watch) {
             Ok(found) => found,
             Err(why) => {
                 choice.lost(&contender, &why);
                 continue;
             }
         };
-        let why = objection(&contender, choice.blend_mm(&contender), &found)?;
+        let why = objection(&judged, choice.blend_mm(&contender), &found)?;
         holding += usize::from(why.is_none());
         let measured = measured(choice, &contender, &found.summary)?;
         let again = choice.record(&contender, measured, why);
+        let time_min = choice.counted_min(&contender, found.summary.high_area_mm2);
         not_shown += usize::from(found.verdict.answer() == Answer::NotShown && !again);
         if holding >= enough && found.summary.within_tolerance {
-            choice.undercut(&contender, &found.summary);
+            choice.undercut(&contender, &found.summary, time_min);
         }
-        let off = off_by(&contender.job, &found)?;
-        let rank = (off, contender.posted.time_min());
-        if best.as_ref().is_none_or(|b| rank < (b.0, b.1.posted.time_min())) {
+        let rank = (off_by(&judged, &found)?, time_min);
+        if best.as_ref().is_none_or(|b| rank < b.0) {
             let Contender { job, planned, posted, .. } = contender;
-            best = Some((off, Settled { job, planned, posted, verified: found }));
+            best = Some((rank, Settled { job, planned, posted, verified: found }));
         }
     }
     best.map(|b| b.1).ok_or_else(|| {
@@ -88,8 +89,8 @@ fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
 }
 
 /// Why a verification does not hold.
-fn objection(contender: &Contender, blend_mm: f64, found: &Verified) -> Result<Option<Objection>, Failure> {
-    let (v, job) = (&found.summary, &contender.job);
+fn objection(job: &Job, blend_mm: f64, found: &Verified) -> Result<Option<Objection>, Failure> {
+    let v = &found.summary;
     let t = job.tolerance();
     // What may be hidden between samples counts where nothing is too much without it: it is not looked for elsewhere.
     let excess = |is_mm: f64, may_mm: f64, hidden_mm: Option<f64>| {

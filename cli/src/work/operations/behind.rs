@@ -3,16 +3,17 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{LeftMaterial, LoadedFace, Part, area};
+use crate::work::plunges;
 use crate::work::stock::RawMaterial;
 use osculate_geom::{Point3, Unit3};
 use osculate_productivity::plan::Linked;
 use osculate_tools::Cutter;
-use osculate_tools::cl::Motion;
-use osculate_tools::removal::stock::{Stock, StockJob, Upper};
+use osculate_tools::removal::stock::Stock;
 use osculate_tools::removal::{
-    self, Body, Change, Cut, Limits, Sample, Swept, cut, cut_on, sample_boundary, sample_surface,
+    self, Change, Cut, Sample, Swept, cut, cut_on, sample_boundary, sample_surface,
 };
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Places at which it is looked how high material stands on the faces of an operation, along the axis that its tool keeps.
 const PLACES: f64 = 8000.0;
@@ -27,8 +28,6 @@ const REST_PLACES: f64 = 400_000.0;
 const REST_APART: f64 = 0.5;
 /// What stands higher than this share of the scallop is too high: the rest is for the marks of teeth, which are not known here.
 const HIGH: f64 = 0.85;
-/// Feed of moves down into material, of that of passes.
-const PLUNGE: f64 = 0.5;
 /// Normals that lean off a tool's axis by more than this, as a cosine, are of walls, on which nothing stands that it comes through.
 const SEEN: f64 = 0.05;
 /// Area that may stand higher under a tool that leans.
@@ -156,7 +155,12 @@ impl Behind {
 
     /// The surface of the raw material that is left, where some is declared.
     pub fn left(&self) -> Option<LeftMaterial> {
-        self.stock.as_ref().map(|s| LeftMaterial { points: s.ends().into(), cell_mm: s.cell_mm() })
+        let of = |s: &Stock| LeftMaterial {
+            points: s.ends().into(),
+            cell_mm: s.cell_mm(),
+            stock: Arc::new(s.clone()),
+        };
+        self.stock.as_ref().map(of)
     }
 
     /// What is left of the raw material, where some is declared.
@@ -169,19 +173,7 @@ impl Behind {
     pub fn take(&mut self, job: &Job, linked: &mut Linked) -> Result<usize, Failure> {
         let mut slowed = 0;
         if let Some(stock) = &mut self.stock {
-            let (flutes, shank) = job.flutes();
-            let uppers = Upper::all(&flutes, shank.as_ref(), job.holder());
-            let t = job.tolerance();
-            let touch_mm = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
-            let motions = Swept::along(&linked.path);
-            let work = StockJob { cutter: &flutes, uppers: &uppers, motions: &motions, touch_mm };
-            let carved = stock.carve(&work, &|_| {}).map_err(Failure::job)?;
-            let plunge = Motion::Feed(PLUNGE * job.feed_mm_min());
-            for c in carved.collisions.iter().filter(|c| c.rapid && c.body == Body::Cutter) {
-                // A motion ends at the point after that with which it begins.
-                linked.path.moves[c.motion as usize + 1].motion = plunge;
-                slowed += 1;
-            }
+            slowed = plunges::slow(stock, job, linked)?;
         }
         // What takes material is a motion that cuts, as far as heights are concerned: where it must not it is found elsewhere, and
         // where the order of motions does not matter there is far less to look at.

@@ -167,7 +167,7 @@ impl Kept {
             feed: Vec3::new(u, v, w),
         });
         let job = if job.tools().len() > 1 { job.in_hand(self.tool) } else { job };
-        job.with(Overrides { mark_share, chord_mm, blend_mm, three_axis })
+        job.with(Overrides { mark_share, chord_mm, blend_mm, three_axis, ..Overrides::default() })
     }
 
     /// The plan.
@@ -241,6 +241,7 @@ mod tests {
                 chord_mm: Some(1.0 / 7.0),
                 blend_mm: Some(1.0 / 70.0),
                 three_axis,
+                unreached_mm2: None,
             };
             for own in [own, Overrides::default()] {
                 let job = file.each_tool()[1].with(own);

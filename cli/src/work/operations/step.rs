@@ -12,6 +12,7 @@ use crate::work::operations::passages::Passages;
 use crate::work::plan::Laid;
 use crate::work::program::{Planned, WallS};
 use crate::work::rough;
+use crate::work::setup;
 use crate::work::stock::RawMaterial;
 use osculate_geom::{Diagnostic, Unit3};
 use osculate_productivity::plan::{Rest, rest_of};
@@ -56,7 +57,7 @@ impl<'a> Step<'a> {
     /// # Errors
     /// Where the operation is none of the part.
     pub fn of_kept(operation: &'a Operation, whole: &Part, kept: Kept) -> Result<Self, Failure> {
-        let job = kept.job(operation.planned(kept.standing_mm)?);
+        let job = kept.job(operation.planned(kept.standing_mm, None)?);
         let places = Passages::of(operation, &operation.judged()?, whole)?;
         Ok(Self {
             operation,
@@ -98,7 +99,7 @@ pub fn plan<'a>(
     let places = Passages::of(operation, &job, whole)?.in_stock(behind.left());
     let (part, whole_place) = (places.first(), places.all());
     let standing_mm = raw.map(|raw| places.standing_mm(behind, &job, raw)).transpose()?;
-    let job = operation.planned(standing_mm)?;
+    let job = operation.planned(standing_mm, None)?;
     let (mut job, mut too_high_mm2, mut compared) = (job, None, Vec::new());
     let progress = |f: f64| stage.at(f);
     let planned = match operation.kind {
@@ -135,13 +136,18 @@ pub fn plan<'a>(
             laid.linked(&job, part).map_err(here)?
         }
         OperationWord::Finish if job.is_open() => {
-            let mut choice = Choice::screen(&job, part).map_err(here)?;
+            // The part stands as it does for all operations.
+            let rotate_deg = setup::of(&job, whole, None).0.turn_rad().map(f64::to_degrees);
+            let job_here = operation.planned(standing_mm, Some(rotate_deg))?;
+            let mut choice = Choice::screen(&job_here, part).map_err(here)?;
             let settled =
                 choice::settle(&mut choice, 1, watch, &mut WallS::default(), &progress).map_err(here)?;
             compared = choice.rows();
             let mut planned = settled.planned;
             planned.extras.diagnostics.push(Diagnostic::note("auto", choice.story()));
-            job = settled.job;
+            let own = settled.job.overrides();
+            job =
+                if job.tools().len() > 1 { job.in_hand(settled.job.tool().number()) } else { job }.with(own);
             planned
         }
         OperationWord::Finish => {

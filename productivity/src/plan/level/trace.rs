@@ -160,9 +160,12 @@ impl<'a> Traced<'a> {
         let guess = self.face.rectangle.clamped(guess);
         let (_, jet, phi) = self.face.at(guess).ok_or(LineError::Outside { at: guess })?;
         let (uphill, _) = Face::ascent(&jet, &phi)?;
-        match self.face.settle(guess, uphill, self.level) {
+        let settled = self.face.settle(guess, uphill, self.level).or_else(|why| match why {
+            LineError::Outside { .. } => Err(why),
+            _ => self.face.led(guess, self.level, LED * h),
+        });
+        match settled {
             Err(LineError::Outside { .. }) => Ok(guess),
-            Err(_) => self.face.led(guess, self.level, LED * h),
             other => other,
         }
     }
