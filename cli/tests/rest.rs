@@ -209,3 +209,31 @@ fn what_is_chosen_leaves_to_others_what_its_tool_does_not_reach() {
     let length = |all: &[Value]| number(&all[1]["cutting_length_mm"]);
     assert!(length(&all) < length(&whole), "{} {}", length(&all), length(&whole));
 }
+
+#[test]
+fn what_is_left_of_a_job_of_its_own_is_not_accepted() {
+    let scratch = Scratch::new();
+    scratch.write("trough.json", &trough());
+    // On three axes alone a tool that keeps its axis is chosen, which comes no nearer to the fillet than that lets it.
+    let text = "format = 1\n[part]\nfile = \"trough.json\"\nfaces = [\"floor\"]\n\
+                [tool]\nkind = \"flat\"\ndiameter_mm = 6\nlength_mm = 30\nteeth = 2\n\
+                [tolerance]\nscallop_mm = 0.03\ngouge_mm = 0.02\n\
+                [strategy]\nkind = \"auto\"\neffort = \"quick\"\ngouges = \"leave_out\"\n\
+                [cutting]\nspindle_rpm = 12000\nfeed_mm_min = 1200\n\
+                [machine]\nname = \"3-axis\"\nfeed = \"none\"\ndialect = \"linuxcnc\"\n\
+                [verification]\nspacing_mm = 0.08\n";
+    let job = scratch.write("job.toml", text);
+    let (job, out) = (job.to_str().unwrap(), scratch.path("out"));
+    let plan = osculate(&["plan", job, "--out", out.to_str().unwrap(), "--json"]).json();
+    let program = out.join("program.ngc");
+    let verify = osculate(&["verify", program.to_str().unwrap(), "--job", job, "--json"]).json();
+    assert_eq!(plan["strategy"], "isoplanar_3c");
+    assert_eq!(
+        (&plan["verdict"]["answer"], &verify["verdict"]["answer"]),
+        (&"not_held".into(), &"not_held".into())
+    );
+    for key in ["uncut_area_mm2", "height_max_mm", "gouge_max_mm"] {
+        assert!(plan["verification"][key].is_number());
+        assert_eq!(plan["verification"][key], verify[key], "{key}");
+    }
+}

@@ -202,6 +202,8 @@ fn chosen(
     watch: &dyn Watch,
 ) -> Result<(Job, Proved<'static>), Failure> {
     let stage = Stage::begin(watch, "choose");
+    // A tool that keeps its axis leaves nothing out itself, and yet what it does not reach was accepted.
+    let accepted = left_out::is_wanted(job);
     let mut choice = Choice::screen(job, faces)?;
     let settled = choice::settle(&mut choice, 1, watch, wall_s, &|f| stage.at(f))?;
     let mut planned = settled.planned;
@@ -212,7 +214,7 @@ fn chosen(
     // Programs and verifications on the way have times of their own.
     wall_s.plan = stage.end() - wall_s.post - wall_s.verify;
     let (job, posted, mut verified) = (settled.job, settled.posted, settled.verified);
-    if left_out::is_wanted(&job) {
+    if accepted {
         // Here no operation follows that what is left out could be left to.
         verified = posted.verify(&job, faces, wall_s, watch)?;
     }
