@@ -193,9 +193,9 @@ fn rest_goes_where_too_much_stands_and_only_there() {
     let all = v["operations"].as_array().unwrap();
     let high = number(&all[2]["too_high_mm2"]);
     assert!(high > 10.0 && high < 140.0, "{high}");
-    // Both go over the one face, which counts once in the least time: strips of a ball of 6 mm at the looser scallop, on hollows that widen
-    // them by some hundredths, over a dish hardly larger than its square.
-    let flat_min = 144.0 / (1500.0 * 2.0 * f64::sqrt(0.3 * (6.0 - 0.3)));
+    // Both go over the one face, which counts once in the least time: strips of a ball of 6 mm at the scallop of the part, on hollows that
+    // widen them by some hundredths, over a dish hardly larger than its square.
+    let flat_min = 144.0 / (1500.0 * 2.0 * f64::sqrt(0.04 * (6.0 - 0.04)));
     let least_min = number(&v["ideal"]["time_min"]);
     assert!((0.88..1.0).contains(&(least_min / flat_min)), "{least_min} {flat_min}");
     let cutting_min: f64 = all[1..].iter().map(|o| number(&o["cutting_time_min"])).sum();
@@ -206,6 +206,38 @@ fn rest_goes_where_too_much_stands_and_only_there() {
     assert_eq!((v["operations"].as_array().unwrap().len(), &v["verdict"]["answer"]), (2, &"held".into()));
     let told = v["diagnostics"].to_string();
     assert!(told.contains("rest: nothing stands above its tolerance"), "{told}");
+}
+
+#[test]
+fn a_finishing_that_may_leave_a_little_too_much_is_laid_out_again() {
+    let scratch = Scratch::new();
+    // So few samples do not show that all of the tolerance holds.
+    let few = LIST.replace("spacing_mm = 0.1\naccept = \"samples\"", "max_samples = 4000");
+    let named =
+        |mm: f64| few.replace("kind = \"finish\"\n", &format!("kind = \"finish\"\nscallop_mm = {mm}\n"));
+    let notes = |v: &Value| -> Vec<String> {
+        let all = v["diagnostics"].as_array().unwrap().iter().map(|d| d.as_str().unwrap().to_owned());
+        all.filter(|d| d.contains("laid out again")).collect()
+    };
+    let all = planned(&scratch, &named(0.04)).json();
+    let [note] = &notes(&all)[..] else { panic!("{:?}", all["diagnostics"]) };
+    assert!(note.contains("where 0.04000 mm are accepted: finish for 0.03"), "{note}");
+    assert_eq!(
+        all["within_tolerance"].as_bool().or(all["verification"]["within_tolerance"].as_bool()),
+        Some(true)
+    );
+    // What was laid out for less to begin with is not.
+    let less = planned(&scratch, &named(0.034)).json();
+    assert!(notes(&less).is_empty(), "{:?}", notes(&less));
+    for v in [&all, &less] {
+        let finish = &v["operations"][1];
+        assert_eq!(finish["step"], "held");
+        assert!(number(&finish["verification"]["height_max_mm"]) < 0.04);
+    }
+    // What leaves more on purpose is left as it is named.
+    let more = planned(&scratch, &named(0.05)).json();
+    assert!(notes(&more).is_empty(), "{:?}", notes(&more));
+    assert_eq!(more["verdict"]["answer"], "not_held");
 }
 
 #[test]
@@ -230,6 +262,34 @@ fn a_list_is_derived_and_runs_again_from_where_it_was_written() {
 }
 
 /// A list that only roughs is planned, and its part is not held. The same once more finds nothing to take.
+#[test]
+fn level_faces_are_left_to_the_bottom_of_the_tool_that_roughs() {
+    use osculate::job::Operations;
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/mould/job.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let head = &text[..text.find("[[operation]]").unwrap()];
+    let derived = |head: &str| {
+        let list = Operations::from_toml(head, &path).unwrap();
+        osculate::work::operations::part(list, &()).unwrap()
+    };
+    let (part, list) = derived(head);
+    let faces = |k: usize| -> Vec<String> {
+        let one = &list.all()[k];
+        let seen = osculate::work::operations::seen(one, &one.judged().unwrap(), &part).unwrap();
+        seen.faces.into_iter().map(|f| f.id).collect()
+    };
+    let names: Vec<&str> = list.all().iter().map(|o| o.name.as_str()).collect();
+    assert_eq!(names, ["rough", "level faces", "finish", "rest 1"]);
+    // The top of the mould; the rest goes wherever too much stands.
+    assert_eq!(faces(1), ["F3"]);
+    assert_eq!((faces(3).len(), &faces(3)[0][..]), (18, "F3"));
+    assert_eq!(faces(2), faces(3)[1..]);
+    assert_eq!(list.all()[1].judged().unwrap().tool().number(), 1);
+    // A ball has no bottom.
+    let ball = head.replace("name = \"flat 12\"\nkind = \"flat\"", "name = \"ball 12\"\nkind = \"ball\"");
+    assert_eq!(derived(&ball).1.all().len(), 3);
+}
+
 #[test]
 fn a_second_roughing_knows_what_the_first_left() {
     let scratch = Scratch::new();

@@ -10,6 +10,7 @@ use osculate::work::choice;
 use osculate::work::operations::{self, standing};
 use osculate::work::plan::check;
 use osculate::work::summary::Summary;
+use osculate::work::verify::WorstPlace;
 use osculate::{Part, Plan, Verified, plan};
 use std::path::Path;
 
@@ -108,7 +109,7 @@ pub fn describe(plan: &Plan, out: &Path) -> String {
     }
     text.push_str(&format!("{}\n{}", figures(&s.verification), v.verdict));
     if !v.verdict.is_held() {
-        for w in v.worst.iter().take(5) {
+        for w in shown(&v.worst) {
             let [x, y, z] = w.at_mm;
             let value = number(w.value_mm, 4);
             let made = w.made_by();
@@ -189,4 +190,17 @@ fn operations_table(s: &Summary) -> String {
 /// What stands in red on a screen: the words of a verdict that is not held.
 pub fn red(v: &Verified) -> Option<String> {
     (!v.verdict.is_held()).then(|| v.verdict.words())
+}
+
+/// Places that are told at most, and one of each kind.
+const TOLD: usize = 5;
+
+/// The worst places, of each kind one at least.
+fn shown(worst: &[WorstPlace]) -> Vec<&WorstPlace> {
+    let is_first = |k: usize| worst[..k].iter().all(|w| w.kind != worst[k].kind);
+    let (first, others): (Vec<usize>, Vec<usize>) = (0..worst.len()).partition(|k| is_first(*k));
+    let room = TOLD.saturating_sub(first.len());
+    let mut places: Vec<usize> = first.into_iter().chain(others.into_iter().take(room)).collect();
+    places.sort_unstable();
+    places.into_iter().map(|k| &worst[k]).collect()
 }

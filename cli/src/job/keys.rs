@@ -148,7 +148,7 @@ static OWN: &[Table] = &[
         may("volume_rate_mm3_min", Kind::Number(RATE, "mm3/min"), "no limit", "12000",
             "rough: most that is taken a minute; the feed follows"),
         may("overlap_mm", MM, "rest: a tenth of the diameter", "0.5", "how far passes go beyond what stands too high"),
-        may("scallop_mm", SMALL, "that of the job; rough: stepdown", "0.02", "highest material left standing, above the allowance"),
+        may("scallop_mm", SMALL, "that of the job, of which 0.92 are planned; rough: stepdown", "0.02", "highest material left standing, above the allowance"),
         may("gouge_mm", SMALL, "that of the job; rough: a fifth of the allowance", "0.01", "deepest undercut, into the allowance of a roughing"),
     ]),
     table("operation.repeat", false, "equal places in a circle about an axis that the part does not show by itself", &[

@@ -9,6 +9,7 @@ pub mod flank;
 mod keys;
 pub mod language;
 pub mod library;
+mod operation;
 mod operations;
 pub mod part;
 pub mod problem;
@@ -30,7 +31,8 @@ use crate::failure::{Failure, read_text};
 pub use control::Control;
 use cutting::{feed_mm_min, layer_mm};
 pub use flank::Flank;
-pub use operations::{Clamping, Operation, Operations};
+pub use operation::{Circumstances, Operation};
+pub use operations::{Clamping, Operations};
 use osculate_geom::Axis;
 use osculate_productivity::plan::{ThreeAxis, Tolerance};
 use osculate_productivity::rate::FeedLimit;
@@ -88,6 +90,8 @@ struct Told {
     layers_mm: Vec<f64>,
     tolerance: Tolerance,
     gives_chord: bool,
+    /// Whether it is judged in a program with others that keep their axis.
+    beside_kept: bool,
     unreached_mm2: f64,
     strategy: Strategy,
     control: Control,
@@ -214,6 +218,7 @@ impl Told {
                 gouge_mm: t.gouge_mm.unwrap_or(SHARES[0] * t.scallop_mm),
                 chord_mm: t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm),
             },
+            beside_kept: raw.beside_kept,
             gives_chord: places.has("tolerance", "chord_mm"),
             unreached_mm2: t.unreached_mm2.unwrap_or(0.0),
             strategy,

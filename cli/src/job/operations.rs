@@ -3,12 +3,12 @@
 //! Each is a job of its own, made of the tables that all have in common and of its own: what plans or judges a job does an operation too.
 
 use crate::failure::{Failure, beside, read_text};
+use crate::job::operation::{self, Operation};
 use crate::job::problem::Places;
 use crate::job::raw::{self, Raw, RawList};
 use crate::job::repeat::Repeat;
-use crate::job::words::{AxisKey, Gouges, OperationWord, StrategyWord};
-use crate::job::{Job, SHARES, check, keys, roughing, schema};
-use crate::words::number;
+use crate::job::words::OperationWord;
+use crate::job::{Job, check, keys, roughing, schema};
 use std::path::Path;
 
 /// How far rest passes go beyond what stands too high, of the tool's diameter.
@@ -24,23 +24,6 @@ pub struct Clamping {
     pub job: Job,
 }
 
-/// One of the operations.
-#[derive(Debug, Clone)]
-pub struct Operation {
-    /// As people name it.
-    pub name: String,
-    /// What it does.
-    pub kind: OperationWord,
-    /// Which of the clampings it is in.
-    pub setup: usize,
-    /// How far rest passes go beyond what stands too high, mm.
-    pub overlap_mm: f64,
-    /// Equal places in which it is done.
-    pub repeat: Option<Repeat>,
-    places: Places,
-    raw: Raw,
-}
-
 /// A job of several operations in which everything is checked.
 #[derive(Debug, Clone)]
 pub struct Operations {
@@ -50,36 +33,6 @@ pub struct Operations {
     all: Vec<Operation>,
     /// As the text names them.
     files: Vec<String>,
-}
-
-impl Operation {
-    /// The job that is judged: raw material stands as the whole list says.
-    ///
-    /// # Errors
-    /// As [`Job::from_toml`].
-    pub fn judged(&self) -> Result<Job, Failure> {
-        Job::of(self.places.clone(), &self.raw)
-    }
-
-    /// The job that is planned, on a part turned by `rotate_deg` where the file says nothing. Passes of a finishing care for what stands
-    /// on their faces, so high at most; where that is not said a layer is assumed. A roughing cares for the raw material.
-    ///
-    /// # Errors
-    /// As [`Job::from_toml`].
-    pub fn planned(&self, standing_mm: Option<f64>, rotate_deg: Option<[f64; 3]>) -> Result<Job, Failure> {
-        if self.kind == OperationWord::Rough {
-            return self.judged();
-        }
-        let setup =
-            raw::Setup { rotate_deg: self.raw.setup.rotate_deg.or(rotate_deg), ..self.raw.setup.clone() };
-        Job::of(self.places.clone(), &Raw { standing_mm, stock: None, setup, ..self.raw.clone() })
-    }
-
-    /// A failure at a key of its table.
-    #[must_use]
-    pub fn refuse(&self, key: &str, what: impl std::fmt::Display) -> Failure {
-        self.places.refuse("operation", key, what)
-    }
 }
 
 impl Operations {
@@ -191,6 +144,7 @@ impl Operations {
         let setups = names.iter().enumerate().map(|(k, name)| clamping(&places, list, (k, name)));
         let setups = setups.collect::<Result<Vec<_>, _>>()?;
         let mut all: Vec<Operation> = Vec::with_capacity(list.operation.len());
+        let mut keep: Vec<(usize, bool)> = Vec::with_capacity(list.operation.len());
         for (k, own) in list.operation.iter().enumerate() {
             let made = composed(&places, list, (k, own), &names)?;
             if all.iter().any(|o| o.name == made.name) {
@@ -205,8 +159,13 @@ impl Operations {
                 return Err(made.refuse("setup", what));
             }
             // Everything that can be told of it is told now.
-            made.judged()?;
+            let strategy = *made.judged()?.strategy();
+            keep.push((made.setup, strategy.kept_axis().is_some() || strategy.layers().is_some()));
             all.push(made);
+        }
+        for (k, operation) in all.iter_mut().enumerate() {
+            let mut others = keep.iter().enumerate().filter(|(j, _)| *j != k);
+            operation.beside_kept = others.any(|(_, one)| *one == (operation.setup, true));
         }
         if let Some(first) = all.first().filter(|o| o.kind == OperationWord::Rest) {
             let what = "kind = \"rest\" cuts what operations before it left: there is none";
@@ -374,6 +333,7 @@ fn common(list: &RawList, tools: &[usize]) -> Raw {
         flank: raw::Flank::default(),
         verification: list.verification.clone(),
         standing_mm: None,
+        beside_kept: false,
     }
 }
 
@@ -411,7 +371,7 @@ fn composed(
             roughing::rough(&mut raw, own, diameter_mm).map_err(|(key, what)| refuse(key, what))?;
         }
         OperationWord::Finish | OperationWord::Rest => {
-            fine(&places, &mut raw, own).map_err(|(key, what)| refuse(key, what))?;
+            operation::fine(&places, &mut raw, own).map_err(|(key, what)| refuse(key, what))?;
         }
     }
     if own.kind != OperationWord::Rest && own.overlap_mm.is_some() {
@@ -436,6 +396,7 @@ fn composed(
         setup,
         overlap_mm: own.overlap_mm.unwrap_or(OVERLAP * smallest_mm),
         repeat: own.repeat.map(Repeat::of),
+        beside_kept: false,
         places,
         raw,
     })
@@ -462,38 +423,4 @@ fn chosen_tools(list: &RawList, named: Option<&[u32]>) -> Result<Vec<usize>, Str
         out.push(k);
     }
     Ok(out)
-}
-
-/// A key with what is wrong about it.
-type Wrong = (&'static str, String);
-
-/// Finishing, and what is left of it.
-fn fine(places: &Places, raw: &mut Raw, own: &raw::Operation) -> Result<(), Wrong> {
-    use StrategyWord as W;
-    if let Some(a) = own.allowance_mm.filter(|a| *a > 0.0) {
-        let why = "only kind = \"rough\" leaves an allowance; a finishing brings faces to their tolerance";
-        let what = format!("allowance_mm = {}: {why}", number(a, 4));
-        return Err(("allowance_mm", what));
-    }
-    if let Some(key) = roughing::own_key(own) {
-        return Err((key, format!("{key} is for kind = \"rough\": leave it out")));
-    }
-    let (s, t) = (&mut raw.strategy, &mut raw.tolerance);
-    if matches!(s.kind, W::ZLevel | W::Flank) {
-        return Err(("kind", format!("{} is no way of finishing here", s.kind.word())));
-    }
-    let given = matches!(s.axis, Some(AxisKey::Given(_)));
-    if s.kind == W::Auto && (own.kind == OperationWord::Rest || given) {
-        s.kind = W::Isoplanar3c;
-    }
-    // What a tool cannot reach without harm is for the next operation.
-    if !matches!(s.kind, W::Isoplanar3c | W::Waterline3c | W::Gradient3c) && !places.has("strategy", "gouges")
-    {
-        s.gouges = Gouges::LeaveOut;
-    }
-    // An operation that leaves more on purpose is no less exact.
-    t.gouge_mm = Some(own.gouge_mm.or(t.gouge_mm).unwrap_or(SHARES[0] * t.scallop_mm));
-    t.chord_mm = Some(t.chord_mm.unwrap_or(SHARES[1] * t.scallop_mm));
-    t.scallop_mm = own.scallop_mm.unwrap_or(t.scallop_mm);
-    Ok(())
 }

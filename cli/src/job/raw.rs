@@ -36,6 +36,9 @@ pub struct Raw {
     /// How high material stands on the faces, where operations before have left it, mm.
     #[serde(skip)]
     pub standing_mm: Option<f64>,
+    /// Whether others of the same program keep their axis.
+    #[serde(skip)]
+    pub beside_kept: bool,
 }
 
 #[derive(Debug, Clone, Deserialize)]

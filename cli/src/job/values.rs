@@ -247,6 +247,12 @@ impl Job {
         feed_per_tooth_mm(self.tool(), self.strategy(), mark_mm)
     }
 
+    /// Whether it is judged in a program with operations whose tools keep their axis.
+    #[must_use]
+    pub fn is_beside_kept(&self) -> bool {
+        self.told.beside_kept
+    }
+
     /// The spindle speed.
     #[must_use]
     pub fn spindle_rpm(&self) -> Option<f64> {

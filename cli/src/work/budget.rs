@@ -94,15 +94,15 @@ fn words_mm(job: &Job) -> f64 {
     0.5 * 10f64.powi(-(decimals.min(16) as i32))
 }
 
-/// By how much the control of a job leaves the programmed way at corners, mm, with a tool whose axis turns while it feeds or with another:
-/// verdicts add it.
+/// By how much the control of a job leaves the programmed way at corners, mm, with a tool whose axis turns while it feeds or with another, or in a
+/// program that has both: verdicts add it.
 pub fn blend_mm(job: &Job, turns: bool) -> f64 {
     let asked = asked_mm(job);
     match job.control().dialect {
         Dialect::Fanuc => 0.0,
         Dialect::Sinumerik | Dialect::Heidenhain => asked,
         // It blends corners and, unless programs of tools that turn forbid it, joins short pieces, each as closely as they ask for.
-        Dialect::LinuxCnc if turns => asked,
+        Dialect::LinuxCnc if turns && !job.is_beside_kept() => asked,
         Dialect::LinuxCnc => 2.0 * asked,
     }
 }
@@ -133,6 +133,12 @@ pub fn leaning(job: &Job, faces: &Part, shares: Shares) -> Tolerance {
 /// The tolerance that shares leave for passes of a tool that keeps its axis: its straight ways are those of the machine.
 pub fn upright(job: &Job, faces: &Part, shares: Shares) -> Tolerance {
     kept_back(job, faces, shares, words_mm(job) + blend_mm(job, false))
+}
+
+/// The highest that passes leave which keep all of a job's tolerance, mm, before teeth and corners add to it.
+pub fn laid_out_mm(job: &Job, faces: &Part) -> f64 {
+    let of = if job.strategy().kept_axis().is_some() { upright } else { leaning };
+    of(job, faces, Shares::WHOLE).scallop_mm
 }
 
 /// The tolerance that passes are held against where the tool may go in: verdicts add what words and blended corners may.

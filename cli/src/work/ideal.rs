@@ -144,8 +144,12 @@ pub struct Share<'a> {
 }
 
 /// The bound beside operations that finish a part together: each face counts once, less what is left standing on it, with whichever of its
-/// operations' tools is quickest and to the loosest of their tolerances. None where there is none.
-pub fn of_part(shares: &[Share<'_>], standing: &[LeftStanding]) -> Result<Option<IdealTime>, Failure> {
+/// operations' tools is quickest, and to the tolerance of the part. None where there is none.
+pub fn of_part(
+    shares: &[Share<'_>],
+    tolerance: &Tolerance,
+    standing: &[LeftStanding],
+) -> Result<Option<IdealTime>, Failure> {
     let left = |id: &str| standing.iter().filter(|l| l.face == id).map(|l| l.area_mm2).sum::<f64>();
     // Faces by the operations that have them.
     let mut having: BTreeMap<&str, (&LoadedFace, Vec<usize>)> = BTreeMap::new();
@@ -164,14 +168,7 @@ pub fn of_part(shares: &[Share<'_>], standing: &[LeftStanding]) -> Result<Option
     let mut each = Vec::with_capacity(groups.len());
     for (of, patches) in &groups {
         let jobs: Vec<Job> = of.iter().flat_map(|k| shares[*k].job.each_tool()).collect();
-        let all = jobs.iter().map(Job::tolerance);
-        let loosest = all.reduce(|a, b| Tolerance {
-            scallop_mm: a.scallop_mm.max(b.scallop_mm),
-            gouge_mm: a.gouge_mm.max(b.gouge_mm),
-            chord_mm: a.chord_mm.max(b.chord_mm),
-        });
-        let Some(tolerance) = loosest else { continue };
-        each.push(over(&jobs, patches, &tolerance, ANY_TILT)?);
+        each.push(over(&jobs, patches, tolerance, ANY_TILT)?);
     }
     let Some(first) = each.first() else { return Ok(None) };
     let sum = |of: &dyn Fn(&Bound) -> f64| each.iter().map(of).sum::<f64>();

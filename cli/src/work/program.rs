@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::{Control, Job};
 use crate::part::Part;
 use crate::watch::{Stage, Watch};
+use crate::work::budget;
 use crate::work::by_tip;
 use crate::work::extras::Extras;
 use crate::work::nc::{self, Motions};
@@ -129,7 +130,10 @@ impl Posted {
         let (program, _) = best?;
         // The verdict is on what its text does, read as everybody reads it: from the place that its head says, beside the job of the file.
         let told = job.in_hand(job.tool().number());
-        let (read, _) = reading::program(&program.text, &control, &told, faces, false)?;
+        let (mut read, _) = reading::program(&program.text, &control, &told, faces, false)?;
+        if job.is_beside_kept() {
+            read.control.blend_mm = read.control.blend_mm.max(budget::blend_mm(job, turns(planned)));
+        }
         wall_s.post += stage.end();
         let notes = [&control_notes, &setup_notes, &program.diagnostics, &read.diagnostics];
         let diagnostics = notes.into_iter().flatten().cloned().collect();

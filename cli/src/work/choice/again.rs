@@ -155,7 +155,7 @@ impl Choice<'_> {
 
 /// For how many times as much what leaves or takes a little too much is laid out again, to come to `aim` of what it may; None for more than that, and
 /// less.
-fn less_of(found: Excess, aim: f64) -> Option<f64> {
+pub fn less_of(found: Excess, aim: f64) -> Option<f64> {
     let Excess { is_mm, may_mm } = found;
     (is_mm > may_mm && is_mm <= LITTLE_TOO_MUCH * may_mm).then(|| aim * may_mm / is_mm)
 }

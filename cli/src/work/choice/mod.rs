@@ -21,8 +21,9 @@ mod search;
 mod settle;
 mod table;
 
+pub use again::less_of;
 pub use candidates::check;
 pub use measured::Measured;
 pub use search::{Choice, Contender, patches};
-pub use settle::{Settled, settle};
+pub use settle::{Settled, objection, settle};
 pub use table::{Outcome, Row, page_table, text_table};

@@ -51,7 +51,7 @@ pub fn settle(
                 continue;
             }
         };
-        let why = objection(&judged, choice.blend_mm(&contender), &found)?;
+        let why = objection(&judged, choice.blend_mm(&contender), &found);
         holding += usize::from(why.is_none());
         let measured = measured(choice, &contender, &found.summary)?;
         let again = choice.record(&contender, measured, why);
@@ -88,8 +88,8 @@ fn off_by(job: &Job, found: &Verified) -> Result<f64, Failure> {
     Ok((v.height_max_mm / t.scallop_mm).max(v.gouge_max_mm / t.gouge_mm).max(1.0))
 }
 
-/// Why a verification does not hold.
-fn objection(job: &Job, blend_mm: f64, found: &Verified) -> Result<Option<Objection>, Failure> {
+/// Why a program does not hold whose corners may be blended by so much; None where it does.
+pub fn objection(job: &Job, blend_mm: f64, found: &Verified) -> Option<Objection> {
     let v = &found.summary;
     let t = job.tolerance();
     // What may be hidden between samples counts where nothing is too much without it: it is not looked for elsewhere.
@@ -101,10 +101,10 @@ fn objection(job: &Job, blend_mm: f64, found: &Verified) -> Result<Option<Object
     let dug = excess(v.gouge_max_mm, t.gouge_mm - blend_mm, v.hidden_gouge_mm);
     let left = excess(v.scallop_max_mm, t.scallop_mm - marks_mm - blend_mm, v.hidden_scallop_mm);
     match found.verdict.answer() {
-        Answer::Held => return Ok(None),
+        Answer::Held => return None,
         Answer::NotShown => {
             let text = format!("verified: {}", found.verdict.words());
-            return Ok(Some(Objection { dug, left, hidden: true, text }));
+            return Some(Objection { dug, left, hidden: true, text });
         }
         Answer::NotHeld => {}
     }
@@ -124,7 +124,7 @@ fn objection(job: &Job, blend_mm: f64, found: &Verified) -> Result<Option<Object
         },
     );
     let (dug, left) = (dug.filter(|_| k == 0), left.filter(|_| k == 4));
-    Ok(Some(Objection { dug, left, hidden: false, text }))
+    Some(Objection { dug, left, hidden: false, text })
 }
 
 fn measured(choice: &Choice<'_>, contender: &Contender, v: &Verification) -> Result<Measured, Failure> {

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{LeftMaterial, LoadedFace, Part, area};
-use crate::work::plunges;
 use crate::work::stock::RawMaterial;
+use crate::work::{budget, plunges};
 use osculate_geom::{Point3, Unit3};
 use osculate_productivity::plan::Linked;
 use osculate_tools::Cutter;
@@ -25,9 +25,7 @@ const MOST_OF_A_FACE: usize = 1_000_000;
 /// Places at which rest is looked for, at most ...
 const REST_PLACES: f64 = 400_000.0;
 /// ... so far apart, of its overlap.
-const REST_APART: f64 = 0.5;
-/// What stands higher than this share of the scallop is too high: the rest is for the marks of teeth, which are not known here.
-const HIGH: f64 = 0.85;
+const REST_APART: f64 = 0.25;
 /// Normals that lean off a tool's axis by more than this, as a cosine, are of walls, on which nothing stands that it comes through.
 const SEEN: f64 = 0.05;
 /// Area that may stand higher under a tool that leans.
@@ -252,12 +250,12 @@ impl Behind {
         part.faces.iter().map(on).collect()
     }
 
-    /// Where material stands above the scallop of a job.
+    /// Where material stands higher than passes of a job are laid out for: teeth and corners add to that.
     pub fn too_high(&self, job: &Job, part: &Part, overlap_mm: f64) -> Result<TooHigh, Failure> {
         let samples = samples(part, REST_APART * overlap_mm, REST_PLACES)?;
-        let limit = HIGH * job.tolerance().scallop_mm;
-        let heights = self.heights_mm(&samples, job.layer_mm().max(2.0 * limit))?;
-        let high = samples.iter().zip(&heights).filter(|(_, h)| **h > limit);
+        let limit_mm = budget::laid_out_mm(job, part);
+        let heights = self.heights_mm(&samples, job.layer_mm().max(2.0 * limit_mm))?;
+        let high = samples.iter().zip(&heights).filter(|(_, h)| **h > limit_mm);
         let (mut places, mut area_mm2) = (Vec::new(), 0.0);
         for (s, _) in high {
             places.push(s.point);

@@ -297,9 +297,20 @@ impl Course {
         self.sections[first.unwrap_or(k)].motions.start
     }
 
+    /// By how much controls may blend corners, mm.
+    pub const fn blend_mm(&self) -> f64 {
+        self.control.blend_mm
+    }
+
+    /// The place of the operation that makes a motion.
+    pub fn section_at(&self, motion: usize) -> Option<usize> {
+        let k = self.sections.partition_point(|s| s.motions.end <= motion);
+        self.sections.get(k).is_some_and(|s| s.motions.contains(&motion)).then_some(k)
+    }
+
     /// Which operation makes a motion.
     fn section_of(&self, motion: usize) -> Option<&Section> {
-        self.sections.iter().find(|s| s.motions.contains(&motion))
+        Some(&self.sections[self.section_at(motion)?])
     }
 
     /// The operations that made the worst places and the collisions so, by the motions that did it, counted from one of them.

@@ -58,6 +58,13 @@ pub struct Kept {
     pub compared: Vec<Row>,
 }
 
+/// What an operation of a list depends on, as a number, of the list's own: what it is laid out for besides.
+pub fn key_of(list: u64, at_most_mm: Option<f64>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (list, at_most_mm.map(f64::to_bits)).hash(&mut hasher);
+    hasher.finish()
+}
+
 /// What a list depends on, as a number.
 ///
 /// # Errors

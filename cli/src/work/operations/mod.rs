@@ -1,6 +1,7 @@
 //! A list of operations from the part to its programs: each planned on what those before it left, all of a setup in one program, every
 //! operation and the finished part judged from the texts.
 
+mod again;
 pub mod behind;
 mod course;
 mod derive;
@@ -21,6 +22,7 @@ use crate::work::plan::Plan;
 use crate::work::program::WallS;
 use crate::work::stock::RawMaterial;
 use crate::work::verify::Verified;
+use again::Again;
 use course::StepOf;
 pub use course::{Course, Section, Text};
 use kept::Kept;
@@ -52,6 +54,7 @@ pub fn seen(operation: &Operation, job: &Job, part: &Part) -> Result<Part, Failu
 }
 
 /// Plans all operations of a list, posts a program for each setup, and judges each operation and the finished part from their texts.
+/// Where the finished part is left a little too high, what left it so is laid out again for less.
 ///
 /// # Errors
 /// Where an operation cannot be planned or posted. A part that is not held is none: the verdict says so.
@@ -61,33 +64,96 @@ pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, F
     let begin = Instant::now();
     let stage = Stage::begin(watch, "stock");
     let raw = RawMaterial::of(list.whole(), part)?;
-    let mut behind = behind::Behind::new(part, raw.as_ref())?;
-    let mut steps: Vec<Step<'_>> = Vec::new();
-    let mut notes: Vec<Diagnostic> = Vec::new();
     let key = kept::key(list)?;
     wall_s.between = stage.end();
+    let mut again = Again::default();
+    loop {
+        let Laid { steps, mut notes } =
+            laid(list, part, (raw.as_ref(), key), &mut again, &mut wall_s, watch)?;
+        let stage = Stage::begin(watch, "post");
+        let programs = posted::programs(list, part, &steps)?;
+        let texts: Vec<Text<'_>> = programs.iter().map(posted::Program::text).collect();
+        let course = Course::read(list, part, &texts, false)?;
+        wall_s.post += stage.end();
+        let stage = Stage::begin(watch, "verify");
+        if course.sections.len() != steps.len() {
+            let what = format!(
+                "its programs name {} operations where {} are planned: a fault of the post",
+                course.sections.len(),
+                steps.len()
+            );
+            return Err(Failure::file(list.path(), what));
+        }
+        let own = |step: &Step<'_>| Ok(step.operation.judged()?.in_hand(step.job.tool().number()));
+        let judging: Vec<StepOf<'_>> = steps
+            .iter()
+            .map(|s| Ok(StepOf { job: own(s)?, part: &s.part }))
+            .collect::<Result<_, Failure>>()?;
+        let (whole, judged) = course.judge((list, part), &judging, &|f| stage.at(f))?;
+        drop(judging);
+        wall_s.verify += stage.end();
+        if again.asks(list.whole(), &steps, &course, &whole) {
+            again.keep(steps);
+            continue;
+        }
+        notes.extend(again.notes());
+        let known = told::Known { list, part, steps, programs, course, judged, whole, notes, wall_s, begin };
+        return told::told(known, watch);
+    }
+}
+
+/// Operations laid out, before they are posted.
+struct Laid<'a> {
+    steps: Vec<Step<'a>>,
+    notes: Vec<Diagnostic>,
+}
+
+/// Plans all operations one after the other, or takes what is there of them.
+fn laid<'a>(
+    list: &'a Operations,
+    part: &Part,
+    (raw, key): (Option<&RawMaterial<'_>>, u64),
+    again: &mut Again<'a>,
+    wall_s: &mut WallS,
+    watch: &dyn Watch,
+) -> Result<Laid<'a>, Failure> {
+    let stage = Stage::begin(watch, "stock");
+    let mut behind = behind::Behind::new(part, raw)?;
+    let (mut steps, mut notes) = (Vec::new(), Vec::new());
+    wall_s.between += stage.end();
     for (place, operation) in list.all().iter().enumerate() {
-        let before = watch.kept(&kept::name(place)).and_then(|bytes| Kept::read(&bytes, key));
-        let planning = match before {
-            Some(kept) => Planning::Path(Box::new(Step::of_kept(operation, part, kept)?)),
-            None => step::plan(operation, part, (&behind, raw.as_ref()), watch)?,
+        let at_most_mm = again.at_most_mm(operation);
+        let key = kept::key_of(key, at_most_mm);
+        let before = || watch.kept(&kept::name(place)).and_then(|bytes| Kept::read(&bytes, key));
+        let planning = if let Some(step) = again.ready(operation) {
+            Planning::Path(Box::new(step))
+        } else if let Some(kept) = before() {
+            let step = Step::of_kept(operation, at_most_mm, part, kept)?;
+            wall_s.plan += step.plan_s;
+            Planning::Path(Box::new(step))
+        } else {
+            let planning = step::plan((operation, at_most_mm), part, (&behind, raw), watch)?;
+            if let Planning::Path(step) = &planning {
+                watch.keep(&kept::name(place), &step.kept(key).bytes());
+                wall_s.plan += step.plan_s;
+            }
+            planning
         };
         match planning {
             Planning::Path(mut step) => {
-                watch.keep(&kept::name(place), &step.kept(key).bytes());
                 let stage = Stage::begin(watch, "stock");
                 let limit_mm = list.whole().tolerance().scallop_mm;
                 let before = behind.stands(&step.part, limit_mm);
                 let slowed = behind.take(&step.job, &mut step.planned.linked)?;
                 step.on_faces = behind::on_faces(&step.part, before, behind.stands(&step.part, limit_mm));
-                if slowed > 0 {
+                step.slowed += slowed;
+                if step.slowed > 0 {
                     let text = format!(
-                        "{}: {slowed} rapid moves would go through material and are made at feed",
-                        operation.name
+                        "{}: {} rapid moves would go through material and are made at feed",
+                        operation.name, step.slowed
                     );
                     notes.push(Diagnostic::note("links", text));
                 }
-                wall_s.plan += step.plan_s;
                 wall_s.between += stage.end();
                 steps.push(*step);
             }
@@ -97,28 +163,7 @@ pub fn plan(part: &Part, list: &Operations, watch: &dyn Watch) -> Result<Plan, F
     if steps.is_empty() {
         return Err(Failure::file(list.path(), "no operation has anything to do"));
     }
-    let stage = Stage::begin(watch, "post");
-    let programs = posted::programs(list, part, &steps)?;
-    let texts: Vec<Text<'_>> = programs.iter().map(posted::Program::text).collect();
-    let course = Course::read(list, part, &texts, false)?;
-    wall_s.post = stage.end();
-    let stage = Stage::begin(watch, "verify");
-    if course.sections.len() != steps.len() {
-        let what = format!(
-            "its programs name {} operations where {} are planned: a fault of the post",
-            course.sections.len(),
-            steps.len()
-        );
-        return Err(Failure::file(list.path(), what));
-    }
-    let own = |step: &Step<'_>| Ok(step.operation.judged()?.in_hand(step.job.tool().number()));
-    let judging: Vec<StepOf<'_>> =
-        steps.iter().map(|s| Ok(StepOf { job: own(s)?, part: &s.part })).collect::<Result<_, Failure>>()?;
-    let (whole, judged) = course.judge((list, part), &judging, &|f| stage.at(f))?;
-    drop(judging);
-    wall_s.verify = stage.end();
-    let known = told::Known { list, part, steps, programs, course, judged, whole, notes, wall_s, begin };
-    told::told(known, watch)
+    Ok(Laid { steps, notes })
 }
 
 /// Judges the programs of all setups of a list, in their order: on the finished part, from the texts alone. The programs of a

@@ -53,13 +53,15 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
         }
         let paths: Vec<ClPath> =
             own.iter().map(|s| passes::cl_path(&steps[*s].job, &steps[*s].planned.linked)).collect();
-        let (place, notes) = placed(&held.job, part, (steps, &own), &paths);
+        let whole = whole(&paths);
+        let longest = longest(&held.job);
+        let (place, notes) = placed(&longest, part, (steps, &own), &whole);
         let control = held.job.control();
         let title = passes::title(&held.job);
         // What a control may round off at corners counts for the whole program.
         let blend_mm = own.iter().map(|s| budget::asked_mm(&steps[*s].job)).fold(f64::INFINITY, f64::min);
         let blank_mm = stock::corners_of(&held.job, part)?;
-        let by = |control: &Control| -> Result<(String, Vec<Diagnostic>), Failure> {
+        let by = |control: &Control, place: &Setup| -> Result<(String, Vec<Diagnostic>), Failure> {
             let sections: Vec<Section<'_>> = own
                 .iter()
                 .zip(&paths)
@@ -78,34 +80,75 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
                     }
                 })
                 .collect();
-            let posted = post_sections(&sections, &control.machine, &place)
+            let posted = post_sections(&sections, &control.machine, place)
                 .map_err(|e| Failure::file(list.path(), format!("setup {}: {e}", held.name)))?;
             Ok((control.language.worded(posted.text)?, posted.diagnostics))
         };
         let name = if setups.len() > 1 { format!("program-{}", held.name) } else { "program".to_owned() };
         let file = format!("{name}.{}", control.extension);
-        let (text, found) = by(control)?;
+        let written = |place: Setup, notes: Vec<Diagnostic>| -> Result<Written, Failure> {
+            let (text, found) = by(control, &place)?;
+            Ok(Written { place, text, notes: [notes, found].concat() })
+        };
+        let mut best = written(place, notes);
+        let others = setup::turned(&longest, part, &whole, control, &place);
+        let first_min = best.as_ref().ok().filter(|_| !others.is_empty()).and_then(|w| w.time_min(&held.job));
+        let mut least_min = first_min.map_or(f64::INFINITY, |min| (1.0 - setup::WORTH_A_TURN) * min);
+        for turned in others {
+            // A turn that no program can be written for is none.
+            let Ok(other) = written(turned, Vec::new()) else { continue };
+            let Some(now_min) = other.time_min(&held.job) else { continue };
+            if now_min < least_min {
+                let notes = setup::notes_of_turned(&turned, first_min, now_min);
+                (least_min, best) = (now_min, Ok(Written { notes: [notes, other.notes].concat(), ..other }));
+            }
+        }
+        let Written { place, text, notes } = best?;
         let mut diagnostics = held.job.control_notes();
         diagnostics.extend(notes);
-        diagnostics.extend(found);
-        diagnostics.extend(by_tip::note(control, &place, &text, |tip| Some(by(tip).ok()?.0)));
+        diagnostics.extend(by_tip::note(control, &place, &text, |tip| Some(by(tip, &place).ok()?.0)));
         out.push(Program { path: PathBuf::from(&file), file, text, setup: place, diagnostics });
     }
     Ok(out)
 }
 
+/// A program, and what is said of where its part sits.
+struct Written {
+    place: Setup,
+    text: String,
+    notes: Vec<Diagnostic>,
+}
+
+impl Written {
+    /// Its time on the control, min; none where it cannot be read.
+    fn time_min(&self, job: &Job) -> Option<f64> {
+        let tools = job.each_tool();
+        let read = nc::read_back_tools(&self.text, (job, &tools), job.control(), &self.place, false).ok()?;
+        Some(read.ranked_min())
+    }
+}
+
+/// All paths of a setup as one.
+fn whole(paths: &[ClPath]) -> ClPath {
+    let moves = paths.iter().flat_map(|p| p.moves.iter().copied()).collect();
+    ClPath { moves, ..paths[0].clone() }
+}
+
+/// The job with the longest tool, which needs the most of the travel.
+fn longest(held: &Job) -> Job {
+    let jobs = held.each_tool();
+    jobs.into_iter()
+        .max_by(|a, b| nc::gauge_mm(a).total_cmp(&nc::gauge_mm(b)))
+        .unwrap_or_else(|| held.clone())
+}
+
 /// Where the part sits for all paths of a setup.
 fn placed(
-    held: &Job,
+    longest: &Job,
     part: &Part,
     (steps, own): (&[Step<'_>], &[usize]),
-    paths: &[ClPath],
+    path: &ClPath,
 ) -> (Setup, Vec<Diagnostic>) {
-    let moves = paths.iter().flat_map(|p| p.moves.iter().copied()).collect();
-    let all = ClPath { moves, ..paths[0].clone() };
     let axes: Vec<_> = own.iter().flat_map(|s| axes_of(&steps[*s].planned)).collect();
-    // The longest tool needs the most of the travel.
-    let jobs = held.each_tool();
-    let longest = jobs.iter().max_by(|a, b| nc::gauge_mm(a).total_cmp(&nc::gauge_mm(b))).unwrap_or(held);
-    setup::of(longest, part, Some(Along { path: &all, axes: &axes }))
+    setup::of(longest, part, Some(Along { path, axes: &axes }))
 }

@@ -1,7 +1,7 @@
 //! One operation planned: from what those before it left to its path.
 
 use crate::failure::Failure;
-use crate::job::{Job, Operation, OperationWord};
+use crate::job::{Circumstances, Job, Operation, OperationWord};
 use crate::part::{LoadedFace, Part};
 use crate::watch::{Stage, Watch};
 use crate::words::number;
@@ -38,6 +38,8 @@ pub struct Step<'a> {
     pub too_high_mm2: Option<f64>,
     /// What stood on its faces before, and stands after.
     pub on_faces: Vec<OnFace>,
+    /// Rapid moves that are made at feed, as they would go through material.
+    pub slowed: usize,
     /// Wall time of planning, s.
     pub plan_s: f64,
 }
@@ -52,12 +54,27 @@ impl<'a> Step<'a> {
         kept
     }
 
+    /// Its job as the file has it, with what a search gave it: what the operation may leave.
+    ///
+    /// # Errors
+    /// As [`Job::from_toml`].
+    pub fn judged(&self) -> Result<Job, Failure> {
+        let job = self.operation.judged()?.in_hand(self.job.tool().number());
+        Ok(job.with(self.job.overrides()))
+    }
+
     /// As it was kept.
     ///
     /// # Errors
     /// Where the operation is none of the part.
-    pub fn of_kept(operation: &'a Operation, whole: &Part, kept: Kept) -> Result<Self, Failure> {
-        let job = kept.job(operation.planned(kept.standing_mm, None)?);
+    pub fn of_kept(
+        operation: &'a Operation,
+        at_most_mm: Option<f64>,
+        whole: &Part,
+        kept: Kept,
+    ) -> Result<Self, Failure> {
+        let known = Circumstances { standing_mm: kept.standing_mm, at_most_mm, ..Circumstances::default() };
+        let job = kept.job(operation.planned(&known)?);
         let places = Passages::of(operation, &operation.judged()?, whole)?;
         Ok(Self {
             operation,
@@ -68,6 +85,7 @@ impl<'a> Step<'a> {
             standing_mm: kept.standing_mm,
             too_high_mm2: kept.too_high_mm2,
             on_faces: Vec::new(),
+            slowed: 0,
             plan_s: kept.plan_s,
             compared: kept.compared,
         })
@@ -83,12 +101,12 @@ pub enum Planning<'a> {
     Nothing(Diagnostic),
 }
 
-/// Plans an operation.
+/// Plans an operation, of which a finishing is laid out for no more than a scallop.
 ///
 /// # Errors
 /// Where it has no passes.
 pub fn plan<'a>(
-    operation: &'a Operation,
+    (operation, at_most_mm): (&'a Operation, Option<f64>),
     whole: &Part,
     (behind, raw): (&Behind, Option<&RawMaterial<'_>>),
     watch: &dyn Watch,
@@ -99,7 +117,8 @@ pub fn plan<'a>(
     let places = Passages::of(operation, &job, whole)?.in_stock(behind.left());
     let (part, whole_place) = (places.first(), places.all());
     let standing_mm = raw.map(|raw| places.standing_mm(behind, &job, raw)).transpose()?;
-    let job = operation.planned(standing_mm, None)?;
+    let known = Circumstances { standing_mm, at_most_mm, ..Circumstances::default() };
+    let job = operation.planned(&known)?;
     let (mut job, mut too_high_mm2, mut compared) = (job, None, Vec::new());
     let progress = |f: f64| stage.at(f);
     let planned = match operation.kind {
@@ -112,7 +131,7 @@ pub fn plan<'a>(
             rough::planned(&job, whole_place, (layers, stock, places), &progress).map_err(here)?
         }
         OperationWord::Rest => {
-            let high = places.too_high(behind, &job, operation.overlap_mm)?;
+            let high = places.too_high(behind, &operation.judged()?, operation.overlap_mm)?;
             if high.places.is_empty() {
                 let text =
                     format!("{}: nothing stands above its tolerance: it has nothing to do", operation.name);
@@ -138,7 +157,8 @@ pub fn plan<'a>(
         OperationWord::Finish if job.is_open() => {
             // The part stands as it does for all operations.
             let rotate_deg = setup::of(&job, whole, None).0.turn_rad().map(f64::to_degrees);
-            let job_here = operation.planned(standing_mm, Some(rotate_deg))?;
+            let known = Circumstances { rotate_deg: Some(rotate_deg), is_chosen: true, ..known };
+            let job_here = operation.planned(&known)?;
             let mut choice = Choice::screen(&job_here, part).map_err(here)?;
             let settled =
                 choice::settle(&mut choice, 1, watch, &mut WallS::default(), &progress).map_err(here)?;
@@ -169,6 +189,7 @@ pub fn plan<'a>(
         standing_mm,
         too_high_mm2,
         on_faces: Vec::new(),
+        slowed: 0,
         plan_s,
     })))
 }

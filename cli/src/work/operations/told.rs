@@ -78,7 +78,7 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
         // The least time for whole faces says nothing of what leaves some of them to others, as roughings and rests do.
         let finishes = step.operation.kind == OperationWord::Finish;
         if finishes && judged.verified.summary.uncut_area_mm2 <= 0.0 {
-            let found = ideal::of_plan(&step.job, &step.part, &step.planned, cutting_min);
+            let found = ideal::of_plan(&step.judged()?, &step.part, &step.planned, cutting_min);
             told.figures.ideal = found.map_err(|why| why.in_operation(&step.operation.name))?;
         }
         if finishes || step.operation.kind == OperationWord::Rest {
@@ -91,7 +91,8 @@ pub fn told(known: Known<'_>, watch: &dyn Watch) -> Result<Plan, Failure> {
     let left_standing = standing::left(list, part, &steps, &whole);
     // The least time for faces says nothing of a part that is left with something on them nobody knows where.
     let known = !left_standing.is_empty() || whole.summary.uncut_area_mm2 <= 0.0;
-    let ideal = if known { ideal::of_part(&shares, &left_standing)? } else { None };
+    let ideal =
+        if known { ideal::of_part(&shares, &list.whole().tolerance(), &left_standing)? } else { None };
     wall_s.ideal = stage.end();
     let stage = Stage::begin(watch, "report");
     let hands = steps.iter().zip(&course.sections).map(|(step, section)| {

@@ -20,6 +20,9 @@ const FLATTEST: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// A flat bottom over a slope rises by this part of the height at most, from rim to rim, for the ground to count as level.
 pub(super) const LEVEL: f64 = 0.1;
 
+/// Of its radius, how far from its axis a flat end with a sharp rim is counted on: what the rim only grazes one tooth meets and the next one may not.
+const RIM: f64 = 0.97;
+
 /// What a sample wants.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Want {
@@ -88,7 +91,8 @@ pub(super) fn want(
     let tip = z - (arc.centre_z_mm - arc.radius_mm * n[2]);
     // No tool leaves less than h further from its axis than where its lower side rises by h.
     let rise = height_mm.min(arc.radius_mm);
-    let most = arc.centre_rho_mm.max(0.0) + (rise * (2.0 * arc.radius_mm - rise)).max(0.0).sqrt();
+    let bottom = if arc.radius_mm > 0.0 { 1.0 } else { RIM };
+    let most = bottom * arc.centre_rho_mm.max(0.0) + (rise * (2.0 * arc.radius_mm - rise)).max(0.0).sqrt();
     let wanted =
         Want { at: [x, y], tip, reach: most, half: [0.0; 2], area: s.area_mm2, normal: s.normal, uv: s.uv };
     if arc.centre_rho_mm > 0.0 && 2.0 * arc.centre_rho_mm * sine <= LEVEL * height_mm {
