@@ -169,6 +169,39 @@ fn a_part_is_tilted_where_its_program_is_quicker_so() {
     assert!(run.code == 0 && (again - planned).abs() < 1e-3, "{again} {planned}");
 }
 
+/// The bowl as an operation of a list, whose part is turned where its setup asks for that.
+#[test]
+fn the_part_of_a_list_is_tilted_where_its_setup_asks_for_it() {
+    let scratch = Scratch::new();
+    let text = "format = 2\n[part]\nbuiltin = { kind = \"paraboloid\", a_per_mm = 0.05, b_per_mm = 0.05, half_size_mm = 3 }\n\
+        [tolerance]\nscallop_mm = 0.02\ngouge_mm = 0.02\n\
+        [machine]\nname = \"trunnion-ac\"\ndialect = \"linuxcnc\"\nfeed = \"inverse_time\"\n\
+        [[tool]]\nnumber = 1\nkind = \"toroidal\"\ndiameter_mm = 4\ncorner_radius_mm = 1\nlength_mm = 40\n\
+        cutting = { spindle_rpm = 12000, feed_mm_min = 3000 }\n\
+        [[operation]]\nkind = \"finish\"\nstrategy = { kind = \"isoparametric\", lead_deg = 10 }\n";
+    let plan = |name: &str, setup: &str| {
+        let job =
+            scratch.write(&format!("{name}.toml"), &text.replace("[[tool]]", &format!("{setup}[[tool]]")));
+        let out = scratch.path(name);
+        let run = osculate(&["plan", job.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+        assert_eq!(run.code, 0, "{}{}", run.out, run.err);
+        let program = out.join("program.ngc");
+        let verify =
+            osculate(&["verify", program.to_str().unwrap(), "--job", job.to_str().unwrap(), "--json"]);
+        assert_eq!(verify.json()["verdict"], run.json()["verdict"]);
+        run.json()
+    };
+    let stands = plan("stands", "");
+    assert!(!setup_findings(&stands).join("\n").contains("hold the path up"), "{stands}");
+    let stays = plan("stays", "[[setup]]\nname = \"op10\"\nturns = \"none\"\n");
+    let tilted = plan("tilted", "[[setup]]\nname = \"op10\"\nturns = \"free\"\n");
+    let said = setup_findings(&tilted).join("\n");
+    assert!(said.contains("turned so that the joints hold the path up less"), "{said}");
+    let [before, same, now] = [&stands, &stays, &tilted].map(|v| figure(v, "control_time_min"));
+    assert_eq!(before, same);
+    assert!(now < 0.97 * before, "{now} {before}");
+}
+
 /// A piece of a sphere around +x: its normals are up to 35 degrees from that.
 #[test]
 fn a_face_that_looks_aside_is_turned_about_one_axis() {

@@ -258,7 +258,7 @@ pub static TABLES: &[Table] = &[
         may("part_zero_mm", TRIPLE, "from the box of the faces", "[0, 0, 50]", "the part's origin from the table's reference point"),
         may("rotate_deg", Kind::Numbers(3, TURN, "deg"), "from the tool axes", "[0, 0, 90]", "turn of the part about x, then y, then z"),
         may("turns", Kind::Word(Turns::WORDS), "axis", "\"free\"",
-            "without rotate_deg: whether the part is turned to save time: not, with one of its axes up, or anyhow"),
+            "without rotate_deg: whether the part is turned to save time: not, with one of its axes up, or anyhow; of a list where it is given"),
         may("clearance_mm", MM, "10", "10", "clearance of rapid moves over the sphere around the part"),
         may("approach_mm", MM, "2", "2", "distance from the surface at which rapid moves end"),
         may("hop_mm", MM, "an eighth of approach_mm", "0.25", "least lift in hops from pass to pass"),

@@ -23,6 +23,8 @@ pub struct Setup {
     pub rotate_deg: Option<[f64; 3]>,
     /// How the part may be turned where `rotate_deg` is not given.
     pub turns: Turns,
+    /// Whether the file says so.
+    pub asks_turns: bool,
     /// Clearance of rapid moves over the sphere around the part.
     pub clearance_mm: f64,
     /// Distance from the surface at which rapid moves end.
@@ -55,6 +57,7 @@ impl Setup {
             part_zero_mm: t.part_zero_mm,
             rotate_deg: t.rotate_deg,
             turns: t.turns.unwrap_or_default(),
+            asks_turns: t.turns.is_some(),
             clearance_mm: t.clearance_mm.unwrap_or(10.0),
             approach_mm,
             hop_mm,

@@ -91,7 +91,9 @@ pub fn programs(list: &Operations, part: &Part, steps: &[Step<'_>]) -> Result<Ve
             Ok(Written { place, text, notes: [notes, found].concat() })
         };
         let mut best = written(place, notes);
-        let others = setup::turned(&longest, part, &whole, control, &place);
+        // How a block is clamped is for a shop to say.
+        let asks = held.job.setup().asks_turns;
+        let others = if asks { setup::turned(&longest, part, &whole, control, &place) } else { Vec::new() };
         let first_min = best.as_ref().ok().filter(|_| !others.is_empty()).and_then(|w| w.time_min(&held.job));
         let mut least_min = first_min.map_or(f64::INFINITY, |min| (1.0 - setup::WORTH_A_TURN) * min);
         for turned in others {
