@@ -74,3 +74,22 @@ fn flank_milling_is_judged_on_the_real_face() {
     assert_eq!(run.code, 1);
     agree(&planned, &run.json());
 }
+
+/// Roughing from below beside the curved blades of a propeller, whose lines along walls run out into the air and come back: they go around the blades,
+/// not straight from where they leave to where they come back.
+#[test]
+fn roughing_goes_around_what_it_leaves() {
+    let s = Scratch::new();
+    let list = std::fs::read_to_string(repository("examples/propeller-whole/job.toml")).unwrap();
+    let part = repository("examples/propeller/propeller.step");
+    let mut parts = list.split("[[operation]]");
+    let head = parts.next().unwrap().replace("../propeller/propeller.step", part.to_str().unwrap());
+    let rough: Vec<&str> = parts.filter(|p| p.contains("kind = \"rough\"")).collect();
+    assert_eq!(rough.len(), 2);
+    let text = format!("{head}[[operation]]{}", rough.join("[[operation]]"));
+    let run = plan(&s.write("job.toml", &text), &s.path("out"));
+    let v = run.json();
+    assert_eq!((run.code, answer(&v)), (1, "not_held"), "nothing is finished");
+    assert!(!why(&v).contains("gouge"), "{}", why(&v));
+    assert_eq!(v["verification"]["gouge_max_mm"], 0.0, "{}", why(&v));
+}

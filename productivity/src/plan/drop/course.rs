@@ -38,6 +38,13 @@ impl Course {
         &self.lengths
     }
 
+    /// The nodes between two lengths.
+    pub(super) fn nodes_between(&self, [from, to]: [f64; 2]) -> &[[f64; 2]] {
+        let first = self.lengths.partition_point(|l| *l <= from);
+        let last = self.lengths.partition_point(|l| *l < to);
+        self.nodes.get(first..last).unwrap_or_default()
+    }
+
     /// The place at a length; on a straight line with the first or last piece beyond the ends.
     pub(super) fn at(&self, s: f64) -> [f64; 2] {
         let k = self.lengths.partition_point(|l| *l <= s).clamp(1, self.nodes.len() - 1);
@@ -50,13 +57,11 @@ impl Course {
     pub(super) fn stray(&self, from: f64, to: f64) -> f64 {
         let (a, b) = (self.at(from), self.at(to));
         let long = apart(a, b);
-        let first = self.lengths.partition_point(|l| *l <= from);
-        let last = self.lengths.partition_point(|l| *l < to);
         let off = |p: &[f64; 2]| {
             let w = [p[0] - a[0], p[1] - a[1]];
             if long > 0.0 { ((b[0] - a[0]) * w[1] - (b[1] - a[1]) * w[0]).abs() / long } else { apart(a, *p) }
         };
-        self.nodes.get(first..last).into_iter().flatten().map(off).fold(0.0, f64::max)
+        self.nodes_between([from, to]).iter().map(off).fold(0.0, f64::max)
     }
 }
 
@@ -79,6 +84,8 @@ mod tests {
         assert_eq!((c.lengths().last(), c.nodes().len()), (Some(&7.0), 3));
         assert_eq!((c.at(2.0), c.at(5.0), c.at(8.0)), ([2.0, 0.0], [3.0, 2.0], [3.0, 5.0]));
         // The corner over the chord of a 3-4-5 triangle.
+        assert_eq!(c.nodes_between([0.0, 7.0]), [[3.0, 0.0]]);
+        assert!(c.nodes_between([3.0, 7.0]).is_empty() && c.nodes_between([5.0, 4.0]).is_empty());
         assert!((c.stray(0.0, 7.0) - 2.4).abs() < 1e-12 && c.stray(3.5, 6.0) == 0.0);
         assert_eq!(from_piece([4.0, 1.0], [3.0, 0.0], [3.0, 4.0]), (1.0, 0.25));
         assert_eq!(Course::through([[1.0, 1.0], [1.0, 1.0]]), None);

@@ -84,6 +84,11 @@ fn looks(course: &Course, step: f64) -> Vec<f64> {
 
 /// The passes along a course: the tool dropped onto the faces, parted where nothing is below it.
 pub(super) fn along(ground: &Ground<'_>, course: &Course) -> Vec<Pass> {
+    runs(ground, course).into_iter().map(|(pass, _)| pass).collect()
+}
+
+/// The same, each with the lengths of the course from which to which it leads.
+pub(super) fn runs(ground: &Ground<'_>, course: &Course) -> Vec<(Pass, [f64; 2])> {
     let at = |x: f64| ground.drops.rest(course.at(x)).map(|rest| Stop { x, rest });
     let mut runs: Vec<Vec<Stop>> = vec![Vec::new()];
     let mut last = 0.0;
@@ -110,7 +115,7 @@ pub(super) fn along(ground: &Ground<'_>, course: &Course) -> Vec<Pass> {
     }
     runs.into_iter()
         .filter(|r| r.len() >= 2)
-        .map(|r| pass(ground, &thin(ground, course, &r), course))
+        .map(|r| (pass(ground, &thin(ground, course, &r), course), [r[0].x, r[r.len() - 1].x]))
         .collect()
 }
 

@@ -13,6 +13,8 @@ pub(super) const THIN: f64 = 0.02;
 const STEPS: f64 = 0.5;
 /// Halvings of the way between two nodes on which a wall is looked for: a 64th of it.
 const HALVINGS: usize = 6;
+/// A way is over the faces all along where it is but for this, of the tool's radius.
+const NO_GAP: f64 = 1e-8;
 /// Share of the chord tolerance that a line around keeps off the wall.
 const OFF_WALL: f64 = 1.0;
 
@@ -188,38 +190,34 @@ pub(super) fn lifted(
     out
 }
 
-/// A way over the faces, no lower than a floor: exact to the chord tolerance.
+/// A way over the faces, no lower than a floor: exact to the chord tolerance. Where nothing is below the tool it goes on along the way's own
+/// places, on the floor.
 pub(super) fn along_faces(site: &Site<'_>, floor: f64, way: &[[f64; 2]]) -> Vec<[f64; 3]> {
     let Some(course) = Course::through(way.iter().copied()) else {
         return way.iter().map(|p| [p[0], p[1], site.rests(*p).max(floor)]).collect();
     };
-    let runs = trace::along(site.ground, &course);
     let frame = &site.ground.frame;
     let mut out: Vec<[f64; 3]> = Vec::new();
-    let same = |a: [f64; 3], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-9;
-    for run in runs {
+    let on_floor = |[x, y]: [f64; 2]| [x, y, floor];
+    let whole = course.lengths().last().copied().unwrap_or_default();
+    // Where runs begin is known to this.
+    let none = NO_GAP * site.tool.bare.radius_mm;
+    let mut last = 0.0;
+    for (run, [from, to]) in trace::runs(site.ground, &course) {
+        if from - last > none {
+            // Up to where something is below the tool nothing is.
+            out.push(on_floor(course.at(last)));
+            out.extend(course.nodes_between([last, from]).iter().copied().map(on_floor));
+            out.push(on_floor(course.at(from)));
+        }
         let places = run.points.iter().map(|p| frame.of(&p.pose.tip));
-        let places: Vec<[f64; 3]> =
-            places.map(|[x, y, z]| [x, y, (z + site.tool.allowance_mm).max(floor)]).collect();
-        let Some(first) = places.first() else { continue };
-        // Up to where something is below the tool nothing is.
-        match out.last().copied() {
-            None if !same(*first, way[0]) => {
-                out.extend([[way[0][0], way[0][1], floor], [first[0], first[1], floor]])
-            }
-            Some(last) if !same(last, [first[0], first[1]]) => {
-                out.extend([[last[0], last[1], floor], [first[0], first[1], floor]]);
-            }
-            _ => {}
-        }
-        out.extend(places);
+        out.extend(places.map(|[x, y, z]| [x, y, (z + site.tool.allowance_mm).max(floor)]));
+        last = to;
     }
-    match (out.last().copied(), way.last()) {
-        (None, _) => out.extend(way.iter().map(|p| [p[0], p[1], floor])),
-        (Some(last), Some(end)) if !same(last, *end) => {
-            out.extend([[last[0], last[1], floor], [end[0], end[1], floor]]);
-        }
-        _ => {}
+    if whole - last > none {
+        out.push(on_floor(course.at(last)));
+        out.extend(course.nodes_between([last, whole]).iter().copied().map(on_floor));
+        out.push(on_floor(course.at(whole)));
     }
     out
 }
