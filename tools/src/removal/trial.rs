@@ -103,6 +103,8 @@ pub(super) struct Look {
     /// What could not be looked at.
     pub lost: Vec<String>,
     pub settled: Settled,
+    /// Around those of the first so many samples that stand too high all was given up.
+    pub given_up: usize,
 }
 
 /// What was shown between samples already: limits that are kept there are kept whatever becomes of other places.
@@ -311,7 +313,7 @@ impl<'a> Trial<'a> {
         patches.resize(samples.len(), None);
         let tally = self.tally(&samples, &cuts, &density)?;
         let settled = Settled::default();
-        Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost, settled })
+        Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost, settled, given_up: 0 })
     }
 
     /// The faces with their outer edges, found by samples so far apart.

@@ -54,18 +54,22 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// Takes machined samples that stand higher than `scallop_mm` with their marks, and those of their face around them, as never touched.
+/// Takes machined samples that stand higher than `scallop_mm` with their marks, and those of their face around them, as never touched. Around those
+/// of the first `done` samples that are never touched all was taken already.
 pub(super) fn give_up(
     samples: &[Sample],
     (cuts, marks): (&mut [Cut], &mut [f64]),
     scallop_mm: f64,
-    spacing_mm: f64,
+    (spacing_mm, done): (f64, usize),
 ) {
     let grid = Grid::new(samples, AROUND * spacing_mm);
     let height = |k: usize| cuts[k].standoff_mm + marks[k];
-    let is_high = |k: &usize| !samples[*k].check_only && (cuts[*k].by.is_none() || height(*k) > scallop_mm);
+    let is_none = |k: usize| cuts[k].by.is_none();
+    let is_high = |k: &usize| !samples[*k].check_only && (is_none(*k) || height(*k) > scallop_mm);
     let mut given: Vec<bool> = (0..samples.len()).map(|k| is_high(&k)).collect();
-    let mut rim: Vec<usize> = (0..samples.len()).filter(is_high).collect();
+    let mut found: Vec<usize> =
+        (0..samples.len()).filter(|k| given[*k] && !(*k < done && is_none(*k))).collect();
+    let mut rim = found.clone();
     for round in 0..=ROUNDS {
         let mut next = Vec::new();
         for k in rim.iter().flat_map(|k| grid.near(*k)) {
@@ -75,8 +79,9 @@ pub(super) fn give_up(
                 next.push(k);
             }
         }
+        found.extend(&next);
         // The last round goes around all that was found.
-        rim = if round + 1 == ROUNDS { (0..samples.len()).filter(|k| given[*k]).collect() } else { next };
+        rim = if round + 1 == ROUNDS { found.clone() } else { next };
     }
     for ((cut, mark), given) in cuts.iter_mut().zip(marks).zip(given) {
         if given {
@@ -100,7 +105,8 @@ impl Trial<'_> {
     pub fn give_up(&self, look: &mut Look, marks: &mut Marks, spacing: f64) -> Result<(), ProveError> {
         if self.goal.limits.unreached_mm2 > 0.0 {
             let Measured { samples, cuts, .. } = &mut look.measured;
-            give_up(samples, (cuts, &mut marks.each), self.highest_mm(), spacing);
+            give_up(samples, (cuts, &mut marks.each), self.highest_mm(), (spacing, look.given_up));
+            look.given_up = samples.len();
             look.tally = self.tally(samples, cuts, &look.density)?;
         }
         Ok(())
@@ -161,20 +167,26 @@ mod tests {
         let samples: Vec<Sample> = (0..10).map(|k| sample(k, k == 8)).collect();
         let heights = [0.0, 0.01, 0.0, 0.0, 0.0, 0.03, 0.0, 0.0, 0.0, 0.0];
         let mut cuts: Vec<Cut> = heights.iter().map(|h| cut(*h)).collect();
-        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, 1.0);
+        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, (1.0, 0));
         let gone = |cuts: &[Cut]| (0..10).filter(|k| cuts[*k].by.is_none()).collect::<Vec<usize>>();
         assert_eq!(gone(&cuts), [3, 4, 5, 6, 7]);
+        // What was given up does not grow by being looked at again; a sample that is added and stands too high takes what is around it.
+        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, (1.0, 10));
+        assert_eq!(gone(&cuts), [3, 4, 5, 6, 7]);
+        cuts[0] = cut(0.03);
+        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, (1.0, 10));
+        assert_eq!(gone(&cuts), [0, 1, 2, 3, 4, 5, 6, 7]);
         let low = || -> Vec<Cut> { heights.iter().map(|h| cut(h.min(0.02))).collect() };
         let mut cuts = low();
-        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, 1.0);
+        give_up(&samples, (&mut cuts, &mut [0.0; 10]), 0.02, (1.0, 0));
         assert!(cuts.iter().all(|c| c.by.is_some()));
         // The mark of a tooth stands on what is left.
         let mut marks = [0.001; 10];
         marks[1] = 0.011;
         let mut cuts = low();
-        give_up(&samples, (&mut cuts, &mut marks), 0.021, 1.0);
+        give_up(&samples, (&mut cuts, &mut marks), 0.021, (1.0, 0));
         assert!(cuts.iter().all(|c| c.by.is_some()));
-        give_up(&samples, (&mut cuts, &mut marks), 0.0205, 1.0);
+        give_up(&samples, (&mut cuts, &mut marks), 0.0205, (1.0, 0));
         assert_eq!(gone(&cuts), [0, 1, 2, 3, 4, 5, 6, 7]);
         assert!(marks.iter().zip(&cuts).all(|(m, c)| (*m == 0.0) == c.by.is_none()));
     }
