@@ -311,8 +311,7 @@ impl<'a> Trial<'a> {
             samples.extend(&fixture.samples);
         }
         patches.resize(samples.len(), None);
-        let tally = self.tally(&samples, &cuts, &density)?;
-        let settled = Settled::default();
+        let (tally, settled) = (self.tally(&samples, &cuts, &density)?, Settled::default());
         Ok(Look { measured: Measured { samples, patches, cuts }, tally, density, lost, settled, given_up: 0 })
     }
 
