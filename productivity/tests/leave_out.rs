@@ -1,7 +1,7 @@
 //! Passes that end before the tool goes into a wall, against closed forms.
 
 use osculate_geom::analytic::{Line, Plane};
-use osculate_geom::{Domain, Extruded, Interval, Point3, Surface, Vec3, uv};
+use osculate_geom::{Domain, Extruded, Interval, Point3, Surface, Unit3, Vec3, uv};
 use osculate_productivity::axis::Left;
 use osculate_productivity::plan::{CcPoint, Guard, LeaveOutError, Named, Pass, Passes, Tolerance, leave_out};
 use osculate_tools::{Cutter, CutterSpec, Holder, Pose};
@@ -60,7 +60,16 @@ fn off(p: &Point3) -> f64 {
 
 fn guard<'a>(faces: &'a [Named<'a>], check: &'a [Named<'a>], cutter: &'a Cutter) -> Guard<'a> {
     let tolerance = Tolerance { scallop_mm: SCALLOP, gouge_mm: GOUGE, chord_mm: 0.005 };
-    Guard { faces, check, cutter, holder: None, tolerance, keep_off_mm: 0.0, left: Left::default() }
+    Guard {
+        faces,
+        check,
+        rims: &[],
+        cutter,
+        holder: None,
+        tolerance,
+        keep_off_mm: 0.0,
+        left: Left::default(),
+    }
 }
 
 /// The least distance of passes from the wall's foot, their points and what lies between.
@@ -198,4 +207,28 @@ fn passes_along_a_rim_remain() {
         // Chords and words take a fifth of the gouge; what is deeper than the gouge goes, rim or not.
         assert_eq!([touched(0.0), touched(0.2 * GOUGE), touched(4.0 * GOUGE)], [0, 0, 1], "at z = {z}");
     }
+}
+
+/// The edge of a block that a ball comes at from beside, between its faces: what it may not do to either it may not do to their edge.
+#[test]
+fn passes_do_not_go_into_an_edge_from_beside() {
+    let cutter = ball();
+    let line = |way: Vec3| Line::new(Point3::origin(), way, Interval::new(0.0, SIDE)).unwrap();
+    let face = |a: Vec3, b: Vec3| Extruded::new(line(a), b, Interval::new(0.0, SIDE)).unwrap();
+    let (side, top) = (face(Vec3::z() * -1.0, Vec3::y()), face(Vec3::y(), Vec3::x() * -1.0));
+    let far = plane();
+    let faces = [Named { face: "elsewhere", surface: &far }];
+    let check = [Named { face: "side", surface: &side }, Named { face: "top", surface: &top }];
+    let guard = Guard { faces: &faces[..0], ..guard(&faces, &check, &cutter) };
+    let between = Unit3::new_normalize(Vec3::x() + Vec3::z());
+    let at = |y: f64, deep: f64| {
+        let point = Point3::new(0.0, y, 0.0) - between.into_inner() * deep;
+        let pose = Pose { tip: point, axis: between };
+        CcPoint { uv: uv(0.0, y), point, normal: between, pose, width_mm: 2.0 * APART }
+    };
+    let touched = |deep: f64| {
+        let pass = Pass { points: vec![at(1.0, deep), at(SIDE - 1.0, deep)], closed: false };
+        leave_out(&Passes { passes: vec![pass], diagnostics: Vec::new() }, &guard).unwrap().touched
+    };
+    assert_eq!([touched(0.0), touched(0.2 * GOUGE), touched(0.9 * GOUGE)], [0, 0, 1]);
 }

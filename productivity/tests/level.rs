@@ -4,11 +4,13 @@ use crate::cutting;
 
 use cutting::{cusps, motions, verdict};
 use nalgebra::Vector2;
-use osculate_geom::analytic::{Cylinder, Paraboloid, Plane, Sphere, Torus};
+use osculate_geom::analytic::{Cylinder, Paraboloid, Placed, Placement, Plane, Sphere, Torus};
 use osculate_geom::{
-    Axis, Domain, Flipped, Interval, Jet2, Patch, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
+    Axis, Domain, Flipped, Interval, Jet2, Patch, Point3, Series, Side, Surface, Taylor, Unit3, Uv, Vec3, uv,
 };
-use osculate_productivity::plan::{CcPoint, Passes, Strategy, Task, Tolerance, run};
+use osculate_productivity::plan::{
+    CcPoint, Named, Passes, PlanError, Strategy, Task, Tolerance, run, wall_edges,
+};
 use osculate_tools::removal::{Kind, Swept};
 use osculate_tools::{Cutter, CutterSpec, Lean};
 
@@ -335,4 +337,49 @@ fn an_edge_does_not_make_the_rest_of_a_face_rough() {
     let moves = job.holds("roof", &Roof, &along);
     let used = cusps(&Roof, &moves, &job.cutter, TOLERANCE.scallop_mm);
     assert!(used > 0.9, "{used}");
+}
+
+/// A wall that stands on a line through a point, 12 mm high and leaning back from upright; it looks to the right of the line.
+fn wall(on: [f64; 2], along: Vec3, back_rad: f64) -> Placed<Plane> {
+    let to_right = along.cross(&Vec3::z());
+    let normal = Vec3::z() * back_rad.sin() + to_right * back_rad.cos();
+    let placement = Placement::new(Point3::new(on[0], on[1], 0.0), Unit3::new_normalize(normal), Some(along));
+    // With its normal to the right and x along, y runs up.
+    let domain = Domain { u: Interval::new(-40.0, 40.0), v: Interval::new(0.0, 12.0) };
+    Placed { surface: Plane::new(domain), placement }
+}
+
+#[test]
+fn passes_run_along_the_walls_beside_them() {
+    let floor = Plane::new(Domain { u: Interval::new(-10.0, 10.0), v: Interval::new(-9.0, 9.0) });
+    let corners = [[-10.0, -9.0], [10.0, -9.0], [10.0, 9.0], [-10.0, 9.0]].map(|[u, v]| uv(u, v));
+    let cutter = ball(6.0);
+    let edges = |walls: &[Placed<Plane>]| {
+        let named: Vec<Named<'_>> = walls.iter().map(|w| Named { face: "wall", surface: w }).collect();
+        wall_edges((&floor, &[corners.to_vec()]), &named, &cutter).unwrap()
+    };
+    // The directions in which the passes of the floor run.
+    let run_between = |walls: &[Placed<Plane>]| -> Result<Vec<Vec3>, PlanError> {
+        let edges = edges(walls);
+        let lean = Lean { lead_rad: 0.1, tilt_rad: 0.0 };
+        let task = Task::new("floor", &floor, &cutter, lean, TOLERANCE).beside(&edges);
+        let passes = run(&task, &Strategy::AlongWalls)?.passes;
+        let pieces = passes.iter().flat_map(|p| p.points.windows(2)).map(|w| w[1].point - w[0].point);
+        Ok(pieces.filter(|w| w.norm() > 1e-3).map(|w| w.normalize()).collect())
+    };
+    let (x, y) = (Vec3::x(), Vec3::y());
+    // Walls to both sides, and a single one; upright, and leaning back by 60 degrees.
+    for back_rad in [0.0, 1.05] {
+        let both = [wall([0.0, 9.0], x, back_rad), wall([0.0, -9.0], -x, back_rad)];
+        let along = run_between(&both).unwrap();
+        assert!(along.len() > 20 && along.iter().all(|d| d.x.abs() > 0.97), "{back_rad}");
+        let along = run_between(&[wall([-10.0, 0.0], y, back_rad)]).unwrap();
+        assert!(along.len() > 20 && along.iter().all(|d| d.y.abs() > 0.97), "{back_rad}");
+    }
+    // What rises by 7 degrees only, goes on level or falls away is no wall.
+    for back_rad in [1.45, std::f64::consts::FRAC_PI_2, 2.5] {
+        let gentle = [wall([0.0, 9.0], x, back_rad)];
+        assert!(edges(&gentle).is_empty(), "{back_rad}");
+        assert!(matches!(run_between(&gentle), Err(PlanError::Nothing { .. })));
+    }
 }

@@ -206,6 +206,7 @@ impl Strategy {
             StrategyWord::Isoscallop => Kind::Faces(plan::Strategy::Isoscallop),
             StrategyWord::Streamline => Kind::Faces(plan::Strategy::Streamline),
             StrategyWord::Curvature5c => Kind::Faces(plan::Strategy::Curvature5c),
+            StrategyWord::AlongWalls => Kind::Faces(plan::Strategy::AlongWalls),
             StrategyWord::Contour2cl => Kind::Faces(plan::Strategy::Contour2cl { axis }),
             StrategyWord::Gradient3c => Kind::Drop(plan::ThreeAxisLines::Gradient),
             StrategyWord::Isoplanar3c => Kind::Drop(plan::ThreeAxisLines::Planes),

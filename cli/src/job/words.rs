@@ -91,6 +91,8 @@ words! {
         Streamline = "streamline",
         /// Along lines of curvature.
         Curvature5c = "curvature_5c",
+        /// Along the walls beside the face.
+        AlongWalls = "along_walls",
         /// A ball at constant height along an axis that it keeps.
         Contour2cl = "contour_2cl",
         /// Up and down the slope, the axis kept.

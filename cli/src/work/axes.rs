@@ -3,13 +3,14 @@
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::part::{self, LoadedFace, Part};
+use crate::work::passes::wall_edges;
 use crate::work::setup;
 use osculate_geom::{Axis, Diagnostic, Jet2, Unit3, Uv, Vec3};
 use osculate_postproc::{Machine, Orienting, Setup, in_travel};
 use osculate_productivity::axis::{
     Around, Found, Joints, Left, NoField, Possibilities, Surroundings, Unreached, Wish,
 };
-use osculate_productivity::plan::{Along, Named, Strategy, Tolerance};
+use osculate_productivity::plan::{Along, Named, Strategy, Tolerance, WallEdges};
 use osculate_tools::reach::{Member, Met, Tool};
 use osculate_tools::{Cutter, Pose};
 use std::collections::BTreeMap;
@@ -82,13 +83,19 @@ impl Joints for Standing<'_> {
 }
 
 /// The direction in which passes of a strategy run, where it says one before they are laid out.
-fn feed_of(strategy: &Strategy) -> impl Fn(Uv, &Jet2) -> Option<Vec3> + Sync + use<> {
+fn feed_of<'a>(
+    strategy: &'a Strategy,
+    walls: Option<&'a WallEdges>,
+) -> impl Fn(Uv, &Jet2) -> Option<Vec3> + Sync + use<'a> {
     let along = match strategy {
         Strategy::Isoparametric { along: Along::Fixed(axis) }
         | Strategy::Regions { along: Along::Fixed(axis) } => Some(*axis),
         _ => None,
     };
-    move |_: Uv, jet: &Jet2| along.map(|axis| if axis == Axis::U { jet.du } else { jet.dv })
+    move |_: Uv, jet: &Jet2| {
+        let parameter = along.map(|axis| if axis == Axis::U { jet.du } else { jet.dv });
+        parameter.or_else(|| walls?.along(jet))
+    }
 }
 
 /// A field, and what is to be said of it.
@@ -102,6 +109,7 @@ type Known<K, V> = Mutex<BTreeMap<K, Arc<V>>>;
 pub struct Fields {
     around: OnceLock<Surroundings>,
     possible: Known<usize, Possibilities>,
+    walls: Known<usize, WallEdges>,
     /// By the direction of passes too.
     found: Known<(usize, &'static str), Told>,
 }
@@ -131,12 +139,29 @@ impl Fields {
         (place, face): (usize, &LoadedFace),
         (tolerance, strategy): (Tolerance, &Strategy),
     ) -> Result<Arc<Told>, Failure> {
+        let walls = self.walls(job, faces, place, strategy)?;
         known(&self.found, (place, direction(strategy)), || {
             let found = self.asked(job, faces, (place, face), tolerance, |possible, wish| {
-                possible.field(wish, &feed_of(strategy))
+                possible.field(wish, &feed_of(strategy, walls.as_deref()))
             })?;
             Ok(told(faces, face, found))
         })
+    }
+
+    /// What stands up beside a face, for a strategy that goes by it.
+    pub fn walls(
+        &self,
+        job: &Job,
+        faces: &Part,
+        place: usize,
+        strategy: &Strategy,
+    ) -> Result<Option<Arc<WallEdges>>, Failure> {
+        match strategy {
+            Strategy::AlongWalls => {
+                known(&self.walls, place, || wall_edges(job, faces, place, &job.cutter())).map(Some)
+            }
+            _ => Ok(None),
+        }
     }
 
     /// Asks what is possible over a face, whatever the direction of passes.
@@ -174,7 +199,7 @@ pub fn leans_rad(cutter: &Cutter) -> [f64; 2] {
     [if cutter.is_ball() { 0.0 } else { LEAST_RAD }, FRAC_PI_2 - UPRIGHT_RAD]
 }
 
-/// The direction of a strategy's passes where it is one of the parameters'; else empty.
+/// The direction of a strategy's passes where it is one of the parameters' or that of walls; else empty.
 pub const fn direction(strategy: &Strategy) -> &'static str {
     match strategy {
         Strategy::Isoparametric { along: Along::Fixed(axis) }
@@ -182,6 +207,7 @@ pub const fn direction(strategy: &Strategy) -> &'static str {
             Axis::U => "u",
             Axis::V => "v",
         },
+        Strategy::AlongWalls => "walls",
         _ => "",
     }
 }

@@ -9,8 +9,12 @@ use crate::work::budget;
 use crate::work::drop::names;
 use crate::work::extras::{Extras, FaceLeftOut};
 use crate::work::passes;
-use osculate_geom::Diagnostic;
+use osculate_geom::{Box3, Diagnostic};
 use osculate_productivity::plan::{CcPoint, Guard, LeftOut, Linked, Passes, Stretches, leave_out};
+
+/// Rims of check faces are looked at up to so many radii of the tool around its contacts, at places so many of them apart.
+const NEAR: f64 = 3.0;
+const RIM: f64 = 0.1;
 
 /// Whether the job wants places left out at which the tool would go into the part.
 pub fn is_wanted(job: &Job) -> bool {
@@ -20,9 +24,15 @@ pub fn is_wanted(job: &Job) -> bool {
 /// What remains of passes with the tool of the job, whatever its keys say.
 pub fn of(job: &Job, faces: &Part, passes: &Passes) -> Result<LeftOut, Failure> {
     let holder = job.holder();
+    let radius_mm = job.cutter().radius_mm();
+    let contacts = passes.passes.iter().flat_map(|p| &p.points);
+    let near = Box3::around(contacts.map(|p| &p.point)).grown(NEAR * radius_mm);
+    let mut rims = passes::rims(&faces.check, RIM * radius_mm);
+    rims.retain(|s| (0..3).all(|k| (near.min[k]..=near.max[k]).contains(&s.point[k])));
     let guard = Guard {
         faces: &names(&faces.faces),
         check: &names(&faces.check),
+        rims: &rims,
         cutter: &job.cutter(),
         holder,
         tolerance: budget::left_in(job),

@@ -12,13 +12,13 @@ use crate::work::left_out;
 use crate::work::look::Look;
 use crate::work::nc;
 use crate::work::stock::{self, RawMaterial};
-use osculate_geom::{Axis, Box3, Diagnostic, Surface};
+use osculate_geom::{Axis, Box3, Diagnostic, Domain, Surface, Uv};
 use osculate_postproc::machine::{Drive, JointKind};
 use osculate_productivity::compare::{Around, Axes};
 use osculate_productivity::plan::{
-    Along, Freedom, Keeping, Leaning, Linked, Links, LocalLead, Milling, Passes, Rates, Senses, Strategy,
-    Stretches, Task, ThreeAxisLines, Walls, link, link_stretches, ordered, predicted_length_mm,
-    run as plan_face, run_in,
+    Along, Freedom, Keeping, Leaning, Linked, Links, LocalLead, Milling, Named, Passes, Rates, Senses,
+    Strategy, Stretches, Task, ThreeAxisLines, WallEdges, Walls, link, link_stretches, ordered,
+    predicted_length_mm, run as plan_face, run_in, wall_edges as plan_wall_edges,
 };
 use osculate_tools::cl::ClPath;
 use osculate_tools::removal::{Sample, sample_boundary};
@@ -30,6 +30,9 @@ use std::sync::Arc;
 pub const LEADS_DEG: [f64; 6] = [3.0, 6.0, 10.0, 15.0, 20.0, 30.0];
 /// Lead of a ball where the job leaves the choice: enough to keep the tip, which does not cut, off the part.
 pub const BALL_LEAD_DEG: f64 = 15.0;
+
+/// Pieces of a side of a face without trims.
+const SIDE: u32 = 64;
 
 /// Share of the gouge tolerance by which ways between passes may go into faces that are not machined.
 const INTO_WALLS: f64 = 0.2;
@@ -100,12 +103,12 @@ fn walls_of(job: &Job, faces: &Part) -> Result<Walls, Failure> {
     Ok(walls.with_stock(left))
 }
 
-/// Places along the outlines of trimmed faces.
-fn rims(faces: &[LoadedFace], apart_mm: f64) -> Vec<Sample> {
-    let trimmed = faces.iter().filter(|f| f.surface.is_trimmed());
+/// Places along the outlines of trimmed faces, which name these by their place among them.
+pub fn rims(faces: &[LoadedFace], apart_mm: f64) -> Vec<Sample> {
+    let trimmed = faces.iter().zip(0u32..).filter(|(f, _)| f.surface.is_trimmed());
     trimmed
-        .flat_map(|f| {
-            f.surface.loops().iter().flat_map(|l| sample_boundary(&*f.surface, &l.points, 0, apart_mm))
+        .flat_map(|(f, k)| {
+            f.surface.loops().iter().flat_map(move |l| sample_boundary(&*f.surface, &l.points, k, apart_mm))
         })
         .collect()
 }
@@ -221,9 +224,11 @@ pub fn each_face(
     let mut out = Passes::default();
     for (k, face) in faces.faces.iter().enumerate() {
         let here = move |f: f64| progress((k as f64 + f) / n as f64);
+        let edges = way.fields.walls(job, faces, k, way.strategy)?;
         let plan = |strategy: &Strategy, lean: Leaning<'_>| {
             let (surface, face) = (&*face.surface, face.id.as_str());
             let task = Task::new(face, surface, cutter, lean, tolerance).watched(&here);
+            let task = if let Some(edges) = &edges { task.beside(edges) } else { task };
             plan_face(&task, strategy).map_err(|e| Failure::file(job.path(), e))
         };
         let mut p = match way.axes {
@@ -264,6 +269,33 @@ pub fn each_face(
         }
     }
     Ok(out)
+}
+
+/// The rectangle of a face that has no trims.
+fn around(domain: &Domain) -> Vec<Uv> {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let side = |k: usize| {
+        let ([a, b], [c, d]) = (corners[k], corners[(k + 1) % 4]);
+        (0..SIDE).map(move |i| {
+            let f = f64::from(i) / f64::from(SIDE);
+            domain.at(a + f * (c - a), b + f * (d - b))
+        })
+    };
+    (0..4).flat_map(side).collect()
+}
+
+/// Where the part stands up beside one of the job's faces.
+pub fn wall_edges(job: &Job, faces: &Part, of: usize, cutter: &Cutter) -> Result<WallEdges, Failure> {
+    let surface = &*faces.faces[of].surface;
+    let outlines: Vec<Vec<Uv>> = if surface.is_trimmed() {
+        surface.loops().iter().map(|l| l.points.to_vec()).collect()
+    } else {
+        vec![around(&surface.domain())]
+    };
+    let all = faces.faces.iter().enumerate().filter(|(k, _)| *k != of).map(|(_, f)| f).chain(&faces.check);
+    let others: Vec<Named<'_>> = all.map(|f| Named { face: &f.id, surface: &*f.surface }).collect();
+    plan_wall_edges((surface, &outlines), &others, cutter)
+        .map_err(|(face, e)| Failure::file(job.path(), format!("face {face}: {e}")))
 }
 
 /// Whence a job has its axis.

@@ -35,6 +35,12 @@ const SWING: f64 = 1.0;
 /// What joints take for a turn with a ball counts so many times: controls brake them from block to block, and another axis costs a ball no strip.
 /// (Tuned on blades of an impeller by the time on LinuxCNC, a sixth less; on fields of toroidal ends it changes nothing.)
 const BRAKED: f64 = 8.0;
+/// For a ball a turn counts, for smoothness, as what a joint of this speed makes while the joints take it, rad/s: near a pole small turns
+/// are great ones there, and controls brake them. (Tuned on an impeller's hub by the time on LinuxCNC: 8.3 min become 5.1 along its walls and
+/// 10.3 become 7.2 across them; from 6 to 20 it is the same within a fiftieth, with 4 nothing moves.)
+const JOINT_RAD_S: f64 = 8.0;
+/// What a turn out of reach counts at most, rad.
+const FARTHEST_RAD: f64 = 2.0 * PI;
 /// How many times as much turns cost at first: a field that is stiff has no walls between parts that lean to different sides.
 const STIFF: [f64; 2] = [30.0, 1.0];
 /// Starts that places share, the least angle between two of them, rad, and ways to lean least that are others.
@@ -230,14 +236,18 @@ impl<'a> Search<'a> {
 
     fn edge_min(&self, edge: &Edge, a: &Unit3, b: &Unit3) -> f64 {
         let ratio = (edge.across_mm / edge.length_mm.max(f64::MIN_POSITIVE)).min(LONGEST);
-        let angle = a.angle(b);
+        let is_ball = self.asked.cutter.is_ball();
+        let asked = is_ball || edge.along > 0.0;
+        let turn_s = if asked { self.asked.joints.turn_s(a, b) } else { 0.0 };
+        let joints_rad = if is_ball { (JOINT_RAD_S * turn_s).min(FARTHEST_RAD) } else { 0.0 };
+        let angle = a.angle(b).max(joints_rad);
         let smooth = self.stiffness * (self.turn_min * ratio * angle * angle + self.swing_min(edge, a, b));
         if edge.along == 0.0 {
             return smooth;
         }
         let feed_min = edge.length_mm / self.asked.feed_mm_min;
-        let times = if self.asked.cutter.is_ball() { BRAKED } else { 1.0 };
-        let late = times * self.asked.joints.turn_s(a, b) / 60.0 - feed_min;
+        let times = if is_ball { BRAKED } else { 1.0 };
+        let late = times * turn_s / 60.0 - feed_min;
         if late <= 0.0 {
             return smooth;
         }

@@ -55,6 +55,8 @@ pub struct Guard<'a> {
     pub faces: &'a [Named<'a>],
     /// Faces that the tool must not cut.
     pub check: &'a [Named<'a>],
+    /// Places along the rims of these, which name them by their place among them: samples inside a face end half a cell before its rim.
+    pub rims: &'a [Sample],
     /// The cutter with its shank.
     pub cutter: &'a Cutter,
     /// The holder, whose nose sits where the cutter's length ends.
@@ -114,10 +116,12 @@ fn sampled(faces: &[Named<'_>], [spacing_mm, most]: [f64; 2]) -> Result<(Vec<Sam
     Ok((samples, coarsest))
 }
 
-/// Points of faces, and the same sunk into them by what is accepted of a pass, and by what ends a stretch left out.
+/// Points of faces, and the same sunk into them by what is accepted of a pass, and by what ends a stretch left out; those beside sharp
+/// outer edges are not sunk.
 struct Points {
     at: Obstacles,
     sunk: [Obstacles; 2],
+    edges: Obstacles,
 }
 
 /// Samples sunk into their faces.
@@ -130,8 +134,14 @@ impl Points {
     /// `beside`: samples beside sharp outer edges, beneath which nothing lies as deep as is accepted. A tool on the next face goes
     /// along them without harm.
     fn new(samples: &[Sample], beside: &[bool], deep_mm: [f64; 2]) -> Self {
-        let inner = || samples.iter().zip(beside).filter(|(_, beside)| !**beside).map(|(s, _)| s);
-        Self { at: obstacles(samples.iter(), 0.0), sunk: deep_mm.map(|mm| obstacles(inner(), mm)) }
+        let those = |wanted: bool| {
+            samples.iter().zip(beside).filter(move |(_, beside)| **beside == wanted).map(|(s, _)| s)
+        };
+        Self {
+            at: obstacles(samples.iter(), 0.0),
+            sunk: deep_mm.map(|mm| obstacles(those(false), mm)),
+            edges: obstacles(those(true), 0.0),
+        }
     }
 }
 
@@ -171,7 +181,8 @@ impl<'a> Watch<'a> {
         // Between two samples on a plane a ball comes deeper by s^2 / 8 r.
         let spacing_mm = (8.0 * guard.cutter.radius_mm() * HIDDEN * gouge_mm).sqrt();
         let (faces, apart) = sampled(guard.faces, [spacing_mm, MOST])?;
-        let (check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
+        let (mut check, check_apart) = sampled(guard.check, [spacing_mm, MOST])?;
+        check.extend(guard.rims);
         let holder_mm = keep + ADDED * apart.max(check_apart);
         let keep_mm = (keep > 0.0).then_some(holder_mm);
         let aside_mm = (ASIDE * gouge_mm).min(guard.tolerance.chord_mm);
@@ -198,7 +209,12 @@ impl<'a> Watch<'a> {
     fn is_in(&self, at: &CcPoint, depth: Depth) -> bool {
         let Guard { cutter, holder, .. } = self.guard;
         let (pose, end_mm) = (&at.pose, END * cutter.radius_mm());
-        let is_sunk = |points: &Points| points.sunk[depth as usize].is_within(cutter, pose, self.aside_mm);
+        // Into an edge the tool goes no deeper than into the faces on both sides of it.
+        let edge_mm = -[ACCEPTED, RELEASE][depth as usize] * self.guard.tolerance.gouge_mm;
+        let is_sunk = |points: &Points| {
+            points.sunk[depth as usize].is_within(cutter, pose, self.aside_mm)
+                || points.edges.is_within(cutter, pose, edge_mm)
+        };
         is_sunk(&self.faces)
             || self
                 .keep_mm

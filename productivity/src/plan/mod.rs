@@ -3,6 +3,7 @@
 //! A strategy places passes of contact points ([`Pass`]) so that the exact strips meet within the scallop tolerance;
 //! [`link`] joins passes to a [`ClPath`](osculate_tools::cl::ClPath). What a plan promises is checked elsewhere, from the NC text.
 
+mod beside;
 mod columns;
 mod contour;
 mod cover;
@@ -31,7 +32,9 @@ mod stations;
 mod strategy;
 mod task;
 mod walk;
+mod wall_edges;
 
+pub use beside::wall_edges;
 pub use contour::contour_2cl;
 pub use drop::{
     DropTask, Entry, Heading, Headings, Places, RoughTask, Roughing, Rows, Search, Sizes, ThreeAxis,
@@ -40,7 +43,7 @@ pub use drop::{
 pub use isoparametric::isoparametric;
 pub use lead::{LeadField, Leaning, LocalLead, SideTilt};
 pub use leave_out::{Guard, LeaveOutError, LeftOut, leave_out};
-pub use level::{curvature_5c, isoplanar, isoscallop, streamline};
+pub use level::{along_walls, curvature_5c, isoplanar, isoscallop, streamline};
 pub use link::{Freedom, Keeping, Linked, Links, Rates, Walls, link, link_stretches, ordered};
 pub use predict::predicted_length_mm;
 pub use regions::regions;
@@ -51,3 +54,4 @@ pub use stations::Stretches;
 pub use strategy::{Strategy, run};
 pub use task::{Along, CcPoint, Named, Pass, Passes, PlanError, Task, Tolerance};
 use task::{MAX_PASSES, check_tolerance, shorter};
+pub use wall_edges::WallEdges;

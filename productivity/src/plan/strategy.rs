@@ -1,8 +1,8 @@
 //! The strategies by name, and the one call that plans by any of them.
 
 use super::{
-    Along, DropTask, Named, Passes, PlanError, Task, ThreeAxis, contour_2cl, curvature_5c, isoparametric,
-    isoplanar, isoscallop, regions, streamline,
+    Along, DropTask, Named, Passes, PlanError, Task, ThreeAxis, along_walls, contour_2cl, curvature_5c,
+    isoparametric, isoplanar, isoscallop, regions, streamline,
 };
 use osculate_geom::Unit3;
 
@@ -36,6 +36,8 @@ pub enum Strategy {
     Streamline,
     /// Along lines of curvature with a toroidal or flat cutter (5C, M86).
     Curvature5c,
+    /// Along the walls beside the face, from one to the other (5C): [`Task::walls`].
+    AlongWalls,
     /// Any cutter dropped along an axis that it keeps (3C); [`run`] sees no face but its own.
     ThreeAxis(ThreeAxis),
 }
@@ -52,6 +54,7 @@ impl Strategy {
             Self::Isoscallop => "isoscallop",
             Self::Streamline => "streamline",
             Self::Curvature5c => "curvature_5c",
+            Self::AlongWalls => "along_walls",
             Self::ThreeAxis(way) => way.lines.name(),
         }
     }
@@ -66,7 +69,8 @@ impl Strategy {
             | Self::Isoplanar { .. }
             | Self::Isoscallop
             | Self::Streamline
-            | Self::Curvature5c => None,
+            | Self::Curvature5c
+            | Self::AlongWalls => None,
         }
     }
 }
@@ -103,6 +107,7 @@ pub fn run(task: &Task<'_>, strategy: &Strategy) -> Result<Passes, PlanError> {
         Strategy::Isoscallop => isoscallop(task),
         Strategy::Streamline => streamline(task),
         Strategy::Curvature5c => curvature_5c(task),
+        Strategy::AlongWalls => along_walls(task),
         Strategy::ThreeAxis(ThreeAxis { lines, axis, feed }) => lines.passes(&DropTask {
             faces: &[Named { face: task.face, surface: task.surface }],
             check: &[],

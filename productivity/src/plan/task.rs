@@ -1,5 +1,6 @@
 //! What to plan, and what a plan is: contact points, passes, and why there are none.
 
+use super::WallEdges;
 use super::lead::Leaning;
 use osculate_geom::{Axis, Diagnostic, Point3, Surface, Unit3, Uv};
 use osculate_tools::strip::StripError;
@@ -61,6 +62,8 @@ pub struct Task<'a> {
     pub lean: Leaning<'a>,
     /// What must hold.
     pub tolerance: Tolerance,
+    /// Where the part stands up beside the face, for passes along walls.
+    pub walls: Option<&'a WallEdges>,
     /// Told how far the work is, 0 to 1.
     pub progress: &'a (dyn Fn(f64) + Sync),
 }
@@ -75,13 +78,19 @@ impl<'a> Task<'a> {
         lean: impl Into<Leaning<'a>>,
         tolerance: Tolerance,
     ) -> Self {
-        Self { surface, face, cutter, lean: lean.into(), tolerance, progress: &|_| {} }
+        Self { surface, face, cutter, lean: lean.into(), tolerance, walls: None, progress: &|_| {} }
     }
 
     /// The same, told to somebody as it goes on, from 0 to 1.
     #[must_use]
     pub fn watched(self, progress: &'a (dyn Fn(f64) + Sync)) -> Self {
         Self { progress, ..self }
+    }
+
+    /// The same, with what stands up beside the face.
+    #[must_use]
+    pub fn beside(self, walls: &'a WallEdges) -> Self {
+        Self { walls: Some(walls), ..self }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::job::strategy::Kind;
 use crate::job::{Job, LeanKey};
 use crate::part::{self, Part};
 use crate::work::axes;
-use crate::work::passes::{BALL_LEAD_DEG, each_direction};
+use crate::work::passes::{BALL_LEAD_DEG, each_direction, wall_edges};
 use crate::work::{drop, setup};
 use osculate_geom::{Axis, Unit3, Vec3, any_perpendicular};
 use osculate_postproc::Orienting;
@@ -49,6 +49,8 @@ pub(super) fn of_job(job: &Job, faces: &Part, cutters: &[Cutter]) -> Result<Vec<
             let fits = match strategy {
                 Strategy::Contour2cl { .. } => cutter.is_ball(),
                 Strategy::Curvature5c => !cutter.is_ball(),
+                // Wide tools have better reasons to go one way or the other.
+                Strategy::AlongWalls => !auto || (cutter.is_ball() && beside_walls(job, faces, cutter)?),
                 Strategy::ThreeAxis(way) => way.lines != ThreeAxisLines::Gradient || !cutter.is_ball(),
                 _ => true,
             };
@@ -98,8 +100,8 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
         LeanKey::Given(_) => &[Axes::Local],
     };
     let local = || tilts.iter().map(|axes| (job.lean(cutter.least_lean_rad()), *axes));
-    // A field goes by the direction of passes, which level lines have not yet.
-    let lined = matches!(strategy, Strategy::Regions { .. });
+    // A field goes by the direction of passes, which other level lines have not yet.
+    let lined = matches!(strategy, Strategy::Regions { .. } | Strategy::AlongWalls);
     // Next to the normal a sharp edge tells nothing of what lies between points: a flat end keeps to leads, unless the machine leaves it
     // no choice.
     let round = cutter.corner_mm() > 0.0 || axes::is_line(job);
@@ -111,6 +113,16 @@ fn leans(job: &Job, cutter: &Cutter, strategy: &Strategy) -> Vec<(Lean, Axes)> {
         _ if cutter.is_ball() => held(&[BALL_LEAD_DEG]).into_iter().chain(field).collect(),
         _ => held(&LEADS_DEG).into_iter().chain(local()).chain(field).collect(),
     }
+}
+
+/// Whether the part stands up beside every face of a job, for one of its tools.
+fn beside_walls(job: &Job, faces: &Part, cutter: &Cutter) -> Result<bool, Failure> {
+    for k in 0..faces.faces.len() {
+        if wall_edges(job, faces, k, cutter)?.is_empty() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Every strategy that can be chosen.
@@ -125,6 +137,7 @@ fn every(job: &Job, faces: &Part) -> Vec<Strategy> {
         Strategy::Isoscallop,
         Strategy::Streamline,
         Strategy::Curvature5c,
+        Strategy::AlongWalls,
         Strategy::Contour2cl { axis },
     ]
     .into_iter()

@@ -36,6 +36,8 @@ pub(super) struct Even {
     pub field: Spline,
     /// Predicted length of the passes, mm.
     pub length_mm: f64,
+    /// Mean square of the sine between the gradient and the wishes over the face, as these are trusted.
+    pub astray: f64,
     /// Root mean square of `|grad phi| w - 1` over the face.
     pub deviation: f64,
     pub rounds: u32,
@@ -104,20 +106,40 @@ fn wanted(
 /// Settles the field that starts along a parameter.
 fn settle(task: &Task<'_>, problem: &Problem, grows: Axis, wishes: &[Wish], trust: f64) -> Even {
     let mut gradients: Vec<[f64; 2]> = problem.places.iter().map(|p| p.parameter_gradient(grows)).collect();
-    let mut out =
-        Even { field: problem.zero(), length_mm: f64::INFINITY, deviation: f64::INFINITY, rounds: 0, trust };
+    let mut out = Even {
+        field: problem.zero(),
+        length_mm: f64::INFINITY,
+        astray: 0.0,
+        deviation: f64::INFINITY,
+        rounds: 0,
+        trust,
+    };
     for round in 1..=ROUNDS {
         let x = wanted(task, problem, &gradients, wishes, trust);
         out.field = problem.solve(&x);
         gradients = problem.places.iter().map(|p| p.gradient(&out.field)).collect();
         let before = out.deviation;
         (out.length_mm, out.deviation) = judged(task, problem, &gradients);
+        out.astray = astray(problem, &gradients, wishes);
         out.rounds = round;
         if (before - out.deviation).abs() < SETTLED {
             break;
         }
     }
     out
+}
+
+/// How far a field's gradients are from what places wish for: [`Even::astray`].
+fn astray(problem: &Problem, gradients: &[[f64; 2]], wishes: &[Wish]) -> f64 {
+    let (mut square, mut all) = (0.0, 0.0);
+    for ((p, g), wish) in problem.places.iter().zip(gradients).zip(wishes) {
+        if let (true, Some(g)) = (p.inside, unit(*g)) {
+            let weight = wish.trust * p.area_mm2;
+            square += weight * (g[0] * wish.across[1] - g[1] * wish.across[0]).powi(2);
+            all += weight;
+        }
+    }
+    if all > 0.0 { square / all } else { 0.0 }
 }
 
 /// Predicted length of path, and how uneven the field is.
@@ -152,6 +174,8 @@ pub(super) struct Wishes<'a> {
     pub trusts: &'a [f64],
     /// Whether lines follow them whatever that costs.
     pub binding: bool,
+    /// Whether of the two starts the one is taken whose lines follow them better, not that of the shorter path.
+    pub followed: bool,
 }
 
 /// The field of the shortest path that starts along a parameter, among the trusts given; `measured` tells the width of strips

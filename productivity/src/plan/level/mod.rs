@@ -122,7 +122,8 @@ fn even_passes(task: &Task<'_>, name: &str, wishes: Wishes<'_>) -> Result<Passes
         Ok((face, even, grows))
     };
     let (u, v) = rayon::join(|| along(Axis::U), || along(Axis::V));
-    let (face, mut even, grows) = shorter(u, v, |(_, even, _)| even.length_mm)?;
+    let (face, mut even, grows) =
+        shorter(u, v, |(_, even, _)| if wishes.followed { even.astray } else { even.length_mm })?;
     // The directions of the passes say what lead they need, and the lead how wide their strips are.
     let mut lead = None;
     if let Leaning::Local(local) = task.lean {
@@ -206,7 +207,7 @@ fn finished(mut out: Passes, task: &Task<'_>, name: &str, even: &Even) -> Result
 pub fn isoscallop(task: &Task<'_>) -> Result<Passes, PlanError> {
     task.check_level()?;
     let none = |places: &[Place]| vec![Wish::default(); places.len()];
-    even_passes(task, "isoscallop", Wishes { of: &none, trusts: &[0.0], binding: false })
+    even_passes(task, "isoscallop", Wishes { of: &none, trusts: &[0.0], binding: false, followed: false })
 }
 
 /// Plans passes across the direction of the widest strip, as far as they can also be evenly spaced; whatever of both gives
@@ -217,7 +218,11 @@ pub fn isoscallop(task: &Task<'_>) -> Result<Passes, PlanError> {
 pub fn streamline(task: &Task<'_>) -> Result<Passes, PlanError> {
     task.check_level()?;
     let wish = |places: &[Place]| places.par_iter().map(|p| widest(task, p)).collect();
-    even_passes(task, "streamline", Wishes { of: &wish, trusts: &[0.0, 0.3, 1.0], binding: false })
+    even_passes(
+        task,
+        "streamline",
+        Wishes { of: &wish, trusts: &[0.0, 0.3, 1.0], binding: false, followed: false },
+    )
 }
 
 /// Directions in which widths are compared, over half a turn.
@@ -239,6 +244,26 @@ fn widest(task: &Task<'_>, place: &Place) -> Wish {
     Wish { across: most.0, trust: 1.0 - least / most.1 }
 }
 
+/// Plans passes along the walls that stand beside the face ([`Task::walls`]), from one to the other as evenly spaced as they can be.
+///
+/// # Errors
+/// [`PlanError::Nothing`] where nothing stands beside it; else [`PlanError`].
+pub fn along_walls(task: &Task<'_>) -> Result<Passes, PlanError> {
+    task.check_level()?;
+    let Some(walls) = task.walls.filter(|w| !w.is_empty()) else {
+        let why = "the part does not stand up beside it, which along_walls needs; choose another strategy";
+        return Err(PlanError::Nothing { face: task.face.to_owned(), why: why.to_owned() });
+    };
+    let wish = |places: &[Place]| {
+        let of = |p: &Place| {
+            let (across, trust) = walls.across(&p.jet.point, &p.forms.frame);
+            Wish { across, trust }
+        };
+        places.par_iter().map(of).collect()
+    };
+    even_passes(task, "along_walls", Wishes { of: &wish, trusts: &[1.0], binding: false, followed: true })
+}
+
 /// Difference of the principal curvatures, of its mean over the face, at which a line of curvature is trusted by half:
 /// towards an umbilic the lines run as their surroundings let them.
 const NEAR_UMBILIC: f64 = 0.15;
@@ -257,7 +282,11 @@ pub fn curvature_5c(task: &Task<'_>) -> Result<Passes, PlanError> {
         principal.k_max - principal.k_min
     };
     let wish = |places: &[Place]| places_by_difference(places, difference);
-    even_passes(task, "curvature_5c", Wishes { of: &wish, trusts: &[1.0, 0.6], binding: true })
+    even_passes(
+        task,
+        "curvature_5c",
+        Wishes { of: &wish, trusts: &[1.0, 0.6], binding: true, followed: false },
+    )
 }
 
 /// The wish of every place for the flattest direction across, trusted by the difference of the principal curvatures.
