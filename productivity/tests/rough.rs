@@ -55,13 +55,15 @@ struct How<'a> {
     plunges: bool,
     rate: f64,
     rows: Rows,
+    /// Feed where nothing is taken.
+    air: f64,
 }
 
 impl How<'_> {
     fn upright() -> Self {
         let from = Headings::Along(Vec3::z_axis());
         let rows = Rows::Along(Vec3::x());
-        Self { from, entry: Entry::Auto, plunges: false, rate: f64::INFINITY, rows }
+        Self { from, entry: Entry::Auto, plunges: false, rate: f64::INFINITY, rows, air: FEED }
     }
 }
 
@@ -69,6 +71,7 @@ fn planned(faces: &[Placed<Plane>], block: Box3, stock: &Stock, how: How<'_>) ->
     let cutter = flat();
     let mut links = Links::new(block, cutter, FEED);
     (links.clearance_mm, links.approach_mm, links.hop_mm) = (5.0, 1.0, 1.0);
+    links.air_mm_min = how.air;
     let named: Vec<Named<'_>> = faces.iter().map(|f| Named { face: "F1", surface: f }).collect();
     rough(&RoughTask {
         faces: &named,
@@ -305,6 +308,30 @@ fn the_feed_follows_the_volume_rate() {
         assert!(held.rate_mm3_min < 1.15 * most, "{held:?}");
         assert!((held.taken_mm3 / free.taken_mm3 - 1.0).abs() < 0.01, "{held:?} {free:?}");
     }
+}
+
+/// What is gone along faster than passes takes no more than slivers, and is no small part of the way between them.
+#[test]
+fn only_air_is_gone_along_faster() {
+    let (faces, block) = pocket();
+    let stock = filled(block);
+    let mut plan = planned(&faces, block, &stock, How { air: 4.0 * FEED, ..How::upright() }).unwrap();
+    let moves = &mut plan.linked.path.moves;
+    let (mut between_mm, mut air_mm) = (0.0, 0.0);
+    for k in 1..moves.len() {
+        let long = (moves[k].pose.tip - moves[k - 1].pose.tip).norm();
+        if let Motion::Feed(feed) = moves[k].motion {
+            between_mm += if plan.linked.pass_of_move[k].is_none() { long } else { 0.0 };
+            if feed > FEED {
+                assert_eq!(feed, 4.0 * FEED);
+                air_mm += long;
+                moves[k].motion = Motion::Rapid;
+            }
+        }
+    }
+    assert!(air_mm > 0.3 * between_mm, "{air_mm} {between_mm}");
+    let done = heights_of(block, &plan);
+    assert!(done.rapid_mm < SLIVER, "{done:?}");
 }
 
 /// A face that leans over a floor: what lies under it an upright tool does not reach, a leaning one does.

@@ -93,6 +93,13 @@ pub(super) fn marked(
 pub(super) fn feed_mm_min(places: &Places, tool: &Tool) -> Result<(f64, FeedLimit), Failure> {
     let c = tool.feeding();
     let feed = (c.feed_mm_min.unwrap_or(FEED_MM_MIN), FeedLimit::Feed);
+    if let Some(air) = c.air_feed_mm_min.filter(|air| *air < feed.0) {
+        let what = format!(
+            "air_feed_mm_min = {air}: where the tool takes nothing it goes no slower than where it does: give feed_mm_min = {} or more, or leave it out",
+            feed.0
+        );
+        return Err(places.refuse("cutting", "air_feed_mm_min", what));
+    }
     match (c.feed_per_tooth_mm, c.spindle_rpm, tool.teeth()) {
         (None, ..) => Ok(feed),
         (Some(f), Some(n), Some(z)) => Ok(lesser(feed, f * n * f64::from(z), FeedLimit::FeedPerTooth)),

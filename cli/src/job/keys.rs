@@ -241,6 +241,7 @@ pub static TABLES: &[Table] = &[
     table("cutting", false, "spindle and feed", &[
         may("spindle_rpm", Kind::Number(ABOVE, "rpm"), "", "8000", "spindle speed"),
         may("feed_mm_min", Kind::Number(ABOVE, "mm/min"), "1000", "2000", "feed of the tip on the part"),
+        may("air_feed_mm_min", Kind::Number(ABOVE, "mm/min"), "feed_mm_min", "6000", "roughing: feed of ways on which the tool takes nothing, too near to what stands for a rapid"),
         may("feed_per_tooth_mm", SMALL, "no cap", "0.06", "cap of the feed; needs spindle_rpm and teeth"),
         may("coolant", Kind::Word(CoolantWord::WORDS), "off", "\"flood\"", "coolant"),
     ]),

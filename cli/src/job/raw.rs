@@ -234,6 +234,7 @@ pub struct Strategy {
 pub struct Cutting {
     pub spindle_rpm: Option<f64>,
     pub feed_mm_min: Option<f64>,
+    pub air_feed_mm_min: Option<f64>,
     pub feed_per_tooth_mm: Option<f64>,
     pub coolant: Option<CoolantWord>,
 }

@@ -256,3 +256,14 @@ fn values_arrive() {
     // A roughing hops as high as it approaches.
     assert_eq!(read.setup().hop_mm, read.setup().approach_mm);
 }
+
+/// Through the air a tool goes as fast as through material where nothing else is said, and no slower.
+#[test]
+fn the_feed_of_the_air_is_no_less() {
+    let with = |cutting: &str| job(&format!("{BASE}[cutting]\n{cutting}\n"));
+    let air = |cutting: &str| with(cutting).unwrap().air_mm_min();
+    assert_eq!(air("feed_mm_min = 800"), 800.0);
+    assert_eq!(air("feed_mm_min = 800\nair_feed_mm_min = 6000"), 6000.0);
+    let why = with("feed_mm_min = 800\nair_feed_mm_min = 700").unwrap_err().to_string();
+    assert!(why.contains("air_feed_mm_min = 700") && why.contains("feed_mm_min = 800 or more"), "{why}");
+}

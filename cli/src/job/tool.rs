@@ -75,6 +75,7 @@ impl Tool {
             feeding: raw::Cutting {
                 spindle_rpm: own.spindle_rpm.or(all.spindle_rpm),
                 feed_mm_min: own.feed_mm_min.or(all.feed_mm_min),
+                air_feed_mm_min: own.air_feed_mm_min.or(all.air_feed_mm_min),
                 feed_per_tooth_mm: own.feed_per_tooth_mm.or(all.feed_per_tooth_mm),
                 coolant: own.coolant.or(all.coolant),
             },

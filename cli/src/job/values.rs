@@ -206,6 +206,12 @@ impl Job {
         self.feed().0
     }
 
+    /// The feed of the tool in hand where it takes nothing in a roughing, no less than where it does, mm/min.
+    #[must_use]
+    pub fn air_mm_min(&self) -> f64 {
+        self.tool().feeding().air_feed_mm_min.unwrap_or(0.0).max(self.feed_mm_min())
+    }
+
     fn feed(&self) -> (f64, FeedLimit) {
         let shared = (self.mark_share(), self.tolerance().scallop_mm);
         marked(self.told.feeds_mm_min[self.hand.unwrap_or(0)], (self.tool(), self.strategy()), shared)

@@ -45,6 +45,7 @@ pub fn links(job: &Job, faces: &Part, cutter: &Cutter) -> Links {
     }
     let (setup, kind) = (job.setup(), &job.strategy().kind);
     let mut links = Links::new(obstacles, *cutter, job.feed_mm_min());
+    links.air_mm_min = job.air_mm_min();
     links.clearance_mm = setup.clearance_mm;
     links.approach_mm = setup.approach_mm;
     links.hop_mm = setup.hop_mm;

@@ -157,9 +157,10 @@ fn is_cl(path: &Path, text: &str) -> bool {
 /// A feed above the job's by more than this is reported: rounding of F and of the path stays far below.
 const FEED_EXCESS: f64 = 1.05;
 
-/// Reports feed moves whose tip goes faster than the job says: the fastest, with its line.
+/// Reports feed moves whose tip goes faster than the job says anywhere: the fastest, with its line.
 fn feeds(job: &Job, read: &Motions) -> Result<Option<Diagnostic>, Failure> {
-    let wanted = job.feed_mm_min();
+    let wanted = job.air_mm_min();
+    let key = if wanted > job.feed_mm_min() { "air_feed_mm_min" } else { "feed_mm_min" };
     let (mut fastest, mut line, mut fast) = (0.0, 0, 0usize);
     let mut before = 0.0;
     for (m, clock) in read.motions.iter().zip(&read.times_min) {
@@ -180,7 +181,7 @@ fn feeds(job: &Job, read: &Motions) -> Result<Option<Diagnostic>, Failure> {
     }
     Ok((fast > 0).then(|| {
         let text = format!(
-            "the tip moves faster than feed_mm_min = {wanted:.0} in {fast} moves, most in line {line}: {fastest:.0} mm/min"
+            "the tip moves faster than {key} = {wanted:.0} in {fast} moves, most in line {line}: {fastest:.0} mm/min"
         );
         Diagnostic::warning("feed", text)
     }))

@@ -59,6 +59,7 @@ fn cutting(c: &raw::Cutting) -> Vec<String> {
     let numbers = [
         ("spindle_rpm", c.spindle_rpm),
         ("feed_mm_min", c.feed_mm_min),
+        ("air_feed_mm_min", c.air_feed_mm_min),
         ("feed_per_tooth_mm", c.feed_per_tooth_mm),
     ];
     let mut out: Vec<String> =

@@ -54,6 +54,8 @@ pub struct Links {
     pub holder: Option<Holder>,
     /// Feed of the tip on the part.
     pub feed_mm_min: f64,
+    /// Feed of a roughing's ways on which the tool takes nothing, though too near to what stands for a rapid.
+    pub air_mm_min: f64,
     /// Feed on approaches.
     pub plunge_mm_min: f64,
     /// How fast the machine goes between passes.
@@ -77,6 +79,7 @@ impl Links {
             cutter,
             holder: None,
             feed_mm_min,
+            air_mm_min: feed_mm_min,
             plunge_mm_min: 0.5 * feed_mm_min,
             rates: Rates::default(),
         }

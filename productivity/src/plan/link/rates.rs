@@ -80,6 +80,12 @@ impl Rates {
         moves.windows(2).map(pair).sum()
     }
 
+    /// Time of a way through the air at a feed, min: from rest to rest, as its corners are sharp.
+    pub(in crate::plan) fn air_min(&self, step: Step, feed_mm_min: f64) -> f64 {
+        let way = from_rest(step.length_mm, feed_mm_min, self.rapid_mm_min2);
+        way.max(from_rest(step.turn_rad, self.turn_rad_min, self.turn_rad_min2))
+    }
+
     /// Time of a move at a feed, min.
     pub(in crate::plan) fn feed_min(&self, step: Step, feed_mm_min: f64) -> f64 {
         (step.length_mm / feed_mm_min).max(step.turn_rad / self.turn_rad_min)

@@ -25,6 +25,7 @@ fn links_over(obstacles: Box3, cutter: Cutter) -> Links {
         cutter,
         holder: None,
         feed_mm_min: 5000.0,
+        air_mm_min: 5000.0,
         plunge_mm_min: 2500.0,
     }
 }

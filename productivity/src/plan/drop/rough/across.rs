@@ -1,4 +1,4 @@
-//! The way through the air from where the tool is to where it goes on: over what stands in rapid, low over it at the feed, or around it,
+//! The way through the air from where the tool is to where it goes on: over what stands in rapid, low over it at the feed of the air, or around it,
 //! whichever is faster.
 //!
 //! A rapid goes from rest to rest three times, keeps the approach distance off what stands and is fed from there down; a way at the feed
@@ -83,37 +83,55 @@ impl Moves<'_> {
         Flight { places, min }
     }
 
-    /// Over to a place at the feed, no higher than what stands between asks for; down at `down_mm_min`.
-    fn low_over(&self, at: [f64; 3], down_mm_min: f64) -> Option<Flight> {
+    /// Time of a way from where the tool is at the feed of the air.
+    fn air_min(&self, places: &[[f64; 3]]) -> f64 {
+        let links = self.manner.links;
+        let (mut min, mut last) = (0.0, self.here());
+        for p in places {
+            let step = Step { length_mm: last.map_or(0.0, |l| apart(l, *p)), turn_rad: 0.0 };
+            min += links.rates.air_min(step, links.air_mm_min);
+            last = Some(*p);
+        }
+        min
+    }
+
+    /// Over to above a place at the feed, no higher than what stands between asks for.
+    fn low_over(&self, at: [f64; 3]) -> Option<Flight> {
         let here = self.here()?;
         let least = self.takes_nothing_over([here[0], here[1]], [at[0], at[1]])?;
         let high = least.max(here[2]).max(at[2]);
         if high > self.manner.safe {
             return None;
         }
-        let [up, over] = [[here[0], here[1], high], [at[0], at[1], high]];
-        let feed = self.manner.links.feed_mm_min;
-        let min = (apart(here, up) + apart(up, over)) / feed + apart(over, at) / down_mm_min;
-        Some(Flight { places: vec![up, over], min })
+        let places = vec![[here[0], here[1], high], [at[0], at[1], high]];
+        let min = self.air_min(&[places[0], places[1], at]);
+        Some(Flight { places, min })
     }
 
     /// Comes to a place through the air or around what stands, down to it where nothing thicker than `thin` stands, else at the feed of
     /// plunges. `stands` is how low a rapid may go there.
     fn come_to(&mut self, at: [f64; 3], stands: f64, thin: f64) {
+        let links = self.manner.links;
         let in_air = self.stands_at([at[0], at[1]]) <= at[2] + thin;
-        let feed = self.manner.links.feed_mm_min;
-        let down = if in_air { feed } else { self.plunge_mm_min() };
+        let down = if in_air { links.air_mm_min } else { links.plunge_mm_min };
         let rapid = self.above(at, stands);
         let last = rapid.places.last().copied().unwrap_or(at);
-        let by_rapid = rapid.min + apart(last, at) / down;
-        let low = self.low_over(at, down).filter(|low| in_air && low.min < by_rapid);
-        let by_air = low.as_ref().map_or(by_rapid, |low| low.min);
-        let around = if in_air { self.around(at, thin, by_air * feed) } else { None };
-        match around.or(low.map(|low| low.places)) {
-            Some(places) => self.feed(&places, feed, None),
+        let mut least =
+            rapid.min + links.rates.air_min(Step { length_mm: apart(last, at), turn_rad: 0.0 }, down);
+        let mut way = None;
+        if in_air {
+            if let Some(low) = self.low_over(at).filter(|low| low.min < least) {
+                (least, way) = (low.min, Some(low.places));
+            }
+            let around = self.around(at, thin, least * links.air_mm_min);
+            let whole = |places: &Vec<[f64; 3]>| [&places[..], &[at]].concat();
+            way = around.filter(|places| self.air_min(&whole(places)) < least).or(way);
+        }
+        match way {
+            Some(places) => self.go_on(&places, None),
             None => rapid.places.into_iter().for_each(|p| self.rapid(p)),
         }
-        self.feed(&[at], down, None);
+        if in_air { self.go_on(&[at], None) } else { self.go_down(&[at]) }
     }
 
     /// Over to a place where the tool has been, and down.

@@ -46,13 +46,13 @@ impl Moves<'_> {
         let led = been.into_iter().find_map(|from| Some((from, self.straight(sheet, from, start)?)));
         if let Some((from, way)) = led {
             self.back_to(from, thin);
-            self.feed(&way, self.manner.links.feed_mm_min, None);
+            self.go_on(&way, None);
             return true;
         }
         if let Some(air) = self.air_near(sheet, start) {
             self.drop_to(air, thin);
             if let Some(way) = self.straight(sheet, air, start) {
-                self.feed(&way, self.manner.links.feed_mm_min, None);
+                self.go_on(&way, None);
                 return true;
             }
         }
@@ -179,7 +179,7 @@ impl Moves<'_> {
             let centre = place(m);
             let Some(way) = self.straight(sheet, centre, at) else { continue };
             if self.spiral(centre, depth(m).min(most)) {
-                self.feed(&way, self.manner.links.feed_mm_min, None);
+                self.go_on(&way, None);
                 return true;
             }
         }
@@ -208,7 +208,7 @@ impl Moves<'_> {
         // Once more around, on the floor.
         let last = (1..=CORNERS).map(|k| corner(steps + k, at[2]));
         let way: Vec<[f64; 3]> = down.chain(last).chain([at]).collect();
-        self.feed(&way, self.plunge_mm_min(), None);
+        self.go_down(&way);
         true
     }
 
@@ -246,7 +246,7 @@ impl Moves<'_> {
             way.extend(out.iter().map(|(s, p)| [p[0], p[1], height(base + s).max(p[2])]));
             way.extend(out.iter().rev().map(|(s, p)| [p[0], p[1], height(base + 2.0 * far - s).max(p[2])]));
         }
-        self.feed(&way, self.plunge_mm_min(), None);
+        self.go_down(&way);
         true
     }
 }

@@ -13,6 +13,7 @@ use super::task::{Entry, Sizes};
 use crate::plan::{Linked, Links};
 use osculate_tools::Pose;
 use osculate_tools::cl::Motion;
+use std::ops::Range;
 
 /// Lines are looked at in steps of this part of the tool's radius.
 pub(super) const STATION: f64 = 0.4;
@@ -22,6 +23,9 @@ const BRIDGE: f64 = 2.0;
 const BESIDE: f64 = 2.5;
 /// Pieces of a path stray from it by this share of the chord tolerance.
 const STRAY: f64 = 0.5;
+/// What takes nothing is gone along at the feed of the air where it is no shorter than this, of the tool's radius: no more than half of that is
+/// spent on speeding up and slowing down.
+const AIR: f64 = 1.0;
 /// Share of the disc under the tool in which material may stand above the layer: slivers that are left on purpose.
 const STANDS: f64 = 0.12;
 /// Above the layer nothing stands higher than this share of its depth.
@@ -150,15 +154,24 @@ impl<'a> Moves<'a> {
         self.go(at, Motion::Rapid, None);
     }
 
-    pub(super) const fn plunge_mm_min(&self) -> f64 {
-        self.manner.links.plunge_mm_min
+    /// Goes along places at the feed of passes, faster where nothing is taken.
+    pub(super) fn go_on(&mut self, way: &[[f64; 3]], pass: Option<u32>) {
+        let links = self.manner.links;
+        self.fed(way, (links.feed_mm_min, links.air_mm_min), pass);
     }
 
-    /// Goes along places at a feed that is not exceeded, through what stands there.
-    pub(super) fn feed(&mut self, way: &[[f64; 3]], most_mm_min: f64, pass: Option<u32>) {
+    /// Goes along places at the feed of plunges.
+    pub(super) fn go_down(&mut self, way: &[[f64; 3]]) {
+        let feed = self.manner.links.plunge_mm_min;
+        self.fed(way, (feed, feed), None);
+    }
+
+    /// Goes along places at a feed that is not exceeded in what stands there, and one through the air.
+    fn fed(&mut self, way: &[[f64; 3]], (most_mm_min, air_mm_min): (f64, f64), pass: Option<u32>) {
         let Some(mut here) = self.here else { return };
         let step = STATION * self.site.tool.bare.radius_mm;
         let mut fed: Vec<Fed> = vec![(here, 0.0)];
+        let mut air = vec![false];
         let (site, mut before) = (self.site, None);
         for to in way {
             let steps = (apart(here, *to) / step).ceil() as usize;
@@ -173,12 +186,19 @@ impl<'a> Moves<'a> {
                     feed = self.pace.feed_mm_min(begin.max(end).max(before.unwrap_or(0.0)), most_mm_min);
                     before = Some(end);
                 }
-                self.taken_mm3 += self.columns.cut(&site.grid, &site.tool.bare, [here, next]);
+                let taken_mm3 = self.columns.cut(&site.grid, &site.tool.bare, [here, next]);
+                self.taken_mm3 += taken_mm3;
+                air.push(taken_mm3 == 0.0);
                 if let Some(k) = site.grid.near([next[0], next[1]]) {
                     self.been.at(k, next);
                 }
                 fed.push((next, feed));
                 here = next;
+            }
+        }
+        if air_mm_min > most_mm_min {
+            for run in runs_of_air(&fed, &air, AIR * site.tool.bare.radius_mm) {
+                fed[run].iter_mut().for_each(|(_, feed)| *feed = air_mm_min);
             }
         }
         for (at, feed) in thinned(&fed, STRAY * self.manner.sizes.chord_mm).into_iter().skip(1) {
@@ -253,7 +273,7 @@ impl<'a> Moves<'a> {
         if way.iter().any(|p| self.is_barred(sheet, *p)) {
             return false;
         }
-        self.feed(&way, self.manner.links.feed_mm_min, None);
+        self.go_on(&way, None);
         true
     }
 
@@ -330,9 +350,24 @@ impl<'a> Moves<'a> {
             return;
         }
         let pass = self.passes.len() as u32;
-        self.feed(&stations[1..], self.manner.links.feed_mm_min, Some(pass));
+        self.go_on(&stations[1..], Some(pass));
         self.passes.push(stations.to_vec());
     }
+}
+
+/// The ends of pieces of a way that lead through the air, where these are together no shorter than so much.
+fn runs_of_air(way: &[Fed], air: &[bool], least_mm: f64) -> Vec<Range<usize>> {
+    let mut out = Vec::new();
+    let mut k = 0;
+    while k < way.len() {
+        let end = (k..way.len()).find(|i| air[*i] != air[k]).unwrap_or(way.len());
+        let long: f64 = (k..end).map(|i| if i == 0 { 0.0 } else { apart(way[i - 1].0, way[i].0) }).sum();
+        if air[k] && long >= least_mm {
+            out.push(k..end);
+        }
+        k = end;
+    }
+    out
 }
 
 /// The parts of a line that are wanted, with short ways between them and one station more at each end.
