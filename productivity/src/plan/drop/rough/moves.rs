@@ -23,8 +23,8 @@ const BRIDGE: f64 = 2.0;
 const BESIDE: f64 = 2.5;
 /// Pieces of a path stray from it by this share of the chord tolerance.
 const STRAY: f64 = 0.5;
-/// What takes nothing is gone along at the feed of the air where it is no shorter than this, of the tool's radius: no more than half of that is
-/// spent on speeding up and slowing down.
+/// What takes nothing is gone along at the feed of the air where it is no shorter than this, of the tool's radius: less would all be
+/// speeding up and slowing down.
 const AIR: f64 = 1.0;
 /// Share of the disc under the tool in which material may stand above the layer: slivers that are left on purpose.
 const STANDS: f64 = 0.12;
