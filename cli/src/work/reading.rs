@@ -5,7 +5,7 @@ use crate::job::Control;
 use crate::job::Job;
 use crate::part::Part;
 use crate::work::nc::{self, Motions};
-use crate::work::{bodies, posted_setup, stock};
+use crate::work::{bodies, posted_setup, rough, stock};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_postproc::cldata;
 use osculate_tools::Cutter;
@@ -157,10 +157,12 @@ fn is_cl(path: &Path, text: &str) -> bool {
 /// A feed above the job's by more than this is reported: rounding of F and of the path stays far below.
 const FEED_EXCESS: f64 = 1.05;
 
-/// Reports feed moves whose tip goes faster than the job says anywhere: the fastest, with its line.
+/// Reports feed moves whose tip goes faster than the job says: the fastest, with its line.
 fn feeds(job: &Job, read: &Motions) -> Result<Option<Diagnostic>, Failure> {
-    let wanted = job.air_mm_min();
-    let key = if wanted > job.feed_mm_min() { "air_feed_mm_min" } else { "feed_mm_min" };
+    let feed_mm_min = job.feed_mm_min();
+    // Only a roughing goes through the air at a feed of its own.
+    let wanted = if rough::is(job) { job.air_mm_min() } else { feed_mm_min };
+    let key = if wanted > feed_mm_min { "air_feed_mm_min" } else { "feed_mm_min" };
     let (mut fastest, mut line, mut fast) = (0.0, 0, 0usize);
     let mut before = 0.0;
     for (m, clock) in read.motions.iter().zip(&read.times_min) {

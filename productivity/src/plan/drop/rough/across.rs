@@ -95,7 +95,7 @@ impl Moves<'_> {
         min
     }
 
-    /// Over to above a place at the feed, no higher than what stands between asks for.
+    /// Over to above a place at the feed of the air, no higher than what stands between asks for.
     fn low_over(&self, at: [f64; 3]) -> Option<Flight> {
         let here = self.here()?;
         let least = self.takes_nothing_over([here[0], here[1]], [at[0], at[1]])?;
