@@ -21,6 +21,7 @@ struct Held {
     holder: Option<Holder>,
     teeth: Option<u32>,
     spindle_rpm: Option<f64>,
+    feed_mm_min: f64,
 }
 
 impl Held {
@@ -33,6 +34,7 @@ impl Held {
             holder: job.holder().cloned(),
             teeth: job.tool().teeth(),
             spindle_rpm: job.spindle_rpm(),
+            feed_mm_min: job.feed_mm_min(),
         }
     }
 }
@@ -128,6 +130,7 @@ impl<'a> Aim<'a> {
             tool.holder = t.holder.as_ref();
             tool.teeth = t.teeth;
             tool.spindle_rpm = speed(k).or(t.spindle_rpm);
+            tool.feed_mm_min = Some(t.feed_mm_min);
             tool
         });
         let mut goal = Goal::new(machined, tools.collect(), stock, self.limits());

@@ -5,18 +5,16 @@ use crate::job::Job;
 use osculate_productivity::plan::Linked;
 use osculate_tools::cl::Motion;
 use osculate_tools::removal::stock::{Stock, StockJob, Upper};
-use osculate_tools::removal::{Body, Limits, Swept};
+use osculate_tools::removal::{Body, Swept};
 
 /// Feed of moves down into material, of that of passes.
 const PLUNGE: f64 = 0.5;
 
 /// Takes from raw material what a path takes. Its rapid moves that would go through some are made at the feed of plunges; how many they are comes
-/// back. Moves at the feed of the air that take more than rapids may are made at that of passes.
-pub fn slow(stock: &mut Stock, job: &Job, linked: &mut Linked) -> Result<usize, Failure> {
+/// back. Moves at the feed of the air that take more than a chip of `touch_mm` across the tool are made at that of passes.
+pub fn slow(stock: &mut Stock, job: &Job, touch_mm: f64, linked: &mut Linked) -> Result<usize, Failure> {
     let (flutes, shank) = job.flutes();
     let uppers = Upper::all(&flutes, shank.as_ref(), job.holder());
-    let t = job.tolerance();
-    let touch_mm = Limits::new(t.scallop_mm, t.gouge_mm).collision_mm;
     let motions = Swept::along(&linked.path);
     let work = StockJob { cutter: &flutes, uppers: &uppers, motions: &motions, touch_mm };
     let carved = stock.carve(&work, &|_| {}).map_err(Failure::job)?;
@@ -28,8 +26,7 @@ pub fn slow(stock: &mut Stock, job: &Job, linked: &mut Linked) -> Result<usize, 
         slowed += 1;
     }
     let feed_mm_min = job.feed_mm_min();
-    let thin_mm2 = 2.0 * flutes.radius_mm() * touch_mm;
-    for w in carved.work.iter().filter(|w| w.section_mm2 > thin_mm2) {
+    for w in carved.work.iter().filter(|w| w.is_cut(flutes.radius_mm(), touch_mm)) {
         let motion = &mut linked.path.moves[w.motion as usize + 1].motion;
         if matches!(motion, Motion::Feed(feed) if *feed > feed_mm_min) {
             *motion = Motion::Feed(feed_mm_min);
@@ -73,7 +70,7 @@ mod tests {
             linked.path.moves.push(ClMove { pose, motion });
             linked.pass_of_move.push(None);
         }
-        assert_eq!(slow(&mut stock, &job, &mut linked).unwrap(), 1);
+        assert_eq!(slow(&mut stock, &job, job.tolerance().gouge_mm, &mut linked).unwrap(), 1);
         let [passes, plunge] = [1.0, PLUNGE].map(|share| Motion::Feed(share * job.feed_mm_min()));
         let got: Vec<Motion> = linked.path.moves.iter().map(|m| m.motion).collect();
         assert_eq!(got, [Motion::Rapid, air, air, passes, air, Motion::Rapid, plunge]);

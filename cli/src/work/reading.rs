@@ -5,7 +5,7 @@ use crate::job::Control;
 use crate::job::Job;
 use crate::part::Part;
 use crate::work::nc::{self, Motions};
-use crate::work::{bodies, posted_setup, rough, stock};
+use crate::work::{bodies, posted_setup, stock};
 use osculate_geom::{Box3, Diagnostic};
 use osculate_postproc::cldata;
 use osculate_tools::Cutter;
@@ -118,7 +118,6 @@ fn of_nc(file: &Path, text: &str, job: &Job, faces: &Part, lenient: bool) -> Res
     let (motions, notes) =
         program(text, control, job, faces, lenient).map_err(|e| Failure::file(file, e.message()))?;
     diagnostics.extend(notes);
-    diagnostics.extend(feeds(job, &motions)?);
     diagnostics.extend(motions.diagnostics.iter().cloned());
     Ok(Read { source: "nc", motions, diagnostics })
 }
@@ -153,44 +152,6 @@ fn is_cl(path: &Path, text: &str) -> bool {
         l.starts_with("GOTO/") || l.starts_with("PARTNO") || l.starts_with("LOADTL/")
     })
 }
-
-/// A feed above the job's by more than this is reported: rounding of F and of the path stays far below.
-const FEED_EXCESS: f64 = 1.05;
-
-/// Reports feed moves whose tip goes faster than the job says: the fastest, with its line.
-fn feeds(job: &Job, read: &Motions) -> Result<Option<Diagnostic>, Failure> {
-    let feed_mm_min = job.feed_mm_min();
-    // Only a roughing goes through the air at a feed of its own.
-    let wanted = if rough::is(job) { job.air_mm_min() } else { feed_mm_min };
-    let key = if wanted > feed_mm_min { "air_feed_mm_min" } else { "feed_mm_min" };
-    let (mut fastest, mut line, mut fast) = (0.0, 0, 0usize);
-    let mut before = 0.0;
-    for (m, clock) in read.motions.iter().zip(&read.times_min) {
-        let length = (m.to.tip - m.from.tip).norm();
-        let time = clock - before;
-        before = *clock;
-        // Shorter moves say more about rounding than about feed.
-        if m.rapid || time <= 0.0 || length < SHORT_MM {
-            continue;
-        }
-        let feed = length / time;
-        if feed > FEED_EXCESS * wanted {
-            fast += 1;
-        }
-        if feed > fastest {
-            (fastest, line) = (feed, m.block);
-        }
-    }
-    Ok((fast > 0).then(|| {
-        let text = format!(
-            "the tip moves faster than {key} = {wanted:.0} in {fast} moves, most in line {line}: {fastest:.0} mm/min"
-        );
-        Diagnostic::warning("feed", text)
-    }))
-}
-
-/// Moves that are too short to tell their feed, mm.
-const SHORT_MM: f64 = 0.05;
 
 /// What unit a path may be in that meets the part only when scaled: a hint for the message.
 fn unit_hint(path: &Box3, reach: &Box3) -> &'static str {

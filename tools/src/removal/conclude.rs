@@ -83,12 +83,14 @@ pub(super) fn concluded(
         mark_max_mm: marks.known.then(|| marks.most_mm()),
         height_max_mm,
         coarse,
+        too_fast: stock.as_ref().and_then(|s| s.too_fast).or_else(|| trial.made_too_fast(&samples, &cuts)),
         stock,
         tally,
     };
     let (answer, why) = trial.answer(&figures, refined.left_out);
     let told = goal.control.remarks.iter().filter(|r| r.gravity == Gravity::Told).map(|r| r.text.clone());
-    let remarks = told.chain(notes).collect();
+    let fast = figures.too_fast.map(|_| trial.feed_words(&figures));
+    let remarks = told.chain(fast).chain(notes).collect();
     Verdict {
         answer,
         only: trial.only(),

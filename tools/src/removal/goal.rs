@@ -67,13 +67,23 @@ pub struct GoalTool<'a> {
     pub teeth: Option<u32>,
     /// Revolutions a minute. Without it tooth marks are not known.
     pub spindle_rpm: Option<f64>,
+    /// The fastest that its tip may go where it takes raw material, mm/min. Without it that is not looked at.
+    pub feed_mm_min: Option<f64>,
 }
 
 impl<'a> GoalTool<'a> {
     /// A cutter that cuts all along, without a holder; nothing is known of its teeth and speed.
     #[must_use]
     pub const fn new(cutter: &'a Cutter) -> Self {
-        Self { cutter, flutes: cutter, shank: None, holder: None, teeth: None, spindle_rpm: None }
+        Self {
+            cutter,
+            flutes: cutter,
+            shank: None,
+            holder: None,
+            teeth: None,
+            spindle_rpm: None,
+            feed_mm_min: None,
+        }
     }
 
     /// The same with so many teeth at a speed, whose marks are told.

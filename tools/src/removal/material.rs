@@ -1,5 +1,6 @@
 //! Declared raw material on the way of a program: what is left of it at the end, and at stops.
 
+use super::feeds::TooFast;
 use super::goal::GoalStock;
 use super::stock::{Carved, Stock, StockJob, Upper};
 use super::trial::{ProveError, Trial};
@@ -32,7 +33,7 @@ impl Trial<'_> {
         let GoalStock::Declared { blank, resolution, .. } = &self.goal.stock else { return Ok(None) };
         let made = Stock::fill(blank, resolution)?;
         let mut stock = made.stock;
-        let found = |stock: Arc<Stock>, before, carved| StockFound {
+        let found = |stock: Arc<Stock>, before, (carved, too_fast): (Carved, Option<TooFast>)| StockFound {
             cell_mm: stock.cell_mm(),
             coarsened_mm: made.coarsened,
             rays: stock.rays(),
@@ -40,12 +41,14 @@ impl Trial<'_> {
             before,
             left: stock.volume(),
             carved,
+            too_fast,
             stock,
         };
         let all = self.program.motions.len();
         let first = stock.volume();
-        let (mut whole, mut at_stops) = (Carved::default(), Vec::with_capacity(stops.len()));
-        let (mut own, mut before) = (Carved::default(), first);
+        let (mut whole, mut at_stops) =
+            ((Carved::default(), None::<TooFast>), Vec::with_capacity(stops.len()));
+        let (mut own, mut before) = ((Carved::default(), None::<TooFast>), first);
         let mut begin = 0;
         let mut waiting = stops.iter().copied().peekable();
         for end in self.program.changes.iter().copied().chain([all]) {
@@ -55,8 +58,12 @@ impl Trial<'_> {
                 if begin < until {
                     let share = |f: f64| progress((begin as f64 + f * (until - begin) as f64) / all as f64);
                     let carved = self.carve_by_one(&mut stock, (begin, until), touch_mm, &share)?;
-                    own.follow(carved.clone(), begin);
-                    whole.follow(carved, begin);
+                    if let Some(fast) = self.too_fast(&carved, begin, self.limits.collision_mm) {
+                        own.1 = Some(fast.with(own.1));
+                        whole.1 = Some(fast.with(whole.1));
+                    }
+                    own.0.follow(carved.clone(), begin);
+                    whole.0.follow(carved, begin);
                     begin = until;
                 }
                 if stop.is_none() {

@@ -55,6 +55,7 @@ mod deepest;
 mod density;
 mod digs;
 mod edges;
+mod feeds;
 mod foot;
 mod goal;
 mod grid;
@@ -83,6 +84,7 @@ pub use cut::{cut, cut_on};
 pub use density::{Density, Hidden};
 pub use digs::DIVISIONS;
 pub use edges::{beside_edges, measure_beside_edges};
+pub use feeds::TooFast;
 pub use goal::{
     Goal, GoalControl, GoalFace, GoalFixture, GoalLimits, GoalStock, GoalTool, Gravity, Looks, Program,
     Remark, Unseen,

@@ -3,6 +3,7 @@
 //! [`prove`](super::prove()) alone makes one. Equal programs and goals give equal verdicts, byte for byte as text too.
 
 use super::density::Hidden;
+use super::feeds::TooFast;
 use super::job::{Cut, Sample};
 use super::stock::{Carved, Stock, Volume};
 use super::tally::Tally;
@@ -60,6 +61,8 @@ pub struct StockFound {
     pub left: Volume,
     /// What every block took, and what ran into material.
     pub carved: Carved,
+    /// What was taken too fast, as in [`Figures::too_fast`].
+    pub too_fast: Option<TooFast>,
     /// The material that is left.
     pub stock: Arc<Stock>,
 }
@@ -91,6 +94,8 @@ pub struct Figures {
     pub height_max_mm: f64,
     /// The program is so far off that a coarse look tells: figures are of that look, and nothing was looked at closer.
     pub coarse: bool,
+    /// What cuts faster than its tool's feed; None also where feeds are not known.
+    pub too_fast: Option<TooFast>,
     /// Declared raw material, where it was looked at.
     pub stock: Option<StockFound>,
 }

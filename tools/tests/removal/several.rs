@@ -225,6 +225,55 @@ fn a_plate_is_finished_by_two_tools() {
     assert!(matches!(late, Err(ProveError::Tools { .. })));
 }
 
+/// What takes material faster than its tool's feed is counted, of ways through the air no speed is; it says itself where nothing tells a feed.
+#[test]
+fn feeds_are_held_against_material() {
+    let both = Plate::new([[-2.0, 4.03], [5.0, 8.5]]);
+    let first = both.first;
+    let asked = |feeds: [Option<f64>; 2], hasten: &dyn Fn(&Swept) -> f64, timed: bool| {
+        both.with(&[first], plate(), |goal, program| {
+            let mut tools = goal.tools.clone();
+            tools.iter_mut().zip(feeds).for_each(|(tool, feed)| tool.feed_mm_min = feed);
+            let mut goal = Goal::new(goal.machined.clone(), tools, goal.stock, goal.limits);
+            goal.looks = Looks::spaced(0.1, 100_000);
+            let mut clock = 0.0;
+            let each = program.motions.iter().map(|m| {
+                clock += (m.to.tip - m.from.tip).norm() / hasten(m);
+                clock
+            });
+            let times_min: Vec<f64> = if timed { each.collect() } else { Vec::new() };
+            prove(&goal, Program { times_min: &times_min, ..program }, &|_| ()).unwrap()
+        })
+    };
+    let row = |v: &Verdict| v.scope().iter().find(|r| r.what == "feed").unwrap().covers.clone();
+    let even = |_: &Swept| 300.0;
+    // In the air, between the tools, twenty times as fast.
+    let in_air = |m: &Swept| if m.from.tip.z.min(m.to.tip.z) > 2.0 { 6000.0 } else { 300.0 };
+    for speed in [&even as &dyn Fn(&Swept) -> f64, &in_air] {
+        let verdict = asked([Some(300.0), Some(290.0)], speed, true);
+        assert_eq!((verdict.answer(), &verdict.remarks().len()), (Answer::Held, &0), "{verdict}");
+        assert!(row(&verdict).contains("no faster"), "{verdict}");
+        assert_eq!(verdict.figures().stock.as_ref().unwrap().too_fast, None);
+    }
+    // The second tool takes along each of its rows but the first, which lies within what the first tool cut, and nothing outside of the plate.
+    let verdict = asked([Some(300.0), Some(100.0)], &even, true);
+    let found = verdict.figures().stock.as_ref().unwrap().too_fast.unwrap();
+    let mut rows: Vec<f64> =
+        both.motions[first..].iter().filter(|m| m.to.tip.z < 2.0).map(|m| m.to.tip.y).collect();
+    rows.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    assert_eq!((rows.len(), found.moves), (36, 35));
+    assert!((found.mm_min - 300.0).abs() < 1e-6 && found.feed_mm_min == 100.0, "{found:?}");
+    assert!(
+        verdict.remarks().iter().any(|r| *r == row(&verdict)) && row(&verdict).contains("300 mm/min"),
+        "{verdict}"
+    );
+    // One of the two says nothing, or no motion says how long it takes.
+    for (feeds, timed) in [([Some(300.0), None], true), ([Some(300.0), Some(100.0)], false)] {
+        let verdict = asked(feeds, &even, timed);
+        assert!(row(&verdict).starts_with("NOT held against"), "{verdict}");
+    }
+}
+
 /// What is left when the first of two operations ends is what the second begins from and what both have left; each is judged as it is
 /// then, on what is measured for the whole, whose verdict stays the same.
 #[test]

@@ -90,7 +90,7 @@ impl Choice<'_> {
             return Ok(State::Out(objection.text));
         }
         if let Some(left) = &self.faces.left {
-            plunges::slow(&mut Stock::clone(&left.stock), job, &mut linked)?;
+            plunges::slow(&mut Stock::clone(&left.stock), job, job.tolerance().gouge_mm, &mut linked)?;
         }
         Ok(State::Planned(Box::new(Planned {
             passes,

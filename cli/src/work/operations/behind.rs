@@ -167,11 +167,11 @@ impl Behind {
     }
 
     /// Goes on with an operation. Its rapid moves that would go through material are made at the feed of plunges; how many they are
-    /// comes back.
-    pub fn take(&mut self, job: &Job, linked: &mut Linked) -> Result<usize, Failure> {
+    /// comes back. The part as a whole says what of it is no more than a touch.
+    pub fn take(&mut self, job: &Job, touch_mm: f64, linked: &mut Linked) -> Result<usize, Failure> {
         let mut slowed = 0;
         if let Some(stock) = &mut self.stock {
-            slowed = plunges::slow(stock, job, linked)?;
+            slowed = plunges::slow(stock, job, touch_mm, linked)?;
         }
         // What takes material is a motion that cuts, as far as heights are concerned: where it must not it is found elsewhere, and
         // where the order of motions does not matter there is far less to look at.

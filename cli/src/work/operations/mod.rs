@@ -142,9 +142,10 @@ fn laid<'a>(
         match planning {
             Planning::Path(mut step) => {
                 let stage = Stage::begin(watch, "stock");
-                let limit_mm = list.whole().tolerance().scallop_mm;
+                let tolerance = list.whole().tolerance();
+                let limit_mm = tolerance.scallop_mm;
                 let before = behind.stands(&step.part, limit_mm);
-                let slowed = behind.take(&step.job, &mut step.planned.linked)?;
+                let slowed = behind.take(&step.job, tolerance.gouge_mm, &mut step.planned.linked)?;
                 step.on_faces = behind::on_faces(&step.part, before, behind.stands(&step.part, limit_mm));
                 step.slowed += slowed;
                 if step.slowed > 0 {
