@@ -45,9 +45,13 @@ fn path(name: &str, turning: bool) -> ClPath {
     };
     let mut moves = Vec::new();
     for row in 0..2 {
-        moves.push(ClMove { pose: at(row, 0, 20.0), motion: Motion::Rapid });
-        moves.extend((0..20).map(|k| ClMove { pose: at(row, k, 0.0), motion: Motion::Feed(800.0) }));
-        moves.push(ClMove { pose: at(row, 19, 20.0), motion: Motion::Rapid });
+        moves.push(ClMove { pose: at(row, 0, 20.0), motion: Motion::Rapid, aloft: false });
+        moves.extend((0..20).map(|k| ClMove {
+            pose: at(row, k, 0.0),
+            motion: Motion::Feed(800.0),
+            aloft: false,
+        }));
+        moves.push(ClMove { pose: at(row, 19, 20.0), motion: Motion::Rapid, aloft: false });
     }
     ClPath { moves, ..ClPath::default() }
 }

@@ -93,6 +93,38 @@ fn tooth_marks_belong_to_the_scallop() {
     assert!(mark > 0.4 && mark < 0.9, "{mark}");
 }
 
+/// A pass of a ball along a strip, by hand: as fast as its tool is for it says nothing more, in the air it may be faster, and where it cuts
+/// that is told, with raw material and without.
+#[test]
+fn what_cuts_faster_than_its_tool_is_for_is_told() {
+    let s = Scratch::new();
+    let strip = "format = 1\npart = { builtin = { kind = \"plane\", half_size_mm = 1 } }\n\
+                 tool = { kind = \"ball\", diameter_mm = 6, length_mm = 40 }\ntolerance = { scallop_mm = 0.2 }\n\
+                 cutting = { spindle_rpm = 8000, feed_mm_min = 500 }\n\
+                 machine = { name = \"3-axis\", dialect = \"linuxcnc\", feed = \"none\" }\n";
+    let pass = "G21 G90 G94 G54 G61\nT1 M6\nS8000 M3\nG43 H1\nG0 X-8 Y0\nG0 Z5\nG1 Z0 F500\nG1 X-5\nG1 X5 F500\nG1 X8\nG0 Z50\nM30\n";
+    let stock = "stock = { box_mm = [-1, -1, -2, 1, 1, 0.5], cell_mm = 0.1 }\n";
+    for (name, stock) in [("assumed", ""), ("declared", stock)] {
+        let path = s.write(&format!("{name}.toml"), &format!("{strip}{stock}"));
+        let said = |program: &str| {
+            let v = verify(&s.write("pass.ngc", program), &path).json();
+            assert_eq!(answer(&v), "held", "{name}: {v}");
+            let remarks = v["verdict"]["remarks"].as_array().unwrap().len();
+            (v["verdict"]["scope"]["feed"].as_str().unwrap().to_owned(), remarks)
+        };
+        let (row, remarks) = said(pass);
+        assert!(row.contains("no faster than its tool's feed") && remarks == 0, "{name}: {row}");
+        let in_air = pass.replace("G1 X-5\n", "G1 X-5 F3000\n").replace("G1 X8\n", "G1 X8 F3000\n");
+        assert_eq!(said(&in_air), (row, 0), "{name}");
+        let (row, remarks) = said(&pass.replace("X5 F500", "X5 F1500"));
+        assert!(
+            row.starts_with("1 moves that cut are faster") && row.contains("1500 mm/min"),
+            "{name}: {row}"
+        );
+        assert_eq!(remarks, 1, "{name}");
+    }
+}
+
 /// Faults of state that move no axis: none may pass.
 #[test]
 fn a_program_in_another_state_of_the_control_does_not_hold() {

@@ -129,7 +129,8 @@ pub(crate) fn alike(from: &Placed, moves: &[ClMove], choices: &[Choice]) -> usiz
     let fits = |(m, choice): (&ClMove, &Choice)| {
         let turns = angle_between(&axis, &m.pose.axis) > TURNS_RAD;
         axis = m.pose.axis;
-        turns && m.motion == first.motion && m.motion != Motion::Rapid && !choice.rewind && !choice.singular
+        let feeds = m.motion != Motion::Rapid && !m.aloft;
+        turns && feeds && m.motion == first.motion && !choice.rewind && !choice.singular
     };
     moves.iter().zip(choices).map(fits).take_while(|fit| *fit).count()
 }

@@ -82,6 +82,12 @@ impl Stray {
     pub fn within(&self, options: &SolveOptions) -> bool {
         self.tip_mm <= options.tip_tol_mm && self.axis_rad <= options.axis_tol_rad
     }
+
+    /// As [`within`](Self::within), where the tool is off everything.
+    fn within_aloft(&self, options: &SolveOptions) -> bool {
+        let (tip_mm, axis_rad) = options.aloft_tol;
+        self.tip_mm <= options.tip_tol_mm.max(tip_mm) && self.axis_rad <= options.axis_tol_rad.max(axis_rad)
+    }
 }
 
 /// A pose with the joints chosen for it.
@@ -103,6 +109,8 @@ pub(crate) struct Liner<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Label {
     pub motion: Motion,
+    /// Whether the tool is off everything.
+    pub aloft: bool,
     pub source: usize,
     pub kind: BlockKind,
 }
@@ -124,7 +132,11 @@ impl Liner<'_> {
         let rapid = line.label.motion == Motion::Rapid;
         let stray = self.stray(line, a, b);
         let o = self.options;
-        let near = if rapid { stray.tip_mm <= o.rapid_tol_mm } else { stray.within(o) };
+        let near = match line.label {
+            _ if rapid => stray.tip_mm <= o.rapid_tol_mm,
+            Label { aloft: true, .. } => stray.within_aloft(o),
+            _ => stray.within(o),
+        };
         let (qa, qb) = (self.machine.rotary_of(&a.1), self.machine.rotary_of(&b.1));
         let turns = (0..2).map(|k| (qb[k] - qa[k]).abs()).fold(0.0, f64::max);
         if near && turns <= LARGEST_ROTARY_STEP_RAD {
@@ -234,7 +246,7 @@ impl Liner<'_> {
         };
         let summary = &mut self.path.summary;
         summary.inserted_points += usize::from(kind == BlockKind::Inserted);
-        if line.label.motion != Motion::Rapid {
+        if line.label.motion != Motion::Rapid && !line.label.aloft {
             summary.add_stray(stray.tip_mm, stray.axis_rad);
         }
         self.path.blocks.push(JointBlock {

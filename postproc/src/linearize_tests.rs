@@ -28,13 +28,21 @@ fn blocks(
     to: (f64, f64, f64),
     options: &SolveOptions,
 ) -> Result<JointPath, SolveError> {
+    line(from, to, (options, false))
+}
+
+fn line(
+    from: (f64, f64, f64),
+    to: (f64, f64, f64),
+    (options, aloft): (&SolveOptions, bool),
+) -> Result<JointPath, SolveError> {
     let (machine, setup) = table();
     let placed = |(x, a, c)| {
         let joints = joints(&machine, x, a, c);
         Placed { pose: machine.forward(&joints, &setup), joints }
     };
     let mut liner = Liner { machine: &machine, setup: &setup, options, path: JointPath::default() };
-    let label = Label { motion: Motion::Feed(100.0), source: 1, kind: BlockKind::Point };
+    let label = Label { motion: Motion::Feed(100.0), aloft, source: 1, kind: BlockKind::Point };
     liner.line(&placed(from), &placed(to), &label)?;
     Ok(liner.path)
 }
@@ -62,6 +70,26 @@ fn chord_of_a_turning_table() {
     assert!((length - 50.0 * 2f64.sqrt()).abs() < 1e-9);
 }
 
+/// Off everything the tool may stray more: as many blocks as the wider tolerance needs, of which the summary of what may touch says nothing; no
+/// wider one leaves the line as it is.
+#[test]
+fn off_everything_blocks_are_fewer() {
+    let fine = SolveOptions { aloft_tol: (0.05, 1.0), ..options(0.01) };
+    let ends = ((50.0, 0.0, 0.0), (50.0, 0.0, 5.0));
+    let count = |options: &SolveOptions, aloft: bool| {
+        let path = line(ends.0, ends.1, (options, aloft)).unwrap();
+        (path.blocks.len(), path.summary.tip_error_mm)
+    };
+    // 0.0476 mm in one block.
+    assert_eq!(count(&fine, true), (1, 0.0));
+    assert_eq!(count(&SolveOptions { aloft_tol: (0.045, 1.0), ..fine }, true).0, 2);
+    assert_eq!(count(&fine, false), count(&options(0.01), false));
+    let (blocks, _) = count(&options(0.01), true);
+    assert_eq!(blocks, 4);
+    let wrong = SolveOptions { aloft_tol: (-1.0, 0.0), ..fine };
+    assert!(matches!(check_options(&wrong), Err(SolveError::Option { what: "aloft_tol", .. })));
+}
+
 /// With the tool at 30 deg over the centre, C 0 to 90 leaves the tip where it is, but takes the axis round the cone
 /// instead of over the great circle: 30 deg less atan(sin 30 cos 45 / cos 30) in the middle.
 #[test]
@@ -76,7 +104,7 @@ fn axis_stray_with_a_resting_tip() {
     };
     let wide = SolveOptions { tip_tol_mm: 1e-6, ..options(1.0) };
     let mut liner = Liner { machine: &machine, setup: &setup, options: &wide, path: JointPath::default() };
-    let label = Label { motion: Motion::Feed(100.0), source: 1, kind: BlockKind::Point };
+    let label = Label { motion: Motion::Feed(100.0), aloft: false, source: 1, kind: BlockKind::Point };
     liner.line(&placed(0.0), &placed(90.0), &label).unwrap();
     assert_eq!(liner.path.blocks.len(), 1);
     assert!((liner.path.summary.axis_error_rad.to_degrees() - 7.7923).abs() < 5e-5);

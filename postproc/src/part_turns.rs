@@ -214,7 +214,7 @@ mod tests {
         let mut path = ClPath::default();
         for &axis in axes {
             let pose = Pose { tip: osculate_geom::Point3::origin(), axis };
-            path.moves.push(ClMove { pose, motion: Motion::Feed(1000.0) });
+            path.moves.push(ClMove { pose, motion: Motion::Feed(1000.0), aloft: false });
         }
         path
     }

@@ -268,7 +268,8 @@ impl Run<'_> {
     fn move_to(&self, liner: &mut Liner, from: &Placed, i: usize) -> Result<Placed, SolveError> {
         let m = &self.moves[i];
         let to = self.placed(liner, i)?;
-        let label = Label { motion: m.motion, source: self.first + i, kind: BlockKind::Point };
+        let label =
+            Label { motion: m.motion, aloft: m.aloft, source: self.first + i, kind: BlockKind::Point };
         let mut at = *from;
         if self.choices[i].rewind {
             at = rewind(liner, &at, &to, &self.choices[i], &label)?;
@@ -386,7 +387,7 @@ fn rewind(
         liner.line(at, &before, &Label { kind: BlockKind::Inserted, ..*label })?;
     }
     let away = pose.retracted(liner.options.rewind_retract_mm);
-    let rapid = Label { motion: Motion::Rapid, source: index, kind: BlockKind::Rewind };
+    let rapid = Label { motion: Motion::Rapid, aloft: true, source: index, kind: BlockKind::Rewind };
     let out = Placed { pose: away, joints: liner.checked(&machine.rotary_of(&before.joints), &away, index)? };
     let back = Placed { pose: away, joints: liner.checked(&machine.rotary_of(&after.joints), &away, index)? };
     liner.line(&before, &out, &rapid)?;

@@ -16,6 +16,10 @@ pub struct SolveOptions {
     pub touch_rad: f64,
     /// How far the axis may leave the CL's in feed moves, rad.
     pub axis_tol_rad: f64,
+    /// How far tip and axis may leave the CL's in feed moves on which the tool is off everything ([`ClMove::aloft`]), where that is more, mm and rad.
+    ///
+    /// [`ClMove::aloft`]: osculate_tools::cl::ClMove::aloft
+    pub aloft_tol: (f64, f64),
     /// How far the tip may leave its line in rapid moves, mm.
     pub rapid_tol_mm: f64,
     /// Within this angle of a pole the outer rotary joint is held and the axis errs by at most this, rad.
@@ -36,6 +40,7 @@ impl Default for SolveOptions {
             tip_tol_mm: 0.002,
             touch_rad: FRAC_PI_2,
             axis_tol_rad: 0.02f64.to_radians(),
+            aloft_tol: (0.0, 0.0),
             rapid_tol_mm: 0.1,
             join: false,
             singular_cone_rad: 0.005f64.to_radians(),
@@ -57,6 +62,11 @@ pub(crate) fn check_options(o: &SolveOptions) -> Result<(), SolveError> {
     if !(o.rewind_retract_mm.is_finite() && o.rewind_retract_mm >= 0.0) {
         let (what, value) = ("rewind_retract_mm", o.rewind_retract_mm);
         return Err(SolveError::Option { what, value, wanted: "not below zero" });
+    }
+    for value in [o.aloft_tol.0, o.aloft_tol.1] {
+        if !(value.is_finite() && value >= 0.0) {
+            return Err(SolveError::Option { what: "aloft_tol", value, wanted: "not below zero" });
+        }
     }
     let (what, value) = ("touch_rad", o.touch_rad);
     if !(0.0..=FRAC_PI_2).contains(&value) {

@@ -194,7 +194,7 @@ mod tests {
                 let normal = Vec3::new(0.01 * f64::from(k), 0.05 * f64::from(row), 1.0);
                 let axis = Unit3::new_normalize(normal);
                 let pose = Pose { tip: Point3::from(axis.into_inner() * 50.0), axis };
-                path.moves.push(ClMove { pose, motion: Motion::Feed(3000.0) });
+                path.moves.push(ClMove { pose, motion: Motion::Feed(3000.0), aloft: false });
             }
         }
         path

@@ -132,7 +132,7 @@ proptest! {
     fn any_path(tips in prop::collection::vec(prop::array::uniform6(-3000.0..3000.0f64), 2..20), feed in 1e-3..1e5f64) {
         let poses = tips.iter().filter(|t| t[3..].iter().any(|c| c.abs() > 1.0));
         let mut moves: Vec<ClMove> = poses
-            .map(|t| ClMove { pose: pose([t[0], t[1], t[2]], [t[3], t[4], t[5]]), motion: Motion::Feed(feed) })
+            .map(|t| ClMove { pose: pose([t[0], t[1], t[2]], [t[3], t[4], t[5]]), motion: Motion::Feed(feed), aloft: false })
             .collect();
         prop_assume!(!moves.is_empty());
         moves[0].motion = Motion::Rapid;

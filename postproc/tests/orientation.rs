@@ -80,7 +80,7 @@ fn three_positions() -> ClPath {
             ([x + 11.0, 7.0, 1.0], Motion::Feed(800.0)),
             ([x + 11.0, 7.0, 40.0], Motion::Rapid),
         ] {
-            moves.push(ClMove { pose: pose(tip, axis), motion });
+            moves.push(ClMove { pose: pose(tip, axis), motion, aloft: false });
         }
     }
     ClPath { moves, spindle_rpm: Some(8000.0), ..ClPath::default() }

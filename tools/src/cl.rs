@@ -19,6 +19,9 @@ pub struct ClMove {
     pub pose: Pose,
     /// How it gets there.
     pub motion: Motion,
+    /// Whether the tool is off everything on the way there, by more than it may stray as it turns: [`Motion::Rapid`] says so by itself. CL
+    /// data does not.
+    pub aloft: bool,
 }
 
 /// A whole tool path in the part's frame.
@@ -33,9 +36,9 @@ pub struct ClMove {
 ///     cutter: Some(CutterSpec::Ball { diameter_mm: 10.0, length_mm: 60.0 }),
 ///     spindle_rpm: Some(8000.0),
 ///     moves: vec![
-///         ClMove { pose: at(0.0, 50.0), motion: Motion::Rapid },
-///         ClMove { pose: at(0.0, 0.0), motion: Motion::Feed(300.0) },
-///         ClMove { pose: at(40.0, 0.0), motion: Motion::Feed(1200.0) },
+///         ClMove { pose: at(0.0, 50.0), motion: Motion::Rapid, aloft: false },
+///         ClMove { pose: at(0.0, 0.0), motion: Motion::Feed(300.0), aloft: false },
+///         ClMove { pose: at(40.0, 0.0), motion: Motion::Feed(1200.0), aloft: false },
 ///     ],
 ///     ..Default::default()
 /// };

@@ -59,7 +59,9 @@ pub fn run(args: &ReadbackArgs, json: bool) -> Outcome {
                     Motion::Feed(_) => answer.cutting_length_mm += length_mm,
                 }
                 answer.points += 1;
-                writer.take(&ClMove { pose: m.pose, motion: m.motion }, &mut text).map_err(unwritten)?;
+                writer
+                    .take(&ClMove { pose: m.pose, motion: m.motion, aloft: false }, &mut text)
+                    .map_err(unwritten)?;
             }
             if text.len() >= PIECE_BYTES {
                 out.write_all(text.as_bytes()).map_err(|e| Failure::file(&args.out, e))?;

@@ -155,6 +155,7 @@ impl Control {
         let at = |x: f64, motion: Motion| ClMove {
             pose: Pose { tip: Point3::new(x, 0.0, 0.0), axis: Vec3::z_axis() },
             motion,
+            aloft: false,
         };
         let moves = vec![at(0.0, Motion::Rapid), at(1.0, Motion::Feed(1000.0))];
         let path = ClPath { cutter: Some(tool.spec()), moves, ..ClPath::default() };

@@ -212,9 +212,19 @@ impl Job {
         self.tool().feeding().air_feed_mm_min.unwrap_or(0.0).max(self.feed_mm_min())
     }
 
+    /// The feed that the tool in hand is for, whatever marks its teeth leave at it, mm/min.
+    #[must_use]
+    pub fn tool_feed_mm_min(&self) -> f64 {
+        self.of_tool().0
+    }
+
+    fn of_tool(&self) -> (f64, FeedLimit) {
+        self.told.feeds_mm_min[self.hand.unwrap_or(0)]
+    }
+
     fn feed(&self) -> (f64, FeedLimit) {
         let shared = (self.mark_share(), self.tolerance().scallop_mm);
-        marked(self.told.feeds_mm_min[self.hand.unwrap_or(0)], (self.tool(), self.strategy()), shared)
+        marked(self.of_tool(), (self.tool(), self.strategy()), shared)
     }
 
     /// The share of the scallop that the marks of teeth take at most: a half, unless [`Job::with`] gives another.

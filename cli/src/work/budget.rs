@@ -37,6 +37,8 @@ const SIDE_RAD: f64 = 80.0 / 180.0 * std::f64::consts::PI;
 /// The share of both that is counted. (Tuned on blades of a turbine, a compressor and an impeller: a quarter leaves too much between joined blocks, half
 /// asks for passes that nothing needs.)
 const COUNTED: f64 = 0.45;
+/// What the tool may stray on ways off the surface, of the least lift: they are clear half as high.
+const ALOFT: f64 = 0.25;
 /// The cone in which joints are held near a pole, of what the axis may stray.
 const CONE: f64 = 0.5;
 /// Planning keeps back no more than this share of the scallop: above it passes cannot make good for a coarse machine.
@@ -62,7 +64,10 @@ pub fn solve(job: &Job, touch_rad: f64) -> SolveOptions {
         (of_chord(SIDE_TIP).min(coarse.tip_tol_mm), axis.min(coarse.axis_tol_rad))
     };
     let singular_cone_rad = coarse.singular_cone_rad.min(CONE * axis_tol_rad);
-    SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join, ..coarse }
+    let setup = job.setup();
+    let aloft_mm = ALOFT * setup.hop_mm.min(setup.approach_mm);
+    let aloft_tol = (aloft_mm, aloft_mm / radius_mm);
+    SolveOptions { tip_tol_mm, touch_rad, axis_tol_rad, singular_cone_rad, join, aloft_tol, ..coarse }
 }
 
 /// Whether the control keeps the tip on its line.

@@ -34,7 +34,7 @@ impl Held {
             holder: job.holder().cloned(),
             teeth: job.tool().teeth(),
             spindle_rpm: job.spindle_rpm(),
-            feed_mm_min: job.feed_mm_min(),
+            feed_mm_min: job.tool_feed_mm_min(),
         }
     }
 }

@@ -9,6 +9,8 @@ use osculate_tools::removal::{Body, Swept};
 
 /// Feed of moves down into material, of that of passes.
 const PLUNGE: f64 = 0.5;
+/// Of the least chip that a verdict counts this share is one here: words of programs are rounded.
+const SURE: f64 = 0.5;
 
 /// Takes from raw material what a path takes. Its rapid moves that would go through some are made at the feed of plunges; how many they are comes
 /// back. Moves at the feed of the air that take more than a chip of `touch_mm` across the tool are made at that of passes.
@@ -26,7 +28,7 @@ pub fn slow(stock: &mut Stock, job: &Job, touch_mm: f64, linked: &mut Linked) ->
         slowed += 1;
     }
     let feed_mm_min = job.feed_mm_min();
-    for w in carved.work.iter().filter(|w| w.is_cut(flutes.radius_mm(), touch_mm)) {
+    for w in carved.work.iter().filter(|w| w.is_cut(flutes.radius_mm(), SURE * touch_mm)) {
         let motion = &mut linked.path.moves[w.motion as usize + 1].motion;
         if matches!(motion, Motion::Feed(feed) if *feed > feed_mm_min) {
             *motion = Motion::Feed(feed_mm_min);
@@ -67,7 +69,7 @@ mod tests {
         let mut linked = Linked::default();
         for (at, motion) in ways {
             let pose = Pose { tip: Point3::from(at), axis: Vec3::z_axis() };
-            linked.path.moves.push(ClMove { pose, motion });
+            linked.path.moves.push(ClMove { pose, motion, aloft: false });
             linked.pass_of_move.push(None);
         }
         assert_eq!(slow(&mut stock, &job, job.tolerance().gouge_mm, &mut linked).unwrap(), 1);

@@ -7,11 +7,11 @@ use crate::job::words::EntryWord;
 use crate::part::{LoadedFace, Part};
 use crate::work::drop;
 use crate::work::extras::Extras;
-use crate::work::passes;
 use crate::work::program::Planned;
 use crate::work::setup;
 use crate::work::stock::RawMaterial;
-use osculate_geom::{Offset, Unit3};
+use crate::work::{passes, plunges};
+use osculate_geom::{Diagnostic, Offset, Unit3};
 use osculate_postproc::Orienting;
 use osculate_productivity::compare::Axes;
 use osculate_productivity::plan::{self, Headings, Places, RoughTask, Rows, Search, Sizes};
@@ -122,5 +122,12 @@ pub fn of_raw(
     let Some(raw) = RawMaterial::of(job, faces)? else {
         return Err(job.refuse("strategy", "kind", "a roughing needs the raw material: add [stock]"));
     };
-    planned(job, faces, (layers, &raw.filled()?, None), progress)
+    let mut stock = raw.filled()?;
+    let mut out = planned(job, faces, (layers, &stock, None), progress)?;
+    let slowed = plunges::slow(&mut stock, job, job.tolerance().gouge_mm, &mut out.linked)?;
+    if slowed > 0 {
+        let text = format!("{slowed} rapid moves would go through material and are made at feed");
+        out.extras.diagnostics.push(Diagnostic::note("links", text));
+    }
+    Ok(out)
 }

@@ -76,6 +76,7 @@ fn posted(
         .map(|(k, pose)| ClMove {
             pose: *pose,
             motion: if k == 0 { Motion::Rapid } else { Motion::Feed(500.0) },
+            aloft: false,
         })
         .collect();
     let path = ClPath { cutter: Some(spec), holder: Vec::new(), spindle_rpm: Some(6000.0), moves };

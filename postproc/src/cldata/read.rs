@@ -469,7 +469,7 @@ impl ClReader {
             section.moves += 1;
         }
         let (tip, axis) = self.placing.place(tip, self.axis);
-        self.path.moves.push(ClMove { pose: Pose { tip, axis }, motion });
+        self.path.moves.push(ClMove { pose: Pose { tip, axis }, motion, aloft: false });
     }
 
     fn note(&mut self, line: usize, text: &str) {

@@ -153,7 +153,8 @@ impl ReadBack {
     /// ```
     #[must_use]
     pub fn cl_path(&self) -> ClPath {
-        let moves = self.moves.iter().map(|m| ClMove { pose: m.pose, motion: m.motion }).collect();
+        let moves =
+            self.moves.iter().map(|m| ClMove { pose: m.pose, motion: m.motion, aloft: false }).collect();
         ClPath { cutter: None, holder: Vec::new(), spindle_rpm: self.spindle_rpm, moves }
     }
 

@@ -122,7 +122,7 @@ pub fn path(poses: impl IntoIterator<Item = Pose>, feed_mm_min: f64) -> ClPath {
     for pose in poses {
         let motion = if moves.is_empty() { Motion::Rapid } else { Motion::Feed(feed_mm_min) };
         if moves.last().is_none_or(|m| (m.pose.tip - pose.tip).norm() > 1e-3) {
-            moves.push(ClMove { pose, motion });
+            moves.push(ClMove { pose, motion, aloft: false });
         }
     }
     ClPath { moves, spindle_rpm: Some(8000.0), ..ClPath::default() }

@@ -16,7 +16,11 @@ pub fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
 /// A rapid to the first pose, then feed moves.
 pub fn path(poses: impl IntoIterator<Item = Pose>, feed_mm_min: f64) -> ClPath {
     let motion = |i| if i == 0 { Motion::Rapid } else { Motion::Feed(feed_mm_min) };
-    let moves = poses.into_iter().enumerate().map(|(i, pose)| ClMove { pose, motion: motion(i) }).collect();
+    let moves = poses
+        .into_iter()
+        .enumerate()
+        .map(|(i, pose)| ClMove { pose, motion: motion(i), aloft: false })
+        .collect();
     ClPath { moves, spindle_rpm: Some(8000.0), ..ClPath::default() }
 }
 

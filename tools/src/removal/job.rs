@@ -48,7 +48,7 @@ impl Swept {
     /// // Three points make two motions; the first point is come to from nobody knows where.
     /// let to = |x: f64, motion| {
     ///     let pose = Pose { tip: Point3::new(x, 0.0, 0.0), axis: Vec3::z_axis() };
-    ///     ClMove { pose, motion }
+    ///     ClMove { pose, motion, aloft: false }
     /// };
     /// let moves = vec![to(0.0, Motion::Rapid), to(5.0, Motion::Rapid), to(40.0, Motion::Feed(900.0))];
     /// let motions = Swept::along(&ClPath { moves, ..Default::default() });

@@ -270,7 +270,7 @@ fn feeds_are_held_against_material() {
     // One of the two says nothing, or no motion says how long it takes.
     for (feeds, timed) in [([Some(300.0), None], true), ([Some(300.0), Some(100.0)], false)] {
         let verdict = asked(feeds, &even, timed);
-        assert!(row(&verdict).starts_with("NOT held against"), "{verdict}");
+        assert!(row(&verdict).starts_with("NOT looked at"), "{verdict}");
     }
 }
 

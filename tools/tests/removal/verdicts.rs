@@ -183,7 +183,7 @@ fn nonsense_is_refused() {
 #[test]
 fn a_path_becomes_motions() {
     let at = |x: f64| upright(x, 0.0, 0.0);
-    let go = |x: f64, motion: Motion| ClMove { pose: at(x), motion };
+    let go = |x: f64, motion: Motion| ClMove { pose: at(x), motion, aloft: false };
     let path = ClPath {
         moves: vec![go(0.0, Motion::Rapid), go(1.0, Motion::Feed(100.0)), go(2.0, Motion::Rapid)],
         ..ClPath::default()

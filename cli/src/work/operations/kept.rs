@@ -49,7 +49,7 @@ pub struct Kept {
     axes: u8,
     with_strips: bool,
     passes: Vec<(bool, Vec<KeptPoint>)>,
-    moves: Vec<[f64; 7]>,
+    moves: Vec<[f64; 8]>,
     pass_of_move: Vec<Option<u32>>,
     lengths_mm: [f64; 2],
     left_out: Vec<(String, f64)>,
@@ -125,7 +125,7 @@ impl Kept {
         let step = |m: &ClMove| {
             let (t, a) = (m.pose.tip, m.pose.axis);
             let feed = if let Motion::Feed(feed) = m.motion { feed } else { 0.0 };
-            [t.x, t.y, t.z, a.x, a.y, a.z, feed]
+            [t.x, t.y, t.z, a.x, a.y, a.z, feed, f64::from(u8::from(m.aloft))]
         };
         let linked = &planned.linked;
         Self {
@@ -187,9 +187,10 @@ impl Kept {
             pose: Pose { tip: Point3::from(v(&x[8..11])), axis: Unit3::new_unchecked(v(&x[11..14])) },
             width_mm: width.unwrap_or(f64::NAN),
         };
-        let step = |x: &[f64; 7]| ClMove {
+        let step = |x: &[f64; 8]| ClMove {
             pose: Pose { tip: Point3::from(v(&x[..3])), axis: Unit3::new_unchecked(v(&x[3..6])) },
             motion: if x[6] > 0.0 { Motion::Feed(x[6]) } else { Motion::Rapid },
+            aloft: x[7] > 0.0,
         };
         let passes = self
             .passes

@@ -151,11 +151,11 @@ pub fn good(recipe: Recipe) -> Good {
         for k in 0..POSES {
             let x = 1.2 * (2.0 * f64::from(k) / f64::from(POSES - 1) - 1.0);
             let pose = pose(uv(middle.u + half[0] * x, middle.v + half[1] * y));
-            let lifted = ClMove { pose: pose.retracted(15.0), motion: Motion::Rapid };
+            let lifted = ClMove { pose: pose.retracted(15.0), motion: Motion::Rapid, aloft: false };
             if k == 0 {
                 moves.push(lifted);
             }
-            moves.push(ClMove { pose, motion: Motion::Feed(FEED) });
+            moves.push(ClMove { pose, motion: Motion::Feed(FEED), aloft: false });
             if k == POSES - 1 {
                 moves.push(lifted);
             }

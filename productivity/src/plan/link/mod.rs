@@ -50,6 +50,11 @@ pub struct Linked {
 impl Linked {
     /// Adds a move, unless it leads nowhere.
     pub(super) fn go(&mut self, pose: Pose, motion: Motion, pass: Option<u32>) {
+        self.make(ClMove { pose, motion, aloft: false }, pass);
+    }
+
+    fn make(&mut self, to: ClMove, pass: Option<u32>) {
+        let pose = &to.pose;
         if let Some(last) = self.path.moves.last() {
             let length = (pose.tip - last.pose.tip).norm();
             if length == 0.0 && pose.axis == last.pose.axis {
@@ -61,13 +66,13 @@ impl Linked {
                 self.air_length_mm += length;
             }
         }
-        self.path.moves.push(ClMove { pose, motion });
+        self.path.moves.push(to);
         self.pass_of_move.push(pass);
     }
 
     fn follow(&mut self, way: &Way) {
         for leg in &way.legs {
-            self.go(leg.pose, leg.motion, None);
+            self.make(ClMove { pose: leg.pose, motion: leg.motion, aloft: leg.aloft }, None);
         }
     }
 }

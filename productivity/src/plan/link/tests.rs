@@ -151,6 +151,14 @@ fn a_hop_rises_by_no_more_than_is_clear() {
     assert_eq!([top(&low), top(&high)], [0.125, 2.0]);
     // Two hops, up and down by so much less each.
     assert!((high.air_length_mm - low.air_length_mm - 4.0 * 1.875).abs() < 1e-12);
+    // The tool is aloft on the ways across, between the way up and the way down, and nowhere on what touches.
+    let aloft =
+        |linked: &Linked| linked.path.moves.iter().filter(|m| m.aloft && m.motion != Motion::Rapid).count();
+    for linked in [&low, &high] {
+        let fed = linked.path.moves.windows(2).filter(|w| w[1].motion != Motion::Rapid);
+        fed.for_each(|w| assert_eq!(w[1].aloft, w[0].pose.tip.z.min(w[1].pose.tip.z) > 0.0));
+    }
+    assert_eq!(aloft(&low), 2);
     // A rib along the middle of the first hop, machined by a later pass: half of the lift must be spare.
     for (rib, lift) in [(0.1, 0.25), (0.2, 0.5), (0.4, 1.0), (0.7, 2.0)] {
         let mut passes = over_plane(7.0, 3.0);
@@ -162,7 +170,7 @@ fn a_hop_rises_by_no_more_than_is_clear() {
     }
     // Beside each other: straight along the surface, as long as nothing stands there.
     let beside = link(&over_plane(4.0, 3.0), &links(0.125), &Walls::default());
-    assert_eq!(top(&beside), 0.0);
+    assert_eq!((top(&beside), aloft(&beside)), (0.0, 0));
 }
 
 #[test]

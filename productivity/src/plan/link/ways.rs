@@ -48,6 +48,8 @@ const LOOK: f64 = 0.5;
 pub(super) struct Leg {
     pub pose: Pose,
     pub motion: Motion,
+    /// Whether it is off everything, by no less than the least lift.
+    pub aloft: bool,
 }
 
 /// A way with its time.
@@ -176,11 +178,11 @@ impl<'a> Finder<'a> {
                 for t in 1..=turns {
                     let pose =
                         if t == turns { b } else { piece.at(t as f64 / turns as f64).map_or(b, |m| m.pose) };
-                    way.legs.push(Leg { pose, motion: Motion::Rapid });
+                    way.legs.push(Leg { pose, motion: Motion::Rapid, aloft: true });
                 }
                 way.min += rapid_min;
             } else {
-                way.legs.push(Leg { pose: b, motion: Motion::Feed(self.links.feed_mm_min) });
+                way.legs.push(Leg { pose: b, motion: Motion::Feed(self.links.feed_mm_min), aloft: true });
                 way.min += feed_min;
             }
             begin = end;
@@ -190,7 +192,7 @@ impl<'a> Finder<'a> {
     /// Appends a leg at a feed.
     fn fed(&self, way: &mut Way, (from, to): (&Pose, &Pose), feed_mm_min: f64) {
         way.min += self.links.rates.feed_min(step(from, to), feed_mm_min);
-        way.legs.push(Leg { pose: *to, motion: Motion::Feed(feed_mm_min) });
+        way.legs.push(Leg { pose: *to, motion: Motion::Feed(feed_mm_min), aloft: false });
     }
 
     /// A way through poses from a contact to another: fed off the one and down to the other, in between as fast as may be.
@@ -404,7 +406,7 @@ impl<'a> Finder<'a> {
             clear: self.kept([to.pose, to.pose]).room(&[above, off, to.pose]).is_some(),
             ..Way::default()
         };
-        way.legs.push(Leg { pose: above, motion: Motion::Rapid });
+        way.legs.push(Leg { pose: above, motion: Motion::Rapid, aloft: true });
         self.paced(&mut way, (&above, &off), k);
         self.fed(&mut way, (&off, &to.pose), self.links.plunge_mm_min);
         way
@@ -417,7 +419,7 @@ impl<'a> Finder<'a> {
         if steps == 0 {
             return;
         }
-        way.legs.push(Leg { pose: self.pole(from), motion: Motion::Rapid });
+        way.legs.push(Leg { pose: self.pole(from), motion: Motion::Rapid, aloft: true });
         // Antipodal axes have no single arc between them: any perpendicular serves.
         let side = {
             let s = to.into_inner() - from.into_inner() * to.dot(from);
@@ -430,7 +432,7 @@ impl<'a> Finder<'a> {
             } else {
                 Unit3::new_normalize(from.into_inner() * c + side.into_inner() * s)
             };
-            way.legs.push(Leg { pose: self.pole(&axis), motion: Motion::Rapid });
+            way.legs.push(Leg { pose: self.pole(&axis), motion: Motion::Rapid, aloft: true });
         }
         let one = Step { length_mm: angle * self.radius_mm / steps as f64, turn_rad: angle / steps as f64 };
         way.min += steps as f64 * self.links.rates.rapid_min(one);

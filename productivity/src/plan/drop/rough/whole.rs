@@ -135,7 +135,7 @@ fn everywhere(linked: &Linked, turns: &[Isometry3<f64>], sphere: &Sphere, out: &
         let moved = |m: &ClMove| {
             // A turn keeps unit vectors but for rounding, which is not to grow.
             let axis = Unit3::new_normalize(turn * m.pose.axis.into_inner());
-            ClMove { pose: Pose { tip: turn * m.pose.tip, axis }, motion: m.motion }
+            ClMove { pose: Pose { tip: turn * m.pose.tip, axis }, motion: m.motion, aloft: false }
         };
         for (k, (m, pass)) in linked.path.moves.iter().zip(&linked.pass_of_move).enumerate() {
             let m = moved(m);
