@@ -118,7 +118,7 @@ fn what_cuts_faster_than_its_tool_is_for_is_told() {
         assert_eq!(said(&in_air), (row, 0), "{name}");
         let (row, remarks) = said(&pass.replace("X5 F500", "X5 F1500"));
         assert!(
-            row.starts_with("1 moves that cut are faster") && row.contains("1500 mm/min"),
+            row.starts_with("1 move that cuts is faster") && row.contains("1500 mm/min"),
             "{name}: {row}"
         );
         assert_eq!(remarks, 1, "{name}");

@@ -229,7 +229,7 @@ impl Trial<'_> {
             if goal.fixtures.is_empty() { "none declared".to_owned() } else { "as declared".to_owned() },
         );
         row("tool", self.tool_words());
-        row("feed", self.feed_words(f));
+        row("feed", self.feed_words(f.too_fast, f.stock.is_some()));
         row("tooth marks", self.teeth_words());
         let control = &goal.control;
         row(

@@ -89,7 +89,7 @@ pub(super) fn concluded(
     };
     let (answer, why) = trial.answer(&figures, refined.left_out);
     let told = goal.control.remarks.iter().filter(|r| r.gravity == Gravity::Told).map(|r| r.text.clone());
-    let fast = figures.too_fast.map(|_| trial.feed_words(&figures));
+    let fast = figures.too_fast.map(|fast| trial.feed_words(Some(fast), figures.stock.is_some()));
     let remarks = told.chain(fast).chain(notes).collect();
     Verdict {
         answer,

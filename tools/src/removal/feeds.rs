@@ -6,7 +6,6 @@ use super::goal::Program;
 use super::job::{Body, Cut, Sample};
 use super::stock::{Carved, Work};
 use super::trial::Trial;
-use super::verdict::Figures;
 
 /// A feed above that of its tool by no more than this is one: rounding of feed words and of the path stays far below.
 const EXCESS: f64 = 1.05;
@@ -87,21 +86,22 @@ impl Trial<'_> {
         out
     }
 
-    /// What is said of feeds in the scope of a verdict.
-    pub fn feed_words(&self, f: &Figures) -> String {
+    /// What is said of feeds in the scope of a verdict, with raw material that was looked at or without.
+    pub fn feed_words(&self, too_fast: Option<TooFast>, with_stock: bool) -> String {
         if self.program.times_min.is_empty() || self.goal.tools.iter().any(|t| t.feed_mm_min.is_none()) {
             return "NOT looked at: nothing says it, or what it is to be".to_owned();
         }
-        let Some(fast) = &f.too_fast else {
-            let stock = match f.stock {
-                Some(_) => ", and what takes raw material",
-                None => "",
-            };
+        let Some(fast) = too_fast else {
+            let stock = if with_stock { ", and what takes raw material," } else { "" };
             return format!("what makes the faces{stock} goes no faster than its tool's feed");
         };
+        let many = match fast.moves {
+            1 => "1 move that cuts is faster than its tool's feed,".to_owned(),
+            n => format!("{n} moves that cut are faster than their tool's feed, most"),
+        };
         format!(
-            "{} moves that cut are faster than their tool's feed, most in block {}: {:.0} mm/min where that is {:.0}",
-            fast.moves, fast.block, fast.mm_min, fast.feed_mm_min
+            "{many} in block {}: {:.0} mm/min where that is {:.0}",
+            fast.block, fast.mm_min, fast.feed_mm_min
         )
     }
 }
