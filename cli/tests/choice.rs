@@ -306,7 +306,7 @@ fn marks_are_left_what_the_speed_needs() {
     // With the room for marks 7 passes of 11 are left.
     assert!(number(&open, &["passes"]) < 0.7 * number(&given, &["passes"]));
     let mark = |v: &Value| number(v, &["verification", "tooth_mark_max_mm"]);
-    assert!(mark(&open) < 0.3 * mark(&given), "{} {}", mark(&open), mark(&given));
+    assert!(mark(&open) < 0.4 * mark(&given), "{} {}", mark(&open), mark(&given));
     // Both are held together, whoever reads the program; joints are still what holds the feed.
     assert!(number(&open, &["verification", "height_max_mm"]) <= 0.001);
     same(&open, &verified);

@@ -86,7 +86,7 @@ fn a_plan_is_written_posted_verified_and_reported() {
         } else {
             let min: f64 = of_feed[0].split(' ').next().unwrap().parse().unwrap();
             assert!(
-                (min / by_tip_min - 1.0).abs() < 0.05 && min < 0.6 * now_min,
+                (min / by_tip_min - 1.0).abs() < 0.05 && min < 0.7 * now_min,
                 "{min} {by_tip_min} {now_min}"
             );
             assert!(

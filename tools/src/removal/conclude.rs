@@ -72,6 +72,11 @@ pub(super) fn concluded(
         samples.iter().zip(&cuts).zip(&marks.each).filter(|((s, c), _)| !s.check_only && c.by.is_some());
     let with_marks = machined.map(|((_, c), m)| height((c, m))).fold(0.0, f64::max);
     let height_max_mm = tally.scallop_max_mm.max(if marks.known { with_marks } else { 0.0 });
+    let of_stock = stock.as_ref().map(|s| s.too_fast);
+    // What a roughing leaves it may have touched at the feed of the air: there raw material tells, where it is known.
+    let by_stock = of_stock.is_some() && goal.roughing_mm.is_some();
+    let made = || if by_stock { None } else { trial.made_too_fast(&samples, &cuts) };
+    let too_fast = of_stock.flatten().or_else(made);
     let figures = Figures {
         added: refined.added,
         spacing_mm: density.spacing_mm,
@@ -83,7 +88,7 @@ pub(super) fn concluded(
         mark_max_mm: marks.known.then(|| marks.most_mm()),
         height_max_mm,
         coarse,
-        too_fast: stock.as_ref().and_then(|s| s.too_fast).or_else(|| trial.made_too_fast(&samples, &cuts)),
+        too_fast,
         stock,
         tally,
     };
