@@ -67,7 +67,7 @@ pub struct GoalTool<'a> {
     pub teeth: Option<u32>,
     /// Revolutions a minute. Without it tooth marks are not known.
     pub spindle_rpm: Option<f64>,
-    /// The fastest that its tip may go where it takes raw material, mm/min. Without it that is not looked at.
+    /// The fastest that its tip may go where it cuts, mm/min. Without it that is not looked at.
     pub feed_mm_min: Option<f64>,
 }
 

@@ -158,7 +158,7 @@ fn a_hop_rises_by_no_more_than_is_clear() {
         let fed = linked.path.moves.windows(2).filter(|w| w[1].motion != Motion::Rapid);
         fed.for_each(|w| assert_eq!(w[1].aloft, w[0].pose.tip.z.min(w[1].pose.tip.z) > 0.0));
     }
-    assert_eq!(aloft(&low), 2);
+    assert!(aloft(&low) >= 2 && aloft(&high) >= 2);
     // A rib along the middle of the first hop, machined by a later pass: half of the lift must be spare.
     for (rib, lift) in [(0.1, 0.25), (0.2, 0.5), (0.4, 1.0), (0.7, 2.0)] {
         let mut passes = over_plane(7.0, 3.0);
